@@ -1,0 +1,3 @@
+//! Everything that touches the outside: files, terminal, network, clock.
+
+pub mod files;

@@ -1,0 +1,28 @@
+//! Gaze: samples on the wall display and the locations that they may have read.
+
+use serde::{Deserialize, Serialize};
+
+use crate::kitchen::{Kitchen, LocationId};
+
+/// Samples below this confidence are useless (Pupil Labs) and are not used for reading.
+pub const MIN_CONFIDENCE: f64 = 0.6;
+
+/// One gaze sample, in display coordinates: fractions of width and height, origin at the top left, y down.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GazeSample {
+    pub x: f64,
+    pub y: f64,
+    /// 0 to 1.
+    pub confidence: f64,
+    /// The tracker's own clock, in nanoseconds, where it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub device_ns: Option<u64>,
+}
+
+/// The location nearest to a display point, and its distance in metres (0 inside its area).
+pub fn nearest_location(kitchen: &Kitchen, point: [f64; 2]) -> Option<(LocationId, f64)> {
+    let distance = |index: usize| kitchen.locations[index].display.distance_m(point, kitchen.display_m);
+    let nearest = (0..kitchen.locations.len()).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
+    Some((LocationId(nearest as u8), distance(nearest)))
+}

@@ -1,0 +1,43 @@
+//! State aspects: what the human may be wrong about. One per location (its content), one per dish (its recipe).
+
+use super::layout::LocationId;
+use super::recipe::DishId;
+
+/// An index into [`super::Kitchen::aspects`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct AspectId(pub u8);
+
+impl AspectId {
+    #[inline]
+    pub fn index(self) -> usize {
+        usize::from(self.0)
+    }
+}
+
+/// What an aspect is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AspectKind {
+    /// What the location holds; values are the bytes of [`super::State::code`].
+    Location(LocationId),
+    /// Which full stack the dish is; values are contents, the true one first.
+    Recipe(DishId),
+}
+
+/// One state aspect and its possible values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Aspect {
+    /// The location's name, or "recipe of <dish>".
+    pub name: String,
+    pub kind: AspectKind,
+    /// The possible values, as codes (see [`AspectKind`]).
+    pub values: Vec<u8>,
+    /// What a screen writes for each value.
+    pub labels: Vec<String>,
+}
+
+impl Aspect {
+    /// The index of a value by its code.
+    pub fn index_of(&self, code: u8) -> Option<usize> {
+        self.values.iter().position(|&value| value == code)
+    }
+}

@@ -1,0 +1,39 @@
+//! What can lie at a location: nothing, an ingredient item, or a stack of items.
+
+/// An index into [`super::Kitchen::contents`]; 0 is "empty".
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ContentId(pub u8);
+
+impl ContentId {
+    pub const EMPTY: ContentId = ContentId(0);
+
+    #[inline]
+    pub fn index(self) -> usize {
+        usize::from(self.0)
+    }
+
+    #[inline]
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+}
+
+/// One content of the kitchen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Content {
+    /// "rice cooked", "nori + rice cooked", "empty"; a full stack on the menu has its dish's name.
+    pub name: String,
+    /// The ingredient items in it, in the order of the recipe file; one for an item, none for empty.
+    pub items: Vec<ContentId>,
+    /// The ingredient it is made of, as index into the recipe file's list, if it is an item.
+    pub ingredient: Option<usize>,
+    /// The contents that look like it: the same with one ingredient exchanged for a look-alike.
+    pub look_alikes: Vec<ContentId>,
+}
+
+impl Content {
+    /// Several items that are carried as one.
+    pub fn is_stack(&self) -> bool {
+        self.items.len() > 1
+    }
+}

@@ -1,0 +1,139 @@
+//! The recipe file: ingredients with states and look-alikes, processing steps, the stacking rule, the menu, and how a
+//! memory of a recipe can deviate.
+
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use super::content::ContentId;
+use super::layout::LocationId;
+
+/// An index into [`super::Kitchen::dishes`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct DishId(pub u8);
+
+impl DishId {
+    #[inline]
+    pub fn index(self) -> usize {
+        usize::from(self.0)
+    }
+}
+
+/// A dish of the menu.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dish {
+    pub name: String,
+    /// What may be taken for its recipe: full stacks, the true one first.
+    pub variants: Vec<ContentId>,
+}
+
+impl Dish {
+    /// The recipe as it truly is.
+    pub fn stack(&self) -> ContentId {
+        self.variants[0]
+    }
+}
+
+/// A compiled processing step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Process {
+    pub name: String,
+    /// Where it happens; `None`: in the hand of the agent who presses.
+    pub place: Option<LocationId>,
+    /// Which agents can do it, indexed by [`super::Agent::index`].
+    pub agents: [bool; 2],
+    /// From which item to which.
+    pub steps: Vec<(ContentId, ContentId)>,
+}
+
+/// The recipe file as written.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RecipesSpec {
+    pub name: String,
+    pub ingredient: Vec<IngredientSpec>,
+    #[serde(default)]
+    pub process: Vec<ProcessSpec>,
+    pub slot: Vec<SlotSpec>,
+    #[serde(default)]
+    pub group: Vec<GroupSpec>,
+    pub dish: Vec<DishSpec>,
+    #[serde(default)]
+    pub deviation: Vec<DeviationSpec>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IngredientSpec {
+    pub name: Spanned<String>,
+    /// The first one is what a storage gives; none: the ingredient has only one state.
+    #[serde(default)]
+    pub states: Vec<Spanned<String>>,
+    #[serde(default)]
+    pub looks_like: Vec<Spanned<String>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProcessSpec {
+    pub name: Spanned<String>,
+    /// A place of the layout, or "hand".
+    pub at: Spanned<String>,
+    pub agents: Vec<super::Agent>,
+    pub steps: Vec<StepSpec>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StepSpec {
+    pub from: Spanned<String>,
+    pub to: Spanned<String>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SlotSpec {
+    pub name: Spanned<String>,
+    pub items: Vec<Spanned<String>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GroupSpec {
+    pub name: Spanned<String>,
+    pub made_of: Vec<Spanned<String>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DishSpec {
+    pub name: Spanned<String>,
+    pub items: Spanned<Vec<Spanned<String>>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DeviationSpec {
+    /// Which dishes it is about: those with at least one of these items.
+    pub dishes_with: Vec<Spanned<String>>,
+    pub combine: Combine,
+    pub slots: Vec<DeviationSlotSpec>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DeviationSlotSpec {
+    pub slot: Spanned<String>,
+    pub items: Vec<Spanned<String>>,
+}
+
+/// How deviations of several slots go together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum Combine {
+    /// At most one slot deviates from the true recipe.
+    #[serde(rename = "one at a time")]
+    OneAtATime,
+    /// Every combination of the items.
+    #[serde(rename = "all")]
+    All,
+}

@@ -1,0 +1,122 @@
+//! What a press does: the transition of the task, as table look-ups.
+
+use super::action::{Action, Agent, ButtonId};
+use super::content::ContentId;
+use super::layout::LocationId;
+use super::recipe::DishId;
+use super::state::{OrderContent, Recipes, State};
+use super::{Kitchen, LocationKind};
+
+/// Transition tables over contents, computed once.
+#[derive(Clone, Debug, Default)]
+pub struct Tables {
+    /// Number of contents.
+    pub(super) width: usize,
+    /// `accepts[location * width + content]`: whether the location takes the content when it is empty.
+    pub(super) accepts: Vec<bool>,
+    /// `stacks[a * width + b]`: what a and b stacked are; 0 where they do not stack.
+    pub(super) stacks: Vec<ContentId>,
+    /// `becomes[process * width + content]`: what the content becomes; 0 where the process does nothing to it.
+    pub(super) becomes: Vec<ContentId>,
+}
+
+impl Kitchen {
+    /// Whether an empty `location` takes `content`.
+    #[inline]
+    pub fn accepts(&self, location: LocationId, content: ContentId) -> bool {
+        self.tables.accepts[location.index() * self.tables.width + content.index()]
+    }
+
+    /// What two contents are when stacked; `None` where they do not stack.
+    #[inline]
+    pub fn stacked(&self, below: ContentId, above: ContentId) -> Option<ContentId> {
+        let stack = self.tables.stacks[below.index() * self.tables.width + above.index()];
+        (!stack.is_empty()).then_some(stack)
+    }
+
+    /// What a process makes of a content; `None` where it does nothing to it.
+    #[inline]
+    pub fn processed(&self, process: u8, content: ContentId) -> Option<ContentId> {
+        let result = self.tables.becomes[usize::from(process) * self.tables.width + content.index()];
+        (!result.is_empty()).then_some(result)
+    }
+
+    /// The state after `agent` presses `button`; `None` if the action is not available, when the press has no effect.
+    #[inline]
+    pub fn press(&self, state: State, recipes: &Recipes, agent: Agent, button: ButtonId) -> Option<State> {
+        self.act(state, recipes, agent, self.button(agent, button).action)
+    }
+
+    /// The state after an action of an agent; `None` if it is not available. `recipes` decides what can be served.
+    pub fn act(&self, state: State, recipes: &Recipes, agent: Agent, action: Action) -> Option<State> {
+        let hand = self.hands[agent.index()];
+        let held = state.content(hand);
+        let mut next = state;
+        match action {
+            Action::Take(item) => {
+                if !held.is_empty() {
+                    return None;
+                }
+                next.set_content(hand, item);
+            }
+            Action::Use(location) => {
+                let (in_hand, at_location) = self.exchanged(location, held, state.content(location))?;
+                next.set_content(hand, in_hand);
+                next.set_content(location, at_location);
+            }
+            Action::Process(process) => {
+                let place = self.processes[usize::from(process)].place.unwrap_or(hand);
+                next.set_content(place, self.processed(process, state.content(place))?);
+            }
+            Action::Trash => {
+                if held.is_empty() {
+                    return None;
+                }
+                next.set_content(hand, ContentId::EMPTY);
+            }
+            Action::Serve(order) => {
+                let OrderContent::Dish(dish) = state.order(order) else { return None };
+                if state.content(self.plate) != recipes.get(dish) {
+                    return None;
+                }
+                next.set_content(self.plate, ContentId::EMPTY);
+                next.set_order(order, OrderContent::Served);
+            }
+        }
+        Some(next)
+    }
+
+    /// What hand and location hold after the location's button: picked up, put down or stacked.
+    #[inline]
+    fn exchanged(&self, location: LocationId, held: ContentId, there: ContentId) -> Option<(ContentId, ContentId)> {
+        match (held.is_empty(), there.is_empty()) {
+            (true, true) => None,
+            (true, false) => Some((there, ContentId::EMPTY)),
+            (false, true) => self.accepts(location, held).then_some((ContentId::EMPTY, held)),
+            (false, false) if location == self.board => {
+                self.stacked(there, held).map(|stack| (ContentId::EMPTY, stack))
+            }
+            (false, false) => None,
+        }
+    }
+
+    /// The dishes that are wanted now.
+    pub fn wanted(&self, state: State) -> impl Iterator<Item = (LocationId, DishId)> + '_ {
+        self.orders.iter().filter_map(move |&order| match state.order(order) {
+            OrderContent::Dish(dish) => Some((order, dish)),
+            _ => None,
+        })
+    }
+
+    /// Checks that every location holds something that it can hold; the first one that does not.
+    pub fn misplaced(&self, state: State) -> Option<LocationId> {
+        let is_misplaced = |location: LocationId| match self.location(location).kind {
+            LocationKind::Order => usize::from(state.code(location)) >= self.dishes.len() + 2,
+            _ => {
+                let content = state.content(location);
+                content.index() >= self.contents.len() || (!content.is_empty() && !self.accepts(location, content))
+            }
+        };
+        (0..self.locations.len()).map(|index| LocationId(index as u8)).find(|&location| is_misplaced(location))
+    }
+}

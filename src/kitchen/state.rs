@@ -1,0 +1,105 @@
+//! The task state and the recipes that someone takes for true, packed small: states are copied and hashed by the million.
+
+use super::content::ContentId;
+use super::layout::LocationId;
+use super::recipe::DishId;
+
+/// At most so many locations in a kitchen.
+pub const MAX_LOCATIONS: usize = 16;
+/// At most so many dishes on a menu.
+pub const MAX_DISHES: usize = 16;
+
+/// What every location holds, one byte a location: a [`ContentId`], or for an order an [`OrderContent`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(align(16))]
+pub struct State([u8; MAX_LOCATIONS]);
+
+/// What an order location shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum OrderContent {
+    /// No order.
+    None,
+    /// The order was served a moment ago.
+    Served,
+    /// A dish is wanted; only the final product is shown.
+    Dish(DishId),
+}
+
+impl OrderContent {
+    /// The byte that stands for it in a [`State`].
+    pub const fn code(self) -> u8 {
+        match self {
+            OrderContent::None => 0,
+            OrderContent::Served => 1,
+            OrderContent::Dish(dish) => dish.0 + 2,
+        }
+    }
+
+    /// The inverse of [`OrderContent::code`].
+    pub const fn from_code(code: u8) -> Self {
+        match code {
+            0 => OrderContent::None,
+            1 => OrderContent::Served,
+            dish => OrderContent::Dish(DishId(dish - 2)),
+        }
+    }
+}
+
+impl State {
+    /// What lies at a location that is no order.
+    #[inline]
+    pub fn content(self, location: LocationId) -> ContentId {
+        ContentId(self.0[location.index() & (MAX_LOCATIONS - 1)])
+    }
+
+    /// Puts `content` at a location that is no order.
+    #[inline]
+    pub fn set_content(&mut self, location: LocationId, content: ContentId) {
+        self.0[location.index() & (MAX_LOCATIONS - 1)] = content.0;
+    }
+
+    /// What an order location shows.
+    #[inline]
+    pub fn order(self, location: LocationId) -> OrderContent {
+        OrderContent::from_code(self.code(location))
+    }
+
+    #[inline]
+    pub fn set_order(&mut self, location: LocationId, content: OrderContent) {
+        self.set_code(location, content.code());
+    }
+
+    /// The byte at a location, whatever its kind: the value of its state aspect.
+    #[inline]
+    pub fn code(self, location: LocationId) -> u8 {
+        self.0[location.index() & (MAX_LOCATIONS - 1)]
+    }
+
+    #[inline]
+    pub fn set_code(&mut self, location: LocationId, code: u8) {
+        self.0[location.index() & (MAX_LOCATIONS - 1)] = code;
+    }
+
+    /// All locations as one number, for hashing.
+    #[inline]
+    pub fn bits(self) -> u128 {
+        u128::from_le_bytes(self.0)
+    }
+}
+
+/// For every dish, the full stack that is taken for its recipe: the true one, or somebody's memory of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(align(16))]
+pub struct Recipes([u8; MAX_DISHES]);
+
+impl Recipes {
+    #[inline]
+    pub fn get(&self, dish: DishId) -> ContentId {
+        ContentId(self.0[dish.index() & (MAX_DISHES - 1)])
+    }
+
+    #[inline]
+    pub fn set(&mut self, dish: DishId, stack: ContentId) {
+        self.0[dish.index() & (MAX_DISHES - 1)] = stack.0;
+    }
+}

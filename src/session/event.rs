@@ -1,0 +1,148 @@
+//! What can happen in a session. The log is a list of these, and a session is its log.
+//!
+//! Facts change the session when applied; witnesses are only kept. Locations, dishes and buttons stand by their names, so
+//! that a log can be read without the program.
+
+use serde::{Deserialize, Serialize};
+
+use crate::base::time::SessionTime;
+use crate::communication::{Sender, Signal};
+use crate::gaze::GazeSample;
+use crate::kitchen::Agent;
+
+/// An event with its place in the log.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stamped {
+    /// 0, 1, 2, … without gaps.
+    pub seq: u64,
+    /// Nanoseconds since the session began; never decreases along the log.
+    #[serde(rename = "t_ns")]
+    pub time: SessionTime,
+    #[serde(flatten)]
+    pub event: Event,
+}
+
+/// One thing that happened.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Event {
+    /// The trial's clock starts; empty kitchen.
+    TrialStarted,
+    /// Clock, robot and orders stand still; presses have no effect.
+    TrialPaused,
+    TrialResumed,
+    TrialEnded {
+        reason: EndReason,
+    },
+    /// A gaze sample of the participant.
+    Gaze(GazeSample),
+    /// An agent pressed a physical button.
+    Press {
+        agent: Agent,
+        button: String,
+    },
+    /// An order location shows a wanted dish.
+    OrderShown {
+        order: String,
+        dish: String,
+    },
+    /// An order location no longer shows `served`.
+    OrderCleared {
+        order: String,
+    },
+    /// The robot sets out to press a button and will touch it at `until_ns` if nothing comes between.
+    RobotIntends {
+        button: String,
+        until_ns: SessionTime,
+    },
+    /// The robot gave up the press that it was on its way to.
+    RobotAborts {
+        button: String,
+        reason: AbortReason,
+    },
+    /// The robot has nothing useful to do.
+    RobotIdles {
+        reason: IdleReason,
+    },
+    /// The wizard stopped the robot; it stays so until it is resumed.
+    RobotStopped,
+    RobotResumed,
+    /// A signal appears to the participant; an earlier one vanishes.
+    SignalShown {
+        by: Sender,
+        signal: Signal,
+    },
+    /// The signal vanishes.
+    SignalEnded {
+        reason: SignalEnd,
+    },
+    /// The wizard marked this moment.
+    Marker {
+        note: String,
+    },
+    /// Witness: what a simulated participant believes, written before each of its presses.
+    ParticipantBelieves(ParticipantBelief),
+    /// The session is over; a log without it was cut.
+    SessionEnded,
+}
+
+/// Why a trial ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EndReason {
+    /// The set number of presses of both agents was reached.
+    Presses,
+    /// The set time was over.
+    Time,
+    /// The wizard ended it.
+    Wizard,
+}
+
+/// Why the robot gave up a press.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AbortReason {
+    /// When the arm was about to touch the button, pressing it was no longer useful.
+    NoLongerUseful,
+    /// The wizard stopped the robot.
+    Stopped,
+}
+
+/// Why the robot does nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum IdleReason {
+    /// No order is present.
+    NoOrder,
+    /// Only the human can go on.
+    HumanTurn,
+}
+
+/// How a signal ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SignalEnd {
+    /// It was shown for its set time.
+    Elapsed,
+    /// Its sender took it back.
+    TakenBack,
+}
+
+/// What a simulated participant believes at a moment, and why it will press what it will press.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ParticipantBelief {
+    /// For every state aspect with a wrong or uncertain belief: its name and what the participant holds.
+    pub aspects: Vec<AspectBelief>,
+    /// Why it presses what it presses next: "as believed", "slip to the neighbouring button", …
+    pub cause: String,
+}
+
+/// A participant's belief about one aspect.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AspectBelief {
+    pub aspect: String,
+    /// The value that it holds most likely.
+    pub believes: String,
+    /// The probability that it gives to the truth.
+    pub p_truth: f64,
+}

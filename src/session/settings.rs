@@ -1,0 +1,152 @@
+//! What a session file asks for.
+
+use serde::{Deserialize, Serialize};
+
+/// A session file: who takes part, under which condition, and for how long.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SessionSpec {
+    /// The layout file, relative to the session file.
+    pub layout: String,
+    /// Everything random in the session follows from it.
+    #[serde(default = "default_seed")]
+    pub seed: u64,
+    #[serde(default)]
+    pub trial: TrialSpec,
+    #[serde(default)]
+    pub participant: ParticipantSpec,
+    #[serde(default)]
+    pub robot: RobotSpec,
+    #[serde(default)]
+    pub signals: SignalSpec,
+    #[serde(default)]
+    pub console: ConsoleSpec,
+}
+
+fn default_seed() -> u64 {
+    1
+}
+
+/// When a trial ends, and who sends signals in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TrialSpec {
+    pub condition: Condition,
+    /// Presses of both agents; the default is the mean of the paper.
+    pub presses: u32,
+    pub seconds: f64,
+}
+
+impl Default for TrialSpec {
+    fn default() -> Self {
+        TrialSpec { condition: Condition::Wizard, presses: 304, seconds: 900.0 }
+    }
+}
+
+/// Who sends signals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Condition {
+    /// Nobody: the unassisted condition.
+    None,
+    /// The person at the console.
+    Wizard,
+}
+
+/// The participant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ParticipantSpec {
+    /// A code, never a name.
+    pub code: String,
+    pub kind: ParticipantKind,
+    pub gaze: GazeSource,
+    /// Where the JSON gaze input listens, on localhost.
+    pub gaze_port: u16,
+}
+
+impl Default for ParticipantSpec {
+    fn default() -> Self {
+        let code = "P01".to_string();
+        ParticipantSpec { code, kind: ParticipantKind::Simulated, gaze: GazeSource::Simulated, gaze_port: 50021 }
+    }
+}
+
+/// Who plays the human's part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ParticipantKind {
+    Simulated,
+    /// Somebody at the keyboard of the console.
+    Keyboard,
+}
+
+/// Where gaze samples come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GazeSource {
+    Simulated,
+    /// The mouse pointer over the console's kitchen.
+    Mouse,
+    /// Newline separated JSON over TCP on localhost.
+    Json,
+    /// Nobody is looked at.
+    None,
+}
+
+/// The robot's timed presses.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RobotSpec {
+    /// Median duration of a press in seconds.
+    pub press_s: f64,
+    /// Spread: the standard deviation of the logarithm of the duration.
+    pub press_spread: f64,
+}
+
+impl Default for RobotSpec {
+    fn default() -> Self {
+        RobotSpec { press_s: 2.4, press_spread: 0.15 }
+    }
+}
+
+/// The communication signals.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SignalSpec {
+    /// How long a signal is shown, in seconds.
+    pub shown_s: f64,
+    /// Whether the human's own hand may be highlighted.
+    pub own_hand: bool,
+}
+
+impl Default for SignalSpec {
+    fn default() -> Self {
+        SignalSpec { shown_s: 4.0, own_hand: false }
+    }
+}
+
+/// The console.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ConsoleSpec {
+    pub visibility: Visibility,
+}
+
+impl Default for ConsoleSpec {
+    fn default() -> Self {
+        ConsoleSpec { visibility: Visibility::Recommendation }
+    }
+}
+
+/// How much the wizard sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Visibility {
+    /// Kitchen and gaze, as the paper's wizard had.
+    State,
+    /// The estimated belief too.
+    Belief,
+    /// Everything.
+    Recommendation,
+}

@@ -1,5 +1,10 @@
 //! tomcom: a console for Wizard-of-Oz experiments in human-robot cooperation.
 
 pub mod base;
+pub mod communication;
 pub mod edge;
+pub mod gaze;
 pub mod kitchen;
+pub mod mind;
+pub mod robot;
+pub mod session;

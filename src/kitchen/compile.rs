@@ -174,7 +174,8 @@ fn contents(spec: &RecipesSpec, items: &Items) -> Result<Vec<Content>> {
     }
     let dish_names = dish_names(spec, items)?;
     let mut contents: Vec<Content> = sets.iter().map(|set| content(set, items, &dish_names)).collect();
-    let look_alikes: Vec<Vec<ContentId>> = sets.iter().map(|set| look_alikes(spec, items, &sets, set)).collect::<Result<_>>()?;
+    let look_alikes: Vec<Vec<ContentId>> =
+        sets.iter().map(|set| look_alikes(spec, items, &sets, set)).collect::<Result<_>>()?;
     for (content, alike) in contents.iter_mut().zip(look_alikes) {
         content.look_alikes = alike;
     }
@@ -217,7 +218,8 @@ fn look_alikes(
                 let found = format!("looks_like \"{}\"", name.get_ref());
                 return Err(wrong(SpecFile::Recipes, name.span(), found, "the name of another ingredient"));
             };
-            let twin = (0..items.names.len()).find(|&twin| items.ingredient[twin] == other && items.state[twin] == state);
+            let twin =
+                (0..items.names.len()).find(|&twin| items.ingredient[twin] == other && items.state[twin] == state);
             let Some(twin) = twin else { continue };
             let mut exchanged = set.to_vec();
             exchanged[position] = ContentId(twin as u8 + 1);
@@ -236,7 +238,10 @@ fn locations(layout: &LayoutSpec) -> Result<Vec<Location>> {
         signal_key: signal.as_ref().map(|key| *key.get_ref()),
     };
     let orders = layout.order.iter().map(|o| (&o.name, location(&o.name, LocationKind::Order, &o.display, &o.signal)));
-    let hands = layout.hand.iter().map(|h| (&h.name, location(&h.name, LocationKind::Hand(*h.agent.get_ref()), &h.display, &h.signal)));
+    let hands = layout
+        .hand
+        .iter()
+        .map(|h| (&h.name, location(&h.name, LocationKind::Hand(*h.agent.get_ref()), &h.display, &h.signal)));
     let places = layout.place.iter().map(|p| (&p.name, location(&p.name, LocationKind::Place, &p.display, &p.signal)));
     let mut locations: Vec<Location> = Vec::new();
     for (name, location) in orders.chain(hands).chain(places) {
@@ -297,7 +302,12 @@ fn processes(spec: &RecipesSpec, items: &Items, locations: &[Location]) -> Resul
                 Some(index) => Some(LocationId(index as u8)),
                 None => {
                     let found = format!("at = \"{name}\"");
-                    return Err(wrong(SpecFile::Recipes, process.at.span(), found, "\"hand\" or a [[place]] of the layout"));
+                    return Err(wrong(
+                        SpecFile::Recipes,
+                        process.at.span(),
+                        found,
+                        "\"hand\" or a [[place]] of the layout",
+                    ));
                 }
             },
         };
@@ -576,7 +586,12 @@ fn check_gaps(layout: &LayoutSpec, locations: &[Location], display_m: [f64; 2]) 
         let inside = area.x >= 0.0 && area.y >= 0.0 && area.x + area.w <= 1.0 && area.y + area.h <= 1.0;
         if !(inside && area.w > 0.0 && area.h > 0.0) {
             let found = format!("\"{}\" reaches beyond the display", location.name);
-            return Err(wrong(SpecFile::Layout, spans[index].clone(), found, "x, y, w and h as fractions within 0 to 1"));
+            return Err(wrong(
+                SpecFile::Layout,
+                spans[index].clone(),
+                found,
+                "x, y, w and h as fractions within 0 to 1",
+            ));
         }
         for other in &locations[..index] {
             let gap = area.gap_m(other.display, display_m);

@@ -6,6 +6,7 @@ pub mod action;
 pub mod aspect;
 pub mod compile;
 pub mod content;
+pub mod cost_to_go;
 pub mod layout;
 pub mod recipe;
 pub mod rules;

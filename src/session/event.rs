@@ -9,6 +9,8 @@ use crate::base::time::SessionTime;
 use crate::communication::{Sender, Signal};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
+use crate::mind::BeliefWitness;
+use crate::robot::{AbortReason, IdleReason};
 
 /// An event with its place in the log.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -81,7 +83,7 @@ pub enum Event {
         note: String,
     },
     /// Witness: what a simulated participant believes, written before each of its presses.
-    ParticipantBelieves(ParticipantBelief),
+    ParticipantBelieves(BeliefWitness),
     /// The session is over; a log without it was cut.
     SessionEnded,
 }
@@ -98,26 +100,6 @@ pub enum EndReason {
     Wizard,
 }
 
-/// Why the robot gave up a press.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum AbortReason {
-    /// When the arm was about to touch the button, pressing it was no longer useful.
-    NoLongerUseful,
-    /// The wizard stopped the robot.
-    Stopped,
-}
-
-/// Why the robot does nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum IdleReason {
-    /// No order is present.
-    NoOrder,
-    /// Only the human can go on.
-    HumanTurn,
-}
-
 /// How a signal ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -126,23 +108,4 @@ pub enum SignalEnd {
     Elapsed,
     /// Its sender took it back.
     TakenBack,
-}
-
-/// What a simulated participant believes at a moment, and why it will press what it will press.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ParticipantBelief {
-    /// For every state aspect with a wrong or uncertain belief: its name and what the participant holds.
-    pub aspects: Vec<AspectBelief>,
-    /// Why it presses what it presses next: "as believed", "slip to the neighbouring button", …
-    pub cause: String,
-}
-
-/// A participant's belief about one aspect.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AspectBelief {
-    pub aspect: String,
-    /// The value that it holds most likely.
-    pub believes: String,
-    /// The probability that it gives to the truth.
-    pub p_truth: f64,
 }

@@ -1,0 +1,25 @@
+//! The robot: its task policy, and the arm that carries it out.
+
+pub mod policy;
+
+use serde::{Deserialize, Serialize};
+
+/// Why the robot gave up a press.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AbortReason {
+    /// When the arm was about to touch the button, pressing it was no longer useful.
+    NoLongerUseful,
+    /// The wizard stopped the robot.
+    Stopped,
+}
+
+/// Why the robot does nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum IdleReason {
+    /// No order is present.
+    NoOrder,
+    /// Only the human can go on.
+    HumanTurn,
+}

@@ -1,0 +1,282 @@
+//! `apply(&mut Session, &Stamped) -> Vec<Effect>`: the only way in which a session changes.
+
+use super::event::{EndReason, Event, SignalEnd, Stamped};
+use super::{Entry, Happening, Phase, Served, Session, ShownSignal};
+use crate::base::time::SessionTime;
+use crate::gaze::{GazeSample, MIN_CONFIDENCE};
+use crate::kitchen::{Action, Agent, ButtonId, DishId, LocationId, OrderContent, State};
+
+/// What has to be done because of an event, by whoever runs the session. A replay does none of it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Effect {
+    /// Raise the timer's event at this time, unless the trial pauses or ends meanwhile.
+    At { time: SessionTime, timer: Timer },
+    /// A timer that is no longer wanted.
+    Cancel(Timer),
+    /// The session is over: close the recording.
+    Close,
+}
+
+/// Something that a session wants to be reminded of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Timer {
+    /// An order stops showing `served`.
+    ClearOrder(LocationId),
+    /// A new order appears; whoever runs the session draws the dish.
+    NewOrder(LocationId),
+    /// The shown signal has been shown for its set time.
+    EndSignal,
+    /// The trial's time is over.
+    EndTrial,
+    /// The set number of presses was reached.
+    EndTrialByPresses,
+}
+
+/// An event that cannot be: a log written by another program, or a broken one.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("event {seq}: {found}")]
+pub struct ApplyError {
+    pub seq: u64,
+    pub found: String,
+    pub remedy: String,
+}
+
+type Applied = Result<Vec<Effect>, ApplyError>;
+
+/// Moves the session on by one event.
+///
+/// # Errors
+/// Names that the kitchen does not have, and times that run backwards; the session is unchanged then.
+pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
+    if stamped.time < session.time {
+        return Err(ApplyError {
+            seq: stamped.seq,
+            found: format!("t_ns = {} after {}", stamped.time.0, session.time.0),
+            remedy: "times that never decrease".to_string(),
+        });
+    }
+    let now = stamped.time;
+    let named = Named { session, seq: stamped.seq };
+    let mut effects = Vec::new();
+    match &stamped.event {
+        Event::TrialStarted => start(session, now, &mut effects),
+        Event::TrialPaused => pause(session, now),
+        Event::TrialResumed => resume(session, now),
+        Event::TrialEnded { reason } => end_trial(session, now, *reason, &mut effects),
+        Event::Gaze(sample) => gaze(session, now, *sample),
+        Event::Press { agent, button } => {
+            let button = named.button(*agent, button)?;
+            press(session, now, *agent, button, &mut effects);
+        }
+        Event::OrderShown { order, dish } => {
+            let (order, dish) = (named.order(order)?, named.dish(dish)?);
+            change(session, now, |state| state.set_order(order, OrderContent::Dish(dish)));
+            note(session, now, Happening::OrderShown { order });
+        }
+        Event::OrderCleared { order } => {
+            let order = named.order(order)?;
+            change(session, now, |state| state.set_order(order, OrderContent::None));
+        }
+        Event::RobotIntends { button, until_ns } => {
+            let button = named.button(Agent::Robot, button)?;
+            session.robot.intention = Some((button, now, *until_ns));
+            session.robot.idle = None;
+        }
+        Event::RobotAborts { .. } => session.robot.intention = None,
+        Event::RobotIdles { reason } => session.robot.idle = Some(*reason),
+        Event::RobotStopped => {
+            session.robot.stopped = true;
+            note(session, now, Happening::RobotStopped);
+        }
+        Event::RobotResumed => {
+            session.robot.stopped = false;
+            note(session, now, Happening::RobotResumed);
+        }
+        Event::SignalShown { by, signal } => {
+            named.location(signal.target())?;
+            let until = now + SessionTime::from_secs_f64(session.spec.signals.shown_s);
+            session.shown = Some(ShownSignal { signal: signal.clone(), by: *by, since: now, until });
+            effects.push(Effect::Cancel(Timer::EndSignal));
+            effects.push(Effect::At { time: until, timer: Timer::EndSignal });
+            note(session, now, Happening::Signal { by: *by, signal: signal.clone() });
+        }
+        Event::SignalEnded { reason } => {
+            session.shown = None;
+            if *reason == SignalEnd::TakenBack {
+                effects.push(Effect::Cancel(Timer::EndSignal));
+                note(session, now, Happening::SignalEnded(*reason));
+            }
+        }
+        Event::Marker { note: text } => note(session, now, Happening::Marker(text.clone())),
+        Event::ParticipantBelieves(_) => {}
+        Event::SessionEnded => {
+            if !matches!(session.phase, Phase::Over(_)) {
+                stop_clock(session, now);
+            }
+            session.phase = Phase::Closed;
+            effects.push(Effect::Close);
+        }
+    }
+    session.time = now;
+    Ok(effects)
+}
+
+/// Looks up names of an event.
+struct Named<'a> {
+    session: &'a Session,
+    seq: u64,
+}
+
+impl Named<'_> {
+    fn error(&self, found: String, remedy: &str) -> ApplyError {
+        ApplyError { seq: self.seq, found, remedy: remedy.to_string() }
+    }
+
+    fn button(&self, agent: Agent, name: &str) -> Result<ButtonId, ApplyError> {
+        let button = self.session.kitchen.button_named(agent, name);
+        button.ok_or_else(|| self.error(format!("a press of \"{name}\""), "a button that the agent has in the layout"))
+    }
+
+    fn location(&self, name: &str) -> Result<LocationId, ApplyError> {
+        let location = self.session.kitchen.location_named(name);
+        location.ok_or_else(|| self.error(format!("the location \"{name}\""), "a location of the layout"))
+    }
+
+    fn order(&self, name: &str) -> Result<LocationId, ApplyError> {
+        let order = self.location(name)?;
+        match self.session.kitchen.orders.contains(&order) {
+            true => Ok(order),
+            false => Err(self.error(format!("the order \"{name}\""), "an order of the layout")),
+        }
+    }
+
+    fn dish(&self, name: &str) -> Result<DishId, ApplyError> {
+        let dish = self.session.kitchen.dishes.iter().position(|dish| dish.name == name);
+        let dish = dish.map(|index| DishId(index as u8));
+        dish.ok_or_else(|| self.error(format!("the dish \"{name}\""), "a dish of the recipe file"))
+    }
+}
+
+fn note(session: &mut Session, time: SessionTime, what: Happening) {
+    session.timeline.push(Entry { time, what });
+}
+
+/// Changes the task state and remembers which locations changed.
+fn change(session: &mut Session, now: SessionTime, how: impl FnOnce(&mut State)) {
+    let before = session.state;
+    how(&mut session.state);
+    for index in 0..session.kitchen.locations.len() {
+        let location = LocationId(index as u8);
+        if before.code(location) != session.state.code(location) {
+            session.changed_at[index] = now;
+        }
+    }
+}
+
+fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
+    session.phase = Phase::Running;
+    session.trial_start = now;
+    session.paused_total = SessionTime::ZERO;
+    session.presses = [0; 2];
+    session.served.clear();
+    let empty = session.kitchen.empty_state();
+    change(session, now, |state| *state = empty);
+    note(session, now, Happening::Trial(Phase::Running));
+    let end = now + SessionTime::from_secs_f64(session.spec.trial.seconds);
+    effects.push(Effect::At { time: end, timer: Timer::EndTrial });
+    for &order in &session.kitchen.orders {
+        effects.push(Effect::At { time: now, timer: Timer::NewOrder(order) });
+    }
+}
+
+fn pause(session: &mut Session, now: SessionTime) {
+    stop_clock(session, now);
+    session.phase = Phase::Paused;
+    note(session, now, Happening::Trial(Phase::Paused));
+}
+
+fn stop_clock(session: &mut Session, now: SessionTime) {
+    match session.phase {
+        Phase::Running => session.paused_at = now,
+        Phase::Ready => {
+            session.trial_start = now;
+            session.paused_at = now;
+        }
+        _ => {}
+    }
+}
+
+fn resume(session: &mut Session, now: SessionTime) {
+    if session.phase == Phase::Paused {
+        session.paused_total = session.paused_total + (now - session.paused_at);
+        session.phase = Phase::Running;
+        note(session, now, Happening::Trial(Phase::Running));
+    }
+}
+
+fn end_trial(session: &mut Session, now: SessionTime, reason: EndReason, effects: &mut Vec<Effect>) {
+    stop_clock(session, now);
+    session.phase = Phase::Over(reason);
+    session.robot.intention = None;
+    session.shown = None;
+    effects.push(Effect::Cancel(Timer::EndTrial));
+    effects.push(Effect::Cancel(Timer::EndSignal));
+    note(session, now, Happening::Trial(session.phase));
+}
+
+fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId, effects: &mut Vec<Effect>) {
+    if agent == Agent::Robot {
+        session.robot.intention = None;
+    }
+    if !session.is_running() {
+        return;
+    }
+    let kitchen = session.kitchen.clone();
+    let after = kitchen.press(session.state, &kitchen.true_recipes(), agent, button);
+    session.presses[agent.index()] += 1;
+    note(session, now, Happening::Press { agent, button, effective: after.is_some() });
+    if let Some(after) = after {
+        let before = session.state;
+        change(session, now, |state| *state = after);
+        if let (Action::Serve(order), OrderContent::Dish(dish)) =
+            (kitchen.button(agent, button).action, served_dish(&kitchen.button(agent, button).action, before))
+        {
+            let presses = session.presses.iter().sum();
+            session.served.push(Served { time: now, dish, presses });
+            note(session, now, Happening::Served { order });
+            let after_s = |seconds| now + SessionTime::from_secs_f64(seconds);
+            effects.push(Effect::At { time: after_s(kitchen.served_shown_s), timer: Timer::ClearOrder(order) });
+            effects.push(Effect::At { time: after_s(kitchen.new_order_after_s), timer: Timer::NewOrder(order) });
+        }
+    }
+    if session.presses.iter().sum::<u32>() >= session.spec.trial.presses {
+        effects.push(Effect::At { time: now, timer: Timer::EndTrialByPresses });
+    }
+}
+
+/// The dish that a serve action served, from the state before it.
+fn served_dish(action: &Action, before: State) -> OrderContent {
+    match action {
+        Action::Serve(order) => before.order(*order),
+        _ => OrderContent::None,
+    }
+}
+
+fn gaze(session: &mut Session, now: SessionTime, sample: GazeSample) {
+    let status = &mut session.gaze;
+    status.samples += 1;
+    let interval_s = status.last.map_or(1.0, |(last, _)| now.secs_since(last));
+    let weight = interval_s.clamp(0.0, 1.0);
+    status.rate_hz += weight * (1.0 / interval_s.max(1e-3) - status.rate_hz);
+    let usable = sample.x.is_finite() && sample.y.is_finite() && sample.confidence >= MIN_CONFIDENCE;
+    if !usable {
+        status.unusable += 1;
+        return;
+    }
+    status.last = Some((now, sample));
+    for (index, location) in session.kitchen.locations.iter().enumerate() {
+        if location.display.distance_m([sample.x, sample.y], session.kitchen.display_m) == 0.0 {
+            status.looked_at[index] = Some(now);
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! A session: its settings, its state, and [`apply`], the one function through which a live run, a replay and an analysis
+//! move it on. It knows no clock, no file and no chance.
+
+pub mod apply;
+pub mod event;
+pub mod settings;
+
+use std::sync::Arc;
+
+use crate::base::time::SessionTime;
+use crate::communication::{Sender, Signal};
+use crate::gaze::GazeSample;
+use crate::kitchen::state::MAX_LOCATIONS;
+use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
+pub use apply::{Effect, Timer, apply};
+pub use event::{Event, Stamped};
+pub use settings::SessionSpec;
+
+/// Where the trial is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Before the trial's start.
+    Ready,
+    Running,
+    Paused,
+    /// The trial is over.
+    Over(event::EndReason),
+    /// The session is over.
+    Closed,
+}
+
+/// Everything that follows from the events so far.
+#[derive(Clone, Debug)]
+pub struct Session {
+    pub kitchen: Arc<Kitchen>,
+    pub spec: SessionSpec,
+    /// The time of the last event.
+    pub time: SessionTime,
+    pub phase: Phase,
+    /// When the trial's clock started, and how long it stood still since.
+    pub trial_start: SessionTime,
+    pub paused_total: SessionTime,
+    pub paused_at: SessionTime,
+    /// The task state, as it truly is.
+    pub state: State,
+    /// When each location last changed, indexed by location.
+    pub changed_at: [SessionTime; MAX_LOCATIONS],
+    /// Presses during the trial, indexed by [`Agent::index`].
+    pub presses: [u32; 2],
+    /// Served orders: when, and the number of presses of both agents until then.
+    pub served: Vec<Served>,
+    pub robot: RobotStatus,
+    /// The signal that the participant sees now.
+    pub shown: Option<ShownSignal>,
+    pub gaze: GazeStatus,
+    /// What happened, without the gaze: the timeline of the console.
+    pub timeline: Vec<Entry>,
+}
+
+/// A served order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Served {
+    pub time: SessionTime,
+    pub dish: crate::kitchen::DishId,
+    /// Presses of both agents in the trial when it was served, its own included.
+    pub presses: u32,
+}
+
+/// What the robot does.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RobotStatus {
+    /// The press that the arm is busy with, since when, and when it will touch the button.
+    pub intention: Option<(ButtonId, SessionTime, SessionTime)>,
+    /// Stopped by the wizard.
+    pub stopped: bool,
+    /// Why it does nothing, if it does nothing.
+    pub idle: Option<crate::robot::IdleReason>,
+}
+
+/// A signal on the display.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShownSignal {
+    pub signal: Signal,
+    pub by: Sender,
+    pub since: SessionTime,
+    pub until: SessionTime,
+}
+
+/// The participant's gaze as far as the console needs it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GazeStatus {
+    pub last: Option<(SessionTime, GazeSample)>,
+    /// When each location was last looked at (gaze inside its area), indexed by location.
+    pub looked_at: [Option<SessionTime>; MAX_LOCATIONS],
+    /// Samples so far; those with too low a confidence or outside of the display are counted apart.
+    pub samples: u64,
+    pub unusable: u64,
+    /// Samples a second, smoothed over about a second.
+    pub rate_hz: f64,
+}
+
+/// An entry of the timeline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    pub time: SessionTime,
+    pub what: Happening,
+}
+
+/// What an entry of the timeline is about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Happening {
+    Press { agent: Agent, button: ButtonId, effective: bool },
+    Signal { by: Sender, signal: Signal },
+    SignalEnded(event::SignalEnd),
+    Served { order: LocationId },
+    OrderShown { order: LocationId },
+    Marker(String),
+    RobotStopped,
+    RobotResumed,
+    Trial(Phase),
+}
+
+impl Session {
+    /// A session before its first event.
+    pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec) -> Session {
+        let state = kitchen.empty_state();
+        Session {
+            kitchen,
+            spec,
+            time: SessionTime::ZERO,
+            phase: Phase::Ready,
+            trial_start: SessionTime::ZERO,
+            paused_total: SessionTime::ZERO,
+            paused_at: SessionTime::ZERO,
+            state,
+            changed_at: [SessionTime::ZERO; MAX_LOCATIONS],
+            presses: [0; 2],
+            served: Vec::new(),
+            robot: RobotStatus::default(),
+            shown: None,
+            gaze: GazeStatus::default(),
+            timeline: Vec::new(),
+        }
+    }
+
+    /// The trial's clock at `now`: time since its start without the pauses; zero before the start.
+    pub fn trial_clock(&self, now: SessionTime) -> SessionTime {
+        match self.phase {
+            Phase::Ready => SessionTime::ZERO,
+            Phase::Running => now - self.trial_start - self.paused_total,
+            Phase::Paused => self.paused_at - self.trial_start - self.paused_total,
+            Phase::Over(_) | Phase::Closed => self.paused_at - self.trial_start - self.paused_total,
+        }
+    }
+
+    /// Whether presses count now.
+    pub fn is_running(&self) -> bool {
+        self.phase == Phase::Running
+    }
+}

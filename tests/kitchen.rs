@@ -1,18 +1,334 @@
-//! The kitchen: what is computed from the files.
+//! The kitchen: what is computed from the files, the rules of the task, and the files that cannot be.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::Kitchen;
+use rand::RngExt;
+use serde::Deserialize;
+use tomcom::base::rng::stream;
+use tomcom::edge::files::{FileError, compile_kitchen, read_kitchen};
+use tomcom::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationKind, OrderContent, State};
 
-fn sushi() -> Kitchen {
-    read_kitchen(Path::new("layouts/sushi.toml")).expect("the sushi kitchen loads").kitchen
+fn load(layout: &str) -> Kitchen {
+    match read_kitchen(Path::new(layout)) {
+        Ok(files) => files.kitchen,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn layouts() -> Vec<Kitchen> {
+    let entries = std::fs::read_dir("layouts").expect("the folder layouts");
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    paths.sort();
+    assert!(paths.len() > 1, "a second kitchen of another dish");
+    paths.iter().map(|path| load(&path.display().to_string())).collect()
+}
+
+/// Plays presses given as "human: take rice" from an empty kitchen with these orders; `!` marks a press without effect.
+fn check(kitchen: &Kitchen, orders: &[&str], presses: &[&str], expected: &[(&str, &str)]) -> State {
+    let recipes = kitchen.true_recipes();
+    let mut state = kitchen.empty_state();
+    for (&location, name) in kitchen.orders.iter().zip(orders) {
+        let dish = kitchen.dishes.iter().position(|dish| dish.name == *name).expect("a dish of the menu");
+        state.set_order(location, OrderContent::Dish(DishId(dish as u8)));
+    }
+    for press in presses {
+        let (who, name) = press.split_once(": ").expect("agent: button");
+        let agent = if who.ends_with("human") { Agent::Human } else { Agent::Robot };
+        let button = kitchen.button_named(agent, name).unwrap_or_else(|| panic!("the button of {press}"));
+        let after = kitchen.press(state, &recipes, agent, button);
+        assert_eq!(after.is_none(), who.starts_with('!'), "{press}");
+        state = after.unwrap_or(state);
+    }
+    for (location, content) in expected {
+        let id = kitchen.location_named(location).expect("a location");
+        assert_eq!(kitchen.content_label(state, id), *content, "{location}");
+    }
+    state
 }
 
 #[test]
 fn the_state_space_has_the_size_of_the_paper() {
-    let kitchen = sushi();
-    let sizes: Vec<(&str, usize)> = kitchen.aspects.iter().map(|a| (a.name.as_str(), a.values.len())).collect();
-    println!("{sizes:?}");
+    let kitchen = load("layouts/sushi.toml");
+    let size = |name: &str| kitchen.aspects.iter().find(|aspect| aspect.name == name).map(|a| a.values.len());
+    for name in ["human_hand", "robot_hand", "assembly_board", "plate", "counter"] {
+        assert_eq!(size(name), Some(37), "{name}");
+    }
+    assert_eq!(size("cutting_board"), Some(21));
+    assert_eq!(size("cooking_pot"), Some(15));
+    assert_eq!(size("order_1"), Some(8));
+    assert_eq!(size("order_2"), Some(8));
+    assert_eq!(size("rolling_mat"), Some(6));
+    for (dish, variants) in [
+        ("salmon nigiri", 5),
+        ("tuna nigiri", 5),
+        ("salmon maki", 5),
+        ("tuna maki", 5),
+        ("shrimp nigiri", 4),
+        ("crab maki", 4),
+    ] {
+        assert_eq!(size(&format!("recipe of {dish}")), Some(variants), "{dish}");
+    }
+    assert_eq!(kitchen.aspects.len(), 16);
     assert_eq!(kitchen.state_count(), 83_878_450_387_200_000);
+}
+
+#[test]
+fn contents_are_the_items_and_all_stacks() {
+    let of_size = |kitchen: &Kitchen, size| kitchen.contents.iter().filter(|c| c.items.len() == size).count();
+    let sushi = load("layouts/sushi.toml");
+    assert_eq!([0, 1, 2, 3].map(|size| of_size(&sushi, size)), [1, 14, 14, 8]);
+    let off_menu: Vec<&str> =
+        sushi.contents[29..].iter().map(|c| c.name.as_str()).filter(|n| n.contains('+')).collect();
+    assert_eq!(off_menu, ["rice cooked + nori + shrimp cut", "rice shaped + nori + crab cut"]);
+    let burger = load("layouts/burger.toml");
+    assert_eq!([0, 1, 2, 3, 4].map(|size| of_size(&burger, size)), [1, 12, 23, 28, 12]);
+}
+
+#[test]
+fn look_alikes_are_mutual_and_differ_in_one_ingredient() {
+    for kitchen in layouts() {
+        for (index, content) in kitchen.contents.iter().enumerate() {
+            for &alike in &content.look_alikes {
+                let twin = kitchen.content(alike);
+                assert!(twin.look_alikes.contains(&ContentId(index as u8)), "{} and {}", content.name, twin.name);
+                let shared = content.items.iter().filter(|item| twin.items.contains(item)).count();
+                assert_eq!(shared + 1, content.items.len(), "{} and {}", content.name, twin.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_recipe_can_be_taken_for_what_the_specification_says() {
+    let kitchen = load("layouts/sushi.toml");
+    let variants = |name: &str| {
+        let dish = kitchen.dishes.iter().find(|dish| dish.name == name).expect("a dish");
+        dish.variants.iter().map(|&variant| kitchen.content(variant).name.as_str()).collect::<Vec<_>>()
+    };
+    let salmon_maki = ["salmon maki", "tuna maki", "rice cooked + nori + shrimp cut", "crab maki", "salmon nigiri"];
+    assert_eq!(variants("salmon maki"), salmon_maki);
+    let crab_maki = ["crab maki", "rice cooked + nori + shrimp cut", "rice shaped + nori + crab cut", "shrimp nigiri"];
+    let mut found = variants("crab maki");
+    assert_eq!(found[0], "crab maki");
+    found.sort_unstable();
+    let mut expected = crab_maki;
+    expected.sort_unstable();
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn items_are_taken_put_down_picked_up_and_thrown_away() {
+    let kitchen = load("layouts/sushi.toml");
+    let presses = ["human: take rice", "!human: take nori", "human: cooking_pot", "!human: trash", "!human: counter"];
+    check(&kitchen, &[], &presses, &[("cooking_pot", "rice raw"), ("human_hand", "empty")]);
+    let presses = ["robot: take tuna", "robot: counter", "human: counter", "!robot: counter"];
+    check(&kitchen, &[], &presses, &[("human_hand", "tuna raw"), ("counter", "empty")]);
+    let presses = ["human: take crab", "!human: rolling_mat", "human: trash"];
+    check(&kitchen, &[], &presses, &[("human_hand", "empty"), ("rolling_mat", "empty")]);
+    let presses = ["human: take rice", "human: counter", "robot: take nori", "!robot: counter"];
+    check(&kitchen, &[], &presses, &[("counter", "rice raw"), ("robot_hand", "nori")]);
+}
+
+#[test]
+fn processes_change_what_they_are_for_and_nothing_else() {
+    let kitchen = load("layouts/sushi.toml");
+    let presses = ["human: take rice", "!human: shape", "human: cooking_pot", "robot: cook", "!robot: cook"];
+    check(&kitchen, &[], &presses, &[("cooking_pot", "rice cooked")]);
+    let presses = ["human: take crab", "human: cutting_board", "!human: cut", "human: cutting_board"];
+    check(&kitchen, &[], &presses, &[("human_hand", "crab raw")]);
+    assert!(kitchen.button_named(Agent::Robot, "shape").is_none(), "only the human shapes");
+    assert!(kitchen.button_named(Agent::Robot, "take crab").is_none(), "shellfish is the human's");
+    assert!(kitchen.button_named(Agent::Human, "take tuna").is_none(), "tuna is the robot's");
+}
+
+/// A salmon maki from an empty kitchen, in the least number of presses.
+const SALMON_MAKI: [&str; 15] = [
+    "human: take rice",
+    "human: cooking_pot",
+    "human: cook",
+    "human: cooking_pot",
+    "human: assembly_board",
+    "human: take nori",
+    "human: assembly_board",
+    "robot: take salmon",
+    "robot: cutting_board",
+    "human: cut",
+    "robot: cutting_board",
+    "robot: assembly_board",
+    "human: assembly_board",
+    "human: plate",
+    "robot: serve 2",
+];
+
+#[test]
+fn only_the_ordered_dish_is_served() {
+    let kitchen = load("layouts/sushi.toml");
+    check(&kitchen, &["tuna maki", "salmon maki"], &SALMON_MAKI, &[("order_2", "served"), ("plate", "empty")]);
+    let before = &SALMON_MAKI[..14];
+    let wrong = [before, &["!human: serve 1", "!robot: serve 1", "!human: serve 2"]].concat();
+    check(&kitchen, &["tuna maki", "salmon nigiri"], &wrong, &[("plate", "salmon maki"), ("order_1", "tuna maki")]);
+}
+
+#[test]
+fn stacking_takes_one_of_each_slot() {
+    let kitchen = load("layouts/sushi.toml");
+    let again = [&SALMON_MAKI[..7], &["human: take nori", "!human: assembly_board"]].concat();
+    check(&kitchen, &[], &again, &[("assembly_board", "rice cooked + nori"), ("human_hand", "nori")]);
+    let raw = [&SALMON_MAKI[..8], &["!robot: assembly_board"]].concat();
+    check(&kitchen, &[], &raw, &[("robot_hand", "salmon raw")]);
+    let carried = [&SALMON_MAKI[..7], &["human: assembly_board", "human: rolling_mat"]].concat();
+    check(&kitchen, &[], &carried, &[("assembly_board", "empty"), ("rolling_mat", "rice cooked + nori")]);
+}
+
+#[test]
+fn a_burger_is_made_of_four_things_in_fourteen_presses() {
+    let kitchen = load("layouts/burger.toml");
+    let presses = [
+        "human: take soy",
+        "human: grill_plate",
+        "robot: grill",
+        "human: grill_plate",
+        "human: board",
+        "robot: take dark bun",
+        "robot: board",
+        "robot: take lettuce",
+        "robot: board",
+        "human: take cheese",
+        "human: board",
+        "human: board",
+        "human: tray",
+        "human: serve 1",
+    ];
+    check(&kitchen, &["leaf burger"], &presses, &[("order", "served"), ("tray", "empty")]);
+    let sliced = ["human: take tomato", "human: slice", "!human: slice", "!human: grill_plate", "human: board"];
+    check(&kitchen, &[], &sliced, &[("board", "tomato sliced")]);
+}
+
+/// All the ingredients in the kitchen, sorted.
+fn ingredients(kitchen: &Kitchen, state: State) -> Vec<usize> {
+    let places = kitchen.locations.iter().enumerate().filter(|(_, location)| location.kind != LocationKind::Order);
+    let contents = places.map(|(index, _)| state.content(tomcom::kitchen::LocationId(index as u8)));
+    let items = contents.flat_map(|content| kitchen.content(content).items.clone());
+    let mut all: Vec<usize> = items.filter_map(|item| kitchen.content(item).ingredient).collect();
+    all.sort_unstable();
+    all
+}
+
+#[test]
+fn random_presses_create_and_lose_nothing() {
+    use tomcom::kitchen::Action;
+    for kitchen in layouts() {
+        let mut random = stream(1, "kitchen test", 0);
+        let recipes = kitchen.true_recipes();
+        let mut state = kitchen.empty_state();
+        for _ in 0..20_000 {
+            if random.random_bool(0.01) {
+                let order = kitchen.orders[random.random_range(0..kitchen.orders.len())];
+                let dish = DishId(random.random_range(0..kitchen.dishes.len()) as u8);
+                state.set_order(order, OrderContent::Dish(dish));
+            }
+            let agent = Agent::BOTH[random.random_range(0..2)];
+            let button = ButtonId(random.random_range(0..kitchen.buttons[agent.index()].len()) as u8);
+            let before = ingredients(&kitchen, state);
+            let Some(next) = kitchen.press(state, &recipes, agent, button) else { continue };
+            assert_ne!(next, state, "an effective press changes something");
+            assert_eq!(kitchen.misplaced(next), None, "everything lies where it may");
+            let after = ingredients(&kitchen, next).len();
+            let held = kitchen.content(state.content(kitchen.hands[agent.index()])).items.len();
+            match kitchen.button(agent, button).action {
+                Action::Take(_) => assert_eq!(after, before.len() + 1),
+                Action::Trash => assert_eq!(after, before.len() - held),
+                Action::Serve(_) => {
+                    assert_eq!(after, before.len() - kitchen.content(state.content(kitchen.plate)).items.len())
+                }
+                Action::Use(_) | Action::Process(_) => assert_eq!(ingredients(&kitchen, next), before),
+            }
+            state = next;
+        }
+    }
+}
+
+#[test]
+fn every_layout_has_what_a_kitchen_needs() {
+    for kitchen in layouts() {
+        println!("{}: {} states", kitchen.name, kitchen.state_count());
+        assert_eq!(kitchen.aspects.len(), kitchen.locations.len() + kitchen.dishes.len());
+        for aspect in &kitchen.aspects {
+            assert!(aspect.values.len() > 1 && aspect.values.len() == aspect.labels.len(), "{}", aspect.name);
+        }
+        let keys: Vec<Option<char>> = kitchen.buttons[0].iter().map(|button| button.key).collect();
+        assert!(keys.iter().all(Option::is_some), "every button of the human has a key");
+    }
+}
+
+/// An edit of the sushi kitchen that makes it wrong, and the message that it has to give.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Bad {
+    file: String,
+    replace: String,
+    with: String,
+    /// Where the message points: the line with this text, the `nth` one; the whole file without it.
+    at: Option<String>,
+    nth: Option<usize>,
+    found: String,
+    remedy: String,
+}
+
+#[test]
+fn each_bad_file_has_its_own_message() {
+    let mut paths: Vec<PathBuf> =
+        std::fs::read_dir("tests/bad").expect("tests/bad").map(|entry| entry.expect("an entry").path()).collect();
+    paths.sort();
+    assert!(paths.len() >= 12);
+    let mut messages: Vec<String> = Vec::new();
+    for path in paths {
+        let text = std::fs::read_to_string(&path).expect("a case");
+        let bad: Bad = toml::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let message = check_bad(&path, &bad);
+        assert!(!messages.contains(&message), "{}: said before: {message}", path.display());
+        messages.push(message);
+    }
+}
+
+fn check_bad(case: &Path, bad: &Bad) -> String {
+    let names = [("layout", "layouts/sushi.toml"), ("recipes", "recipes/sushi.toml")];
+    let texts = names.map(|(kind, name)| {
+        let text = std::fs::read_to_string(name).expect("a file of the sushi kitchen");
+        assert!(bad.file != kind || text.contains(&bad.replace), "{}: nothing to replace", case.display());
+        if bad.file == kind { text.replacen(&bad.replace, &bad.with, 1) } else { text }
+    });
+    let edited = &texts[usize::from(bad.file == "recipes")];
+    let nth = bad.nth.unwrap_or(1) - 1;
+    let line = bad.at.as_ref().map(|at| {
+        let found = edited.lines().enumerate().filter(|(_, line)| line.contains(at.as_str())).nth(nth);
+        found.map_or_else(|| panic!("{}: no line with {at}", case.display()), |(index, _)| index + 1)
+    });
+    let name = names[usize::from(bad.file == "recipes")].1;
+    let error = match bad.with.contains("../recipes/") {
+        true => {
+            let folder = std::env::temp_dir().join(format!("tomcom-bad-{}", std::process::id()));
+            std::fs::create_dir_all(folder.join("layouts")).expect("a folder");
+            let file = folder.join("layouts/sushi.toml");
+            std::fs::write(&file, edited).expect("a file");
+            let error = read_kitchen(&file).err();
+            std::fs::remove_dir_all(folder).expect("an own folder");
+            error
+        }
+        false => {
+            let [layout, recipes] = texts.clone();
+            compile_kitchen((Path::new(names[0].1), layout), (Path::new(names[1].1), recipes)).err()
+        }
+    };
+    match error {
+        Some(FileError::Wrong { name: file, line: at, found, remedy, .. }) => {
+            assert!(file.ends_with(name), "{}: {file}", case.display());
+            assert!(found.contains(&bad.found), "{}: found {found}", case.display());
+            assert!(remedy.contains(&bad.remedy), "{}: remedy {remedy}", case.display());
+            assert_eq!(at, line.unwrap_or(1), "{}: line", case.display());
+            format!("{found}; {remedy}")
+        }
+        Some(other) => panic!("{}: {other}", case.display()),
+        None => panic!("{}: no error", case.display()),
+    }
 }

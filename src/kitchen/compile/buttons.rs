@@ -1,0 +1,85 @@
+//! The buttons of both agents.
+
+use toml::Spanned;
+
+use super::contents::Items;
+use super::places::stored;
+use super::{Result, SpecFile, wrong, wrong_file};
+use crate::kitchen::action::{Action, Agent, Button};
+use crate::kitchen::layout::{ButtonSpec, LayoutSpec, Location, LocationId};
+use crate::kitchen::recipe::{Process, RecipesSpec};
+
+/// The buttons of both agents: own storage, places, processes, own trash, orders.
+pub(super) fn buttons(
+    layout: &LayoutSpec,
+    spec: &RecipesSpec,
+    items: &Items,
+    locations: &[Location],
+    processes: &[Process],
+) -> Result<[Vec<Button>; 2]> {
+    let located = |name: &Spanned<String>| {
+        let index = locations.iter().position(|location| location.name == *name.get_ref());
+        LocationId(index.unwrap_or_default() as u8)
+    };
+    let mut buttons = [Vec::new(), Vec::new()];
+    for agent in Agent::BOTH {
+        let mut list: Vec<(String, Action, &ButtonSpec)> = Vec::new();
+        for storage in layout.storage.iter().filter(|storage| storage.agent == agent) {
+            let item = stored(&storage.ingredient, spec, items)?;
+            list.push((format!("take {}", storage.ingredient.get_ref()), Action::Take(item), &storage.button));
+        }
+        for place in &layout.place {
+            list.push((place.name.get_ref().clone(), Action::Use(located(&place.name)), &place.button));
+        }
+        for (index, process) in processes.iter().enumerate().filter(|(_, process)| process.agents[agent.index()]) {
+            let button = layout.process.iter().find(|button| *button.name.get_ref() == process.name);
+            let Some(button) = button else {
+                let found = format!("no button for the process \"{}\" of the recipe file", process.name);
+                return Err(wrong_file(SpecFile::Layout, found, "a table [[process]] with this name and a button"));
+            };
+            list.push((process.name.clone(), Action::Process(index as u8), &button.button));
+        }
+        for hand in layout.hand.iter().filter(|hand| *hand.agent.get_ref() == agent) {
+            list.push(("trash".to_string(), Action::Trash, &hand.trash));
+        }
+        for (index, order) in layout.order.iter().enumerate() {
+            list.push((format!("serve {}", index + 1), Action::Serve(located(&order.name)), &order.serve));
+        }
+        for (name, action, spec) in list {
+            buttons[agent.index()].push(button(agent, name, action, spec, &buttons[agent.index()])?);
+        }
+    }
+    for process in &layout.process {
+        if !processes.iter().any(|known| known.name == *process.name.get_ref()) {
+            let found = format!("a button for the process \"{}\"", process.name.get_ref());
+            return Err(wrong(SpecFile::Layout, process.name.span(), found, "a [[process]] of the recipe file"));
+        }
+    }
+    Ok(buttons)
+}
+
+fn button(agent: Agent, name: String, action: Action, spec: &ButtonSpec, others: &[Button]) -> Result<Button> {
+    if others.iter().any(|other| other.name == name) {
+        let found = format!("a second button \"{name}\" of the {}", agent.name());
+        return Err(wrong(SpecFile::Layout, spec.at_m.span(), found, "a name of its own for each button of an agent"));
+    }
+    let at_m = *spec.at_m.get_ref();
+    if !at_m.iter().all(|metres| metres.is_finite()) {
+        return Err(wrong(SpecFile::Layout, spec.at_m.span(), "a button at no place", "at_m = [x, y] in metres"));
+    }
+    let key = match (agent, &spec.key) {
+        (Agent::Robot, _) => None,
+        (Agent::Human, None) => {
+            let found = format!("no key for the human's button \"{name}\"");
+            return Err(wrong(SpecFile::Layout, spec.at_m.span(), found, "button = { at_m = [x, y], key = \"k\" }"));
+        }
+        (Agent::Human, Some(key)) => {
+            if key.get_ref().is_whitespace() || others.iter().any(|other| other.key == Some(*key.get_ref())) {
+                let found = format!("the key \"{}\" for \"{name}\"", key.get_ref());
+                return Err(wrong(SpecFile::Layout, key.span(), found, "a key of its own that is not the space bar"));
+            }
+            Some(*key.get_ref())
+        }
+    };
+    Ok(Button { name, action, at_m, key })
+}

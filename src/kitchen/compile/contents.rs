@@ -1,0 +1,156 @@
+//! The items of the ingredients, and what can be made of them by stacking.
+
+use toml::Spanned;
+
+use super::{Result, SpecFile, wrong, wrong_file};
+use crate::kitchen::content::{Content, ContentId};
+use crate::kitchen::recipe::{DishSpec, RecipesSpec};
+
+/// At most so many contents: one byte, and one value of it means "none".
+const MAX_CONTENTS: usize = 255;
+const TOO_MANY: &str = "at most 255 items and stacks: fewer ingredients, states or slots";
+
+/// Names of the ingredient items ("rice cooked") and the ids that they get.
+pub(super) struct Items {
+    pub(super) names: Vec<String>,
+    /// The ingredient of each item.
+    pub(super) ingredient: Vec<usize>,
+    /// The state of each item, as index into its ingredient's states.
+    pub(super) state: Vec<usize>,
+}
+
+impl Items {
+    pub(super) fn read(spec: &RecipesSpec) -> Result<Items> {
+        let mut items = Items { names: Vec::new(), ingredient: Vec::new(), state: Vec::new() };
+        for (index, ingredient) in spec.ingredient.iter().enumerate() {
+            let states: Vec<String> = match ingredient.states.is_empty() {
+                true => vec![String::new()],
+                false => ingredient.states.iter().map(|state| format!(" {}", state.get_ref())).collect(),
+            };
+            for (state, suffix) in states.iter().enumerate() {
+                let name = format!("{}{suffix}", ingredient.name.get_ref());
+                if items.names.contains(&name) {
+                    let found = format!("the item \"{name}\" a second time");
+                    return Err(wrong(SpecFile::Recipes, ingredient.name.span(), found, "each item once"));
+                }
+                if items.names.len() == MAX_CONTENTS - 1 {
+                    let found = format!("\"{name}\" as item number {MAX_CONTENTS}");
+                    return Err(wrong(SpecFile::Recipes, ingredient.name.span(), found, TOO_MANY));
+                }
+                items.names.push(name);
+                items.ingredient.push(index);
+                items.state.push(state);
+            }
+        }
+        Ok(items)
+    }
+
+    pub(super) fn find(&self, name: &Spanned<String>) -> Result<ContentId> {
+        match self.names.iter().position(|item| item == name.get_ref()) {
+            Some(index) => Ok(ContentId(index as u8 + 1)),
+            None => Err(wrong(
+                SpecFile::Recipes,
+                name.span(),
+                format!("\"{}\"", name.get_ref()),
+                format!("one of the items {}", self.names.join(", ")),
+            )),
+        }
+    }
+
+    pub(super) fn find_all(&self, names: &[Spanned<String>]) -> Result<Vec<ContentId>> {
+        names.iter().map(|name| self.find(name)).collect()
+    }
+}
+
+/// Empty, all items, all stacks: pairs first, then larger ones.
+pub(super) fn contents(spec: &RecipesSpec, items: &Items) -> Result<Vec<Content>> {
+    let item_sets = (0..items.names.len()).map(|index| vec![ContentId(index as u8 + 1)]);
+    let mut sets: Vec<Vec<ContentId>> = std::iter::once(Vec::new()).chain(item_sets).collect();
+    sets.extend(stacks(spec, items)?);
+    if sets.len() > MAX_CONTENTS {
+        let found = format!("{} different contents (items and stacks)", sets.len());
+        return Err(wrong_file(SpecFile::Recipes, found, TOO_MANY));
+    }
+    let dish_names = dish_names(spec, items)?;
+    let mut contents: Vec<Content> = sets.iter().map(|set| content(set, items, &dish_names)).collect();
+    let look_alikes: Vec<Vec<ContentId>> =
+        sets.iter().map(|set| look_alikes(spec, items, &sets, set)).collect::<Result<_>>()?;
+    for (content, alike) in contents.iter_mut().zip(look_alikes) {
+        content.look_alikes = alike;
+    }
+    Ok(contents)
+}
+
+/// All stacks of two and more, small ones first.
+fn stacks(spec: &RecipesSpec, items: &Items) -> Result<Vec<Vec<ContentId>>> {
+    let mut stacks: Vec<Vec<ContentId>> = vec![Vec::new()];
+    let mut of_slots: Vec<ContentId> = Vec::new();
+    for slot in &spec.slot {
+        let below = stacks.clone();
+        for (item, name) in items.find_all(&slot.items)?.into_iter().zip(&slot.items) {
+            if of_slots.contains(&item) {
+                let found = format!("\"{}\" in a second slot, or twice in one", name.get_ref());
+                return Err(wrong(SpecFile::Recipes, name.span(), found, "each item in at most one [[slot]]"));
+            }
+            of_slots.push(item);
+            stacks.extend(below.iter().map(|stack| [stack.as_slice(), &[item]].concat()));
+            if stacks.len() > 2 * MAX_CONTENTS {
+                return Err(wrong(SpecFile::Recipes, slot.name.span(), "too many different stacks", TOO_MANY));
+            }
+        }
+    }
+    for stack in &mut stacks {
+        stack.sort_unstable();
+    }
+    stacks.retain(|stack| stack.len() > 1);
+    stacks.sort_by_key(|stack| (stack.len(), stack.clone()));
+    Ok(stacks)
+}
+
+fn content(set: &[ContentId], items: &Items, dish_names: &[(Vec<ContentId>, String)]) -> Content {
+    let names: Vec<&str> = set.iter().map(|item| items.names[item.index() - 1].as_str()).collect();
+    let name = match dish_names.iter().find(|(stack, _)| stack == set) {
+        Some((_, dish)) => dish.clone(),
+        None if set.is_empty() => "empty".to_string(),
+        None => names.join(" + "),
+    };
+    let ingredient = (set.len() == 1).then(|| items.ingredient[set[0].index() - 1]);
+    Content { name, items: set.to_vec(), ingredient, look_alikes: Vec::new() }
+}
+
+pub(super) fn dish_names(spec: &RecipesSpec, items: &Items) -> Result<Vec<(Vec<ContentId>, String)>> {
+    let one = |dish: &DishSpec| {
+        let mut stack = items.find_all(dish.items.get_ref())?;
+        stack.sort_unstable();
+        Ok((stack, dish.name.get_ref().clone()))
+    };
+    spec.dish.iter().map(one).collect()
+}
+
+/// The same content with one ingredient exchanged for one that looks like it.
+fn look_alikes(
+    spec: &RecipesSpec,
+    items: &Items,
+    sets: &[Vec<ContentId>],
+    set: &[ContentId],
+) -> Result<Vec<ContentId>> {
+    let mut alike = Vec::new();
+    for (position, item) in set.iter().enumerate() {
+        let state = items.state[item.index() - 1];
+        for name in &spec.ingredient[items.ingredient[item.index() - 1]].looks_like {
+            let other = spec.ingredient.iter().position(|ingredient| ingredient.name.get_ref() == name.get_ref());
+            let Some(other) = other else {
+                let found = format!("looks_like \"{}\"", name.get_ref());
+                return Err(wrong(SpecFile::Recipes, name.span(), found, "the name of another ingredient"));
+            };
+            let twin =
+                (0..items.names.len()).find(|&twin| items.ingredient[twin] == other && items.state[twin] == state);
+            let Some(twin) = twin else { continue };
+            let mut exchanged = set.to_vec();
+            exchanged[position] = ContentId(twin as u8 + 1);
+            exchanged.sort_unstable();
+            alike.extend(sets.iter().position(|set| *set == exchanged).map(|index| ContentId(index as u8)));
+        }
+    }
+    Ok(alike)
+}

@@ -1,0 +1,203 @@
+//! From the two files to a [`Kitchen`]: contents, buttons, recipe variants and state aspects are computed here.
+
+mod buttons;
+mod contents;
+mod dishes;
+mod places;
+
+use std::ops::Range;
+
+use toml::Spanned;
+
+use super::Kitchen;
+use super::aspect::{Aspect, AspectKind};
+use super::content::{Content, ContentId};
+use super::layout::{LayoutSpec, Location, LocationId, LocationKind};
+use super::recipe::{Dish, DishId, Process, RecipesSpec};
+use super::rules::Tables;
+use super::state::OrderContent;
+use contents::Items;
+
+/// At most so many orders at a time; the cost to go is exact for one and for two.
+pub const MAX_ORDERS: usize = 2;
+/// Locations on the display keep at least this distance, so that gaze can tell them apart.
+pub const MIN_GAP_M: f64 = 0.15;
+
+/// Which of the two files an error is in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpecFile {
+    Layout,
+    Recipes,
+}
+
+/// Something in a layout or recipe file that cannot be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{found}")]
+pub struct SpecError {
+    pub file: SpecFile,
+    /// Where in the file's text, in bytes.
+    pub span: Option<Range<usize>>,
+    /// What was found.
+    pub found: String,
+    /// What would be right.
+    pub remedy: String,
+}
+
+type Result<T> = std::result::Result<T, SpecError>;
+
+fn wrong(file: SpecFile, span: Range<usize>, found: impl Into<String>, remedy: impl Into<String>) -> SpecError {
+    SpecError { file, span: Some(span), found: found.into(), remedy: remedy.into() }
+}
+
+fn wrong_file(file: SpecFile, found: impl Into<String>, remedy: impl Into<String>) -> SpecError {
+    SpecError { file, span: None, found: found.into(), remedy: remedy.into() }
+}
+
+impl Kitchen {
+    /// Compiles a kitchen. Errors name the file, the place in it, what was found and what would be right.
+    pub fn compile(layout: &LayoutSpec, recipes: &RecipesSpec) -> Result<Kitchen> {
+        let items = Items::read(recipes)?;
+        let contents = contents::contents(recipes, &items)?;
+        let locations = places::locations(layout)?;
+        let (hands, board, plate) = places::roles(layout, &locations)?;
+        let processes = dishes::processes(recipes, &items, &locations)?;
+        let dishes = dishes::dishes(recipes, &items, &contents)?;
+        let tables = tables(layout, recipes, &items, &contents, &locations, &processes)?;
+        let orders: Vec<LocationId> = (0..layout.order.len()).map(|index| LocationId(index as u8)).collect();
+        let buttons = buttons::buttons(layout, recipes, &items, &locations, &processes)?;
+        let aspects = aspects(&contents, &locations, &dishes, &tables);
+        for (value, name) in [(&layout.display.width_m, "width_m"), (&layout.display.height_m, "height_m")] {
+            positive(value, name)?;
+        }
+        positive(&layout.table.served_shown_s, "served_shown_s")?;
+        positive(&layout.table.new_order_after_s, "new_order_after_s")?;
+        let display_m = [*layout.display.width_m.get_ref(), *layout.display.height_m.get_ref()];
+        places::check_gaps(layout, &locations, display_m)?;
+        places::check_signal_keys(layout)?;
+        dishes::check_obtainable(recipes, layout, &items, &processes)?;
+        Ok(Kitchen {
+            name: layout.name.clone(),
+            title: layout.title.clone(),
+            display_m,
+            table_height_m: layout.table.height_m,
+            served_shown_s: *layout.table.served_shown_s.get_ref(),
+            new_order_after_s: *layout.table.new_order_after_s.get_ref(),
+            storages: places::storages(layout, recipes, &items)?,
+            contents,
+            locations,
+            buttons,
+            dishes,
+            aspects,
+            processes,
+            orders,
+            hands,
+            board,
+            plate,
+            tables,
+        })
+    }
+}
+
+fn positive(value: &Spanned<f64>, name: &str) -> Result<()> {
+    if value.get_ref().is_finite() && *value.get_ref() > 0.0 {
+        return Ok(());
+    }
+    Err(wrong(SpecFile::Layout, value.span(), format!("{name} = {}", value.get_ref()), "a number above 0"))
+}
+
+fn tables(
+    layout: &LayoutSpec,
+    spec: &RecipesSpec,
+    items: &Items,
+    contents: &[Content],
+    locations: &[Location],
+    processes: &[Process],
+) -> Result<Tables> {
+    let width = contents.len();
+    let mut accepts = vec![false; locations.len() * width];
+    let first_place = locations.len() - layout.place.len();
+    for (index, location) in locations.iter().enumerate() {
+        let row = &mut accepts[index * width..][..width];
+        match location.kind {
+            LocationKind::Order => {}
+            LocationKind::Hand(_) => row[1..].fill(true),
+            LocationKind::Place => {
+                for name in &layout.place[index - first_place].accepts {
+                    accept(name, spec, items, contents, row)?;
+                }
+            }
+        }
+    }
+    let by_items = |set: &[ContentId]| contents.iter().position(|content| content.items == set);
+    let mut stacks = vec![ContentId::EMPTY; width * width];
+    for below in 1..width {
+        for above in 1..width {
+            let mut set = [contents[below].items.as_slice(), contents[above].items.as_slice()].concat();
+            set.sort_unstable();
+            stacks[below * width + above] = ContentId(by_items(&set).unwrap_or(0) as u8);
+        }
+    }
+    let mut becomes = vec![ContentId::EMPTY; processes.len() * width];
+    for (index, process) in processes.iter().enumerate() {
+        for (from, to) in &process.steps {
+            becomes[index * width + from.index()] = *to;
+        }
+    }
+    Ok(Tables { width, accepts, stacks, becomes })
+}
+
+/// Marks in `row` what a word of "accepts" lets in.
+fn accept(
+    name: &Spanned<String>,
+    spec: &RecipesSpec,
+    items: &Items,
+    contents: &[Content],
+    row: &mut [bool],
+) -> Result<()> {
+    let dishes = contents::dish_names(spec, items)?;
+    let group = spec.group.iter().find(|group| group.name.get_ref() == name.get_ref());
+    let members = group.map(|group| items.find_all(&group.made_of)).transpose()?;
+    for (content, accepted) in contents.iter().zip(row).skip(1) {
+        *accepted |= match (name.get_ref().as_str(), &members) {
+            ("anything", _) => true,
+            ("ingredients", _) => !content.is_stack(),
+            ("dishes", _) => dishes.iter().any(|(stack, _)| *stack == content.items),
+            (_, Some(members)) => content.items.iter().all(|item| members.contains(item)),
+            (other, None) => {
+                let found = format!("accepts \"{other}\"");
+                let remedy = "\"anything\", \"ingredients\", \"dishes\" or a [[group]] of the recipe file";
+                return Err(wrong(SpecFile::Layout, name.span(), found, remedy));
+            }
+        };
+    }
+    Ok(())
+}
+
+fn aspects(contents: &[Content], locations: &[Location], dishes: &[Dish], tables: &Tables) -> Vec<Aspect> {
+    let order_values = || {
+        let dishes = (0..dishes.len()).map(|index| OrderContent::Dish(DishId(index as u8)).code());
+        [OrderContent::None.code(), OrderContent::Served.code()].into_iter().chain(dishes).collect()
+    };
+    let label = |kind: LocationKind, code: u8| match (kind, OrderContent::from_code(code)) {
+        (LocationKind::Order, OrderContent::None) => "none".to_string(),
+        (LocationKind::Order, OrderContent::Served) => "served".to_string(),
+        (LocationKind::Order, OrderContent::Dish(dish)) => dishes[dish.index()].name.clone(),
+        _ => contents[usize::from(code)].name.clone(),
+    };
+    let of_location = |(index, location): (usize, &Location)| {
+        let accepted = |content: &usize| *content == 0 || tables.accepts[index * tables.width + content];
+        let values: Vec<u8> = match location.kind {
+            LocationKind::Order => order_values(),
+            _ => (0..contents.len()).filter(accepted).map(|content| content as u8).collect(),
+        };
+        let labels = values.iter().map(|&code| label(location.kind, code)).collect();
+        Aspect { name: location.name.clone(), kind: AspectKind::Location(LocationId(index as u8)), values, labels }
+    };
+    let of_dish = |(index, dish): (usize, &Dish)| Aspect {
+        name: format!("recipe of {}", dish.name),
+        kind: AspectKind::Recipe(DishId(index as u8)),
+        values: dish.variants.iter().map(|variant| variant.0).collect(),
+        labels: dish.variants.iter().map(|variant| contents[variant.index()].name.clone()).collect(),
+    };
+    locations.iter().enumerate().map(of_location).chain(dishes.iter().enumerate().map(of_dish)).collect()
+}

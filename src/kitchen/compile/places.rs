@@ -1,0 +1,143 @@
+//! Locations and storages: their roles, and whether gaze can tell them apart on the display.
+
+use toml::Spanned;
+
+use super::contents::Items;
+use super::{MAX_ORDERS, MIN_GAP_M, Result, SpecFile, wrong, wrong_file};
+use crate::kitchen::action::Agent;
+use crate::kitchen::content::ContentId;
+use crate::kitchen::layout::{Area, LayoutSpec, Location, LocationId, LocationKind, PlaceSpec, Storage, StorageSpec};
+use crate::kitchen::recipe::RecipesSpec;
+use crate::kitchen::state::MAX_LOCATIONS;
+
+pub(super) fn locations(layout: &LayoutSpec) -> Result<Vec<Location>> {
+    let location = |name: &Spanned<String>, kind, display: &Spanned<Area>, signal: &Option<Spanned<char>>| Location {
+        name: name.get_ref().clone(),
+        kind,
+        display: *display.get_ref(),
+        signal_key: signal.as_ref().map(|key| *key.get_ref()),
+    };
+    let orders = layout.order.iter().map(|o| (&o.name, location(&o.name, LocationKind::Order, &o.display, &o.signal)));
+    let hands = layout
+        .hand
+        .iter()
+        .map(|h| (&h.name, location(&h.name, LocationKind::Hand(*h.agent.get_ref()), &h.display, &h.signal)));
+    let places = layout.place.iter().map(|p| (&p.name, location(&p.name, LocationKind::Place, &p.display, &p.signal)));
+    let mut locations: Vec<Location> = Vec::new();
+    for (name, location) in orders.chain(hands).chain(places) {
+        if locations.iter().any(|other| other.name == location.name) {
+            let found = format!("the location \"{}\" a second time", location.name);
+            return Err(wrong(SpecFile::Layout, name.span(), found, "each name once"));
+        }
+        locations.push(location);
+    }
+    if locations.len() > MAX_LOCATIONS {
+        let found = format!("{} locations", locations.len());
+        return Err(wrong_file(SpecFile::Layout, found, format!("at most {MAX_LOCATIONS}")));
+    }
+    if layout.order.is_empty() || layout.order.len() > MAX_ORDERS {
+        let found = format!("{} orders", layout.order.len());
+        return Err(wrong_file(SpecFile::Layout, found, format!("1 to {MAX_ORDERS} tables [[order]]")));
+    }
+    Ok(locations)
+}
+
+/// The hands, the board and the plate.
+pub(super) fn roles(layout: &LayoutSpec, locations: &[Location]) -> Result<([LocationId; 2], LocationId, LocationId)> {
+    let find = |kind| locations.iter().position(|location| location.kind == kind).map(|index| LocationId(index as u8));
+    let hand = |agent: Agent| {
+        let count = layout.hand.iter().filter(|hand| *hand.agent.get_ref() == agent).count();
+        match (find(LocationKind::Hand(agent)), count) {
+            (Some(hand), 1) => Ok(hand),
+            _ => {
+                let found = format!("{count} hands of the {}", agent.name());
+                Err(wrong_file(SpecFile::Layout, found, "one [[hand]] for the human and one for the robot"))
+            }
+        }
+    };
+    let only = |which: &str, is: fn(&PlaceSpec) -> bool| {
+        let first_place = layout.order.len() + layout.hand.len();
+        let mut found = layout.place.iter().enumerate().filter(|(_, place)| is(place));
+        match (found.next(), found.next()) {
+            (Some((index, _)), None) => Ok(LocationId((first_place + index) as u8)),
+            (Some(_), Some((_, second))) => {
+                let found = format!("a second place with {which} = true, \"{}\"", second.name.get_ref());
+                Err(wrong(SpecFile::Layout, second.name.span(), found, "one such place"))
+            }
+            (None, _) => {
+                let found = format!("no place with {which} = true");
+                Err(wrong_file(SpecFile::Layout, found, format!("{which} = true at one [[place]]")))
+            }
+        }
+    };
+    let hands = [hand(Agent::Human)?, hand(Agent::Robot)?];
+    Ok((hands, only("stacks", |place| place.stacks)?, only("serves", |place| place.serves)?))
+}
+
+/// Areas must lie on the display and be far enough apart for an eye tracker.
+pub(super) fn check_gaps(layout: &LayoutSpec, locations: &[Location], display_m: [f64; 2]) -> Result<()> {
+    let spans = layout.order.iter().map(|order| order.display.span());
+    let spans = spans.chain(layout.hand.iter().map(|hand| hand.display.span()));
+    let spans: Vec<_> = spans.chain(layout.place.iter().map(|place| place.display.span())).collect();
+    for (index, location) in locations.iter().enumerate() {
+        let area = location.display;
+        let inside = area.x >= 0.0 && area.y >= 0.0 && area.x + area.w <= 1.0 && area.y + area.h <= 1.0;
+        if !(inside && area.w > 0.0 && area.h > 0.0) {
+            let found = format!("\"{}\" reaches beyond the display", location.name);
+            return Err(wrong(
+                SpecFile::Layout,
+                spans[index].clone(),
+                found,
+                "x, y, w and h as fractions within 0 to 1",
+            ));
+        }
+        for other in &locations[..index] {
+            let gap = area.gap_m(other.display, display_m);
+            if gap < MIN_GAP_M - 1e-9 {
+                let found = format!("\"{}\" only {gap:.3} m from \"{}\"", location.name, other.name);
+                let remedy = format!("at least {MIN_GAP_M} m between locations, so that gaze can tell them apart");
+                return Err(wrong(SpecFile::Layout, spans[index].clone(), found, remedy));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Every signal key is there once.
+pub(super) fn check_signal_keys(layout: &LayoutSpec) -> Result<()> {
+    let orders = layout.order.iter().map(|order| &order.signal);
+    let hands = layout.hand.iter().map(|hand| &hand.signal);
+    let keys = orders.chain(hands).chain(layout.place.iter().map(|place| &place.signal)).flatten();
+    let mut seen: Vec<char> = Vec::new();
+    for key in keys {
+        if key.get_ref().is_whitespace() || seen.contains(key.get_ref()) {
+            let found = format!("signal = \"{}\"", key.get_ref());
+            return Err(wrong(SpecFile::Layout, key.span(), found, "a key of its own that is not the space bar"));
+        }
+        seen.push(*key.get_ref());
+    }
+    Ok(())
+}
+
+pub(super) fn storages(layout: &LayoutSpec, spec: &RecipesSpec, items: &Items) -> Result<Vec<Storage>> {
+    let one = |storage: &StorageSpec| {
+        Ok(Storage {
+            agent: storage.agent,
+            item: stored(&storage.ingredient, spec, items)?,
+            label: storage.ingredient.get_ref().clone(),
+            display: *storage.display.get_ref(),
+        })
+    };
+    layout.storage.iter().map(one).collect()
+}
+
+/// The item that a storage of this ingredient gives.
+pub(super) fn stored(name: &Spanned<String>, spec: &RecipesSpec, items: &Items) -> Result<ContentId> {
+    let ingredient = spec.ingredient.iter().position(|ingredient| ingredient.name.get_ref() == name.get_ref());
+    let item = ingredient.and_then(|ingredient| items.ingredient.iter().position(|&of| of == ingredient));
+    item.map(|item| ContentId(item as u8 + 1)).ok_or_else(|| {
+        let names: Vec<&str> = spec.ingredient.iter().map(|ingredient| ingredient.name.get_ref().as_str()).collect();
+        let found = format!("ingredient = \"{}\"", name.get_ref());
+        wrong(SpecFile::Layout, name.span(), found, format!("one of {}", names.join(", ")))
+    })
+}

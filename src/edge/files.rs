@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use serde::de::DeserializeOwned;
@@ -27,7 +28,7 @@ pub enum FileError {
         line: usize,
         found: String,
         #[source_code]
-        text: NamedSource<String>,
+        text: Arc<NamedSource<String>>,
         #[label("here")]
         span: Option<SourceSpan>,
         #[help]
@@ -42,7 +43,7 @@ impl FileError {
         let start = span.as_ref().map_or(0, |span| span.start.min(text.len()));
         let line = text.as_bytes()[..start].iter().filter(|&&byte| byte == b'\n').count() + 1;
         let source = NamedSource::new(&name, text.to_string());
-        FileError::Wrong { name, line, found, text: source, span: span.map(SourceSpan::from), remedy }
+        FileError::Wrong { name, line, found, text: Arc::new(source), span: span.map(SourceSpan::from), remedy }
     }
 }
 

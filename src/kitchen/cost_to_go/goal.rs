@@ -1,0 +1,158 @@
+//! A goal: the full stacks that are still to be served, and what every content is worth for them.
+//!
+//! For the cost to go only the worth of a content matters: all contents that are of no use are one class, "in the way".
+
+use crate::kitchen::{Action, Agent, ContentId, Kitchen};
+
+use super::journeys::{Journeys, NEVER};
+
+/// At most so many targets, see [`crate::kitchen::compile::MAX_ORDERS`].
+pub const MAX_TARGETS: usize = 2;
+/// Class 0 is empty, class 1 is of no use.
+pub const USELESS: u8 = 1;
+
+/// Classes of the physical locations, by location index.
+pub type Classes = [u8; 16];
+
+/// One set of targets with its tables over classes.
+#[derive(Clone, Debug)]
+pub struct Goal {
+    /// The full stacks that are wanted, in ascending order.
+    pub targets: Vec<ContentId>,
+    /// The class of each content.
+    pub class_of: Vec<u8>,
+    /// A content of each class.
+    pub content: Vec<ContentId>,
+    /// `[target][class]`: bit j if the class can become the j-th item of the target, or has it.
+    pub fills: [Vec<u8>; MAX_TARGETS],
+    /// `[target][class]`: the same for those that can be stacked as they are.
+    pub ready: [Vec<u8>; MAX_TARGETS],
+    /// For each target the component index of its j-th item.
+    pub components: [Vec<usize>; MAX_TARGETS],
+    /// For each target the bits of all its items.
+    pub complete: [u8; MAX_TARGETS],
+    /// The class that a target itself has.
+    pub target_class: [u8; MAX_TARGETS],
+    /// What can be taken from storages: by agent, classes.
+    pub takes: [Vec<u8>; 2],
+    /// `[process][class]`: the useful result, else 0.
+    pub becomes: Vec<Vec<u8>>,
+    /// `[below * classes + above]`: the useful stack, else 0.
+    pub stacks: Vec<u8>,
+    /// `[location][content]`: the class times the location's stride; the sum over locations is the state's key.
+    pub key_parts: Vec<[u64; 256]>,
+}
+
+impl Goal {
+    pub fn new(kitchen: &Kitchen, journeys: &Journeys, targets: Vec<ContentId>) -> Goal {
+        let mut content = vec![ContentId::EMPTY];
+        let mut class_of = vec![USELESS; kitchen.contents.len()];
+        class_of[0] = 0;
+        content.push(ContentId::EMPTY);
+        let worth = |target: ContentId, content: usize| worth(kitchen, journeys, target, content);
+        for (index, class) in class_of.iter_mut().enumerate().skip(1) {
+            if targets.iter().any(|&target| worth(target, index) != 0) {
+                *class = content.len() as u8;
+                content.push(ContentId(index as u8));
+            } else if content[usize::from(USELESS)].is_empty() {
+                content[usize::from(USELESS)] = ContentId(index as u8);
+            }
+        }
+        let mut goal = Goal {
+            class_of,
+            fills: Default::default(),
+            ready: Default::default(),
+            components: Default::default(),
+            complete: [0; MAX_TARGETS],
+            target_class: [0; MAX_TARGETS],
+            takes: Default::default(),
+            becomes: Vec::new(),
+            stacks: Vec::new(),
+            key_parts: Vec::new(),
+            content,
+            targets,
+        };
+        for (index, &target) in goal.targets.iter().enumerate() {
+            let items = &kitchen.content(target).items;
+            goal.components[index] = items.iter().filter_map(|&item| journeys.component(item)).collect();
+            goal.complete[index] = ((1u32 << items.len()) - 1) as u8;
+            goal.target_class[index] = goal.class_of[target.index()];
+            for (class, &content) in goal.content.iter().enumerate() {
+                let useful = class > usize::from(USELESS);
+                goal.fills[index].push(if useful { worth(target, content.index()) } else { 0 });
+                goal.ready[index].push(if useful { ready(kitchen, target, content) } else { 0 });
+            }
+        }
+        goal.fill_moves(kitchen);
+        goal.fill_keys(kitchen);
+        goal
+    }
+
+    fn fill_moves(&mut self, kitchen: &Kitchen) {
+        let useful = |class: u8| if class == USELESS { 0 } else { class };
+        for agent in Agent::BOTH {
+            let taken = kitchen.buttons[agent.index()].iter().filter_map(|button| match button.action {
+                Action::Take(item) => Some(useful(self.class_of[item.index()])),
+                _ => None,
+            });
+            self.takes[agent.index()] = taken.filter(|&class| class != 0).collect();
+        }
+        let result = |content: Option<ContentId>| content.map_or(0, |content| useful(self.class_of[content.index()]));
+        let classes = &self.content;
+        let becomes = (0..kitchen.processes.len() as u8).map(|process| {
+            let of_class = |(class, &content): (usize, &ContentId)| match class <= usize::from(USELESS) {
+                true => 0,
+                false => result(kitchen.processed(process, content)),
+            };
+            classes.iter().enumerate().map(of_class).collect()
+        });
+        self.becomes = becomes.collect();
+        let count = classes.len();
+        self.stacks = vec![0; count * count];
+        for below in 2..count {
+            for above in 2..count {
+                self.stacks[below * count + above] = result(kitchen.stacked(self.content[below], self.content[above]));
+            }
+        }
+    }
+
+    fn fill_keys(&mut self, kitchen: &Kitchen) {
+        let mut stride = 1u64;
+        for index in kitchen.orders.len()..kitchen.locations.len() {
+            let location = crate::kitchen::LocationId(index as u8);
+            let can_be = |&content: &usize| content == 0 || kitchen.accepts(location, ContentId(content as u8));
+            let mut classes: Vec<u8> = (0..kitchen.contents.len()).filter(can_be).map(|c| self.class_of[c]).collect();
+            classes.sort_unstable();
+            classes.dedup();
+            let mut parts = [0u64; 256];
+            for (content, class) in self.class_of.iter().enumerate() {
+                let digit = classes.iter().position(|other| other == class).unwrap_or(0);
+                parts[content] = digit as u64 * stride;
+            }
+            self.key_parts.push(parts);
+            stride = stride.saturating_mul(classes.len() as u64);
+        }
+    }
+}
+
+/// Which items of the target a content has or can become: bit j for the j-th.
+fn worth(kitchen: &Kitchen, journeys: &Journeys, target: ContentId, content: usize) -> u8 {
+    let candidate = &kitchen.contents[content];
+    if candidate.is_stack() {
+        return ready(kitchen, target, ContentId(content as u8));
+    }
+    let reachable = |component: usize| {
+        let free = journeys.all_free;
+        (0..kitchen.locations.len()).any(|at| journeys.presses(free, component, at, content as u8) < NEVER)
+    };
+    let items = kitchen.content(target).items.iter().enumerate();
+    let bits = items.filter(|(_, item)| journeys.component(**item).is_some_and(reachable)).map(|(bit, _)| 1 << bit);
+    bits.sum()
+}
+
+/// Which items of the target a content consists of; 0 if it has others too.
+fn ready(kitchen: &Kitchen, target: ContentId, content: ContentId) -> u8 {
+    let wanted = &kitchen.content(target).items;
+    let bit = |item: &ContentId| wanted.iter().position(|other| other == item).map(|bit| 1 << bit);
+    kitchen.content(content).items.iter().map(bit).sum::<Option<u8>>().unwrap_or(0)
+}

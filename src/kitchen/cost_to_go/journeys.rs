@@ -1,0 +1,172 @@
+//! Journeys: the presses that bring one item from where it is to the board in the form that a recipe needs, for every
+//! combination of what is free on the way. One breadth-first search per component and combination, at start-up.
+
+use crate::kitchen::{Action, Agent, ContentId, Kitchen, LocationId, LocationKind};
+
+/// No way.
+pub const NEVER: u8 = u8::MAX;
+
+/// What is free: bit 0 the human's hand, bit 1 the robot's hand, then one bit per processing place, and at last one bit
+/// for "some place where anything can be put for a moment".
+pub type FreeMask = usize;
+
+/// Tables over (what is free, component, place, content).
+#[derive(Clone, Debug)]
+pub struct Journeys {
+    /// Places where something is processed, in the order of their mask bits from bit 2 on.
+    pub stations: Vec<LocationId>,
+    /// The mask bit of each location, 0 for those that are no step of any journey.
+    pub bit: Vec<FreeMask>,
+    /// The bit for a spare place.
+    pub spare_bit: FreeMask,
+    /// All bits.
+    pub all_free: FreeMask,
+    /// Items that are part of some full stack; the components.
+    pub components: Vec<ContentId>,
+    contents: usize,
+    locations: usize,
+    /// `[((mask * components + component) * locations + location) * contents + content]`, in presses.
+    presses: Vec<u8>,
+    /// `[mask * components + component]`: the same for an item that is still in a storage, taking it included.
+    from_storage: Vec<u8>,
+}
+
+impl Journeys {
+    pub fn new(kitchen: &Kitchen) -> Journeys {
+        let mut stations: Vec<LocationId> = kitchen.processes.iter().filter_map(|process| process.place).collect();
+        stations.sort_unstable();
+        stations.dedup();
+        let mut bit = vec![0; kitchen.locations.len()];
+        for agent in Agent::BOTH {
+            bit[kitchen.hands[agent.index()].index()] = 1 << agent.index();
+        }
+        for (index, station) in stations.iter().enumerate() {
+            bit[station.index()] = 4 << index;
+        }
+        let spare_bit = 4 << stations.len();
+        let mut components: Vec<ContentId> = kitchen
+            .contents
+            .iter()
+            .filter(|content| content.is_stack())
+            .flat_map(|content| content.items.clone())
+            .collect();
+        components.sort_unstable();
+        components.dedup();
+        let mut journeys = Journeys {
+            stations,
+            bit,
+            spare_bit,
+            all_free: 2 * spare_bit - 1,
+            components,
+            contents: kitchen.contents.len(),
+            locations: kitchen.locations.len(),
+            presses: Vec::new(),
+            from_storage: Vec::new(),
+        };
+        journeys.fill(kitchen);
+        journeys
+    }
+
+    /// The index of a component.
+    pub fn component(&self, item: ContentId) -> Option<usize> {
+        self.components.iter().position(|&component| component == item)
+    }
+
+    /// Presses until `content`, now at `location`, lies on the board as this component. The bits of `free` must include
+    /// the item's own place.
+    #[inline]
+    pub fn presses(&self, free: FreeMask, component: usize, location: usize, content: u8) -> u8 {
+        let row = (free * self.components.len() + component) * self.locations + location;
+        self.presses[row * self.contents + usize::from(content)]
+    }
+
+    /// Presses until this component, taken from a storage, lies on the board.
+    #[inline]
+    pub fn from_storage(&self, free: FreeMask, component: usize) -> u8 {
+        self.from_storage[free * self.components.len() + component]
+    }
+
+    fn fill(&mut self, kitchen: &Kitchen) {
+        for free in 0..=self.all_free {
+            for component in 0..self.components.len() {
+                let presses = self.search(kitchen, free, self.components[component]);
+                let take = |agent: Agent| {
+                    let hand = kitchen.hands[agent.index()].index();
+                    let is_free = free & (1 << agent.index()) != 0;
+                    kitchen.buttons[agent.index()].iter().filter_map(move |button| match button.action {
+                        Action::Take(item) if is_free => Some((hand, item)),
+                        _ => None,
+                    })
+                };
+                let best = Agent::BOTH.into_iter().flat_map(take).map(|(hand, item)| presses[hand][item.index()]).min();
+                self.from_storage.push(best.unwrap_or(NEVER).saturating_add(1));
+                for row in &presses[..self.locations] {
+                    self.presses.extend_from_slice(row);
+                }
+            }
+        }
+    }
+
+    /// Backwards from the component in a hand beside the board; `[location][content]`, the last row is the spare place.
+    fn search(&self, kitchen: &Kitchen, free: FreeMask, component: ContentId) -> Vec<Vec<u8>> {
+        let mut presses = vec![vec![NEVER; self.contents]; self.locations + 1];
+        for hand in kitchen.hands {
+            presses[hand.index()][component.index()] = 1;
+        }
+        // Journeys are short, so relaxing all edges until nothing changes is simple and fast enough.
+        loop {
+            let mut changed = false;
+            for location in 0..=self.locations {
+                for item in 1..self.contents {
+                    let best = self.successors(kitchen, free, location, ContentId(item as u8));
+                    let best =
+                        best.map(|(to, item)| presses[to][item.index()].saturating_add(1)).min().unwrap_or(NEVER);
+                    if best < presses[location][item] {
+                        presses[location][item] = best;
+                        changed = true;
+                    }
+                }
+            }
+            if !changed {
+                break;
+            }
+        }
+        let board = kitchen.board.index();
+        presses[board][component.index()] = 0;
+        presses
+    }
+
+    /// Where one press can bring an item that is at `location`.
+    fn successors<'a>(
+        &'a self,
+        kitchen: &'a Kitchen,
+        free: FreeMask,
+        location: usize,
+        item: ContentId,
+    ) -> impl Iterator<Item = (usize, ContentId)> + 'a {
+        let spare = self.locations;
+        let kind = (location < spare).then(|| kitchen.locations[location].kind);
+        let in_hand = match kind {
+            Some(LocationKind::Hand(agent)) => Some(agent),
+            _ => None,
+        };
+        let processed = kitchen.processes.iter().enumerate().filter_map(move |(index, process)| {
+            let here = match (process.place, in_hand) {
+                (Some(place), None) => place.index() == location,
+                (None, Some(agent)) => process.agents[agent.index()],
+                _ => false,
+            };
+            here.then(|| kitchen.processed(index as u8, item)).flatten().map(|result| (location, result))
+        });
+        let pick_up = Agent::BOTH.into_iter().filter_map(move |agent| {
+            let can = in_hand.is_none() && free & (1 << agent.index()) != 0;
+            can.then(|| (kitchen.hands[agent.index()].index(), item))
+        });
+        let put_down = self.stations.iter().filter_map(move |&station| {
+            let can = in_hand.is_some() && free & self.bit[station.index()] != 0 && kitchen.accepts(station, item);
+            can.then_some((station.index(), item))
+        });
+        let put_aside = (in_hand.is_some() && free & self.spare_bit != 0).then_some((spare, item));
+        processed.chain(pick_up).chain(put_down).chain(put_aside)
+    }
+}

@@ -1,6 +1,7 @@
 //! The robot: its task policy, and the arm that carries it out.
 
 pub mod policy;
+pub mod timed;
 
 use serde::{Deserialize, Serialize};
 

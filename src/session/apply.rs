@@ -1,5 +1,6 @@
 //! `apply(&mut Session, &Stamped) -> Vec<Effect>`: the only way in which a session changes.
 
+use super::admit::admit;
 use super::event::{EndReason, Event, SignalEnd, Stamped};
 use super::{Entry, Happening, Phase, Served, Session, ShownSignal};
 use crate::base::time::SessionTime;
@@ -9,10 +10,14 @@ use crate::kitchen::{Action, Agent, ButtonId, DishId, LocationId, OrderContent, 
 /// What has to be done because of an event, by whoever runs the session. A replay does none of it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
-    /// Raise the timer's event at this time, unless the trial pauses or ends meanwhile.
+    /// Raise the timer's event at this time, or later by what [`Effect::Postpone`] adds meanwhile.
     At { time: SessionTime, timer: Timer },
     /// A timer that is no longer wanted.
     Cancel(Timer),
+    /// The trial is over: nothing is pending any more.
+    CancelAll,
+    /// A pause of this length is over: everything that is pending comes later by it.
+    Postpone(SessionTime),
     /// The session is over: close the recording.
     Close,
 }
@@ -34,7 +39,7 @@ pub enum Timer {
 
 /// An event that cannot be: a log written by another program, or a broken one.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("event {seq}: {found}")]
+#[error("{found}; right would be {remedy}")]
 pub struct ApplyError {
     pub seq: u64,
     pub found: String,
@@ -46,7 +51,8 @@ type Applied = Result<Vec<Effect>, ApplyError>;
 /// Moves the session on by one event.
 ///
 /// # Errors
-/// Names that the kitchen does not have, and times that run backwards; the session is unchanged then.
+/// Names that the kitchen does not have, times that run backwards, and events that cannot be at this point (see
+/// [`admit`]); the session is unchanged then.
 pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
     if stamped.time < session.time {
         return Err(ApplyError {
@@ -55,13 +61,18 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
             remedy: "times that never decrease".to_string(),
         });
     }
+    if let Err(reason) = admit(session, &stamped.event) {
+        let found = format!("\"{}\", but {reason}", stamped.event.kind());
+        let remedy = "an event that is possible at this point of the session".to_string();
+        return Err(ApplyError { seq: stamped.seq, found, remedy });
+    }
     let now = stamped.time;
     let named = Named { session, seq: stamped.seq };
     let mut effects = Vec::new();
     match &stamped.event {
         Event::TrialStarted => start(session, now, &mut effects),
         Event::TrialPaused => pause(session, now),
-        Event::TrialResumed => resume(session, now),
+        Event::TrialResumed => resume(session, now, &mut effects),
         Event::TrialEnded { reason } => end_trial(session, now, *reason, &mut effects),
         Event::Gaze(sample) => gaze(session, now, *sample),
         Event::Press { agent, button } => {
@@ -86,6 +97,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
         Event::RobotIdles { reason } => session.robot.idle = Some(*reason),
         Event::RobotStopped => {
             session.robot.stopped = true;
+            session.robot.idle = None;
             note(session, now, Happening::RobotStopped);
         }
         Event::RobotResumed => {
@@ -110,10 +122,11 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
         Event::Marker { note: text } => note(session, now, Happening::Marker(text.clone())),
         Event::ParticipantBelieves(_) => {}
         Event::SessionEnded => {
-            if !matches!(session.phase, Phase::Over(_)) {
-                stop_clock(session, now);
-            }
+            stop_clock(session, now);
             session.phase = Phase::Closed;
+            session.robot.intention = None;
+            session.shown = None;
+            effects.push(Effect::CancelAll);
             effects.push(Effect::Close);
         }
     }
@@ -206,21 +219,28 @@ fn stop_clock(session: &mut Session, now: SessionTime) {
     }
 }
 
-fn resume(session: &mut Session, now: SessionTime) {
-    if session.phase == Phase::Paused {
-        session.paused_total = session.paused_total + (now - session.paused_at);
-        session.phase = Phase::Running;
-        note(session, now, Happening::Trial(Phase::Running));
+/// Goes on after a pause: what was on its way comes later by the pause's length.
+fn resume(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
+    let by = now - session.paused_at;
+    session.paused_total = session.paused_total + by;
+    session.phase = Phase::Running;
+    if let Some((_, _, until)) = &mut session.robot.intention {
+        *until = *until + by;
     }
+    if let Some(shown) = &mut session.shown {
+        shown.until = shown.until + by;
+    }
+    effects.push(Effect::Postpone(by));
+    note(session, now, Happening::Trial(Phase::Running));
 }
 
 fn end_trial(session: &mut Session, now: SessionTime, reason: EndReason, effects: &mut Vec<Effect>) {
     stop_clock(session, now);
     session.phase = Phase::Over(reason);
     session.robot.intention = None;
+    session.robot.idle = None;
     session.shown = None;
-    effects.push(Effect::Cancel(Timer::EndTrial));
-    effects.push(Effect::Cancel(Timer::EndSignal));
+    effects.push(Effect::CancelAll);
     note(session, now, Happening::Trial(session.phase));
 }
 
@@ -268,8 +288,8 @@ fn gaze(session: &mut Session, now: SessionTime, sample: GazeSample) {
     let interval_s = status.last.map_or(1.0, |(last, _)| now.secs_since(last));
     let weight = interval_s.clamp(0.0, 1.0);
     status.rate_hz += weight * (1.0 / interval_s.max(1e-3) - status.rate_hz);
-    let usable = sample.x.is_finite() && sample.y.is_finite() && sample.confidence >= MIN_CONFIDENCE;
-    if !usable {
+    let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
+    if !on_display || sample.confidence < MIN_CONFIDENCE {
         status.unusable += 1;
         return;
     }

@@ -88,6 +88,32 @@ pub enum Event {
     SessionEnded,
 }
 
+impl Event {
+    /// The word that stands for it in the log.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Event::TrialStarted => "trial_started",
+            Event::TrialPaused => "trial_paused",
+            Event::TrialResumed => "trial_resumed",
+            Event::TrialEnded { .. } => "trial_ended",
+            Event::Gaze(_) => "gaze",
+            Event::Press { .. } => "press",
+            Event::OrderShown { .. } => "order_shown",
+            Event::OrderCleared { .. } => "order_cleared",
+            Event::RobotIntends { .. } => "robot_intends",
+            Event::RobotAborts { .. } => "robot_aborts",
+            Event::RobotIdles { .. } => "robot_idles",
+            Event::RobotStopped => "robot_stopped",
+            Event::RobotResumed => "robot_resumed",
+            Event::SignalShown { .. } => "signal_shown",
+            Event::SignalEnded { .. } => "signal_ended",
+            Event::Marker { .. } => "marker",
+            Event::ParticipantBelieves(_) => "participant_believes",
+            Event::SessionEnded => "session_ended",
+        }
+    }
+}
+
 /// Why a trial ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

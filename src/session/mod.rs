@@ -1,9 +1,13 @@
 //! A session: its settings, its state, and [`apply`], the one function through which a live run, a replay and an analysis
 //! move it on. It knows no clock, no file and no chance.
 
+pub mod admit;
 pub mod apply;
 pub mod event;
+pub mod header;
+pub mod orders;
 pub mod settings;
+pub mod timers;
 
 use std::sync::Arc;
 
@@ -14,6 +18,7 @@ use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
 pub use apply::{Effect, Timer, apply};
 pub use event::{Event, Stamped};
+pub use header::Header;
 pub use settings::SessionSpec;
 
 /// Where the trial is.

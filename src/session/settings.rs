@@ -27,6 +27,51 @@ fn default_seed() -> u64 {
     1
 }
 
+/// A setting that cannot be.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SettingError {
+    /// The name of the setting in its table.
+    pub key: &'static str,
+    /// What was found.
+    pub found: String,
+    /// What would be right.
+    pub remedy: &'static str,
+}
+
+impl SessionSpec {
+    /// Checks what the types do not: ranges, the participant's code, and settings that exclude each other.
+    ///
+    /// # Errors
+    /// The first setting that cannot be.
+    pub fn check(&self) -> Result<(), SettingError> {
+        let above_0 = |key: &'static str, value: f64| match value.is_finite() && value > 0.0 {
+            true => Ok(()),
+            false => Err(SettingError { key, found: format!("{key} = {value}"), remedy: "a number above 0" }),
+        };
+        above_0("presses", f64::from(self.trial.presses))?;
+        above_0("seconds", self.trial.seconds)?;
+        above_0("press_s", self.robot.press_s)?;
+        above_0("shown_s", self.signals.shown_s)?;
+        if !(0.0..=2.0).contains(&self.robot.press_spread) {
+            let found = format!("press_spread = {}", self.robot.press_spread);
+            return Err(SettingError { key: "press_spread", found, remedy: "a number from 0 to 2" });
+        }
+        let code = &self.participant.code;
+        let is_code = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+        if code.is_empty() || code.len() > 32 || !code.chars().all(is_code) {
+            let found = format!("code = \"{code}\"");
+            let remedy = "a code of 1 to 32 letters, digits, - and _, such as \"P07\"; never a name";
+            return Err(SettingError { key: "code", found, remedy });
+        }
+        if self.participant.gaze == GazeSource::Simulated && self.participant.kind != ParticipantKind::Simulated {
+            let found = "gaze = \"simulated\" of a participant who is not simulated".to_string();
+            let remedy = "gaze = \"mouse\", \"json\" or \"none\"";
+            return Err(SettingError { key: "gaze", found, remedy });
+        }
+        Ok(())
+    }
+}
+
 /// When a trial ends, and who sends signals in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -69,6 +114,13 @@ impl Default for ParticipantSpec {
     fn default() -> Self {
         let code = "P01".to_string();
         ParticipantSpec { code, kind: ParticipantKind::Simulated, gaze: GazeSource::Simulated, gaze_port: 50021 }
+    }
+}
+
+impl ParticipantSpec {
+    /// Whether the gaze samples come from the simulated participant.
+    pub fn simulates_gaze(&self) -> bool {
+        self.kind == ParticipantKind::Simulated && self.gaze == GazeSource::Simulated
     }
 }
 

@@ -1,0 +1,77 @@
+//! What can happen at this point of a session, and why something cannot: asked before an input is taken, and of every
+//! event that is applied.
+
+use super::event::{EndReason, Event, SignalEnd};
+use super::settings::{Condition, ParticipantKind};
+use super::{Phase, Session};
+use crate::communication::{self, Sender, Signal};
+use crate::kitchen::{Agent, LocationKind};
+
+/// Whether the session as it is now takes this event.
+///
+/// # Errors
+/// The reason why it does not, in words for the wizard.
+pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
+    let refuse_if = |refused: bool, reason: &'static str| if refused { Err(reason) } else { Ok(()) };
+    let phase = session.phase;
+    refuse_if(phase == Phase::Closed, "the session is over")?;
+    match event {
+        Event::TrialStarted => refuse_if(phase != Phase::Ready, "the trial was started already"),
+        Event::TrialPaused => refuse_if(phase != Phase::Running, "no trial runs"),
+        Event::TrialResumed => refuse_if(phase != Phase::Paused, "the trial is not paused"),
+        Event::TrialEnded { .. } => {
+            refuse_if(!matches!(phase, Phase::Running | Phase::Paused), "there is no trial to end")
+        }
+        Event::Gaze(sample) => {
+            let finite = sample.x.is_finite() && sample.y.is_finite() && sample.confidence.is_finite();
+            refuse_if(!finite, "the gaze sample is not a number")
+        }
+        Event::RobotStopped => refuse_if(session.robot.stopped, "the robot is stopped already"),
+        Event::RobotResumed => refuse_if(!session.robot.stopped, "the robot is not stopped"),
+        Event::SignalShown { by, signal } => admit_signal(session, *by, signal),
+        Event::SignalEnded { .. } => refuse_if(session.shown.is_none(), "no signal is shown"),
+        _ => Ok(()),
+    }
+}
+
+fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'static str> {
+    if session.phase != Phase::Running {
+        return Err("signals are sent while the trial runs");
+    }
+    if session.spec.trial.condition == Condition::None && by == Sender::Wizard {
+        return Err("nobody sends signals in the unassisted condition");
+    }
+    let target = session.kitchen.location_named(signal.target()).map(|id| session.kitchen.location(id).kind);
+    if target == Some(LocationKind::Hand(Agent::Human)) && !session.spec.signals.own_hand {
+        return Err("the session does not allow highlighting the human's own hand");
+    }
+    match communication::unavailable(&session.kitchen, session.state, signal) {
+        Some(reason) => Err(reason),
+        None => Ok(()),
+    }
+}
+
+/// Whether an event comes from outside (wizard, participant, tracker) and not from the running session itself.
+pub fn is_external(session: &Session, event: &Event) -> bool {
+    let participant = &session.spec.participant;
+    match event {
+        Event::TrialStarted
+        | Event::TrialPaused
+        | Event::TrialResumed
+        | Event::RobotStopped
+        | Event::RobotResumed
+        | Event::Marker { .. }
+        | Event::SessionEnded => true,
+        Event::TrialEnded { reason } => *reason == EndReason::Wizard,
+        Event::SignalShown { by, .. } => *by == Sender::Wizard,
+        Event::SignalEnded { reason } => *reason == SignalEnd::TakenBack,
+        Event::Gaze(_) => !participant.simulates_gaze(),
+        Event::Press { agent, .. } => *agent == Agent::Human && participant.kind != ParticipantKind::Simulated,
+        Event::OrderShown { .. }
+        | Event::OrderCleared { .. }
+        | Event::RobotIntends { .. }
+        | Event::RobotAborts { .. }
+        | Event::RobotIdles { .. }
+        | Event::ParticipantBelieves(_) => false,
+    }
+}

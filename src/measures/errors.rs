@@ -1,0 +1,104 @@
+//! Regret and error of a press.
+//!
+//! Regret: r(a) = 1 + C(s') - C(s), with the true state and recipes. A press is an error if its regret exceeds the least
+//! regret among the human's presses by 1 or more; but not if it brings an active order nearer and the excess is at most
+//! 2 (preparing one order at some cost of the other), and not if it may have been overtaken by the robot (a race). Where
+//! no press of the human helps, the least regret is 1 and the excess is counted from there. An ineffective press is
+//! judged like any other.
+
+use std::sync::Arc;
+
+use crate::base::time::SessionTime;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::state::MAX_LOCATIONS;
+use crate::kitchen::{Action, Agent, ButtonId, Kitchen, LocationId, State};
+
+/// A press so soon after a change by the robot at the same place cannot have taken the change into account.
+pub const RACE_S: f64 = 0.3;
+/// Up to this excess, a press that brings an active order nearer counts as preparation.
+pub const PREPARATION_EXCESS: i32 = 2;
+
+/// What a press of the human was worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Verdict {
+    /// r(a): presses lost by it, those of both agents.
+    pub regret: i32,
+    /// By how much the regret exceeds that of the human's best press.
+    pub excess: i32,
+    /// The robot had changed the same place within [`RACE_S`]: not counted.
+    pub race: bool,
+    pub error: bool,
+}
+
+/// Judges presses; it remembers when the robot last changed what.
+#[derive(Clone, Debug)]
+pub struct Judge {
+    kitchen: Arc<Kitchen>,
+    robot_changed: [Option<SessionTime>; MAX_LOCATIONS],
+}
+
+impl Judge {
+    pub fn new(kitchen: Arc<Kitchen>) -> Judge {
+        Judge { kitchen, robot_changed: [None; MAX_LOCATIONS] }
+    }
+
+    /// Takes note of what a press of the robot changed.
+    pub fn robot_pressed(&mut self, now: SessionTime, before: State, after: State) {
+        for index in 0..self.kitchen.locations.len() {
+            let location = LocationId(index as u8);
+            if before.code(location) != after.code(location) {
+                self.robot_changed[index] = Some(now);
+            }
+        }
+    }
+
+    /// Judges a press of the human; `after` is equal to `before` if it had no effect.
+    pub fn human_pressed(
+        &self,
+        cost: &mut CostToGo,
+        now: SessionTime,
+        button: ButtonId,
+        before: State,
+        after: State,
+    ) -> Verdict {
+        let kitchen = &self.kitchen;
+        let recipes = kitchen.true_recipes();
+        let here = cost.all_orders(before, &recipes) as i32;
+        let mut regret_to = |state: State| match state == before {
+            true => 1,
+            false => 1 + cost.all_orders(state, &recipes) as i32 - here,
+        };
+        let regret = regret_to(after);
+        let presses = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+        let least = presses
+            .filter_map(|press| kitchen.press(before, &recipes, Agent::Human, press))
+            .map(&mut regret_to)
+            .fold(1, i32::min);
+        let excess = regret - least;
+        let race = self.is_race(now, button);
+        let mut nearer = || {
+            let costs =
+                |cost: &mut CostToGo, order| (cost.order(after, &recipes, order), cost.order(before, &recipes, order));
+            kitchen.wanted(before).any(|(order, _)| {
+                let (then, now) = costs(cost, order);
+                then < now
+            })
+        };
+        let error = !race && excess >= 1 && !(excess <= PREPARATION_EXCESS && nearer());
+        Verdict { regret, excess, race, error }
+    }
+
+    /// Whether the robot changed a place of this button of the human a moment ago.
+    fn is_race(&self, now: SessionTime, button: ButtonId) -> bool {
+        let kitchen = &self.kitchen;
+        let hand = kitchen.hands[Agent::Human.index()];
+        let places = match kitchen.button(Agent::Human, button).action {
+            Action::Use(location) => [location, hand],
+            Action::Serve(order) => [order, kitchen.plate],
+            Action::Process(process) => [kitchen.processes[usize::from(process)].place.unwrap_or(hand), hand],
+            Action::Take(_) | Action::Trash => [hand, hand],
+        };
+        let recent = |time: SessionTime| now.secs_since(time) <= RACE_S;
+        places.iter().any(|place| self.robot_changed[place.index()].is_some_and(recent))
+    }
+}

@@ -1,0 +1,206 @@
+//! The engine: a session that runs. It raises the session's own events when they are due, takes events from outside, and
+//! hands out every event once, stamped and in order, for the log.
+//!
+//! It has no clock: whoever runs it says what time it is, so that real time, virtual time and the check of a recording
+//! go through the same code.
+
+use std::sync::Arc;
+
+use super::follower::{Follower, JudgedPress};
+use crate::base::time::SessionTime;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, ButtonId, Kitchen};
+use crate::robot::timed::{RobotDeed, TimedRobot};
+use crate::session::admit::admit;
+use crate::session::apply::ApplyError;
+use crate::session::event::{EndReason, SignalEnd};
+use crate::session::orders::OrderList;
+use crate::session::timers::TimerQueue;
+use crate::session::{Effect, Event, Session, SessionSpec, Stamped, Timer};
+
+/// A running session.
+#[derive(Clone, Debug)]
+pub struct Engine {
+    follower: Follower,
+    timers: TimerQueue,
+    orders: OrderList,
+    robot: TimedRobot,
+    next_seq: u64,
+    /// Stamped events that were not handed out yet.
+    out: Vec<Stamped>,
+}
+
+/// What came of an input.
+#[derive(Clone, Debug, PartialEq)]
+#[must_use = "the events belong into the log, also when the input was refused"]
+pub struct Outcome {
+    /// What happened until then and because of it, in order.
+    pub events: Vec<Stamped>,
+    /// Why the input was not taken, in words for the wizard.
+    pub refused: Option<String>,
+}
+
+/// Who is next to act by himself; of those due at the same time, the first one here.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Source {
+    Timer,
+    Robot,
+}
+
+impl Engine {
+    /// A session before its first event. `cost` may be shared with other engines of the same kitchen: what it remembers
+    /// never changes what it answers.
+    pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64, cost: CostToGo) -> Engine {
+        let orders = OrderList::new(kitchen.dishes.len(), spec.seed, trial);
+        let robot = TimedRobot::new(spec.robot.press_s, spec.robot.press_spread, spec.seed, trial);
+        let follower = Follower::new(kitchen, spec, cost);
+        Engine { follower, timers: TimerQueue::default(), orders, robot, next_seq: 0, out: Vec::new() }
+    }
+
+    /// The session as it is now.
+    pub fn session(&self) -> &Session {
+        &self.follower.session
+    }
+
+    /// Every press of the human so far, with what it was worth.
+    pub fn judged(&self) -> &[JudgedPress] {
+        &self.follower.judged
+    }
+
+    /// When something happens next by itself; nothing does while the trial is not running.
+    pub fn next_due(&self) -> Option<SessionTime> {
+        self.next_source().map(|(time, _)| time)
+    }
+
+    /// Lets the earliest thing happen that happens by itself, stamped with the time at which it is due, and what follows
+    /// from it at that time.
+    pub fn fire(&mut self) -> Vec<Stamped> {
+        self.fire_next();
+        std::mem::take(&mut self.out)
+    }
+
+    /// Takes an event from outside (wizard, participant, tracker) at `time`; what is due until then happens first. A
+    /// time before the last event counts as that of the last event.
+    pub fn input(&mut self, time: SessionTime, event: Event) -> Outcome {
+        while self.next_due().is_some_and(|due| due <= time) {
+            self.fire_next();
+        }
+        let now = time.max(self.session().time);
+        let admitted = admit(self.session(), &event).map_err(str::to_string);
+        let taken = admitted.and_then(|()| self.record(now, event).map_err(|error| error.to_string()));
+        self.settle(now);
+        Outcome { events: std::mem::take(&mut self.out), refused: taken.err() }
+    }
+
+    /// The session with what was derived from it, when nothing more is to happen.
+    pub fn into_follower(self) -> Follower {
+        self.follower
+    }
+
+    fn next_source(&self) -> Option<(SessionTime, Source)> {
+        if !self.session().is_running() {
+            return None;
+        }
+        let sources = [(self.timers.next_due(), Source::Timer), (self.robot.next_due(), Source::Robot)];
+        sources.into_iter().filter_map(|(due, source)| Some((due?, source))).min()
+    }
+
+    fn fire_next(&mut self) {
+        let Some((now, source)) = self.next_source() else { return };
+        match source {
+            Source::Timer => self.fire_timer(now),
+            Source::Robot => {
+                let kitchen = self.session().kitchen.clone();
+                let state = self.session().state;
+                if let Some(deed) = self.robot.touch(&kitchen, &mut self.follower.cost, state) {
+                    self.record_deed(now, deed);
+                }
+            }
+        }
+        self.settle(now);
+    }
+
+    fn fire_timer(&mut self, now: SessionTime) {
+        let Some(timer) = self.timers.take_first() else { return };
+        let kitchen = self.session().kitchen.clone();
+        let event = match timer {
+            Timer::ClearOrder(order) => Event::OrderCleared { order: kitchen.location(order).name.clone() },
+            Timer::NewOrder(order) => {
+                let dish = kitchen.dish(self.orders.draw()).name.clone();
+                Event::OrderShown { order: kitchen.location(order).name.clone(), dish }
+            }
+            Timer::EndSignal => Event::SignalEnded { reason: SignalEnd::Elapsed },
+            Timer::EndTrial => Event::TrialEnded { reason: EndReason::Time },
+            Timer::EndTrialByPresses => Event::TrialEnded { reason: EndReason::Presses },
+        };
+        self.record_own(now, event);
+    }
+
+    /// What follows at once: timers that are due now, then what the robot makes of the state.
+    fn settle(&mut self, now: SessionTime) {
+        while self.session().is_running() {
+            if self.timers.next_due().is_some_and(|due| due <= now) {
+                self.fire_timer(now);
+                continue;
+            }
+            let kitchen = self.session().kitchen.clone();
+            let state = self.session().state;
+            match self.robot.decide(&kitchen, &mut self.follower.cost, now, state) {
+                Some(deed) => self.record_deed(now, deed),
+                None => return,
+            }
+        }
+    }
+
+    fn record_deed(&mut self, now: SessionTime, deed: RobotDeed) {
+        let kitchen = self.session().kitchen.clone();
+        let name = |button: ButtonId| kitchen.button(Agent::Robot, button).name.clone();
+        let event = match deed {
+            RobotDeed::Intend { button, until } => Event::RobotIntends { button: name(button), until_ns: until },
+            RobotDeed::Press(button) => Event::Press { agent: Agent::Robot, button: name(button) },
+            RobotDeed::Abort(button, reason) => Event::RobotAborts { button: name(button), reason },
+            RobotDeed::Idle(reason) => Event::RobotIdles { reason },
+        };
+        self.record_own(now, event);
+    }
+
+    /// Records an event that the engine itself raised.
+    fn record_own(&mut self, now: SessionTime, event: Event) {
+        self.record(now, event).expect("an engine's own events fit its session");
+    }
+
+    /// Stamps and applies an event, does what it asks for, and keeps it for the caller.
+    fn record(&mut self, now: SessionTime, event: Event) -> Result<(), ApplyError> {
+        let stamped = Stamped { seq: self.next_seq, time: now, event };
+        let effects = self.follower.apply(&stamped)?;
+        self.next_seq += 1;
+        for effect in effects {
+            match effect {
+                Effect::At { time, timer } => self.timers.set(time, timer),
+                Effect::Cancel(timer) => self.timers.cancel(timer),
+                Effect::CancelAll => {
+                    self.timers.cancel_all();
+                    self.robot.rest();
+                }
+                Effect::Postpone(by) => {
+                    self.timers.postpone(by);
+                    self.robot.postpone(by);
+                }
+                Effect::Close => {}
+            }
+        }
+        let given_up = match &stamped.event {
+            Event::RobotStopped => self.robot.stop(),
+            Event::RobotResumed => {
+                self.robot.resume();
+                None
+            }
+            _ => None,
+        };
+        self.out.push(stamped);
+        if let Some(deed) = given_up {
+            self.record_deed(now, deed);
+        }
+        Ok(())
+    }
+}

@@ -1,10 +1,13 @@
 //! tomcom: a console for Wizard-of-Oz experiments in human-robot cooperation.
 
 pub mod base;
+pub mod cli;
 pub mod communication;
 pub mod edge;
 pub mod gaze;
 pub mod kitchen;
+pub mod measures;
 pub mod mind;
 pub mod robot;
+pub mod run;
 pub mod session;

@@ -1,4 +1,4 @@
-//! Reads layout and recipe files. Every error names the file, the line, what was found and what would be right.
+//! Reads session, layout and recipe files. Every error names the file, the line, what was found and what would be right.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -11,6 +11,11 @@ use crate::kitchen::Kitchen;
 use crate::kitchen::compile::{SpecError, SpecFile};
 use crate::kitchen::layout::LayoutSpec;
 use crate::kitchen::recipe::RecipesSpec;
+use crate::session::SessionSpec;
+use crate::session::header::FileText;
+
+/// What reading a file gives.
+pub type FileResult<T> = Result<T, FileError>;
 
 /// Something is wrong with a file.
 #[derive(Debug, thiserror::Error, Diagnostic)]
@@ -45,18 +50,61 @@ impl FileError {
         let source = NamedSource::new(&name, text.to_string());
         FileError::Wrong { name, line, found, text: Arc::new(source), span: span.map(SourceSpan::from), remedy }
     }
+
+    /// An error of a file that cannot be read or written.
+    pub fn unreadable(path: &Path, reason: std::io::Error, remedy: &str) -> FileError {
+        FileError::Unreadable { path: path.to_path_buf(), reason, remedy: remedy.to_string() }
+    }
+}
+
+/// A session file with its kitchen.
+#[derive(Clone, Debug)]
+pub struct SessionFiles {
+    pub spec: SessionSpec,
+    pub kitchen: KitchenFiles,
+}
+
+/// Reads a session file, the layout that it names, and the recipes that the layout names.
+pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
+    let text = read_text(path)?;
+    let spec: SessionSpec = parse(path, &text)?;
+    spec.check()
+        .map_err(|error| FileError::at(path, &text, line_of(&text, error.key), error.found, error.remedy.into()))?;
+    let layout_path = path.parent().unwrap_or(Path::new(".")).join(&spec.layout);
+    if let Err(reason) = std::fs::metadata(&layout_path) {
+        let found = format!("layout = \"{}\", which cannot be read: {reason}", spec.layout);
+        let remedy = "the path of a layout file, relative to the session file".to_string();
+        return Err(FileError::at(path, &text, line_of(&text, "layout"), found, remedy));
+    }
+    let mut kitchen = read_kitchen(&layout_path)?;
+    kitchen.layout.path.clone_from(&spec.layout);
+    Ok(SessionFiles { spec, kitchen })
+}
+
+/// Where the line with `key = …` is in a TOML text.
+fn line_of(text: &str, key: &str) -> Option<Range<usize>> {
+    let mut start = 0;
+    for line in text.split_inclusive('\n') {
+        let rest = line.trim_start().strip_prefix(key);
+        if rest.is_some_and(|rest| rest.trim_start().starts_with('=')) {
+            return Some(start..start + line.trim_end().len());
+        }
+        start += line.len();
+    }
+    None
 }
 
 /// A kitchen with the texts it was made from, which go into the header of every recording.
 #[derive(Clone, Debug)]
 pub struct KitchenFiles {
     pub kitchen: Kitchen,
-    pub layout_text: String,
-    pub recipes_text: String,
+    pub layout: FileText,
+    /// Its path is as the layout names it.
+    pub recipes: FileText,
 }
 
 /// Reads a layout and the recipe file that it names.
-pub fn read_kitchen(layout_path: &Path) -> Result<KitchenFiles, FileError> {
+pub fn read_kitchen(layout_path: &Path) -> FileResult<KitchenFiles> {
     let layout_text = read_text(layout_path)?;
     let layout: LayoutSpec = parse(layout_path, &layout_text)?;
     let folder = layout_path.parent().unwrap_or(Path::new("."));
@@ -70,11 +118,15 @@ pub fn read_kitchen(layout_path: &Path) -> Result<KitchenFiles, FileError> {
 }
 
 /// Compiles a kitchen from texts; the paths only serve error messages.
-pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> Result<KitchenFiles, FileError> {
+pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> FileResult<KitchenFiles> {
     let layout_spec: LayoutSpec = parse(layout.0, &layout.1)?;
     let recipes_spec: RecipesSpec = parse(recipes.0, &recipes.1)?;
     match Kitchen::compile(&layout_spec, &recipes_spec) {
-        Ok(kitchen) => Ok(KitchenFiles { kitchen, layout_text: layout.1, recipes_text: recipes.1 }),
+        Ok(kitchen) => {
+            let layout_text = FileText { path: layout.0.display().to_string(), text: layout.1 };
+            let recipes_text = FileText { path: layout_spec.recipes.into_inner(), text: recipes.1 };
+            Ok(KitchenFiles { kitchen, layout: layout_text, recipes: recipes_text })
+        }
         Err(SpecError { file, span, found, remedy }) => {
             let (path, text) = match file {
                 SpecFile::Layout => (layout.0, &layout.1),
@@ -86,15 +138,13 @@ pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> Res
 }
 
 /// The text of a file.
-pub fn read_text(path: &Path) -> Result<String, FileError> {
-    std::fs::read_to_string(path).map_err(|reason| {
-        let remedy = "the path of a readable text file (UTF-8)".to_string();
-        FileError::Unreadable { path: path.to_path_buf(), reason, remedy }
-    })
+pub fn read_text(path: &Path) -> FileResult<String> {
+    std::fs::read_to_string(path)
+        .map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))
 }
 
 /// Parses TOML into `T`.
-pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, FileError> {
+pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> FileResult<T> {
     toml::from_str(text).map_err(|error| {
         let remedy = "a file like those in layouts/, recipes/ and sessions/".to_string();
         FileError::at(path, text, error.span(), error.message().to_string(), remedy)

@@ -1,0 +1,181 @@
+//! The command line. A command is listed when it works.
+
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use crate::edge::files::{self, FileError};
+use crate::edge::log::WriteError;
+use crate::run::{kitchen, simulate, verify};
+use crate::session::settings::{GazeSource, ParticipantKind};
+
+/// Exit code: something failed.
+const FAILED: u8 = 1;
+/// Exit code: wrong arguments or files.
+const WRONG: u8 = 2;
+
+/// A console for Wizard-of-Oz experiments in human-robot cooperation.
+#[derive(Debug, Parser)]
+#[command(name = "tomcom", version, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Replay(ReplayArgs),
+    Simulate(SimulateArgs),
+    Kitchen(KitchenArgs),
+}
+
+/// How figures are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people.
+    Text,
+    /// One JSON object.
+    Json,
+}
+
+/// Checks a recording: runs it again and compares every line.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify")]
+struct ReplayArgs {
+    /// The folder of a recording, or its events.jsonl.
+    recording: PathBuf,
+    /// Run the session again from the recording's header and its inputs; every line must come out the same.
+    #[arg(long, required = true)]
+    verify: bool,
+    /// How to print the result.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+}
+
+/// Simulates whole trials, faster than real time. Participants are simulated and unassisted: nobody is there to signal.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom simulate sessions/default.toml --trials 20 --seed 7 --out recordings")]
+struct SimulateArgs {
+    /// The session file.
+    session: PathBuf,
+    /// How many trials; each has orders and a participant of its own and does not depend on how many there are.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    trials: u64,
+    /// Everything random follows from it; by default the session file's.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Where the recordings go, one folder a trial.
+    #[arg(long, default_value = "sessions/simulated")]
+    out: PathBuf,
+    /// How to print the figures.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+}
+
+/// Checks a kitchen and prints it: locations, buttons, recipes, optimal plans, size of the state space.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom kitchen layouts/sushi.toml --format json")]
+struct KitchenArgs {
+    /// The layout file.
+    layout: PathBuf,
+    /// How to print it.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+}
+
+/// Why a command did not do what was asked.
+#[derive(Debug)]
+enum Failure {
+    /// Wrong arguments or files.
+    Wrong(miette::Report),
+    /// Something failed on the way.
+    Failed(miette::Report),
+    /// It was done, and the answer is no; it was printed already.
+    No,
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Failure {
+        Failure::Wrong(miette::Report::new(error))
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Failure {
+        Failure::Failed(miette::Report::new(error))
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Failure {
+        Failure::Failed(miette::miette!("the result cannot be printed: {error}"))
+    }
+}
+
+/// Runs the command of the arguments. Exit codes: 0 done, 1 failed, 2 wrong arguments or files.
+pub fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Replay(args) => replay(&args),
+        Command::Simulate(args) => simulate(&args),
+        Command::Kitchen(args) => kitchen(&args),
+    };
+    let (code, report) = match done {
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(Failure::No) => return ExitCode::from(FAILED),
+        Err(Failure::Failed(report)) => (FAILED, report),
+        Err(Failure::Wrong(report)) => (WRONG, report),
+    };
+    eprintln!("{report:?}");
+    ExitCode::from(code)
+}
+
+/// Prints figures as one JSON object, or their text.
+fn print(format: Format, figures: &impl Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match format {
+        Format::Json => writeln!(out, "{}", serde_json::to_string_pretty(figures).map_err(std::io::Error::other)?)?,
+        Format::Text => write!(out, "{}", text())?,
+    }
+    Ok(out.flush()?)
+}
+
+fn replay(args: &ReplayArgs) -> Result<(), Failure> {
+    let found = verify::verify(&args.recording)?;
+    print(args.format, &found, || verify::describe(&found))?;
+    if found.verified { Ok(()) } else { Err(Failure::No) }
+}
+
+fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
+    let mut files = files::read_session(&args.session)?;
+    if files.spec.participant.kind != ParticipantKind::Simulated || files.spec.participant.gaze != GazeSource::Simulated
+    {
+        let found = "a session whose participant or gaze is not simulated".to_string();
+        return Err(wrong_argument(&args.session, found, "kind = \"simulated\" and gaze = \"simulated\""));
+    }
+    files.spec.seed = args.seed.unwrap_or(files.spec.seed);
+    let simulation = simulate::Simulation { files, trials: args.trials, out: args.out.clone() };
+    let bar = ProgressBar::new(args.trials);
+    if std::io::stderr().is_terminal()
+        && let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} trials, {eta} left")
+    {
+        bar.set_style(style);
+    }
+    let figures = simulate::simulate(&simulation, || bar.inc(1))?;
+    bar.finish_and_clear();
+    print(args.format, &figures, || simulate::describe(&figures))
+}
+
+fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
+    let kitchen = Arc::new(files::read_kitchen(&args.layout)?.kitchen);
+    let figures = kitchen::KitchenFigures::of(&kitchen);
+    print(args.format, &figures, || kitchen::describe(&kitchen, &figures))
+}
+
+fn wrong_argument(path: &Path, found: String, remedy: &str) -> Failure {
+    Failure::Wrong(miette::miette!(help = remedy.to_string(), "{}: found {found}", path.display()))
+}

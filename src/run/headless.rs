@@ -1,0 +1,19 @@
+//! Runs a session in virtual time: as fast as it goes, from one due event to the next.
+
+use super::engine::Engine;
+use crate::base::time::SessionTime;
+use crate::session::{Event, Phase, Stamped};
+
+/// Runs a whole session of one trial, from its start to its end, and gives every event to `record`.
+///
+/// # Errors
+/// The first error of `record`; the session stops there.
+pub fn run<E>(engine: &mut Engine, mut record: impl FnMut(&Stamped) -> Result<(), E>) -> Result<(), E> {
+    engine.input(SessionTime::ZERO, Event::TrialStarted).events.iter().try_for_each(&mut record)?;
+    // The trial's time is always pending while it runs, so there is a next event until it is over.
+    while engine.session().phase == Phase::Running {
+        engine.fire().iter().try_for_each(&mut record)?;
+    }
+    let end = engine.session().time;
+    engine.input(end, Event::SessionEnded).events.iter().try_for_each(&mut record)
+}

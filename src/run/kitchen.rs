@@ -1,0 +1,162 @@
+//! `tomcom kitchen`: checks a kitchen and describes it.
+
+use std::fmt::Write;
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationKind, OrderContent, State};
+
+/// What is to be known about a kitchen.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct KitchenFigures {
+    pub name: String,
+    /// The number of joint values of all aspects, in decimal: it exceeds what JSON readers take as a number.
+    pub states: String,
+    pub aspects: Vec<AspectFigures>,
+    pub plans: Vec<PlanFigures>,
+}
+
+/// The size of a state aspect.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AspectFigures {
+    pub name: String,
+    pub values: usize,
+}
+
+/// The shortest way to a dish from an empty kitchen.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlanFigures {
+    pub recipe: String,
+    pub actions: u32,
+    /// The presses of one such way: "human: take rice".
+    pub presses: Vec<String>,
+}
+
+impl KitchenFigures {
+    /// Computes the figures of a kitchen.
+    pub fn of(kitchen: &Arc<Kitchen>) -> KitchenFigures {
+        let mut cost = CostToGo::new(kitchen.clone());
+        let aspects = kitchen.aspects.iter();
+        let aspects = aspects.map(|aspect| AspectFigures { name: aspect.name.clone(), values: aspect.values.len() });
+        let plans = (0..kitchen.dishes.len()).map(|index| plan(kitchen, &mut cost, DishId(index as u8)));
+        KitchenFigures {
+            name: kitchen.name.clone(),
+            states: kitchen.state_count().to_string(),
+            aspects: aspects.collect(),
+            plans: plans.collect(),
+        }
+    }
+}
+
+/// A state with nothing but an order of this dish.
+fn ordered(kitchen: &Kitchen, dish: DishId) -> State {
+    let mut state = kitchen.empty_state();
+    state.set_order(kitchen.orders[0], OrderContent::Dish(dish));
+    state
+}
+
+/// The least presses for each dish from an empty kitchen.
+pub fn plan_lengths(kitchen: &Kitchen, cost: &mut CostToGo) -> Vec<u32> {
+    let recipes = kitchen.true_recipes();
+    let length = |index| cost.all_orders(ordered(kitchen, DishId(index as u8)), &recipes);
+    (0..kitchen.dishes.len()).map(length).collect()
+}
+
+/// Follows the best presses from an empty kitchen until the dish is served; the agent changes only where it must.
+fn plan(kitchen: &Kitchen, cost: &mut CostToGo, dish: DishId) -> PlanFigures {
+    let recipes = kitchen.true_recipes();
+    let mut state = ordered(kitchen, dish);
+    let actions = cost.all_orders(state, &recipes);
+    let mut presses = Vec::new();
+    let mut last = Agent::Human;
+    for left in (0..actions).rev() {
+        let buttons = [last, last.other()].into_iter().flat_map(|agent| {
+            (0..kitchen.buttons[agent.index()].len()).map(move |index| (agent, ButtonId(index as u8)))
+        });
+        let mut nearer = buttons.filter_map(|(agent, button)| {
+            let next = kitchen.press(state, &recipes, agent, button)?;
+            (cost.all_orders(next, &recipes) <= left).then_some((agent, button, next))
+        });
+        let Some((agent, button, next)) = nearer.next() else { break };
+        presses.push(format!("{}: {}", agent.name(), kitchen.button(agent, button).name));
+        (state, last) = (next, agent);
+    }
+    PlanFigures { recipe: kitchen.dish(dish).name.clone(), actions, presses }
+}
+
+/// Describes a kitchen for people.
+pub fn describe(kitchen: &Kitchen, figures: &KitchenFigures) -> String {
+    let mut text = format!("{} ({})\n", kitchen.title, kitchen.name);
+    let written = write_locations(&mut text, kitchen)
+        .and_then(|()| write_buttons(&mut text, kitchen))
+        .and_then(|()| write_recipes(&mut text, kitchen, figures))
+        .and_then(|()| write_aspects(&mut text, figures));
+    written.expect("a string takes every text");
+    text
+}
+
+fn write_locations(text: &mut String, kitchen: &Kitchen) -> std::fmt::Result {
+    writeln!(text, "\nLOCATIONS")?;
+    for (index, location) in kitchen.locations.iter().enumerate() {
+        let id = crate::kitchen::LocationId(index as u8);
+        let accepts = match location.kind {
+            LocationKind::Order => "an order".to_string(),
+            _ => {
+                let taken: Vec<&str> = (1..kitchen.contents.len())
+                    .filter(|&content| kitchen.accepts(id, ContentId(content as u8)))
+                    .map(|content| kitchen.contents[content].name.as_str())
+                    .collect();
+                match taken.len() == kitchen.contents.len() - 1 {
+                    true => "anything".to_string(),
+                    false => taken.join(", "),
+                }
+            }
+        };
+        let role = match id {
+            id if id == kitchen.board => " (items are stacked here)",
+            id if id == kitchen.plate => " (orders are served from here)",
+            _ => "",
+        };
+        let key = location.signal_key.map_or(' ', |key| key);
+        writeln!(text, "  {key}  {:<16} {accepts}{role}", location.name)?;
+    }
+    Ok(())
+}
+
+fn write_buttons(text: &mut String, kitchen: &Kitchen) -> std::fmt::Result {
+    for agent in Agent::BOTH {
+        writeln!(text, "\nBUTTONS OF THE {}", agent.name().to_uppercase())?;
+        for button in &kitchen.buttons[agent.index()] {
+            let [x, y] = button.at_m;
+            let key = button.key.unwrap_or(' ');
+            writeln!(text, "  {key}  {:<16} at {x:>5.2} m, {y:>5.2} m", button.name)?;
+        }
+    }
+    Ok(())
+}
+
+fn write_recipes(text: &mut String, kitchen: &Kitchen, figures: &KitchenFigures) -> std::fmt::Result {
+    writeln!(text, "\nRECIPES")?;
+    for (dish, plan) in kitchen.dishes.iter().zip(&figures.plans) {
+        let items = |stack: ContentId| {
+            let items = &kitchen.content(stack).items;
+            items.iter().map(|item| kitchen.content(*item).name.as_str()).collect::<Vec<_>>().join(" + ")
+        };
+        writeln!(text, "  {}: {}", dish.name, items(dish.stack()))?;
+        for variant in &dish.variants[1..] {
+            writeln!(text, "      may be taken for {}", items(*variant))?;
+        }
+        writeln!(text, "      {} presses: {}", plan.actions, plan.presses.join(", "))?;
+    }
+    Ok(())
+}
+
+fn write_aspects(text: &mut String, figures: &KitchenFigures) -> std::fmt::Result {
+    writeln!(text, "\nSTATE SPACE")?;
+    for aspect in &figures.aspects {
+        writeln!(text, "  {:<28} {:>4}", aspect.name, aspect.values)?;
+    }
+    writeln!(text, "  {:<28} {:>4}", "product", figures.states)
+}

@@ -1,0 +1,10 @@
+//! The composers: they bring session, robot, participant, files and clock together. Nothing else does.
+
+pub mod engine;
+pub mod figures;
+pub mod follower;
+pub mod headless;
+pub mod kitchen;
+pub mod replay;
+pub mod simulate;
+pub mod verify;

@@ -1,0 +1,126 @@
+//! `tomcom simulate`: whole trials in virtual time, each independent of how many there are.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
+
+use super::engine::Engine;
+use super::figures::{SimulationFigures, TrialFigures};
+use super::follower::Follower;
+use super::{headless, kitchen};
+use crate::edge::files::SessionFiles;
+use crate::edge::log::{LogWriter, WriteError};
+use crate::kitchen::Kitchen;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::session::settings::{Condition, SessionSpec};
+use crate::session::{Header, Stamped};
+
+/// What to simulate.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    pub files: SessionFiles,
+    pub trials: u64,
+    /// Where the recordings go.
+    pub out: PathBuf,
+}
+
+/// The settings of a simulated trial. Nobody is there to send signals, so the condition is the unassisted one; every
+/// trial has a participant of its own, with a code of its own.
+pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
+    let mut spec = spec.clone();
+    spec.trial.condition = Condition::None;
+    spec.participant.code = format!("S{:03}", trial + 1);
+    spec
+}
+
+/// Simulates the trials on all processors. `done` is called after each trial.
+///
+/// # Errors
+/// A recording that could not be written.
+pub fn simulate(simulation: &Simulation, done: impl Fn() + Sync) -> Result<SimulationFigures, WriteError> {
+    let began = Instant::now();
+    let kitchen = Arc::new(simulation.files.kitchen.kitchen.clone());
+    let mut cost = CostToGo::new(kitchen.clone());
+    let plan_lengths = kitchen::plan_lengths(&kitchen, &mut cost);
+    let next = AtomicU64::new(0);
+    let results = Mutex::new(Vec::new());
+    let work = |mut cost: CostToGo| {
+        loop {
+            let trial = next.fetch_add(1, Ordering::Relaxed);
+            if trial >= simulation.trials {
+                return;
+            }
+            let (result, used) = match simulate_trial(simulation, &kitchen, trial, cost) {
+                Ok((folder, figures, cost)) => (Ok((folder, figures)), Some(cost)),
+                Err(error) => (Err(error), None),
+            };
+            results.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push((trial, result));
+            done();
+            let Some(used) = used else { return };
+            cost = used;
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, |count| count.get()).min(simulation.trials as usize);
+    std::thread::scope(|scope| {
+        for _ in 0..threads.max(1) {
+            let cost = cost.clone();
+            scope.spawn(|| work(cost));
+        }
+    });
+    let mut results = results.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
+    results.sort_by_key(|(trial, _)| *trial);
+    let results: Vec<(PathBuf, TrialFigures)> =
+        results.into_iter().map(|(_, result)| result).collect::<Result<_, _>>()?;
+    let (folders, trials): (Vec<_>, Vec<_>) = results.into_iter().unzip();
+    let mut figures = SimulationFigures::of(&trials, &plan_lengths);
+    figures.recordings = folders.iter().map(|folder| folder.display().to_string()).collect();
+    figures.wall_s = began.elapsed().as_secs_f64();
+    Ok(figures)
+}
+
+/// Where the recording of a trial goes; the name does not depend on how many trials there are.
+fn folder_of_trial(out: &Path, spec: &SessionSpec) -> PathBuf {
+    out.join(format!("seed{}-{}", spec.seed, spec.participant.code))
+}
+
+fn simulate_trial(
+    simulation: &Simulation,
+    kitchen: &Arc<Kitchen>,
+    trial: u64,
+    cost: CostToGo,
+) -> Result<(PathBuf, TrialFigures, CostToGo), WriteError> {
+    let spec = settings_of_trial(&simulation.files.spec, trial);
+    let files = &simulation.files.kitchen;
+    let header = Header::new(spec.clone(), trial, files.layout.clone(), files.recipes.clone());
+    let folder = folder_of_trial(&simulation.out, &spec);
+    let mut log = LogWriter::create_simulated(&folder, &header)?;
+    let mut engine = Engine::new(kitchen.clone(), spec, trial, cost);
+    headless::run(&mut engine, |stamped: &Stamped| log.append(stamped))?;
+    log.flush()?;
+    let follower: Follower = engine.into_follower();
+    Ok((folder, TrialFigures::of(&follower), follower.cost))
+}
+
+/// The figures for people.
+pub fn describe(figures: &SimulationFigures) -> String {
+    let number = |value: Option<f64>| value.map_or("not known".to_string(), |value| format!("{value:.1}"));
+    let share = 100.0 * figures.errors as f64 / figures.human_actions.max(1) as f64;
+    format!(
+        "{} trials of unassisted simulated participants, {:.0} s simulated in {:.1} s\n\
+         presses: {} of the human, {} of the robot\n\
+         errors: {} ({share:.1} % of the human's presses)\n\
+         orders served: {}, {} presses each in the median (at best {})\n\
+         recordings:\n{}\n",
+        figures.trials,
+        figures.simulated_s,
+        figures.wall_s,
+        figures.human_actions,
+        figures.robot_actions,
+        figures.errors,
+        figures.orders_served,
+        number(figures.presses_per_order),
+        number(figures.optimal_presses_per_order),
+        figures.recordings.iter().map(|path| format!("  {path}")).collect::<Vec<_>>().join("\n"),
+    )
+}

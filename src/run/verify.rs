@@ -1,0 +1,120 @@
+//! Verifies a recording in the strongest form: the session is run again from the header, with nothing but the events
+//! from outside, and every line that comes out must equal the recorded line byte for byte. Applying the recorded events
+//! one by one must lead to the same state, too.
+
+use std::collections::VecDeque;
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::engine::Engine;
+use super::follower::Follower;
+use crate::edge::files::FileResult;
+use crate::edge::log::{LogLine, LogReader, at_line, event_line};
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::session::Stamped;
+use crate::session::admit::is_external;
+
+/// What `tomcom replay RECORDING --verify` found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Verification {
+    pub verified: bool,
+    /// Recorded events.
+    pub events: u64,
+    /// The recording ends without its end event; it was verified up to there.
+    pub cut: bool,
+    /// Where recording and re-run differ first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub difference: Option<Difference>,
+}
+
+/// The first difference between a recording and its re-run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Difference {
+    /// Of the recorded event.
+    pub seq: u64,
+    /// The line of the log, counted from 1.
+    pub line: usize,
+    pub recorded: String,
+    /// What the re-run gave there; `null`: nothing.
+    pub again: Option<String>,
+}
+
+/// Runs a recording again and compares.
+///
+/// # Errors
+/// A recording that cannot be read, or whose events cannot be applied.
+pub fn verify(recording: &Path) -> FileResult<Verification> {
+    let mut log = LogReader::open(recording)?;
+    let (kitchen, header) = (log.kitchen.clone(), log.header.clone());
+    let cost = CostToGo::new(kitchen.clone());
+    let mut replayed = Follower::new(kitchen.clone(), header.session.clone(), cost.clone());
+    let engine = Engine::new(kitchen, header.session, header.trial, cost);
+    let mut again = Again { engine, produced: VecDeque::new() };
+    let mut events = 0;
+    let mut difference = None;
+    while let Some(line) = log.next_line()? {
+        events += 1;
+        replayed
+            .apply(&line.stamped)
+            .map_err(|error| at_line(&log.path, line.number, &line.text, 0, error.found, error.remedy))?;
+        if difference.is_none() {
+            difference = again.difference_at(&line);
+        }
+    }
+    let same_end = difference.is_some() || log.is_cut() || again.ends_like(&replayed);
+    let verified = difference.is_none() && same_end;
+    Ok(Verification { verified, events, cut: log.is_cut(), difference })
+}
+
+/// The session that is run again.
+struct Again {
+    engine: Engine,
+    /// What came out of it and was not compared yet.
+    produced: VecDeque<Stamped>,
+}
+
+impl Again {
+    /// Runs on to the recorded line and compares it with what comes out there.
+    fn difference_at(&mut self, line: &LogLine) -> Option<Difference> {
+        let recorded = &line.stamped;
+        if self.produced.is_empty() {
+            if is_external(self.engine.session(), &recorded.event) {
+                let outcome = self.engine.input(recorded.time, recorded.event.clone());
+                self.produced.extend(outcome.events);
+            } else {
+                self.produced.extend(self.engine.fire());
+            }
+        }
+        let again = self.produced.pop_front().map(|stamped| event_line(&stamped));
+        let same = again.as_deref() == Some(line.text.as_str());
+        (!same).then(|| Difference { seq: recorded.seq, line: line.number, recorded: line.text.clone(), again })
+    }
+
+    /// Whether the re-run stands where applying the recorded events leads, with nothing left over.
+    fn ends_like(&self, replayed: &Follower) -> bool {
+        let (again, replayed) = (self.engine.session(), &replayed.session);
+        self.produced.is_empty()
+            && again.state == replayed.state
+            && again.phase == replayed.phase
+            && again.presses == replayed.presses
+            && again.served == replayed.served
+            && again.timeline == replayed.timeline
+    }
+}
+
+/// Says it in words.
+pub fn describe(found: &Verification) -> String {
+    let until = if found.cut { ", up to where it was cut" } else { "" };
+    match &found.difference {
+        None if found.verified => format!("verified: {} events come out the same again{until}\n", found.events),
+        None => "not verified: the re-run ends in another state than the recording\n".to_string(),
+        Some(difference) => format!(
+            "not verified: event {} (line {}) differs\n  recorded: {}\n  again:    {}\n",
+            difference.seq,
+            difference.line,
+            difference.recorded,
+            difference.again.as_deref().unwrap_or("nothing"),
+        ),
+    }
+}

@@ -81,6 +81,18 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     Ok(SessionFiles { spec, kitchen })
 }
 
+/// The default session with its kitchen, which the program carries with it, so that it runs without any file.
+///
+/// # Errors
+/// None, unless the program was built from files that are wrong.
+pub fn built_in_session() -> FileResult<SessionFiles> {
+    let spec: SessionSpec = parse(Path::new("sessions/default.toml"), include_str!("../../sessions/default.toml"))?;
+    let layout = (Path::new(&spec.layout), include_str!("../../layouts/sushi.toml").to_string());
+    let recipes = (Path::new("../recipes/sushi.toml"), include_str!("../../recipes/sushi.toml").to_string());
+    let kitchen = compile_kitchen(layout, recipes)?;
+    Ok(SessionFiles { spec, kitchen })
+}
+
 /// Where the line with `key = …` is in a TOML text.
 fn line_of(text: &str, key: &str) -> Option<Range<usize>> {
     let mut start = 0;

@@ -4,6 +4,7 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -11,13 +12,17 @@ use serde::Serialize;
 
 use crate::edge::files::{self, FileError};
 use crate::edge::log::WriteError;
-use crate::run::{kitchen, simulate, verify};
+use crate::run::replay::Replay;
+use crate::run::{kitchen, simulate, tell, verify};
 use crate::session::settings::{GazeSource, ParticipantKind};
 
 /// Exit code: something failed.
 const FAILED: u8 = 1;
 /// Exit code: wrong arguments or files.
 const WRONG: u8 = 2;
+
+/// How often a running session is looked at for new events.
+const FOLLOW_INTERVAL: Duration = Duration::from_millis(50);
 
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
 #[derive(Debug, Parser)]
@@ -43,15 +48,18 @@ enum Format {
     Json,
 }
 
-/// Checks a recording: runs it again and compares every line.
+/// Replays a recording: what happened, line by line, or whether it comes out the same again.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify")]
 struct ReplayArgs {
     /// The folder of a recording, or its events.jsonl.
     recording: PathBuf,
     /// Run the session again from the recording's header and its inputs; every line must come out the same.
-    #[arg(long, required = true)]
+    #[arg(long, conflicts_with = "follow")]
     verify: bool,
+    /// Watch a session that is still running, until it ends.
+    #[arg(long)]
+    follow: bool,
     /// How to print the result.
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
@@ -145,9 +153,27 @@ fn print(format: Format, figures: &impl Serialize, text: impl FnOnce() -> String
 }
 
 fn replay(args: &ReplayArgs) -> Result<(), Failure> {
-    let found = verify::verify(&args.recording)?;
-    print(args.format, &found, || verify::describe(&found))?;
-    if found.verified { Ok(()) } else { Err(Failure::No) }
+    if args.verify {
+        let found = verify::verify(&args.recording)?;
+        print(args.format, &found, || verify::describe(&found))?;
+        return if found.verified { Ok(()) } else { Err(Failure::No) };
+    }
+    let mut replay = Replay::open(&args.recording)?;
+    let mut events = 0;
+    loop {
+        while let Some(event) = replay.step()? {
+            events += 1;
+            if let (Format::Text, Some(line)) = (args.format, tell::line(&event.stamped, &replay.follower)) {
+                writeln!(std::io::stdout(), "{line}")?;
+            }
+        }
+        if !args.follow || !replay.log().is_cut() {
+            break;
+        }
+        std::thread::sleep(FOLLOW_INTERVAL);
+    }
+    let figures = tell::RecordingFigures::of(&replay.follower, events, replay.log().is_cut());
+    print(args.format, &figures, || figures.describe())
 }
 
 fn simulate(args: &SimulateArgs) -> Result<(), Failure> {

@@ -8,4 +8,5 @@ pub mod kitchen;
 pub mod options;
 pub mod replay;
 pub mod simulate;
+pub mod tell;
 pub mod verify;

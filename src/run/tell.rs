@@ -1,0 +1,114 @@
+//! A recording in words: one line for each thing that happened, for pipes and plain terminals.
+
+use serde::Serialize;
+
+use super::figures::TrialFigures;
+use super::follower::Follower;
+use crate::communication::Signal;
+use crate::kitchen::Agent;
+use crate::mind::BeliefWitness;
+use crate::robot::{AbortReason, IdleReason};
+use crate::session::event::{EndReason, SignalEnd};
+use crate::session::{Event, Stamped};
+
+/// What `tomcom replay RECORDING` prints as figures.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RecordingFigures {
+    pub events: u64,
+    /// The recording ends without its end event.
+    pub cut: bool,
+    pub human_actions: u64,
+    pub robot_actions: u64,
+    pub errors: u64,
+    pub races: u64,
+    pub signals: u64,
+    pub orders_served: u64,
+    /// The trial's length by its own clock, in seconds.
+    pub trial_s: f64,
+}
+
+impl RecordingFigures {
+    pub fn of(follower: &Follower, events: u64, cut: bool) -> RecordingFigures {
+        let trial = TrialFigures::of(follower);
+        RecordingFigures {
+            events,
+            cut,
+            human_actions: trial.human_actions,
+            robot_actions: trial.robot_actions,
+            errors: trial.errors,
+            races: trial.races,
+            signals: trial.signals,
+            orders_served: trial.served.len() as u64,
+            trial_s: trial.seconds,
+        }
+    }
+
+    /// The figures for people.
+    pub fn describe(&self) -> String {
+        let cut = if self.cut { "; it ends without its end event" } else { "" };
+        format!(
+            "{} events, {:.0} s of trial{cut}\n{} presses of the human ({} errors), {} of the robot, {} signals, \
+             {} orders served\n",
+            self.events,
+            self.trial_s,
+            self.human_actions,
+            self.errors,
+            self.robot_actions,
+            self.signals,
+            self.orders_served
+        )
+    }
+}
+
+/// The line for an event that was just applied; none for gaze samples.
+pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
+    let words = match &stamped.event {
+        Event::Gaze(_) => return None,
+        Event::TrialStarted => "trial started".to_string(),
+        Event::TrialPaused => "trial paused".to_string(),
+        Event::TrialResumed => "trial goes on".to_string(),
+        Event::TrialEnded { reason: EndReason::Presses } => "trial over: number of presses".to_string(),
+        Event::TrialEnded { reason: EndReason::Time } => "trial over: time".to_string(),
+        Event::TrialEnded { reason: EndReason::Wizard } => "trial ended by the wizard".to_string(),
+        Event::Press { agent, button } => format!("{} presses {button}{}", agent.name(), verdict(stamped, follower)),
+        Event::OrderShown { order, dish } => format!("{order} wants {dish}"),
+        Event::OrderCleared { order } => format!("{order} is cleared"),
+        Event::RobotIntends { button, .. } => format!("robot sets out for {button}"),
+        Event::RobotAborts { button, reason: AbortReason::NoLongerUseful } => {
+            format!("robot gives up {button}: no longer useful")
+        }
+        Event::RobotAborts { button, reason: AbortReason::Stopped } => format!("robot gives up {button}: stopped"),
+        Event::RobotIdles { reason: IdleReason::NoOrder } => "robot idles: no order".to_string(),
+        Event::RobotIdles { reason: IdleReason::HumanTurn } => "robot idles: only the human can go on".to_string(),
+        Event::RobotStopped => "robot stopped by the wizard".to_string(),
+        Event::RobotResumed => "robot goes on".to_string(),
+        Event::SignalShown { signal: Signal::ShowRecipe(order), .. } => format!("signal: recipe of {order}"),
+        Event::SignalShown { signal: Signal::Highlight(place), .. } => format!("signal: highlight {place}"),
+        Event::SignalEnded { reason: SignalEnd::Elapsed } => "signal ends".to_string(),
+        Event::SignalEnded { reason: SignalEnd::TakenBack } => "signal taken back".to_string(),
+        Event::Marker { note } => format!("marker: {note}"),
+        Event::ParticipantBelieves(belief) => believes(belief),
+        Event::SessionEnded => "session over".to_string(),
+    };
+    Some(format!("{:>9.3} s  {words}", stamped.time.as_secs_f64()))
+}
+
+/// What the press of the human was worth, if it was just judged.
+fn verdict(stamped: &Stamped, follower: &Follower) -> String {
+    let judged = follower.judged.last().filter(|press| press.seq == stamped.seq).map(|press| press.verdict);
+    match (&stamped.event, judged) {
+        (Event::Press { agent: Agent::Human, .. }, None) => " (does not count)".to_string(),
+        (_, Some(verdict)) if verdict.error => format!(" (error, costs {} presses)", verdict.excess),
+        (_, Some(verdict)) if verdict.race => " (race with the robot)".to_string(),
+        _ => String::new(),
+    }
+}
+
+fn believes(belief: &BeliefWitness) -> String {
+    let wrong = belief.aspects.iter().filter(|aspect| aspect.p_truth < 0.5);
+    let wrong: Vec<String> = wrong.map(|aspect| format!("{} = {}", aspect.aspect, aspect.believes)).collect();
+    match wrong.is_empty() {
+        true => format!("participant believes what is true ({})", belief.cause),
+        false => format!("participant believes {} ({})", wrong.join(", "), belief.cause),
+    }
+}

@@ -1,0 +1,196 @@
+//! Recordings: the same seed gives the same recording, a recording gives the same session, and what is broken is told.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use rand::RngExt;
+use tomcom::base::rng::stream;
+use tomcom::base::time::SessionTime;
+use tomcom::communication::{Sender, signals};
+use tomcom::edge::files::{SessionFiles, read_session};
+use tomcom::edge::log::{LOG_NAME, LogWriter};
+use tomcom::gaze::GazeSample;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::kitchen::{Agent, Kitchen};
+use tomcom::run::engine::Engine;
+use tomcom::run::replay::Replay;
+use tomcom::run::simulate::{Simulation, simulate};
+use tomcom::run::verify::verify;
+use tomcom::session::event::{EndReason, SignalEnd};
+use tomcom::session::settings::{GazeSource, ParticipantKind};
+use tomcom::session::{Event, Header, Phase};
+
+/// One session for each kitchen.
+const SESSIONS: [&str; 2] = ["default.toml", "burger.toml"];
+
+fn session(name: &str) -> SessionFiles {
+    read_session(&Path::new("sessions").join(name)).expect("a session file of the project")
+}
+
+/// An empty folder for the test of this name.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("replay").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+fn simulated(name: &str, out: &str, trials: u64, seed: u64) -> PathBuf {
+    let mut files = session(name);
+    files.spec.seed = seed;
+    files.spec.trial.seconds = 120.0;
+    let out = folder(out);
+    simulate(&Simulation { files, trials, out: out.clone() }, || ()).expect("the folder can be written");
+    out
+}
+
+/// Whatever wizard, participant and tracker may do, as a seeded mess.
+fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
+    let signals = signals(kitchen, true);
+    let buttons = &kitchen.buttons[Agent::Human.index()];
+    match random.random_range(0..40) {
+        0 => Event::TrialPaused,
+        1 | 2 => Event::TrialResumed,
+        3 => Event::RobotStopped,
+        4 | 5 => Event::RobotResumed,
+        6 => Event::Marker { note: "note 1".to_string() },
+        7 => Event::SignalEnded { reason: SignalEnd::TakenBack },
+        8..12 => {
+            let (_, signal) = &signals[random.random_range(0..signals.len())];
+            Event::SignalShown { by: Sender::Wizard, signal: signal.clone() }
+        }
+        12..24 => {
+            let [x, y, confidence] = [1.2, 1.2, 1.0].map(|scale| scale * random.random::<f64>());
+            Event::Gaze(GazeSample { x, y, confidence, device_ns: None })
+        }
+        _ => {
+            let button = buttons[random.random_range(0..buttons.len())].name.clone();
+            Event::Press { agent: Agent::Human, button }
+        }
+    }
+}
+
+/// A session as somebody at keyboard and mouse might have it, recorded; with its log and the engine at its end.
+fn by_hand(name: &str, out: &str, seed: u64) -> (PathBuf, Engine) {
+    let mut files = session(name);
+    files.spec.participant.kind = ParticipantKind::Keyboard;
+    files.spec.participant.gaze = GazeSource::Mouse;
+    files.spec.seed = seed;
+    let kitchen = Arc::new(files.kitchen.kitchen);
+    let header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+    let mut log = LogWriter::create_live(&folder(out), "2026-03-14", &header).expect("the folder can be written");
+    let mut engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen.clone()));
+    let mut random = stream(seed, "hand", 0);
+    let mut inputs = vec![(0.5, Event::TrialStarted)];
+    inputs.extend((0..2000).map(|_| (random.random_range(0.0..0.4), anything(&kitchen, &mut random))));
+    inputs.push((1.0, Event::TrialEnded { reason: EndReason::Wizard }));
+    inputs.push((1.0, Event::SessionEnded));
+    let mut now_s = 0.0;
+    for (after_s, event) in inputs {
+        now_s += after_s;
+        let outcome = engine.input(SessionTime::from_secs_f64(now_s), event);
+        outcome.events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
+    }
+    (log.folder().join(LOG_NAME), engine)
+}
+
+/// The two files hold the same bytes.
+fn same(a: &Path, b: &Path) {
+    let [a_text, b_text] = [a, b].map(|path| fs::read(path).expect("a recording"));
+    assert!(a_text == b_text, "{} and {} differ", a.display(), b.display());
+}
+
+/// The recording's text, changed, is refused with a message that names `line` and says all of `says`.
+fn refused(log: &Path, line: usize, says: &[&str], change: impl Fn(&str) -> String) {
+    let broken = log.with_file_name("broken.jsonl");
+    fs::write(&broken, change(&fs::read_to_string(log).expect("a recording"))).expect("the folder can be written");
+    let error = Replay::open(&broken).and_then(|mut replay| replay.run()).expect_err("a broken recording");
+    let told = format!("{:?}", miette::Report::new(error));
+    let place = format!("broken.jsonl:{line}:");
+    for text in std::iter::once(place.as_str()).chain(says.iter().copied()) {
+        assert!(told.contains(text), "{text:?} is not in\n{told}");
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_recording_and_it_verifies() {
+    for name in SESSIONS {
+        let [a, b] = ["same-a", "same-b"].map(|out| simulated(name, out, 2, 7));
+        for trial in ["seed7-S001", "seed7-S002"] {
+            same(&a.join(trial).join(LOG_NAME), &b.join(trial).join(LOG_NAME));
+            let found = verify(&a.join(trial)).expect("a recording");
+            assert!(found.verified && !found.cut, "{name}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_trial_does_not_depend_on_how_many_there_are() {
+    let two = simulated("default.toml", "two", 2, 3);
+    let five = simulated("default.toml", "five", 5, 3);
+    for trial in ["seed3-S001", "seed3-S002"] {
+        same(&two.join(trial).join(LOG_NAME), &five.join(trial).join(LOG_NAME));
+    }
+}
+
+#[test]
+fn whatever_hands_do_the_recording_verifies_and_replays_to_the_same_session() {
+    for (name, seed) in SESSIONS.into_iter().zip(0..).flat_map(|(name, first)| [(name, first), (name, first + 2)]) {
+        let (log, engine) = by_hand(name, &format!("hand-{seed}"), seed);
+        let found = verify(&log).expect("a recording");
+        assert!(found.verified && !found.cut, "seed {seed}: {found:?}");
+        let mut replay = Replay::open(&log).expect("a recording");
+        replay.run().expect("a recording");
+        let (live, again) = (engine.session(), replay.session());
+        assert_eq!((live.state, live.presses, live.phase), (again.state, again.presses, Phase::Closed), "seed {seed}");
+        assert_eq!(live.timeline, again.timeline, "seed {seed}");
+        assert_eq!(engine.judged(), replay.follower.judged, "seed {seed}");
+    }
+}
+
+#[test]
+fn a_cut_recording_opens_says_so_and_verifies_up_to_its_cut() {
+    let (log, _) = by_hand("default.toml", "cut", 5);
+    let text = fs::read(&log).expect("a recording");
+    for cut in [text.len() - 1, text.len() - 30, text.len() / 2, text.len() * 3 / 4] {
+        let path = log.with_file_name("cut.jsonl");
+        fs::write(&path, &text[..cut]).expect("the folder can be written");
+        let found = verify(&path).expect("a cut recording");
+        assert!(found.verified && found.cut, "cut at {cut}: {found:?}");
+    }
+}
+
+#[test]
+fn a_changed_recording_does_not_verify_and_the_first_difference_is_named() {
+    let (log, _) = by_hand("default.toml", "changed", 6);
+    let text = fs::read_to_string(&log).expect("a recording");
+    let (number, line) =
+        text.lines().enumerate().find(|(_, line)| line.contains("robot_intends")).expect("the robot does something");
+    let changed = log.with_file_name("changed.jsonl");
+    let later = line.replace("\"until_ns\":", "\"until_ns\":1");
+    fs::write(&changed, text.replace(line, &later)).expect("the folder can be written");
+    let found = verify(&changed).expect("a recording");
+    assert_eq!(found.difference.map(|difference| difference.line), Some(number + 1));
+    assert!(!found.verified);
+}
+
+#[test]
+fn what_is_broken_is_named_with_its_line_and_what_would_be_right() {
+    let (log, _) = by_hand("default.toml", "broken", 8);
+    let line = |number: usize, from: &'static str, to: &'static str| {
+        move |text: &str| {
+            let lines = text.lines().enumerate();
+            let changed = lines.map(|(at, line)| if at + 1 == number { line.replace(from, to) } else { line.into() });
+            changed.collect::<Vec<String>>().join("\n") + "\n"
+        }
+    };
+    refused(&log, 1, &["format version 9", "format version 1"], line(1, "\"version\":1", "\"version\":9"));
+    refused(&log, 1, &["no header"], |text| text.split_once('\n').map_or(String::new(), |(_, rest)| rest.to_string()));
+    refused(&log, 1, &["press_s = -2.4", "above 0"], line(1, "\"press_s\":2.4", "\"press_s\":-2.4"));
+    refused(&log, 3, &["\"order_9\"", "a location of the layout"], line(3, "order_1", "order_9"));
+    refused(&log, 3, &["seq 7", "without gaps"], line(3, "\"seq\":1,", "\"seq\":7,"));
+    refused(&log, 3, &["order_hidden"], line(3, "order_shown", "order_hidden"));
+    refused(&log, 3, &["after 500000000", "never decrease"], line(3, "\"t_ns\":500000000", "\"t_ns\":4"));
+    refused(&log, 3, &["the trial was started already"], line(3, "order_shown", "trial_started"));
+}

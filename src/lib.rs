@@ -8,6 +8,7 @@ pub mod gaze;
 pub mod kitchen;
 pub mod measures;
 pub mod mind;
+pub mod participant;
 pub mod robot;
 pub mod run;
 pub mod session;

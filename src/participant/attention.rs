@@ -1,0 +1,223 @@
+//! Where the participant looks, what it reads there, and what draws its eye.
+
+use std::collections::VecDeque;
+
+use rand::RngExt;
+
+use super::SimulatedParticipant;
+use super::beliefs::{of_dish, of_location, wanted_dish};
+use super::eyes::Glance;
+use super::learning::involved;
+use super::population::chance;
+use crate::base::time::SessionTime;
+use crate::kitchen::{Agent, ContentId, Kitchen, LocationId, LocationKind, OrderContent, State};
+
+/// Belief in what was just read.
+const READ: f64 = 0.97;
+/// Expecting the look-alike makes it so much more likely to be seen.
+const EXPECTATION: f64 = 3.0;
+/// A change draws the eye the less, the farther away it is: half as often at this distance, in metres.
+const CAPTURE_REACH_M: f64 = 0.6;
+/// After this many seconds a place is as worth looking at as it gets.
+const STALE_S: f64 = 6.0;
+/// At most so many places are kept in mind to look at next.
+const MOST_GLANCES: usize = 6;
+
+/// The places to look at next, and when each was read last.
+#[derive(Clone, Debug, Default)]
+pub struct Attention {
+    pub glances: VecDeque<LocationId>,
+    pub looking_at: Option<LocationId>,
+    pub read_at: Vec<SessionTime>,
+}
+
+impl Attention {
+    /// The next look goes there.
+    pub fn first(&mut self, location: LocationId) {
+        self.glances.retain(|&other| other != location);
+        self.glances.push_front(location);
+        self.glances.truncate(MOST_GLANCES);
+    }
+
+    /// A look goes there in time.
+    pub fn later(&mut self, location: LocationId) {
+        if !self.glances.contains(&location) && self.glances.len() < MOST_GLANCES {
+            self.glances.push_back(location);
+        }
+    }
+}
+
+impl SimulatedParticipant {
+    /// The eyes move on: changes draw them, what was looked at long enough is read, and then it is the next one's turn.
+    pub(super) fn look(&mut self, now: SessionTime, state: State) {
+        self.notice_changes(now, state);
+        match self.eyes.advance(now) {
+            Glance::Nothing => {}
+            Glance::Read => {
+                if let Some(location) = self.attention.looking_at {
+                    self.read(now, location, state);
+                }
+            }
+            Glance::Done => {
+                let target = self.choose_target(now);
+                self.attention.looking_at = target;
+                let point = match target {
+                    Some(location) => self.kitchen.location(location).display.centre(),
+                    None => self.elsewhere(),
+                };
+                self.eyes.look_at(now, point);
+            }
+        }
+    }
+
+    /// What changes on the display may draw the eye, and is read anew where one is looking anyway.
+    fn notice_changes(&mut self, now: SessionTime, state: State) {
+        if state == self.display {
+            return;
+        }
+        let kitchen = self.kitchen.clone();
+        let eye = self.eyes.position(now);
+        for (index, location) in kitchen.locations.iter().enumerate() {
+            let id = LocationId(index as u8);
+            if state.code(id) == self.display.code(id) {
+                continue;
+            }
+            if self.attention.looking_at == Some(id) && self.eyes.has_landed(now) {
+                self.eyes.look_again(now);
+                continue;
+            }
+            let strength = match location.kind {
+                LocationKind::Order => self.person.order_capture,
+                _ => self.person.capture,
+            };
+            let distance_m = location.display.distance_m(eye, kitchen.display_m);
+            if chance(&mut self.mind, strength * 0.5_f64.powf(distance_m / CAPTURE_REACH_M)) {
+                self.attention.first(id);
+            }
+        }
+        self.display = state;
+    }
+
+    /// The next place to look at; `None`: somewhere else.
+    fn choose_target(&mut self, now: SessionTime) -> Option<LocationId> {
+        if let Some(location) = self.attention.glances.pop_front() {
+            return Some(location);
+        }
+        if chance(&mut self.mind, self.person.wanders) {
+            return None;
+        }
+        let kitchen = self.kitchen.clone();
+        let needed = self.intent.plan.front().map(|&button| involved(&kitchen, button)).unwrap_or_default();
+        let weight = |index: usize| {
+            let id = LocationId(index as u8);
+            let worth = match kitchen.locations[index].kind {
+                _ if needed.contains(&id) => 1.0,
+                LocationKind::Hand(Agent::Robot) => self.person.watches_robot,
+                LocationKind::Hand(Agent::Human) => 0.15,
+                LocationKind::Order if wanted_dish(&kitchen, &self.beliefs, id).is_none() => 0.8,
+                LocationKind::Order => 0.2,
+                LocationKind::Place if id == kitchen.board => 0.5,
+                LocationKind::Place => 0.25,
+            };
+            let stale = 1.0 - (-now.secs_since(self.attention.read_at[index]) / STALE_S).exp();
+            let open = 1.0 - self.beliefs.certainty(of_location(id));
+            worth * (stale + open)
+        };
+        let weights: Vec<f64> = (0..kitchen.locations.len()).map(weight).collect();
+        let mut draw = self.mind.random::<f64>() * weights.iter().sum::<f64>();
+        weights
+            .iter()
+            .position(|weight| {
+                draw -= weight;
+                draw < 0.0
+            })
+            .map(|index| LocationId(index as u8))
+    }
+
+    /// A point that is no place of the task: a storage, or anywhere.
+    fn elsewhere(&mut self) -> [f64; 2] {
+        let storages: Vec<[f64; 2]> = self.kitchen.storages.iter().map(|storage| storage.display.centre()).collect();
+        match storages.is_empty() || chance(&mut self.mind, 0.4) {
+            true => [self.mind.random::<f64>(), self.mind.random::<f64>()],
+            false => storages[self.mind.random_range(0..storages.len())],
+        }
+    }
+
+    /// Reads what a place shows, sometimes as something that looks like it.
+    pub(super) fn read(&mut self, now: SessionTime, location: LocationId, state: State) {
+        let kitchen = self.kitchen.clone();
+        let aspect = of_location(location);
+        let believed = self.beliefs.most_likely(aspect);
+        let values = &kitchen.aspects[aspect.index()];
+        let Some(shown) = values.index_of(state.code(location)) else { return };
+        let alike = look_alike_codes(&kitchen, location, state);
+        let alike: Vec<usize> = alike.into_iter().filter_map(|code| values.index_of(code)).collect();
+        let mut seen = shown;
+        for other in alike {
+            let bias = if other == believed { EXPECTATION } else { 1.0 };
+            if chance(&mut self.mind, (self.person.misreads * bias).min(0.5)) {
+                seen = other;
+            }
+        }
+        self.attention.read_at[location.index()] = now;
+        self.beliefs.settle(aspect, seen, READ);
+        if seen != believed {
+            self.rethink = true;
+            self.on_news(location, values.values[seen]);
+        }
+    }
+
+    /// Something is otherwise than it was believed to be.
+    fn on_news(&mut self, location: LocationId, code: u8) {
+        let kitchen = self.kitchen.clone();
+        if kitchen.location(location).kind == LocationKind::Order {
+            if let OrderContent::Dish(dish) = OrderContent::from_code(code) {
+                self.memory.recall(&kitchen, &mut self.beliefs, dish);
+            }
+            return;
+        }
+        // The robot knows the recipes: what it carries or has stacked should be part of something that is wanted.
+        let content = ContentId(code);
+        let is_robots = location == kitchen.hands[Agent::Robot.index()] || location == kitchen.board;
+        if content.is_empty() || !is_robots {
+            return;
+        }
+        let (_, recipes) = self.beliefs.point(&kitchen);
+        let wanted: Vec<_> = kitchen.orders.iter().filter_map(|&o| wanted_dish(&kitchen, &self.beliefs, o)).collect();
+        if wanted.is_empty() || wanted.iter().any(|&dish| could_become(&kitchen, content, recipes.get(dish))) {
+            return;
+        }
+        if !chance(&mut self.mind, self.person.takes_hints) {
+            return;
+        }
+        let fitting = |variant: ContentId| could_become(&kitchen, content, variant);
+        let candidates = wanted.iter().filter(|&&dish| kitchen.dish(dish).variants.iter().any(|&v| fitting(v)));
+        let least_sure = candidates.min_by(|&&a, &&b| {
+            let sure = |dish| self.beliefs.certainty(of_dish(&kitchen, dish));
+            sure(a).total_cmp(&sure(b))
+        });
+        if let Some(&dish) = least_sure {
+            self.memory.doubt(&kitchen, &mut self.beliefs, dish, fitting);
+        }
+    }
+}
+
+/// The codes of what could be taken for what a location shows.
+fn look_alike_codes(kitchen: &Kitchen, location: LocationId, state: State) -> Vec<u8> {
+    if kitchen.location(location).kind != LocationKind::Order {
+        return kitchen.content(state.content(location)).look_alikes.iter().map(|alike| alike.0).collect();
+    }
+    let OrderContent::Dish(dish) = state.order(location) else { return Vec::new() };
+    let alike = &kitchen.content(kitchen.dish(dish).stack()).look_alikes;
+    let dishes = kitchen.dishes.iter().enumerate().filter(|(_, other)| alike.contains(&other.stack()));
+    dishes.map(|(index, _)| OrderContent::Dish(crate::kitchen::DishId(index as u8)).code()).collect()
+}
+
+/// Whether everything in `content` has its place in `stack`: a stack's items as they are, a single item by its ingredient.
+fn could_become(kitchen: &Kitchen, content: ContentId, stack: ContentId) -> bool {
+    let (content, stack) = (kitchen.content(content), kitchen.content(stack));
+    match content.is_stack() {
+        true => content.items.iter().all(|item| stack.items.contains(item)),
+        false => stack.items.iter().any(|&item| kitchen.content(item).ingredient == content.ingredient),
+    }
+}

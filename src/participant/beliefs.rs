@@ -1,0 +1,144 @@
+//! The participant's own beliefs: one categorical distribution per state aspect, and how they are changed.
+
+use crate::kitchen::{AspectId, AspectKind, DishId, Kitchen, LocationId, OrderContent, Recipes, State};
+
+/// What a person believes. Every distribution sums to 1 and holds no value for impossible.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beliefs {
+    of: Vec<Vec<f64>>,
+}
+
+/// No value is ever believed impossible: what is left to each when the others take all.
+const RESIDUE: f64 = 1e-6;
+
+impl Beliefs {
+    /// Everything as `state` shows it, `sure` of it; recipes as they truly are, to be changed by memory.
+    pub fn of_state(kitchen: &Kitchen, state: State, sure: f64) -> Beliefs {
+        let mut beliefs = Beliefs { of: kitchen.aspects.iter().map(|a| uniform(a.values.len())).collect() };
+        for index in 0..kitchen.aspects.len() {
+            let aspect = AspectId(index as u8);
+            beliefs.settle(aspect, truth(kitchen, state, aspect), sure);
+        }
+        beliefs
+    }
+
+    /// The distribution over the values of an aspect.
+    pub fn distribution(&self, aspect: AspectId) -> &[f64] {
+        &self.of[aspect.index()]
+    }
+
+    /// The index of the value that is held most likely; the first of equals.
+    pub fn most_likely(&self, aspect: AspectId) -> usize {
+        let values = self.distribution(aspect);
+        (1..values.len()).fold(0, |best, index| if values[index] > values[best] { index } else { best })
+    }
+
+    /// How sure the person is of what it holds most likely.
+    pub fn certainty(&self, aspect: AspectId) -> f64 {
+        self.distribution(aspect)[self.most_likely(aspect)]
+    }
+
+    /// Becomes `sure` of one value; what is left goes to the others as it was spread among them.
+    pub fn settle(&mut self, aspect: AspectId, value: usize, sure: f64) {
+        let values = &mut self.of[aspect.index()];
+        let others = 1.0 - values[value];
+        let left = 1.0 - sure;
+        for (index, p) in values.iter_mut().enumerate() {
+            *p = match index == value {
+                true => sure,
+                false if others > 0.0 => *p / others * left,
+                false => 0.0,
+            };
+        }
+        normalise(values);
+    }
+
+    /// Gives way by `weight` towards another distribution, given as weights.
+    pub fn mix(&mut self, aspect: AspectId, towards: &[f64], weight: f64) {
+        let total: f64 = towards.iter().sum();
+        if total <= 0.0 {
+            return;
+        }
+        let values = &mut self.of[aspect.index()];
+        for (p, other) in values.iter_mut().zip(towards) {
+            *p = *p * (1.0 - weight) + weight * other / total;
+        }
+        normalise(values);
+    }
+
+    /// Multiplies every value by a factor.
+    pub fn weigh(&mut self, aspect: AspectId, factor: impl Fn(usize) -> f64) {
+        let values = &mut self.of[aspect.index()];
+        for (index, p) in values.iter_mut().enumerate() {
+            *p *= factor(index);
+        }
+        normalise(values);
+    }
+
+    /// Replaces a distribution by weights.
+    pub fn replace(&mut self, aspect: AspectId, weights: &[f64]) {
+        self.mix(aspect, weights, 1.0);
+    }
+
+    /// What is held most likely, as a state and recipes of the task.
+    pub fn point(&self, kitchen: &Kitchen) -> (State, Recipes) {
+        let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
+        for (index, aspect) in kitchen.aspects.iter().enumerate() {
+            let code = aspect.values[self.most_likely(AspectId(index as u8))];
+            match aspect.kind {
+                AspectKind::Location(location) => state.set_code(location, code),
+                AspectKind::Recipe(dish) => recipes.set(dish, crate::kitchen::ContentId(code)),
+            }
+        }
+        (state, recipes)
+    }
+
+    /// The probability that the person gives to the truth about an aspect.
+    pub fn p_truth(&self, kitchen: &Kitchen, state: State, aspect: AspectId) -> f64 {
+        self.distribution(aspect)[truth(kitchen, state, aspect)]
+    }
+}
+
+/// The index of the true value of an aspect; a place that shows what it cannot hold counts as its first value.
+pub fn truth(kitchen: &Kitchen, state: State, aspect: AspectId) -> usize {
+    let aspect = &kitchen.aspects[aspect.index()];
+    match aspect.kind {
+        AspectKind::Location(location) => aspect.index_of(state.code(location)).unwrap_or(0),
+        AspectKind::Recipe(_) => 0,
+    }
+}
+
+/// The aspect of a location's content: locations come first among the aspects.
+pub fn of_location(location: LocationId) -> AspectId {
+    AspectId(location.0)
+}
+
+/// The aspect of a dish's recipe: recipes follow the locations.
+pub fn of_dish(kitchen: &Kitchen, dish: DishId) -> AspectId {
+    AspectId((kitchen.locations.len() + dish.index()) as u8)
+}
+
+/// The dish that an order is believed to want.
+pub fn wanted_dish(kitchen: &Kitchen, beliefs: &Beliefs, order: LocationId) -> Option<DishId> {
+    let aspect = of_location(order);
+    match OrderContent::from_code(kitchen.aspects[aspect.index()].values[beliefs.most_likely(aspect)]) {
+        OrderContent::Dish(dish) => Some(dish),
+        _ => None,
+    }
+}
+
+fn uniform(length: usize) -> Vec<f64> {
+    vec![1.0 / length as f64; length]
+}
+
+fn normalise(values: &mut [f64]) {
+    let total: f64 = values.iter().sum();
+    if !(total.is_finite() && total > 0.0) {
+        values.fill(1.0 / values.len() as f64);
+        return;
+    }
+    let share = RESIDUE / values.len() as f64;
+    for p in values.iter_mut() {
+        *p = *p / total * (1.0 - RESIDUE) + share;
+    }
+}

@@ -1,0 +1,145 @@
+//! What the participant decides to do: a sub-goal for the state that it believes in, kept to for a while.
+
+use std::collections::VecDeque;
+
+use rand::RngExt;
+
+use super::beliefs::Beliefs;
+use super::population::chance;
+use crate::base::rng::Stream;
+use crate::base::time::SessionTime;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Action, Agent, ButtonId, Kitchen, LocationId, Recipes, State};
+
+/// Presses that are thought out ahead: until the hand is free again, but not more than this.
+const FORESIGHT: usize = 5;
+/// Chance to begin with the order that is nearer to its end.
+const PREFERS_NEARER: f64 = 0.75;
+/// Chance to stay with the order at hand where both could be served by the next press.
+const STAYS: f64 = 0.85;
+
+/// What the person is up to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Intent {
+    /// The next presses of its own, as thought out.
+    pub plan: VecDeque<ButtonId>,
+    /// The order that it works on, and until when it stays with it.
+    pub order: Option<(LocationId, SessionTime)>,
+}
+
+/// A press and the state that it is believed to lead to.
+type Step = (ButtonId, State);
+
+/// Chooses what to do next; leaves the plan empty if there is nothing to do.
+pub fn think(
+    kitchen: &Kitchen,
+    cost: &mut CostToGo,
+    beliefs: &Beliefs,
+    intent: &mut Intent,
+    commit_until: SessionTime,
+    now: SessionTime,
+    random: &mut Stream,
+) {
+    let (state, recipes) = beliefs.point(kitchen);
+    let good = good_presses(kitchen, cost, state, &recipes);
+    if let Some(planned) = intent.plan.front()
+        && good.iter().any(|(button, _)| button == planned)
+    {
+        return;
+    }
+    intent.plan.clear();
+    if good.is_empty() {
+        return;
+    }
+    let is_wanted = |order: LocationId| kitchen.wanted(state).any(|(wanted, _)| wanted == order);
+    intent.order = intent.order.filter(|&(order, until)| now < until && is_wanted(order));
+    if intent.order.is_none() {
+        intent.order = choose_order(kitchen, cost, state, &recipes, random).map(|order| (order, commit_until));
+    }
+    let mut choices: Vec<Step> = good.clone();
+    if let Some((order, _)) = intent.order
+        && chance(random, STAYS)
+    {
+        let here = cost.order(state, &recipes, order);
+        choices.retain(|(_, next)| cost.order(*next, &recipes, order) < here);
+    }
+    let choices = if choices.is_empty() { good } else { choices };
+    let (button, mut state) = choices[random.random_range(0..choices.len())];
+    intent.plan.push_back(button);
+    let hand = kitchen.hands[Agent::Human.index()];
+    while intent.plan.len() < FORESIGHT && !state.content(hand).is_empty() {
+        let good = good_presses(kitchen, cost, state, &recipes);
+        if good.is_empty() {
+            break;
+        }
+        let (button, next) = good[random.random_range(0..good.len())];
+        intent.plan.push_back(button);
+        state = next;
+    }
+}
+
+fn choose_order(
+    kitchen: &Kitchen,
+    cost: &mut CostToGo,
+    state: State,
+    recipes: &Recipes,
+    random: &mut Stream,
+) -> Option<LocationId> {
+    let mut wanted: Vec<LocationId> = kitchen.wanted(state).map(|(order, _)| order).collect();
+    wanted.sort_by_key(|&order| cost.order(state, recipes, order));
+    let nearest = *wanted.first()?;
+    match chance(random, PREFERS_NEARER) {
+        true => Some(nearest),
+        false => Some(wanted[random.random_range(0..wanted.len())]),
+    }
+}
+
+/// The presses of the human that bring the end nearer, if everything is as `state` and `recipes` say.
+pub fn good_presses(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes) -> Vec<Step> {
+    let here = cost.all_orders(state, recipes);
+    let mut good = effective_presses(kitchen, state, recipes);
+    good.retain(|(_, next)| cost.all_orders(*next, recipes) < here);
+    good
+}
+
+/// The presses of the human that would do something.
+pub fn effective_presses(kitchen: &Kitchen, state: State, recipes: &Recipes) -> Vec<Step> {
+    let step = |index: usize| {
+        let button = ButtonId(index as u8);
+        Some((button, kitchen.press(state, recipes, Agent::Human, button)?))
+    };
+    (0..kitchen.buttons[Agent::Human.index()].len()).filter_map(step).collect()
+}
+
+/// Nothing seems to help: the press that does the least harm, but no throwing away.
+pub fn try_something(
+    kitchen: &Kitchen,
+    cost: &mut CostToGo,
+    state: State,
+    recipes: &Recipes,
+    random: &mut Stream,
+) -> Option<ButtonId> {
+    let mut presses = effective_presses(kitchen, state, recipes);
+    presses.retain(|(button, _)| kitchen.button(Agent::Human, *button).action != Action::Trash);
+    let least = presses.iter().map(|(_, next)| cost.all_orders(*next, recipes)).min()?;
+    presses.retain(|(_, next)| cost.all_orders(*next, recipes) == least);
+    Some(presses[random.random_range(0..presses.len())].0)
+}
+
+/// The human's button nearest to another one on the table.
+pub fn neighbour(kitchen: &Kitchen, button: ButtonId) -> Option<ButtonId> {
+    let at = |index: usize| kitchen.buttons[Agent::Human.index()][index].at_m;
+    let own = at(button.index());
+    let distance = |index: usize| (at(index)[0] - own[0]).hypot(at(index)[1] - own[1]);
+    let others = (0..kitchen.buttons[Agent::Human.index()].len()).filter(|&index| index != button.index());
+    others.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).map(|index| ButtonId(index as u8))
+}
+
+/// The human's storage button whose symbol looks like that of another one.
+pub fn look_alike(kitchen: &Kitchen, button: ButtonId) -> Option<ButtonId> {
+    let Action::Take(item) = kitchen.button(Agent::Human, button).action else { return None };
+    let alike = &kitchen.content(item).look_alikes;
+    let is_alike = |action| matches!(action, Action::Take(other) if alike.contains(&other));
+    let buttons = &kitchen.buttons[Agent::Human.index()];
+    buttons.iter().position(|other| is_alike(other.action)).map(|index| ButtonId(index as u8))
+}

@@ -1,0 +1,135 @@
+//! The participant's hand: presses in time, slips, and what it does when there is nothing to do.
+
+use rand::RngExt;
+
+use super::beliefs::{of_dish, of_location, wanted_dish};
+use super::population::{chance, normal};
+use super::{Deed, SimulatedParticipant, decision, learning, witness};
+use crate::base::time::SessionTime;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, ButtonId, DishId, LocationId, State};
+
+/// Below this certainty of a place one looks before using it.
+const UNSURE: f64 = 0.6;
+/// How long a press waits for such a look, in seconds, and how often.
+const LOOK_FIRST_S: f64 = 0.45;
+const MOST_LOOKS_FIRST: u32 = 2;
+/// While there is nothing to do one thinks again after this time, in seconds.
+const THINK_AGAIN_S: [f64; 2] = [0.4, 0.8];
+/// After so many times its patience without anything to do a person tries something.
+const DESPAIR: f64 = 3.0;
+
+impl SimulatedParticipant {
+    /// Presses, or waits for something to do.
+    pub(super) fn move_hand(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<Deed> {
+        let kitchen = self.kitchen.clone();
+        self.think(now, cost);
+        let Some(&button) = self.intent.plan.front() else { return self.wait(now, state, cost) };
+        let unsure = learning::involved(&kitchen, button)
+            .into_iter()
+            .find(|&place| self.beliefs.certainty(of_location(place)) < UNSURE);
+        if let Some(place) = unsure
+            && self.looks_first < MOST_LOOKS_FIRST
+        {
+            self.looks_first += 1;
+            self.attention.first(place);
+            self.press_at = now + SessionTime::from_secs_f64(LOOK_FIRST_S);
+            return None;
+        }
+        self.intent.plan.pop_front();
+        let (pressed, cause) = self.slip(button);
+        let cause = match cause {
+            Some(cause) => cause,
+            None => witness::cause(&kitchen, cost, &self.beliefs, state, button),
+        };
+        Some(self.press(now, state, pressed, cause))
+    }
+
+    fn press(&mut self, now: SessionTime, state: State, button: ButtonId, cause: String) -> Deed {
+        self.presses += 1;
+        self.looks_first = 0;
+        self.idle_since = None;
+        self.press_at = now + self.reaction();
+        Deed::Press { button, belief: witness::witness(&self.kitchen, &self.beliefs, state, cause) }
+    }
+
+    /// The hand does not always press what was meant: the button pressed instead, and why.
+    fn slip(&mut self, button: ButtonId) -> (ButtonId, Option<String>) {
+        let kitchen = self.kitchen.clone();
+        let name = |button| kitchen.button(Agent::Human, button).name.clone();
+        self.meant = None;
+        let (is_neighbour, is_alike, is_thoughtless) = (
+            chance(&mut self.hand, self.person.slip),
+            chance(&mut self.hand, self.person.look_alike_slip),
+            chance(&mut self.hand, self.person.thoughtless),
+        );
+        let alike = decision::look_alike(&kitchen, button).filter(|_| is_alike);
+        let next = decision::neighbour(&kitchen, button).filter(|_| is_neighbour);
+        let (pressed, cause) = match (alike, next) {
+            (Some(other), _) => (other, format!("slip: took the look-alike, meant {}", name(button))),
+            (None, Some(other)) => (other, format!("slip: hit the neighbouring button, meant {}", name(button))),
+            (None, None) if is_thoughtless => {
+                let (state, recipes) = self.beliefs.point(&kitchen);
+                let possible = decision::effective_presses(&kitchen, state, &recipes);
+                match possible.is_empty() {
+                    true => return (button, None),
+                    false => {
+                        let (other, _) = possible[self.hand.random_range(0..possible.len())];
+                        return (other, Some("without thinking".to_string()));
+                    }
+                }
+            }
+            (None, None) => return (button, None),
+        };
+        if !chance(&mut self.hand, self.population.notices_slip) {
+            self.meant = Some(button);
+        }
+        (pressed, Some(cause))
+    }
+
+    /// There is nothing to do: looks around, begins to doubt what it remembers, and at last tries something.
+    fn wait(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<Deed> {
+        let kitchen = self.kitchen.clone();
+        let since = *self.idle_since.get_or_insert(now);
+        let idle_s = now.secs_since(since);
+        let again_s = THINK_AGAIN_S[0] + (THINK_AGAIN_S[1] - THINK_AGAIN_S[0]) * self.hand.random::<f64>();
+        self.press_at = now + SessionTime::from_secs_f64(again_s);
+        self.rethink = true;
+        if idle_s < self.person.patience_s {
+            return None;
+        }
+        let mut stale: Vec<LocationId> = (0..kitchen.locations.len()).map(|index| LocationId(index as u8)).collect();
+        stale.sort_by_key(|location| self.attention.read_at[location.index()]);
+        for &location in stale.iter().take(3) {
+            self.attention.later(location);
+        }
+        let wanted: Vec<DishId> =
+            kitchen.orders.iter().filter_map(|&order| wanted_dish(&kitchen, &self.beliefs, order)).collect();
+        if now.secs_since(self.last_doubt) > self.person.patience_s && !wanted.is_empty() {
+            self.last_doubt = now;
+            let least_sure = wanted.into_iter().min_by(|&a, &b| {
+                let sure = |dish| self.beliefs.certainty(of_dish(&kitchen, dish));
+                sure(a).total_cmp(&sure(b))
+            });
+            if let Some(dish) = least_sure.filter(|_| chance(&mut self.mind, self.person.takes_hints)) {
+                self.memory.doubt(&kitchen, &mut self.beliefs, dish, |_| false);
+            }
+        }
+        if idle_s < self.person.patience_s * DESPAIR {
+            return None;
+        }
+        let (believed, recipes) = self.beliefs.point(&kitchen);
+        kitchen.wanted(believed).next()?;
+        let button = decision::try_something(&kitchen, cost, believed, &recipes, &mut self.mind)?;
+        self.meant = None;
+        Some(self.press(now, state, button, "tries something, as nothing goes on".to_string()))
+    }
+
+    /// From one press to the next: log-normal, faster with practice.
+    pub(super) fn reaction(&mut self) -> SessionTime {
+        let population = &self.population;
+        let novice = population.novice_slowdown * 0.5_f64.powf(f64::from(self.presses) / population.practice_presses);
+        let spread = (population.press_jitter * normal(&mut self.hand)).exp();
+        SessionTime::from_secs_f64(self.person.press_s * (1.0 + novice) * spread)
+    }
+}

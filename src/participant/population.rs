@@ -1,0 +1,201 @@
+//! What people differ in: the parameters of the population, and one individual drawn from it.
+
+use rand::RngExt;
+use rand_distr::{Distribution, StandardNormal};
+use serde::{Deserialize, Serialize};
+
+use crate::base::rng::Stream;
+
+/// How one trait is distributed: around a median, with a spread that is relative to it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Spread {
+    pub median: f64,
+    /// Standard deviation of the logarithm (of the odds, for a probability).
+    pub sigma: f64,
+}
+
+impl Spread {
+    const fn of(median: f64, sigma: f64) -> Spread {
+        Spread { median, sigma }
+    }
+
+    /// A positive quantity: log-normal, within three sigma.
+    fn draw(self, random: &mut Stream) -> f64 {
+        self.median * (self.sigma * normal(random).clamp(-3.0, 3.0)).exp()
+    }
+
+    /// A probability: logit-normal, within three sigma.
+    fn draw_chance(self, random: &mut Stream) -> f64 {
+        let odds = self.median / (1.0 - self.median) * (self.sigma * normal(random).clamp(-3.0, 3.0)).exp();
+        odds / (1.0 + odds)
+    }
+}
+
+/// A draw from the standard normal distribution.
+pub(super) fn normal(random: &mut Stream) -> f64 {
+    StandardNormal.sample(random)
+}
+
+/// True with probability `p`.
+pub(super) fn chance(random: &mut Stream, p: f64) -> bool {
+    random.random::<f64>() < p
+}
+
+/// Parameters of the simulated population. The defaults are calibrated to the rates of the paper's participants
+/// (study: 11 to 13 % errors per human press, 82 % of them from false beliefs, 3.1 errors a sequence).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Population {
+    /// From one press to the next, in seconds, for somebody with some practice.
+    pub press_s: Spread,
+    /// Standard deviation of the logarithm of one person's times between presses.
+    pub press_jitter: f64,
+    /// How much slower the first presses are (0.3: by 30 %), and after how many presses half of that is gone.
+    pub novice_slowdown: f64,
+    pub practice_presses: f64,
+    /// Chance to hit the neighbouring button on the table.
+    pub slip: Spread,
+    /// Chance to take the look-alike from the storage.
+    pub look_alike_slip: Spread,
+    /// Chance of a press without a thought: something that can be done, but helps nothing.
+    pub thoughtless: Spread,
+    /// Chance to notice that the own hand slipped.
+    pub notices_slip: f64,
+    /// Chance to look at a place right before using it.
+    pub checks: Spread,
+    /// Chance that a change anywhere on the display draws the eye.
+    pub capture: Spread,
+    /// Chance that a new order draws the eye.
+    pub order_capture: Spread,
+    /// Chance that a look goes to no place of the task.
+    pub wanders: Spread,
+    /// Weight of the robot's hand among the places worth watching (a place of the next press has 1).
+    pub watches_robot: Spread,
+    /// Length of a fixation in seconds.
+    pub fixation_s: Spread,
+    /// Chance to take a content for one that looks like it.
+    pub misreads: Spread,
+    /// How much belief in an unseen robot's hand gives way when the robot presses something.
+    pub doubts_robot_hand: Spread,
+    /// The same for an unseen shared place.
+    pub doubts_places: Spread,
+    /// Belief in the true recipe after the instruction.
+    pub learned: Spread,
+    /// Belief in the true recipe to which an unused memory of it decays.
+    pub half_forgotten: Spread,
+    /// Half-life of that decay in seconds.
+    pub half_life_s: Spread,
+    /// How often the thread is lost while working on an order, per minute: its recipe is recalled anew.
+    pub loses_thread_per_min: Spread,
+    /// Weight of a look-alike topping among the false memories of a recipe (another one has 1).
+    pub confuses_look_alikes: f64,
+    /// Chance to question the own recipe when what the robot does or makes does not fit it.
+    pub takes_hints: Spread,
+    /// After so many seconds without anything to do the person looks around and doubts its recipes.
+    pub patience_s: Spread,
+    /// How long the person stays with one order, in seconds.
+    pub commitment_s: Spread,
+    /// Chance to notice a signal; at most 0.85.
+    pub notices_signal: Spread,
+    /// From a signal to its reading, least and most, in seconds.
+    pub signal_after_s: [f64; 2],
+    /// Chance to read a shown recipe wrongly.
+    pub misreads_signal: f64,
+    /// Accuracy of the tracker on this person, in metres on the display (1 deg at 2 m is 0.035 m).
+    pub tracker_offset_m: f64,
+}
+
+impl Default for Population {
+    fn default() -> Self {
+        Population {
+            press_s: Spread::of(1.9, 0.12),
+            press_jitter: 0.3,
+            novice_slowdown: 0.35,
+            practice_presses: 25.0,
+            slip: Spread::of(0.011, 0.4),
+            look_alike_slip: Spread::of(0.01, 0.4),
+            thoughtless: Spread::of(0.005, 0.4),
+            notices_slip: 0.85,
+            checks: Spread::of(0.7, 0.3),
+            capture: Spread::of(0.35, 0.3),
+            order_capture: Spread::of(0.75, 0.3),
+            wanders: Spread::of(0.15, 0.3),
+            watches_robot: Spread::of(0.6, 0.3),
+            fixation_s: Spread::of(0.3, 0.12),
+            misreads: Spread::of(0.02, 0.3),
+            doubts_robot_hand: Spread::of(0.12, 0.2),
+            doubts_places: Spread::of(0.02, 0.2),
+            learned: Spread::of(0.82, 0.4),
+            half_forgotten: Spread::of(0.62, 0.3),
+            half_life_s: Spread::of(150.0, 0.3),
+            loses_thread_per_min: Spread::of(0.25, 0.4),
+            confuses_look_alikes: 3.0,
+            takes_hints: Spread::of(0.3, 0.4),
+            patience_s: Spread::of(4.0, 0.25),
+            commitment_s: Spread::of(12.0, 0.3),
+            notices_signal: Spread::of(0.82, 0.15),
+            signal_after_s: [0.5, 1.5],
+            misreads_signal: 0.03,
+            tracker_offset_m: 0.02,
+        }
+    }
+}
+
+/// One person: what was drawn from the population. Meanings and units as in [`Population`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Individual {
+    pub press_s: f64,
+    pub slip: f64,
+    pub look_alike_slip: f64,
+    pub thoughtless: f64,
+    pub checks: f64,
+    pub capture: f64,
+    pub order_capture: f64,
+    pub wanders: f64,
+    pub watches_robot: f64,
+    pub fixation_s: f64,
+    pub misreads: f64,
+    pub doubts_robot_hand: f64,
+    pub doubts_places: f64,
+    pub learned: f64,
+    pub half_forgotten: f64,
+    pub half_life_s: f64,
+    pub loses_thread_per_s: f64,
+    pub takes_hints: f64,
+    pub patience_s: f64,
+    pub commitment_s: f64,
+    pub notices_signal: f64,
+}
+
+/// More is not asked of anybody's attention (study, "Simulated participants").
+const MOST_SIGNALS_NOTICED: f64 = 0.85;
+
+impl Population {
+    /// Draws one person.
+    pub fn draw(&self, random: &mut Stream) -> Individual {
+        Individual {
+            press_s: self.press_s.draw(random),
+            slip: self.slip.draw_chance(random),
+            look_alike_slip: self.look_alike_slip.draw_chance(random),
+            thoughtless: self.thoughtless.draw_chance(random),
+            checks: self.checks.draw_chance(random),
+            capture: self.capture.draw_chance(random),
+            order_capture: self.order_capture.draw_chance(random),
+            wanders: self.wanders.draw_chance(random),
+            watches_robot: self.watches_robot.draw(random),
+            fixation_s: self.fixation_s.draw(random),
+            misreads: self.misreads.draw_chance(random),
+            doubts_robot_hand: self.doubts_robot_hand.draw_chance(random),
+            doubts_places: self.doubts_places.draw_chance(random),
+            learned: self.learned.draw_chance(random),
+            half_forgotten: self.half_forgotten.draw_chance(random),
+            half_life_s: self.half_life_s.draw(random),
+            loses_thread_per_s: self.loses_thread_per_min.draw(random) / 60.0,
+            takes_hints: self.takes_hints.draw_chance(random),
+            patience_s: self.patience_s.draw(random),
+            commitment_s: self.commitment_s.draw(random),
+            notices_signal: self.notices_signal.draw_chance(random).min(MOST_SIGNALS_NOTICED),
+        }
+    }
+}

@@ -3,6 +3,7 @@
 pub mod base;
 pub mod cli;
 pub mod communication;
+pub mod console;
 pub mod edge;
 pub mod gaze;
 pub mod kitchen;

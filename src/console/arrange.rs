@@ -1,0 +1,357 @@
+//! Where the things of a kitchen stand on the console, computed from their areas on the wall display.
+//!
+//! The display is cut along lines that cross no area: the strip of the orders, then columns, then rows. The cells of the
+//! panel are dealt out along the same cuts, so that every kitchen gets boxes that can be read, and every cell of the
+//! panel has its point on the display and back: the pointer can stand for the gaze, and the gaze for a mark.
+
+use ratatui::layout::Rect;
+
+use crate::kitchen::layout::Area;
+use crate::kitchen::{Agent, Kitchen, LocationId, LocationKind};
+
+/// What stands at a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Thing {
+    Location(LocationId),
+    /// An index into [`Kitchen::storages`].
+    Storage(usize),
+}
+
+/// A thing with its box on the screen.
+#[derive(Clone, Debug)]
+pub struct Spot {
+    pub thing: Thing,
+    pub cells: Rect,
+    area: Area,
+    /// The part of the display, and of the screen, that belongs to it: together they cover everything.
+    display: Bounds,
+    screen: Bounds,
+}
+
+/// Columns of the kitchen that belong to one agent, or to both.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Zone {
+    pub owner: Option<Agent>,
+    pub cells: Rect,
+}
+
+/// The whole arrangement.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    pub spots: Vec<Spot>,
+    /// The line above the columns where the agents' names stand.
+    pub zones: Vec<Zone>,
+}
+
+/// A rectangle as low and high end along each axis: 0 is x, 1 is y.
+#[derive(Clone, Copy, Debug)]
+struct Bounds([[f64; 2]; 2]);
+
+struct Item {
+    thing: Thing,
+    area: Area,
+    owner: Option<Agent>,
+    min_columns: u16,
+}
+
+const MIN_BOX: u16 = 12;
+const STRIP_ROWS: u16 = 3;
+const MAX_STRIP_BOX: u16 = 34;
+
+impl Plan {
+    /// Arranges a kitchen in these cells, with room for the keys of the human's storage where somebody has them.
+    pub fn new(kitchen: &Kitchen, cells: Rect, with_keys: bool) -> Plan {
+        let items = items(kitchen, with_keys);
+        let (strip, body): (Vec<&Item>, Vec<&Item>) = items.iter().partition(|item| is_order(kitchen, item.thing));
+        let lowest = |items: &[&Item]| items.iter().map(|item| item.area.y + item.area.h).fold(0.0, f64::max);
+        let highest = |items: &[&Item]| items.iter().map(|item| item.area.y).fold(1.0, f64::min);
+        let above = lowest(&strip) <= highest(&body);
+        let below = lowest(&body) <= highest(&strip);
+        if strip.is_empty() || body.is_empty() || !(above || below) {
+            let all: Vec<&Item> = items.iter().collect();
+            return Plan::columns(&all, cells, [0.0, 1.0]);
+        }
+        let strip_rows = if cells.height >= 22 { STRIP_ROWS + 1 } else { STRIP_ROWS };
+        let (strip_cells, body_cells) = match above {
+            true => split_rows(cells, strip_rows),
+            false => {
+                let (body, strip) = split_rows(cells, cells.height.saturating_sub(strip_rows));
+                (strip, body)
+            }
+        };
+        let cut = match above {
+            true => (lowest(&strip) + highest(&body)) / 2.0,
+            false => (lowest(&body) + highest(&strip)) / 2.0,
+        };
+        let (strip_y, body_y) = if above { ([0.0, cut], [cut, 1.0]) } else { ([cut, 1.0], [0.0, cut]) };
+        let mut plan = Plan::columns(&body, body_cells, body_y);
+        plan.spots.extend(row_of_orders(&strip, strip_cells, strip_y));
+        plan
+    }
+
+    /// Items in columns that share rows; the line of the zones goes on top.
+    fn columns(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Plan {
+        let (line, cells) = split_rows(cells, 1);
+        let columns = clusters(items, 0);
+        let is_store = |column: &[&Item]| column.iter().all(|item| matches!(item.thing, Thing::Storage(_)));
+        let in_rows: Vec<&Item> = columns.iter().filter(|c| !is_store(c)).flatten().copied().collect();
+        let rows = clusters(&in_rows, 1);
+        let widths = widths(&columns, cells.width);
+        let mut spots = Vec::new();
+        let mut zones: Vec<Zone> = Vec::new();
+        let mut x = cells.x;
+        for (index, column) in columns.iter().enumerate() {
+            let width = widths[index];
+            let slot = Rect { x, width, ..cells };
+            x += width;
+            let display_x = ends(&columns, index, 0, [0.0, 1.0]);
+            let shares_rows = column.iter().all(|item| matches!(item.thing, Thing::Location(_)))
+                && rows
+                    .iter()
+                    .all(|row| row.iter().filter(|item| column.iter().any(|c| c.thing == item.thing)).count() <= 1);
+            let own: Vec<Vec<&Item>> = clusters_forced(column);
+            let lines = if shares_rows { &rows } else { &own };
+            for (line, members) in lines.iter().enumerate() {
+                let Some(item) = members.iter().find(|item| column.iter().any(|c| c.thing == item.thing)) else {
+                    continue;
+                };
+                let region = share(slot, lines.len(), line);
+                let display_y = ends(lines, line, 1, display_y);
+                spots.push(spot(item, region, Bounds([display_x, display_y])));
+            }
+            let owner = owner(column);
+            match zones.last_mut() {
+                Some(zone) if zone.owner == owner => zone.cells.width += width,
+                _ => zones.push(Zone { owner, cells: Rect { x: slot.x, width, ..line } }),
+            }
+        }
+        Plan { spots: cover(spots), zones }
+    }
+
+    /// The display point (fractions) under the centre of a cell, continued beyond the panel.
+    pub fn display_point(&self, column: u16, row: u16) -> [f64; 2] {
+        let cell = [f64::from(column) + 0.5, f64::from(row) + 0.5];
+        match self.nearest(cell, |spot| spot.screen) {
+            Some(spot) => [0, 1].map(|axis| along(cell[axis], &spot.knots(axis), |knot| (knot.1, knot.0))),
+            None => [0.5, 0.5],
+        }
+    }
+
+    /// The cell where a display point is drawn.
+    pub fn cell(&self, point: [f64; 2]) -> Option<(u16, u16)> {
+        let spot = self.nearest(point, |spot| spot.display)?;
+        let [x, y] = [0, 1].map(|axis| along(point[axis], &spot.knots(axis), |knot| knot));
+        (x >= 0.0 && y >= 0.0).then_some((x as u16, y as u16))
+    }
+
+    /// The spot whose bounds hold the point, or the nearest to it.
+    fn nearest(&self, point: [f64; 2], bounds: impl Fn(&Spot) -> Bounds) -> Option<&Spot> {
+        let distance = |spot: &Spot| {
+            let outside = |axis: usize| {
+                let [low, high] = bounds(spot).0[axis];
+                (low - point[axis]).max(point[axis] - high).max(0.0)
+            };
+            outside(0) + outside(1)
+        };
+        self.spots.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    }
+}
+
+impl Spot {
+    /// Pairs of display value and screen value along an axis.
+    fn knots(&self, axis: usize) -> [(f64, f64); 4] {
+        let (area, cells) = match axis {
+            0 => ([self.area.x, self.area.x + self.area.w], [self.cells.x, self.cells.right()]),
+            _ => ([self.area.y, self.area.y + self.area.h], [self.cells.y, self.cells.bottom()]),
+        };
+        let (display, screen) = (self.display.0[axis], self.screen.0[axis]);
+        [
+            (display[0], screen[0]),
+            (area[0], f64::from(cells[0])),
+            (area[1], f64::from(cells[1])),
+            (display[1], screen[1]),
+        ]
+    }
+}
+
+/// Maps a value along a line through four knots, continued at both ends with the slope of the middle piece.
+fn along(value: f64, knots: &[(f64, f64); 4], order: impl Fn((f64, f64)) -> (f64, f64)) -> f64 {
+    let knots = knots.map(order);
+    let piece = |a: (f64, f64), b: (f64, f64)| match b.0 - a.0 {
+        length if length.abs() < 1e-9 => a.1,
+        length => a.1 + (value - a.0) / length * (b.1 - a.1),
+    };
+    let middle = (knots[2].1 - knots[1].1) / (knots[2].0 - knots[1].0).max(1e-9);
+    if value < knots[0].0 {
+        knots[0].1 + (value - knots[0].0) * middle
+    } else if value > knots[3].0 {
+        knots[3].1 + (value - knots[3].0) * middle
+    } else if value < knots[1].0 {
+        piece(knots[0], knots[1])
+    } else if value <= knots[2].0 {
+        piece(knots[1], knots[2])
+    } else {
+        piece(knots[2], knots[3])
+    }
+}
+
+fn items(kitchen: &Kitchen, with_keys: bool) -> Vec<Item> {
+    let location = |(index, location): (usize, &crate::kitchen::Location)| {
+        let owner = if let LocationKind::Hand(agent) = location.kind { Some(agent) } else { None };
+        let thing = Thing::Location(LocationId(index as u8));
+        // Frame, space and gap beside the name; orders stand in a strip of their own.
+        let min_columns = (location.label().chars().count() as u16 + 4).max(MIN_BOX);
+        Item { thing, area: location.display, owner, min_columns }
+    };
+    let storage = |(index, storage): (usize, &crate::kitchen::layout::Storage)| Item {
+        thing: Thing::Storage(index),
+        area: storage.display,
+        owner: Some(storage.agent),
+        // A space before the name, and room for the key; the robot's keeps away from what is right of it.
+        min_columns: storage.label.chars().count() as u16
+            + match storage.agent {
+                Agent::Human if with_keys => 5,
+                Agent::Human => 1,
+                Agent::Robot => 2,
+            },
+    };
+    let locations = kitchen.locations.iter().enumerate().map(location);
+    locations.chain(kitchen.storages.iter().enumerate().map(storage)).collect()
+}
+
+fn is_order(kitchen: &Kitchen, thing: Thing) -> bool {
+    matches!(thing, Thing::Location(id) if kitchen.location(id).kind == LocationKind::Order)
+}
+
+fn split_rows(cells: Rect, rows: u16) -> (Rect, Rect) {
+    let rows = rows.min(cells.height);
+    (Rect { height: rows, ..cells }, Rect { y: cells.y + rows, height: cells.height - rows, ..cells })
+}
+
+fn extent(item: &Item, axis: usize) -> [f64; 2] {
+    let area = item.area;
+    if axis == 0 { [area.x, area.x + area.w] } else { [area.y, area.y + area.h] }
+}
+
+/// Groups of items whose extents along an axis overlap, in order.
+fn clusters<'a>(items: &[&'a Item], axis: usize) -> Vec<Vec<&'a Item>> {
+    let mut sorted = items.to_vec();
+    sorted.sort_by(|a, b| extent(a, axis)[0].total_cmp(&extent(b, axis)[0]));
+    let mut groups: Vec<Vec<&Item>> = Vec::new();
+    let mut end = f64::NEG_INFINITY;
+    for item in sorted {
+        let [low, high] = extent(item, axis);
+        match groups.last_mut() {
+            Some(group) if low < end => group.push(item),
+            _ => groups.push(vec![item]),
+        }
+        end = end.max(high);
+    }
+    groups
+}
+
+/// Every item in a row of its own, from top to bottom.
+fn clusters_forced<'a>(items: &[&'a Item]) -> Vec<Vec<&'a Item>> {
+    let mut sorted = items.to_vec();
+    sorted.sort_by(|a, b| (a.area.y + a.area.h / 2.0).total_cmp(&(b.area.y + b.area.h / 2.0)));
+    sorted.into_iter().map(|item| vec![item]).collect()
+}
+
+/// Where the part of a group begins and ends: in the middle of the gaps to its neighbours.
+fn ends(groups: &[Vec<&Item>], index: usize, axis: usize, whole: [f64; 2]) -> [f64; 2] {
+    let low = |group: &[&Item]| group.iter().map(|item| extent(item, axis)[0]).fold(f64::INFINITY, f64::min);
+    let high = |group: &[&Item]| group.iter().map(|item| extent(item, axis)[1]).fold(f64::NEG_INFINITY, f64::max);
+    let from = if index == 0 { whole[0] } else { (high(&groups[index - 1]) + low(&groups[index])) / 2.0 };
+    let to = match groups.get(index + 1) {
+        Some(next) => (high(&groups[index]) + low(next)) / 2.0,
+        None => whole[1],
+    };
+    [from, to.max(from)]
+}
+
+/// The widths of the columns: what they need, and the rest among those with locations.
+fn widths(columns: &[Vec<&Item>], total: u16) -> Vec<u16> {
+    let need: Vec<u16> = columns.iter().map(|c| c.iter().map(|item| item.min_columns).max().unwrap_or(0)).collect();
+    let grows = |column: &[&Item]| column.iter().any(|item| matches!(item.thing, Thing::Location(_)));
+    let growing = columns.iter().filter(|c| grows(c)).count().max(1) as u16;
+    let sum: u16 = need.iter().sum();
+    let spare = total.saturating_sub(sum);
+    let mut widths: Vec<u16> = Vec::new();
+    let mut grown = 0;
+    for (column, need) in columns.iter().zip(&need) {
+        let mut width = *need;
+        if grows(column) {
+            width += spare / growing + u16::from(grown < spare % growing);
+            grown += 1;
+        }
+        widths.push(width);
+    }
+    // What is missing is taken from the widest columns.
+    for _ in total..sum {
+        if let Some(widest) = widths.iter_mut().max() {
+            *widest -= 1;
+        }
+    }
+    widths
+}
+
+/// Row `index` of `count` equal rows.
+fn share(cells: Rect, count: usize, index: usize) -> Rect {
+    let edge = |index: usize| cells.y + (usize::from(cells.height) * index / count.max(1)) as u16;
+    Rect { y: edge(index), height: edge(index + 1) - edge(index), ..cells }
+}
+
+fn owner(column: &[&Item]) -> Option<Agent> {
+    let first = column.first()?.owner;
+    if column.iter().all(|item| item.owner == first) { first } else { None }
+}
+
+fn spot(item: &Item, region: Rect, display: Bounds) -> Spot {
+    let cells = match item.thing {
+        Thing::Location(_) => {
+            // Lower boxes leave air between them; where there is much room, they grow with it.
+            let height = region.height.min((region.height / 2 + 1).max(5));
+            let width = region.width.saturating_sub(u16::from(region.width > MIN_BOX));
+            Rect { y: region.y + (region.height - height) / 2, width, height, ..region }
+        }
+        Thing::Storage(_) => Rect { y: region.y + region.height / 2, height: region.height.min(1), ..region },
+    };
+    Spot { thing: item.thing, cells, area: item.area, display, screen: bounds(region) }
+}
+
+fn bounds(cells: Rect) -> Bounds {
+    Bounds([[cells.x, cells.right()].map(f64::from), [cells.y, cells.bottom()].map(f64::from)])
+}
+
+fn row_of_orders(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Vec<Spot> {
+    let groups: Vec<Vec<&Item>> = {
+        let mut sorted = items.to_vec();
+        sorted.sort_by(|a, b| a.area.x.total_cmp(&b.area.x));
+        sorted.into_iter().map(|item| vec![item]).collect()
+    };
+    let edge = |index: usize| cells.x + (usize::from(cells.width) * index / groups.len().max(1)) as u16;
+    let place = |(index, group): (usize, &Vec<&Item>)| {
+        let region = Rect { x: edge(index), width: edge(index + 1) - edge(index), ..cells };
+        let width = region.width.saturating_sub(2).min(MAX_STRIP_BOX);
+        let cells = Rect { x: region.x + (region.width - width) / 2, width, ..region };
+        let display = Bounds([ends(&groups, index, 0, [0.0, 1.0]), display_y]);
+        Spot { thing: group[0].thing, cells, area: group[0].area, display, screen: bounds(region) }
+    };
+    groups.iter().enumerate().map(place).collect()
+}
+
+/// Lets nothing end before it begins, whatever a layout says.
+fn cover(mut spots: Vec<Spot>) -> Vec<Spot> {
+    for spot in &mut spots {
+        for axis in 0..2 {
+            let [low, high] = spot.display.0[axis];
+            let [from, to] = extent_of(spot.area, axis);
+            spot.display.0[axis] = [low.min(from), high.max(to)];
+        }
+    }
+    spots
+}
+
+fn extent_of(area: Area, axis: usize) -> [f64; 2] {
+    if axis == 0 { [area.x, area.x + area.w] } else { [area.y, area.y + area.h] }
+}

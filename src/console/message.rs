@@ -1,0 +1,31 @@
+//! What reaches the console, and what it asks for.
+
+use crossterm::event::KeyEvent;
+
+use super::playback::Move;
+use crate::session::Event;
+
+/// Something that the console has to know.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Message {
+    Key(KeyEvent),
+    /// The mouse pointer is over this cell, column and row.
+    Pointer(u16, u16),
+    /// The terminal has this size now, columns and rows.
+    Resized(u16, u16),
+    /// The terminal window gained or lost the keyboard.
+    Focus(bool),
+    /// The session did not take an input, for this reason.
+    Refused(String),
+}
+
+/// What the console asks of whoever runs it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// An input of the session.
+    Input(Event),
+    /// Another place in a recording.
+    Move(Move),
+    /// Close the console; in a live run the session ends.
+    Quit,
+}

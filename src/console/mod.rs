@@ -1,0 +1,17 @@
+//! The wizard's console, as in the Elm architecture: `key -> Message -> update -> Option<Command>`, and a
+//! [`view`] that only reads. What affects participant, robot or analysis leaves as an event; the rest stays in the [`Model`].
+
+pub mod arrange;
+pub mod keys;
+pub mod message;
+pub mod model;
+pub mod playback;
+pub mod update;
+pub mod view;
+pub mod words;
+
+pub use keys::Keys;
+pub use message::{Command, Message};
+pub use model::Model;
+pub use update::update;
+pub use view::view;

@@ -1,0 +1,141 @@
+//! What the console knows beside the session: which keys are active, what is open, what was said last.
+
+use std::collections::VecDeque;
+
+use crossterm::event::KeyCode;
+
+use super::keys::{Keys, Layer};
+use super::playback::Playback;
+use super::view::theme::Theme;
+use crate::base::time::SessionTime;
+use crate::gaze::GazeSample;
+use crate::kitchen::Agent;
+use crate::session::settings::GazeSource;
+use crate::session::{Entry, Happening};
+
+/// How many gaze samples the trail of the gaze map keeps.
+const TRAIL: usize = 240;
+
+/// What is open above the panels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dialog {
+    Help,
+    /// Asks whether to end the session and leave.
+    Quit,
+    /// Asks whether to end the trial.
+    EndTrial,
+}
+
+/// How much a notice matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// Something was done.
+    Done,
+    /// Something was not done.
+    Refused,
+    /// Something is wrong until it is mended.
+    Alarm,
+}
+
+/// A line to the wizard.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Notice {
+    pub text: String,
+    pub level: Level,
+    pub at: SessionTime,
+}
+
+/// Whether what happens is kept.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Recording {
+    /// Nothing is recorded.
+    Off,
+    /// Written to this folder.
+    On(String),
+    /// The log cannot be written, for this reason.
+    Lost(String),
+}
+
+/// Everything that only concerns the screen and the hands at the keyboard.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The moment that is drawn.
+    pub now: SessionTime,
+    /// Columns and rows of the terminal.
+    pub size: (u16, u16),
+    pub theme: Theme,
+    pub keys: Keys,
+    pub layer: Layer,
+    pub dialog: Option<Dialog>,
+    pub notice: Option<Notice>,
+    pub recording: Recording,
+    /// The terminal window has the keyboard.
+    pub focused: bool,
+    /// The cell under the mouse pointer, as a display point (fractions; outside of 0..1 beside the kitchen).
+    pub pointer: Option<[f64; 2]>,
+    /// The newest gaze samples with their times, oldest first, for the gaze map.
+    pub trail: VecDeque<(SessionTime, GazeSample)>,
+    /// Lines of the gaze input that were no samples.
+    pub malformed: u64,
+    /// The times of the human presses that were errors, in order.
+    pub errors: Vec<SessionTime>,
+    /// Set when a recording is replayed.
+    pub playback: Option<Playback>,
+    /// The terminal tells key repeat from key press.
+    pub(super) exact_keys: bool,
+    /// Keys that were pressed a moment ago, against key repeat.
+    pub(super) pressed: Vec<(KeyCode, SessionTime)>,
+}
+
+impl Model {
+    /// A console before its first frame.
+    pub fn new(keys: Keys, theme: Theme, size: (u16, u16)) -> Model {
+        Model {
+            now: SessionTime::ZERO,
+            size,
+            theme,
+            keys,
+            layer: Layer::Wizard,
+            dialog: None,
+            notice: None,
+            recording: Recording::Off,
+            focused: true,
+            pointer: None,
+            trail: VecDeque::with_capacity(TRAIL),
+            malformed: 0,
+            errors: Vec::new(),
+            playback: None,
+            exact_keys: false,
+            pressed: Vec::new(),
+        }
+    }
+
+    /// Says something to the wizard.
+    pub fn say(&mut self, level: Level, text: impl Into<String>) {
+        self.notice = Some(Notice { text: text.into(), level, at: self.now });
+    }
+
+    /// Remembers a gaze sample for the gaze map.
+    pub fn see(&mut self, at: SessionTime, sample: GazeSample) {
+        if self.trail.len() == TRAIL {
+            self.trail.pop_front();
+        }
+        self.trail.push_back((at, sample));
+    }
+
+    /// Whether this entry of the timeline is a press of the human that was an error.
+    pub fn is_error(&self, entry: &Entry) -> bool {
+        matches!(entry.what, Happening::Press { agent: Agent::Human, .. })
+            && self.errors.binary_search(&entry.time).is_ok()
+    }
+
+    /// The words for a source of gaze.
+    pub fn gaze_label(source: GazeSource) -> &'static str {
+        match source {
+            GazeSource::Simulated => "simulated",
+            GazeSource::Mouse => "mouse",
+            GazeSource::Json => "json",
+            GazeSource::None => "none",
+        }
+    }
+}

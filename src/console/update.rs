@@ -1,0 +1,195 @@
+//! `update`: a message comes in, the model changes, and what concerns the session leaves as a command.
+
+use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
+
+use super::arrange::Plan;
+use super::keys::{Action, Chord, Layer, NOTES};
+use super::message::{Command, Message};
+use super::model::{Dialog, Level, Model};
+use super::view::regions::Regions;
+use super::words;
+use crate::communication::Sender;
+use crate::kitchen::Agent;
+use crate::session::admit::admit;
+use crate::session::event::{EndReason, SignalEnd};
+use crate::session::settings::ParticipantKind;
+use crate::session::{Event, Phase, Session};
+
+/// A key that the terminal reports again within this time is held down, not pressed again: longer than the usual delay
+/// before key repeat sets in (0.25 to 0.66 s). Only where the terminal does not report repeats as such.
+const REPEAT_GUARD_S: f64 = 0.7;
+
+/// Takes a message at the time `model.now`.
+pub fn update(model: &mut Model, session: &Session, message: Message) -> Option<Command> {
+    match message {
+        Message::Key(key) => pressed(model, session, &key),
+        Message::Pointer(column, row) => {
+            let regions = Regions::new(model.size, session.spec.console.visibility);
+            let plan = Plan::new(
+                &session.kitchen,
+                regions.kitchen_inside(),
+                session.spec.participant.kind == ParticipantKind::Keyboard,
+            );
+            model.pointer = Some(plan.display_point(column, row));
+            None
+        }
+        Message::Resized(columns, rows) => {
+            model.size = (columns, rows);
+            None
+        }
+        Message::Focus(focused) => {
+            model.focused = focused;
+            model.pressed.clear();
+            None
+        }
+        Message::Refused(reason) => {
+            model.say(Level::Refused, reason);
+            None
+        }
+    }
+}
+
+fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Command> {
+    let first = is_first(model, key);
+    if key.kind == KeyEventKind::Release {
+        return None;
+    }
+    let chord = Chord::of(key);
+    let action = model.keys.find(model.layer, chord).map(|line| line.action.clone());
+    match action {
+        Some(Action::StopRobot) => stop_robot(model, session),
+        Some(Action::Move(to)) if model.dialog.is_none() => Some(Command::Move(to)),
+        _ if !first => None,
+        action if model.dialog.is_some() => answer(model, chord, action),
+        Some(action) => act(model, session, action),
+        None => {
+            unknown(model, session, key.code);
+            None
+        }
+    }
+}
+
+/// Whether the key went down just now, and does not only repeat.
+fn is_first(model: &mut Model, key: &KeyEvent) -> bool {
+    if key.kind != KeyEventKind::Press {
+        model.exact_keys = true;
+        return false;
+    }
+    if model.exact_keys {
+        return true;
+    }
+    let now = model.now;
+    let held = model.pressed.iter().any(|&(code, at)| code == key.code && now.secs_since(at) < REPEAT_GUARD_S);
+    model.pressed.retain(|&(code, at)| code != key.code && now.secs_since(at) < REPEAT_GUARD_S);
+    model.pressed.push((key.code, now));
+    !held
+}
+
+/// The space bar: works in every view, and does nothing twice.
+fn stop_robot(model: &mut Model, session: &Session) -> Option<Command> {
+    if session.robot.stopped {
+        return None;
+    }
+    send(model, session, Event::RobotStopped, Level::Alarm, "the robot is stopped")
+}
+
+fn answer(model: &mut Model, chord: Chord, action: Option<Action>) -> Option<Command> {
+    let dialog = model.dialog.take()?;
+    let again = match dialog {
+        Dialog::Quit => Some(Action::Quit),
+        Dialog::EndTrial => Some(Action::EndTrial),
+        Dialog::Help => None,
+    };
+    let yes = matches!(chord.code, KeyCode::Char('y') | KeyCode::Enter) || (again.is_some() && action == again);
+    match dialog {
+        Dialog::Quit if yes => Some(Command::Quit),
+        Dialog::EndTrial if yes => Some(Command::Input(Event::TrialEnded { reason: EndReason::Wizard })),
+        _ => None,
+    }
+}
+
+fn act(model: &mut Model, session: &Session, action: Action) -> Option<Command> {
+    match action {
+        Action::Signal(_, signal) => {
+            let words = format!("shown: {}", words::signal(&signal));
+            send(model, session, Event::SignalShown { by: Sender::Wizard, signal }, Level::Done, &words)
+        }
+        Action::Press(button) => {
+            let button = session.kitchen.button(Agent::Human, button).name.clone();
+            send(model, session, Event::Press { agent: Agent::Human, button }, Level::Done, "")
+        }
+        Action::TakeBack => {
+            send(model, session, Event::SignalEnded { reason: SignalEnd::TakenBack }, Level::Done, "taken back")
+        }
+        Action::Note(index) => {
+            let note = NOTES.get(index)?.to_string();
+            let words = format!("marked: {note}");
+            send(model, session, Event::Marker { note }, Level::Done, &words)
+        }
+        Action::Advance => advance(model, session),
+        Action::ResumeRobot => send(model, session, Event::RobotResumed, Level::Done, "the robot goes on"),
+        Action::EndTrial => match session.phase {
+            Phase::Running | Phase::Paused => {
+                model.dialog = Some(Dialog::EndTrial);
+                None
+            }
+            _ => {
+                model.say(Level::Refused, "there is no trial to end");
+                None
+            }
+        },
+        Action::SwitchLayer => {
+            model.layer = if model.layer == Layer::Wizard { Layer::Participant } else { Layer::Wizard };
+            None
+        }
+        Action::Help => {
+            model.dialog = Some(Dialog::Help);
+            None
+        }
+        Action::Quit if model.playback.is_some() || session.phase == Phase::Closed => Some(Command::Quit),
+        Action::Quit => {
+            model.dialog = Some(Dialog::Quit);
+            None
+        }
+        Action::StopRobot | Action::Move(_) => None,
+    }
+}
+
+fn advance(model: &mut Model, session: &Session) -> Option<Command> {
+    let (event, words) = match session.phase {
+        Phase::Ready => (Event::TrialStarted, "the trial runs"),
+        Phase::Running => (Event::TrialPaused, "paused"),
+        Phase::Paused => (Event::TrialResumed, "the trial runs"),
+        Phase::Over(_) | Phase::Closed => {
+            model.say(Level::Refused, "the trial is over");
+            return None;
+        }
+    };
+    send(model, session, event, Level::Done, words)
+}
+
+/// Sends an input if the session takes it now; else says why not.
+fn send(model: &mut Model, session: &Session, event: Event, level: Level, words: &str) -> Option<Command> {
+    if let Err(reason) = admit(session, &event) {
+        model.say(Level::Refused, reason);
+        return None;
+    }
+    match words {
+        "" => model.notice = None,
+        words => model.say(level, words),
+    }
+    Some(Command::Input(event))
+}
+
+/// A key without a meaning here: says so if it has one in the other layer.
+fn unknown(model: &mut Model, session: &Session, code: KeyCode) {
+    let KeyCode::Char(key) = code else { return };
+    let other = if model.layer == Layer::Wizard { Layer::Participant } else { Layer::Wizard };
+    let chord = Chord { code, ctrl: false };
+    if model.keys.find(other, chord).is_some() {
+        let whose = if other == Layer::Wizard { "wizard" } else { "participant" };
+        model.say(Level::Refused, format!("\"{key}\" is a key of the {whose}: switch with tab"));
+    } else if model.playback.is_none() && session.phase != Phase::Closed {
+        model.say(Level::Refused, format!("\"{key}\" has no meaning: ? shows the keys"));
+    }
+}

@@ -1,0 +1,140 @@
+//! What opens above the panels: the help, made from the table of keys, and the questions before something ends.
+
+use ratatui::layout::Rect;
+
+use super::paint::{Brush, width};
+use super::theme::Role;
+use crate::console::keys::{Binding, Layer};
+use crate::console::model::{Dialog, Model};
+use crate::session::{Phase, Session};
+
+/// Draws the open dialog, if there is one.
+pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
+    match model.dialog {
+        None => {}
+        Some(Dialog::Help) => help(brush, screen, model),
+        Some(Dialog::EndTrial) => ask(brush, screen, "End the trial?", &["It cannot be resumed after that."]),
+        Some(Dialog::Quit) => {
+            let lines: &[&str] = match session.phase {
+                Phase::Running | Phase::Paused => {
+                    &["The trial is not over.", "The session ends, the recording is kept."]
+                }
+                _ => &["The session ends, the recording is kept."],
+            };
+            ask(brush, screen, "Quit tomcom?", lines);
+        }
+    }
+}
+
+/// Clears the middle of the screen and frames it.
+fn open(brush: &mut Brush, screen: Rect, size: (u16, u16), title: &str, remark: &str) -> Rect {
+    let (columns, rows) = (size.0.min(screen.width), size.1.min(screen.height));
+    let area = Rect {
+        x: screen.x + (screen.width - columns) / 2,
+        y: screen.y + (screen.height - rows) / 2,
+        width: columns,
+        height: rows,
+    };
+    for y in area.y..area.bottom() {
+        for x in area.x..area.right() {
+            if let Some(cell) = brush.buffer.cell_mut((x, y)) {
+                cell.reset();
+            }
+        }
+    }
+    let inside = brush.panel(area, title, remark);
+    let style = brush.style(Role::Strong);
+    brush.frame(area, &brush.theme.signs().frame, style);
+    brush.text(area.x + 2, area.y, columns, &format!(" {title} "), style);
+    if !remark.is_empty() {
+        brush.text_right(area.right() - 2, area.y, columns, &format!(" {remark} "), style);
+    }
+    inside
+}
+
+fn ask(brush: &mut Brush, screen: Rect, title: &str, lines: &[&str]) {
+    let inside = open(brush, screen, (46, lines.len() as u16 + 5), title, "");
+    for (row, line) in lines.iter().enumerate() {
+        brush.parts(inside.x + 2, inside.y + 1 + row as u16, inside.width - 3, &[(line, Role::Text)]);
+    }
+    let y = inside.bottom() - 1;
+    let parts = [("y", Role::Strong), (" yes    ", Role::Text), ("any other key", Role::Strong), (" no", Role::Text)];
+    brush.parts(inside.x + 2, y, inside.width - 3, &parts);
+}
+
+/// A line of the help: a heading, or a key with what it does.
+enum Line<'a> {
+    Heading(&'a str),
+    Key(&'a Binding),
+    Space,
+}
+
+fn help(brush: &mut Brush, screen: Rect, model: &Model) {
+    let mut groups: Vec<(&str, Vec<&Binding>)> = Vec::new();
+    for binding in &model.keys.bindings {
+        match groups.iter_mut().find(|(group, _)| *group == binding.group) {
+            Some((_, members)) => members.push(binding),
+            None => groups.push((binding.group, vec![binding])),
+        }
+    }
+    let rows = screen.height.saturating_sub(3);
+    let columns = columns(&groups, usize::from(rows));
+    let tallest = columns.iter().map(Vec::len).max().unwrap_or(0) as u16;
+    let column_width = (screen.width.saturating_sub(4) / columns.len().max(1) as u16).min(46);
+    let size = (column_width * columns.len() as u16 + 4, tallest + 2);
+    let inside = open(brush, screen, size, "Keys", "any key closes");
+    for (index, column) in columns.iter().enumerate() {
+        let x = inside.x + 1 + index as u16 * column_width;
+        for (row, line) in column.iter().take(usize::from(inside.height)).enumerate() {
+            help_line(brush, x, inside.y + row as u16, column_width - 1, line);
+        }
+    }
+}
+
+fn help_line(brush: &mut Brush, x: u16, y: u16, columns: u16, line: &Line) {
+    match line {
+        Line::Space => {}
+        Line::Heading(text) => {
+            let style = brush.style(Role::Strong);
+            brush.text(x, y, columns, text, style);
+        }
+        Line::Key(binding) => {
+            let key = binding.chord.to_string();
+            let role = match binding.layer {
+                Some(Layer::Wizard) => Role::Signal,
+                Some(Layer::Participant) => Role::Human,
+                None => Role::Strong,
+            };
+            let style = brush.style(role);
+            brush.text(x + 6 - width(&key).min(6), y, 6, &key, style);
+            brush.parts(x + 7, y, columns.saturating_sub(7), &[(&binding.help, Role::Text)]);
+        }
+    }
+}
+
+/// The groups in as few columns as hold them; a group that is longer than a column goes on in the next.
+fn columns<'a>(groups: &'a [(&'a str, Vec<&'a Binding>)], rows: usize) -> Vec<Vec<Line<'a>>> {
+    let rows = rows.max(4);
+    let mut columns: Vec<Vec<Line>> = vec![Vec::new()];
+    for (group, members) in groups {
+        let used = columns.last().map_or(0, Vec::len);
+        if used > 0 && used + members.len() + 2 > rows {
+            columns.push(Vec::new());
+        }
+        for (index, member) in members.iter().enumerate() {
+            let Some(column) = columns.last_mut() else { continue };
+            if column.len() >= rows {
+                columns.push(Vec::new());
+            }
+            let Some(column) = columns.last_mut() else { continue };
+            if index == 0 {
+                if !column.is_empty() {
+                    column.push(Line::Space);
+                }
+                column.push(Line::Heading(group));
+            }
+            column.push(Line::Key(member));
+        }
+    }
+    columns
+}

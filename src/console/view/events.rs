@@ -1,0 +1,38 @@
+//! What happened, in words, the newest on top: where the terminal is large.
+
+use super::paint::Brush;
+use super::regions::Regions;
+use super::theme::Role;
+use crate::console::model::Model;
+use crate::console::words;
+use crate::kitchen::Agent;
+use crate::session::{Happening, Session};
+
+/// Draws the list of events.
+pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+    if regions.events.area() == 0 {
+        return;
+    }
+    let inside = brush.panel(regions.events, "Events", "newest first");
+    let newest = session.timeline.iter().rev();
+    for (row, entry) in newest.take(usize::from(inside.height)).enumerate() {
+        let y = inside.y + row as u16;
+        let age = (model.now - entry.time).to_string();
+        let (who, what) = words::happening(&session.kitchen, &entry.what);
+        let is_error = model.is_error(entry);
+        let role = match &entry.what {
+            Happening::Press { agent: Agent::Human, .. } => Role::Human,
+            Happening::Press { agent: Agent::Robot, .. } => Role::Robot,
+            Happening::Signal { .. } | Happening::SignalEnded(_) => Role::Signal,
+            Happening::RobotStopped => Role::Alarm,
+            _ => Role::Strong,
+        };
+        let quiet = brush.style(Role::Quiet);
+        brush.text_right(inside.x + 6, y, 6, &age, quiet);
+        let x = inside.x + 7;
+        let columns = inside.right().saturating_sub(x + 9);
+        brush.parts(x, y, 9, &[(who, role)]);
+        let mark = if is_error { format!(" {} error", brush.theme.signs().error) } else { String::new() };
+        brush.parts(x + 9, y, columns, &[(&what, Role::Text), (&mark, Role::Alarm)]);
+    }
+}

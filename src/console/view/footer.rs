@@ -1,0 +1,71 @@
+//! The key line: which layer is active, what the keys do now, and what was said last.
+
+use super::paint::{Brush, width};
+use super::regions::Regions;
+use super::theme::Role;
+use crate::console::keys::{Action, Binding, Layer, NOTES};
+use crate::console::model::{Level, Model};
+use crate::session::settings::ParticipantKind;
+use crate::session::{Phase, Session};
+
+/// How long a notice stays, in seconds.
+const NOTICE_S: f64 = 4.0;
+
+/// Draws the key line.
+pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+    let area = regions.footer;
+    let mut x = area.x;
+    if session.spec.participant.kind == ParticipantKind::Keyboard && model.playback.is_none() {
+        let (label, role) = match model.layer {
+            Layer::Wizard => (" KEYS: WIZARD ", Role::Signal),
+            Layer::Participant => (" KEYS: PARTICIPANT ", Role::Human),
+        };
+        let badge = brush.theme.badge(role);
+        x = brush.text(x, area.y, area.width, label, badge);
+    }
+    let notice = model.notice.as_ref().filter(|notice| model.now.secs_since(notice.at) < NOTICE_S);
+    let said = notice.map_or(0, |notice| width(&notice.text) + 3).min(area.width / 2);
+    let end = area.right().saturating_sub(said);
+    for binding in &model.keys.bindings {
+        let Some(label) = label(binding, session, model) else { continue };
+        let key = match binding.action {
+            Action::Note(_) => format!("1-{}", NOTES.len()),
+            _ => binding.chord.to_string(),
+        };
+        if x + width(&key) + width(label) + 3 > end {
+            continue;
+        }
+        let key_style = if binding.action == Action::StopRobot { Role::Alarm } else { Role::Strong };
+        x = brush.parts(x + 2, area.y, end - x, &[(&key, key_style), (" ", Role::Text), (label, Role::Quiet)]);
+    }
+    if let Some(notice) = notice {
+        let style = match notice.level {
+            Level::Done => brush.style(Role::Strong),
+            Level::Refused => brush.style(Role::FalseBelief),
+            Level::Alarm => brush.theme.badge(Role::Alarm),
+        };
+        brush.text_right(area.right(), area.y, said, &format!(" {} ", notice.text), style);
+    }
+}
+
+/// What the footer says of a key, if it does something now.
+fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&'a str> {
+    let label = binding.footer?;
+    if binding.layer.is_some_and(|layer| layer != model.layer) {
+        return None;
+    }
+    let runs = matches!(session.phase, Phase::Running | Phase::Paused);
+    match binding.action {
+        Action::Advance => match session.phase {
+            Phase::Ready => Some("start"),
+            Phase::Running => Some("pause"),
+            Phase::Paused => Some("resume"),
+            Phase::Over(_) | Phase::Closed => None,
+        },
+        Action::EndTrial => runs.then_some(label),
+        Action::StopRobot => (!session.robot.stopped).then_some(label),
+        Action::ResumeRobot => session.robot.stopped.then_some(label),
+        Action::TakeBack => session.shown.is_some().then_some(label),
+        _ => Some(label),
+    }
+}

@@ -1,0 +1,146 @@
+//! The gaze: where, how old, how good; what changed unseen; and the gaze map.
+
+use ratatui::layout::Rect;
+
+use super::paint::{Brush, fit};
+use super::regions::{Regions, Room};
+use super::theme::Role;
+use crate::base::time::SessionTime;
+use crate::console::model::Model;
+use crate::console::words;
+use crate::gaze::nearest_location;
+use crate::kitchen::{Agent, LocationId};
+use crate::session::Session;
+
+/// How long the trail of the gaze map is, in seconds.
+const TRAIL_S: f64 = 2.0;
+
+/// Draws the gaze panel.
+pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+    let area = regions.gaze;
+    let unseen = unseen(session, model);
+    if regions.room == Room::Small {
+        brush.parts(area.x, area.y, area.width, &[(" gaze     ", Role::Quiet)]);
+        let x = line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
+        if !unseen.is_empty() {
+            let rest = area.right().saturating_sub(x + 3);
+            brush.parts(x + 3, area.y, rest, &[("unseen: ", Role::Quiet), (&unseen.join(", "), Role::Text)]);
+        }
+        return;
+    }
+    let source = Model::gaze_label(session.spec.participant.gaze);
+    let inside = brush.panel(area, "Gaze", source);
+    let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+    line(brush, x, inside.y, columns, session, model);
+    quality(brush, x, inside.y + 1, columns, session, model);
+    let list = if unseen.is_empty() { "nothing".to_string() } else { unseen.join(", ") };
+    let list = format!("changed unseen: {list}");
+    let text = brush.style(Role::Text);
+    for (row, line) in super::paint::wrap(&list, columns).iter().take(usize::from(inside.height - 2)).enumerate() {
+        brush.text(x, inside.y + 2 + row as u16, columns, line, text);
+    }
+}
+
+fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) -> u16 {
+    let Some((at, sample)) = session.gaze.last else {
+        return brush.parts(x, y, columns, &[("no sample so far", Role::Quiet)]);
+    };
+    let sign = brush.theme.signs().gaze;
+    let age_s = model.now.secs_since(at);
+    let place = match nearest_location(&session.kitchen, [sample.x, sample.y]) {
+        Some((location, 0.0)) => session.kitchen.location(location).label(),
+        Some((location, distance_m)) => {
+            format!("{:.0} cm from {}", distance_m * 100.0, session.kitchen.location(location).label())
+        }
+        None => "display".to_string(),
+    };
+    let age = if age_s < 0.2 { "now".to_string() } else { format!("{age_s:.1} s ago") };
+    brush.parts(
+        x,
+        y,
+        columns,
+        &[(sign, Role::Gaze), (" ", Role::Text), (&place, Role::Gaze), (", ", Role::Quiet), (&age, Role::Quiet)],
+    )
+}
+
+fn quality(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
+    let gaze = &session.gaze;
+    let unusable = 100.0 * gaze.unusable as f64 / gaze.samples.max(1) as f64;
+    let confidence = gaze.last.map_or("-".to_string(), |(_, sample)| format!("{:.2}", sample.confidence));
+    let mut text = format!("{:.0} Hz, confidence {confidence}, {unusable:.0} % unusable", gaze.rate_hz);
+    if model.malformed > 0 {
+        text = format!("{text}, {} malformed", model.malformed);
+    }
+    brush.parts(x, y, columns, &[(&text, Role::Quiet)]);
+}
+
+/// The locations that changed by no press of the human and were not looked at since, the longest first: facts, no
+/// estimate.
+fn unseen(session: &Session, model: &Model) -> Vec<String> {
+    let changed = |index: &usize| {
+        let at = session.changed_at[*index];
+        let seen = session.gaze.looked_at[*index].is_some_and(|seen| seen >= at);
+        at > SessionTime::ZERO
+            && session.gaze.samples > 0
+            && !seen
+            && words::changed_by(session, at) != Some(Agent::Human)
+    };
+    let mut unseen: Vec<usize> = (0..session.kitchen.locations.len()).filter(changed).collect();
+    unseen.sort_by_key(|&index| session.changed_at[index]);
+    let label = |index: usize| {
+        let location = session.kitchen.location(LocationId(index as u8)).label();
+        format!("{location} {}", model.now - session.changed_at[index])
+    };
+    unseen.into_iter().map(label).collect()
+}
+
+/// Draws the display to scale with the trail of the gaze, and when each place was looked at last.
+pub fn draw_map(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+    if regions.gaze_map.area() == 0 {
+        return;
+    }
+    let inside = brush.panel(regions.gaze_map, "Gaze map", "seconds since it was looked at");
+    let cell = |point: [f64; 2]| {
+        let along = |value: f64, low: u16, length: u16| low + (value.clamp(0.0, 0.999) * f64::from(length)) as u16;
+        (along(point[0], inside.x, inside.width), along(point[1], inside.y, inside.height))
+    };
+    for (index, location) in session.kitchen.locations.iter().enumerate() {
+        let (x, y) = cell(location.display.centre());
+        let seen = session.gaze.looked_at[index].map(|at| model.now.secs_since(at));
+        let y = y.min(inside.bottom().saturating_sub(2));
+        let label = match model.keys.of_signal(LocationId(index as u8)) {
+            Some(key) => format!("[{key}]"),
+            None => fit(&location.label(), 6, brush.theme.signs().ellipsis),
+        };
+        let (age, role) = match seen {
+            Some(age_s) if age_s < 1.0 => ("now".to_string(), Role::Gaze),
+            Some(age_s) => (format!("{age_s:.0}s"), Role::Text),
+            None => ("never".to_string(), Role::Quiet),
+        };
+        write_centred(brush, inside, x, y, &label, Role::Quiet);
+        write_centred(brush, inside, x, y + 1, &age, role);
+    }
+    let signs = brush.theme.signs();
+    for (at, sample) in &model.trail {
+        if model.now.secs_since(*at) < TRAIL_S {
+            let (x, y) = cell([sample.x, sample.y]);
+            let style = brush.style(Role::Gaze);
+            brush.text(x, y, 1, signs.trail, style);
+        }
+    }
+    if let Some((_, sample)) = session.gaze.last {
+        let (x, y) = cell([sample.x, sample.y]);
+        let style = brush.style(Role::Gaze);
+        brush.text(x, y, 1, signs.gaze, style);
+    }
+}
+
+fn write_centred(brush: &mut Brush, inside: Rect, x: u16, y: u16, text: &str, role: Role) {
+    let columns = super::paint::width(text);
+    let last = inside.right().saturating_sub(columns);
+    let x = x.saturating_sub(columns / 2).clamp(inside.x, last.max(inside.x));
+    if y < inside.bottom() {
+        let style = brush.style(role);
+        brush.text(x, y, columns, text, style);
+    }
+}

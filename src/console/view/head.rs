@@ -1,0 +1,107 @@
+//! The head line: where are we, and is everything alive.
+
+use super::paint::{Brush, width};
+use super::regions::{Regions, Room};
+use super::theme::Role;
+use crate::console::model::{Model, Recording};
+use crate::console::words;
+use crate::session::settings::{Condition, GazeSource};
+use crate::session::{Phase, Session};
+
+/// Draws the head line.
+pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+    let area = regions.head;
+    let gap = if regions.room == Room::Small { 1 } else { 3 };
+    let strong = brush.style(Role::Strong);
+    let mut x = brush.text(area.x + 1, area.y, area.width, "tomcom", strong) + gap;
+    let badge = brush.theme.badge(phase_role(session.phase));
+    x = brush.text(x, area.y, 14, &format!(" {} ", words::phase(session.phase)), badge) + gap;
+    x = clock(brush, x, area.y, session, model) + gap;
+    let presses = session.presses.iter().sum::<u32>();
+    let counts = format!("{presses:>3}/{} presses", session.spec.trial.presses);
+    let text = brush.style(Role::Text);
+    x = brush.text(x, area.y, 20, &counts, text) + gap;
+    let healths = healths(session, model, regions.room);
+    let needed = healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
+    let mut right = area.right().saturating_sub(needed).max(x);
+    let quiet = brush.style(Role::Quiet);
+    for text in facts(session, model) {
+        if x + width(&text) + gap < right {
+            x = brush.text(x, area.y, right - x, &text, quiet) + gap;
+        }
+    }
+    for (text, role) in healths {
+        let style = brush.style(role);
+        right = brush.text(right, area.y, area.right().saturating_sub(right), &text, style) + gap;
+    }
+}
+
+fn phase_role(phase: Phase) -> Role {
+    match phase {
+        Phase::Running => Role::Text,
+        Phase::Paused => Role::FalseBelief,
+        _ => Role::Quiet,
+    }
+}
+
+fn clock(brush: &mut Brush, x: u16, y: u16, session: &Session, model: &Model) -> u16 {
+    let clock = session.trial_clock(model.now).to_string();
+    let total = crate::base::time::SessionTime::from_secs_f64(session.spec.trial.seconds);
+    brush.parts(x, y, 16, &[(&format!("{clock:>5}"), Role::Strong), (&format!(" / {total}"), Role::Quiet)])
+}
+
+/// What stays the same during a trial, the most important first.
+fn facts(session: &Session, model: &Model) -> Vec<String> {
+    let condition = match session.spec.trial.condition {
+        Condition::None => "unassisted",
+        Condition::Wizard => "wizard",
+    };
+    let served = format!("{} served", session.served.len());
+    let mut facts = vec![session.spec.participant.code.clone(), condition.to_string(), served];
+    if let Some(playback) = &model.playback {
+        facts.push(playback.name.clone());
+    }
+    facts.push(session.kitchen.title.clone());
+    facts
+}
+
+/// Recording, gaze and robot: each with its state in words.
+fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> {
+    let mut healths = Vec::new();
+    if !model.focused {
+        healths.push((" KEYBOARD IS ELSEWHERE ".to_string(), Role::Alarm));
+    }
+    match &model.playback {
+        Some(playback) => {
+            let state = if playback.playing { "play" } else { "stand" };
+            let follows = if playback.follows { " live" } else { "" };
+            let label =
+                format!("{state} {}{follows}  event {}/{}", playback.speed_label(), playback.event, playback.events);
+            healths.push((label, Role::Strong));
+            if playback.cut && !playback.follows {
+                healths.push(("cut".to_string(), Role::Alarm));
+            }
+        }
+        None => healths.push(match &model.recording {
+            Recording::Off => ("not recorded".to_string(), Role::Quiet),
+            Recording::On(_) => (format!("{} rec", model.theme.signs().recording), Role::Alarm),
+            Recording::Lost(reason) => (format!("RECORDING LOST: {reason}"), Role::Alarm),
+        }),
+    }
+    healths.push(gaze(session, model));
+    let robot = if session.robot.stopped { ("ROBOT STOPPED", Role::Alarm) } else { ("robot ok", Role::Text) };
+    if room > Room::Small || session.robot.stopped {
+        healths.push((robot.0.to_string(), robot.1));
+    }
+    healths
+}
+
+fn gaze(session: &Session, model: &Model) -> (String, Role) {
+    let age_s = session.gaze.last.map(|(at, _)| model.now.secs_since(at));
+    match age_s {
+        _ if session.spec.participant.gaze == GazeSource::None => ("no gaze".to_string(), Role::Quiet),
+        Some(age_s) if age_s < 1.0 => (format!("gaze {:>3.0} Hz", session.gaze.rate_hz), Role::Text),
+        Some(age_s) if session.is_running() => (format!("NO GAZE {age_s:.0} s"), Role::Alarm),
+        _ => ("gaze waits".to_string(), Role::Quiet),
+    }
+}

@@ -1,0 +1,56 @@
+//! `view(&Session, &Model, &mut Frame)`: reads, draws, and changes nothing.
+
+pub mod belief;
+pub mod dialog;
+pub mod events;
+pub mod footer;
+pub mod gaze;
+pub mod head;
+pub mod kitchen;
+pub mod paint;
+pub mod recommendation;
+pub mod regions;
+pub mod robot;
+pub mod shown;
+pub mod theme;
+pub mod timeline;
+
+use ratatui::Frame;
+
+use super::model::Model;
+use crate::session::Session;
+use paint::Brush;
+use regions::{LEAST, Regions};
+use theme::Role;
+
+/// Draws the console.
+pub fn view(session: &Session, model: &Model, frame: &mut Frame) {
+    let area = frame.area();
+    let mut brush = Brush { buffer: frame.buffer_mut(), theme: model.theme };
+    if area.width < LEAST.0 || area.height < LEAST.1 {
+        too_small(&mut brush, session);
+        return;
+    }
+    let regions = Regions::new((area.width, area.height), session.spec.console.visibility);
+    head::draw(&mut brush, &regions, session, model);
+    kitchen::draw(&mut brush, &regions, session, model);
+    belief::draw(&mut brush, &regions, session);
+    recommendation::draw(&mut brush, &regions);
+    gaze::draw_map(&mut brush, &regions, session, model);
+    shown::draw(&mut brush, &regions, session, model);
+    robot::draw(&mut brush, &regions, session, model);
+    gaze::draw(&mut brush, &regions, session, model);
+    events::draw(&mut brush, &regions, session, model);
+    timeline::draw(&mut brush, &regions, session, model);
+    footer::draw(&mut brush, &regions, session, model);
+    dialog::draw(&mut brush, area, session, model);
+}
+
+fn too_small(brush: &mut Brush, session: &Session) {
+    let area = *brush.buffer.area();
+    let (alarm, text) = (brush.style(Role::Alarm), brush.style(Role::Text));
+    let need = format!("{}x{} is too small: the console needs {}x{}", area.width, area.height, LEAST.0, LEAST.1);
+    brush.text(0, 0, area.width, &need, text);
+    let stop = if session.robot.stopped { "ROBOT STOPPED" } else { "the space bar stops the robot" };
+    brush.text(0, 1, area.width, stop, alarm);
+}

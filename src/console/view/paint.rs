@@ -1,0 +1,127 @@
+//! The brush: text that is cut to its room, frames with titles, bars.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+use ratatui::text::Span;
+
+use super::regions::inside;
+use super::theme::{Role, Theme};
+
+/// Paints on a buffer in a theme.
+pub struct Brush<'a> {
+    pub buffer: &'a mut Buffer,
+    pub theme: Theme,
+}
+
+/// Columns that a text takes.
+pub fn width(text: &str) -> u16 {
+    Span::raw(text).width() as u16
+}
+
+/// The text cut to `columns`, with an ellipsis if something is missing.
+pub fn fit(text: &str, columns: u16, ellipsis: &str) -> String {
+    if width(text) <= columns {
+        return text.to_string();
+    }
+    let mut cut = String::new();
+    for letter in text.chars() {
+        if width(&cut) + width(letter.encode_utf8(&mut [0; 4])) + width(ellipsis) > columns {
+            break;
+        }
+        cut.push(letter);
+    }
+    cut.truncate(cut.trim_end().len());
+    if columns >= width(ellipsis) {
+        cut.push_str(ellipsis);
+    }
+    cut
+}
+
+/// The text in lines of at most `columns`, broken between words.
+pub fn wrap(text: &str, columns: u16) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if width(line) + 1 + width(word) <= columns => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_string()),
+        }
+    }
+    lines
+}
+
+impl Brush<'_> {
+    pub fn style(&self, role: Role) -> Style {
+        self.theme.style(role)
+    }
+
+    /// Writes at most `columns` of a text and returns the column after it.
+    pub fn text(&mut self, x: u16, y: u16, columns: u16, text: &str, style: Style) -> u16 {
+        let area = *self.buffer.area();
+        if y < area.y || y >= area.bottom() || x < area.x || x >= area.right() {
+            return x;
+        }
+        let text = fit(text, columns.min(area.right() - x), self.theme.signs().ellipsis);
+        self.buffer.set_stringn(x, y, &text, usize::from(columns), style).0
+    }
+
+    /// Writes a text that ends before column `right`.
+    pub fn text_right(&mut self, right: u16, y: u16, columns: u16, text: &str, style: Style) {
+        let text = fit(text, columns, self.theme.signs().ellipsis);
+        self.text(right.saturating_sub(width(&text)), y, columns, &text, style);
+    }
+
+    /// Writes parts one after another, and returns the column after the last.
+    pub fn parts(&mut self, x: u16, y: u16, columns: u16, parts: &[(&str, Role)]) -> u16 {
+        let end = x + columns;
+        parts.iter().fold(x, |x, (text, role)| {
+            let style = self.style(*role);
+            self.text(x, y, end.saturating_sub(x), text, style)
+        })
+    }
+
+    /// Draws a frame of these signs.
+    pub fn frame(&mut self, area: Rect, signs: &[&str; 6], style: Style) {
+        if area.width < 2 || area.height < 2 {
+            return;
+        }
+        let (right, bottom) = (area.right() - 1, area.bottom() - 1);
+        for x in area.x + 1..right {
+            self.text(x, area.y, 1, signs[4], style);
+            self.text(x, bottom, 1, signs[4], style);
+        }
+        for y in area.y + 1..bottom {
+            self.text(area.x, y, 1, signs[5], style);
+            self.text(right, y, 1, signs[5], style);
+        }
+        for (x, y, sign) in [(area.x, area.y, 0), (right, area.y, 1), (area.x, bottom, 2), (right, bottom, 3)] {
+            self.text(x, y, 1, signs[sign], style);
+        }
+    }
+
+    /// Draws a panel with a title at the left and a remark at the right; returns its inside.
+    pub fn panel(&mut self, area: Rect, title: &str, remark: &str) -> Rect {
+        let style = self.style(Role::Quiet);
+        self.frame(area, &self.theme.signs().frame, style);
+        let strong = self.style(Role::Strong);
+        let room = area.width.saturating_sub(4);
+        self.text(area.x + 2, area.y, room, &format!(" {title} "), strong);
+        if !remark.is_empty() && width(title) + width(remark) + 6 < room {
+            self.text_right(area.right().saturating_sub(2), area.y, room, &format!(" {remark} "), style);
+        }
+        inside(area)
+    }
+
+    /// A bar of `columns`, filled by `share` of 0 to 1.
+    pub fn bar(&mut self, x: u16, y: u16, columns: u16, share: f64, role: Role) -> u16 {
+        let signs = self.theme.signs();
+        let filled = (share.clamp(0.0, 1.0) * f64::from(columns)).round() as u16;
+        let (full, quiet) = (self.style(role), self.style(Role::Quiet));
+        let x = self.text(x, y, filled, &signs.bar_full.repeat(usize::from(filled)), full);
+        let rest = columns - filled;
+        self.text(x, y, rest, &signs.bar_empty.repeat(usize::from(rest)), quiet)
+    }
+}

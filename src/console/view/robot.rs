@@ -1,0 +1,58 @@
+//! The robot: what it is about to press, how far the arm is, and why it does nothing.
+
+use super::paint::Brush;
+use super::regions::{Regions, Room};
+use super::theme::Role;
+use crate::console::keys::Action;
+use crate::console::model::Model;
+use crate::console::words;
+use crate::kitchen::Agent;
+use crate::robot::IdleReason;
+use crate::session::Session;
+
+/// Draws the robot panel.
+pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+    let area = regions.robot;
+    if regions.room == Room::Small {
+        brush.parts(area.x, area.y, area.width, &[(" robot    ", Role::Quiet)]);
+        line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
+        return;
+    }
+    let remark = if session.robot.stopped { "STOPPED" } else { "space stops it" };
+    let inside = brush.panel(area, "Robot", remark);
+    let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+    line(brush, x, inside.y, columns, session, model);
+    let held = session.kitchen.content_label(session.state, session.kitchen.hands[Agent::Robot.index()]);
+    let presses = format!("{} presses", session.presses[Agent::Robot.index()]);
+    brush.parts(x, inside.y + 1, columns, &[("holds ", Role::Quiet), (held, Role::Text)]);
+    let quiet = brush.style(Role::Quiet);
+    brush.text_right(x + columns, inside.y + 1, columns / 2, &presses, quiet);
+}
+
+fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
+    if session.robot.stopped {
+        let resume =
+            model.keys.of(&Action::ResumeRobot).map(|key| format!(": {key} lets it go on")).unwrap_or_default();
+        let badge = brush.theme.badge(Role::Alarm);
+        let x = brush.text(x, y, columns, " STOPPED ", badge);
+        brush.parts(x, y, columns.saturating_sub(9), &[(&resume, Role::Text)]);
+        return;
+    }
+    let Some((button, since, until)) = session.robot.intention else {
+        let why = match session.robot.idle {
+            Some(IdleReason::NoOrder) => "waits: there is no order",
+            Some(IdleReason::HumanTurn) => "waits: only the human can go on",
+            None => "at rest",
+        };
+        brush.parts(x, y, columns, &[(why, Role::Quiet)]);
+        return;
+    };
+    let now = if session.is_running() { model.now } else { session.paused_at };
+    let whole_s = until.secs_since(since).max(1e-3);
+    let left_s = until.secs_since(now);
+    let label = format!("{} {}", brush.theme.signs().to, words::button(&session.kitchen, Agent::Robot, button));
+    let bar = 8.min(columns / 4);
+    brush.parts(x, y, columns.saturating_sub(bar + 7), &[(&label, Role::Robot)]);
+    let at = brush.bar(x + columns - bar - 6, y, bar, 1.0 - left_s / whole_s, Role::Robot);
+    brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), Role::Text)]);
+}

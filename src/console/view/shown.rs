@@ -1,0 +1,74 @@
+//! The participant's side: the signal that is on the display now, with what it says and how long it stays.
+
+use super::paint::{Brush, width, wrap};
+use super::regions::{Regions, Room};
+use super::theme::Role;
+use crate::communication::Signal;
+use crate::console::keys::Action;
+use crate::console::model::Model;
+use crate::console::words;
+use crate::session::{Session, ShownSignal};
+
+/// Draws what the participant is shown.
+pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+    let area = regions.shown;
+    if regions.room == Room::Small {
+        brush.parts(area.x, area.y, area.width, &[(" display  ", Role::Quiet)]);
+        line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
+        return;
+    }
+    let back = model.keys.of(&Action::TakeBack).map(|key| format!("{key} takes it back"));
+    let remark = session.shown.as_ref().and(back).unwrap_or_default();
+    let inside = brush.panel(area, "On the participant's display", &remark);
+    let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+    line(brush, x, inside.y, columns, session, model);
+    if let Some(shown) = &session.shown {
+        let style = brush.style(Role::Text);
+        for (row, text) in wrap(&says(session, &shown.signal), columns).iter().take(2).enumerate() {
+            brush.text(x, inside.y + 1 + row as u16, columns, text, style);
+        }
+    }
+}
+
+/// The signal with its remaining time in one line.
+fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
+    let Some(shown) = &session.shown else {
+        brush.parts(x, y, columns, &[("no signal: the kitchen only", Role::Quiet)]);
+        return;
+    };
+    let title = match (&shown.signal, columns > 60) {
+        (Signal::ShowRecipe(_), true) => says(session, &shown.signal),
+        _ => words::signal(&shown.signal),
+    };
+    let (left_s, share) = left(session, shown, model);
+    let bar = 8.min(columns / 4);
+    let room = columns.saturating_sub(bar + 7);
+    let end = brush.parts(x, y, room, &[(&title, Role::Signal)]);
+    let by = format!(" by {}", words::sender(shown.by));
+    if end + width(&by) <= x + room {
+        brush.parts(end, y, room, &[(&by, Role::Quiet)]);
+    }
+    let at = brush.bar(x + columns - bar - 6, y, bar, share, Role::Signal);
+    brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), Role::Text)]);
+}
+
+/// Seconds that it stays, and their share of the whole.
+fn left(session: &Session, shown: &ShownSignal, model: &Model) -> (f64, f64) {
+    let now = if session.is_running() { model.now } else { session.paused_at };
+    let left_s = shown.until.secs_since(now);
+    (left_s, left_s / shown.until.secs_since(shown.since).max(1e-3))
+}
+
+/// What the signal tells the participant.
+fn says(session: &Session, signal: &Signal) -> String {
+    let kitchen = &session.kitchen;
+    let Some(location) = kitchen.location_named(signal.target()) else { return String::new() };
+    let content = kitchen.content_label(session.state, location);
+    match signal {
+        Signal::ShowRecipe(_) => match words::recipe(session, location) {
+            Some(recipe) => format!("{content} = {recipe}"),
+            None => format!("{}: {content}", kitchen.location(location).label()),
+        },
+        Signal::Highlight(_) => format!("look here: {} holds {content}", kitchen.location(location).label()),
+    }
+}

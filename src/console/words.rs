@@ -1,0 +1,103 @@
+//! What happened, in words.
+
+use crate::base::time::SessionTime;
+use crate::communication::{Sender, Signal};
+use crate::kitchen::{Action, Agent, Kitchen, LocationId, OrderContent};
+use crate::session::event::{EndReason, SignalEnd};
+use crate::session::{Happening, Phase, Session};
+
+/// A button in words: "cutting board", "take rice".
+pub fn button(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> String {
+    kitchen.button(agent, id).name.replace('_', " ")
+}
+
+/// A location's name in words.
+pub fn location(name: &str) -> String {
+    name.replace('_', " ")
+}
+
+/// The place that a button is about: its location, or the hand.
+pub fn place(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> LocationId {
+    let hand = kitchen.hands[agent.index()];
+    match kitchen.button(agent, id).action {
+        Action::Use(location) | Action::Serve(location) => location,
+        Action::Process(process) => kitchen.processes[usize::from(process)].place.unwrap_or(hand),
+        Action::Take(_) | Action::Trash => hand,
+    }
+}
+
+/// A signal in words.
+pub fn signal(signal: &Signal) -> String {
+    match signal {
+        Signal::ShowRecipe(order) => format!("recipe of {}", location(order)),
+        Signal::Highlight(place) => format!("highlight {}", location(place)),
+    }
+}
+
+/// A sender in words.
+pub fn sender(by: Sender) -> &'static str {
+    match by {
+        Sender::Wizard => "wizard",
+        Sender::Assistant => "assistant",
+    }
+}
+
+/// The items of the recipe of the dish that an order wants: "rice cooked + nori + tuna cut".
+pub fn recipe(session: &Session, order: LocationId) -> Option<String> {
+    let OrderContent::Dish(dish) = session.state.order(order) else { return None };
+    let kitchen = &session.kitchen;
+    let stack = kitchen.content(kitchen.dish(dish).stack());
+    let names: Vec<&str> = stack.items.iter().map(|&item| kitchen.content(item).name.as_str()).collect();
+    Some(names.join(" + "))
+}
+
+/// The phase of the trial in a word.
+pub fn phase(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Ready => "READY",
+        Phase::Running => "RUNNING",
+        Phase::Paused => "PAUSED",
+        Phase::Over(_) => "TRIAL OVER",
+        Phase::Closed => "CLOSED",
+    }
+}
+
+/// An entry of the timeline in words, with who did it.
+pub fn happening(kitchen: &Kitchen, what: &Happening) -> (&'static str, String) {
+    match what {
+        Happening::Press { agent, button: id, effective } => {
+            let suffix = if *effective { "" } else { ": no effect" };
+            (agent.name(), format!("{}{suffix}", button(kitchen, *agent, *id)))
+        }
+        Happening::Signal { by, signal: shown } => (sender(*by), signal(shown)),
+        Happening::SignalEnded(SignalEnd::TakenBack) => ("wizard", "took the signal back".to_string()),
+        Happening::SignalEnded(SignalEnd::Elapsed) => ("", "signal is over".to_string()),
+        Happening::Served { order } => ("", format!("{} is served", kitchen.location(*order).label())),
+        Happening::OrderShown { order } => ("", format!("{} is new", kitchen.location(*order).label())),
+        Happening::Marker(note) => ("note", note.clone()),
+        Happening::RobotStopped => ("wizard", "stopped the robot".to_string()),
+        Happening::RobotResumed => ("wizard", "let the robot go on".to_string()),
+        Happening::Trial(phase) => ("trial", trial(*phase).to_string()),
+    }
+}
+
+fn trial(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Ready => "ready",
+        Phase::Running => "runs",
+        Phase::Paused => "paused",
+        Phase::Over(EndReason::Presses) => "over: all presses made",
+        Phase::Over(EndReason::Time) => "over: time is up",
+        Phase::Over(EndReason::Wizard) => "ended by the wizard",
+        Phase::Closed => "closed",
+    }
+}
+
+/// Who changed a location at this time, from the timeline.
+pub fn changed_by(session: &Session, at: SessionTime) -> Option<Agent> {
+    let since = session.timeline.iter().rev().take_while(|entry| entry.time >= at);
+    since.filter(|entry| entry.time == at).find_map(|entry| match entry.what {
+        Happening::Press { agent, effective: true, .. } => Some(agent),
+        _ => None,
+    })
+}

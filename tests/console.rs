@@ -1,0 +1,327 @@
+//! The console: what is drawn at three sizes, what the keys do, and where the pointer is on the display.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use tomcom::base::time::SessionTime;
+use tomcom::communication::{Sender, Signal};
+use tomcom::console::arrange::{Plan, Thing};
+use tomcom::console::keys::Layer;
+use tomcom::console::model::{Dialog, Recording};
+use tomcom::console::view::regions::Regions;
+use tomcom::console::view::theme::Theme;
+use tomcom::console::{Command, Keys, Message, Model, update, view};
+use tomcom::edge::files::read_kitchen;
+use tomcom::gaze::GazeSample;
+use tomcom::kitchen::{Agent, Kitchen, LocationKind};
+use tomcom::session::event::{Event, SignalEnd, Stamped};
+use tomcom::session::settings::{GazeSource, ParticipantKind, Visibility};
+use tomcom::session::{Phase, Session, SessionSpec, apply};
+
+const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
+
+fn kitchen(name: &str) -> Arc<Kitchen> {
+    Arc::new(read_kitchen(Path::new(&format!("layouts/{name}.toml"))).expect("the kitchen loads").kitchen)
+}
+
+/// A session with its console, fed with events.
+struct Stage {
+    session: Session,
+    model: Model,
+    seq: u64,
+}
+
+impl Stage {
+    fn new(kitchen_name: &str, participant: ParticipantKind) -> Stage {
+        let mut spec: SessionSpec = toml::from_str("layout = \"\"").expect("the settings have defaults");
+        spec.participant.kind = participant;
+        if participant == ParticipantKind::Keyboard {
+            spec.participant.gaze = GazeSource::Mouse;
+        }
+        let kitchen = kitchen(kitchen_name);
+        let keys = Keys::live(&kitchen, &spec).expect("the layout's keys are free");
+        let theme = Theme { colour: true, unicode: true };
+        let mut model = Model::new(keys, theme, (120, 40));
+        model.recording = Recording::On("sessions/2026-03-14-P01-1".to_string());
+        Stage { session: Session::new(kitchen, spec), model, seq: 0 }
+    }
+
+    fn at(&mut self, seconds: f64, event: Event) {
+        self.model.now = SessionTime::from_secs_f64(seconds);
+        let stamped = Stamped { seq: self.seq, time: self.model.now, event };
+        apply(&mut self.session, &stamped).expect("the event fits");
+        self.seq += 1;
+    }
+
+    fn press(&mut self, seconds: f64, agent: Agent, button: &str) {
+        self.at(seconds, Event::Press { agent, button: button.to_string() });
+    }
+
+    fn look(&mut self, seconds: f64, x: f64, y: f64) {
+        self.at(seconds, Event::Gaze(GazeSample { x, y, confidence: 0.97, device_ns: None }));
+    }
+
+    /// A sushi kitchen in the middle of a trial: the wizard has just shown a recipe.
+    fn sushi(participant: ParticipantKind) -> Stage {
+        let mut stage = Stage::new("sushi", participant);
+        stage.at(3.0, Event::TrialStarted);
+        for (order, dish) in [("order_1", "tuna nigiri"), ("order_2", "crab maki")] {
+            stage.at(3.0, Event::OrderShown { order: order.to_string(), dish: dish.to_string() });
+        }
+        stage.press(4.9, Agent::Human, "take rice");
+        stage.press(5.4, Agent::Robot, "take tuna");
+        stage.press(7.1, Agent::Human, "cooking_pot");
+        stage.press(8.0, Agent::Robot, "cutting_board");
+        stage.look(9.0, 0.40, 0.64);
+        stage.press(9.2, Agent::Human, "cook");
+        stage.press(10.3, Agent::Robot, "cut");
+        stage.press(11.4, Agent::Human, "take nori");
+        stage.at(
+            12.0,
+            Event::SignalShown { by: Sender::Wizard, signal: Signal::Highlight("cutting_board".to_string()) },
+        );
+        stage.press(13.2, Agent::Human, "assembly_board");
+        stage.at(13.5, Event::SignalEnded { reason: SignalEnd::TakenBack });
+        stage.press(15.0, Agent::Human, "trash");
+        stage.at(15.5, Event::Marker { note: "slip".to_string() });
+        stage.press(16.1, Agent::Robot, "cutting_board");
+        stage.press(17.0, Agent::Human, "cooking_pot");
+        stage.press(19.2, Agent::Human, "assembly_board");
+        stage.press(21.0, Agent::Human, "take salmon");
+        let until_ns = SessionTime::from_secs_f64(24.0);
+        stage.at(21.2, Event::RobotIntends { button: "counter".to_string(), until_ns });
+        for step in 0..12 {
+            stage.look(21.3 + 0.01 * f64::from(step), 0.36 + 0.004 * f64::from(step), 0.35);
+        }
+        stage.at(21.8, Event::SignalShown { by: Sender::Wizard, signal: Signal::ShowRecipe("order_1".to_string()) });
+        stage.model.errors = [15.0, 21.0].map(SessionTime::from_secs_f64).to_vec();
+        stage.model.now = SessionTime::from_secs_f64(22.6);
+        stage
+    }
+
+    fn screen(&self, size: (u16, u16)) -> String {
+        let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).expect("a test terminal");
+        terminal.draw(|frame| view(&self.session, &self.model, frame)).expect("drawn");
+        terminal.backend().to_string()
+    }
+
+    fn key(&mut self, code: KeyCode) -> Option<Command> {
+        self.key_event(KeyEvent::new(code, KeyModifiers::NONE))
+    }
+
+    fn control(&mut self, key: char) -> Option<Command> {
+        self.key_event(KeyEvent::new(KeyCode::Char(key), KeyModifiers::CONTROL))
+    }
+
+    /// A key of a terminal that also reports releases.
+    fn kind(&mut self, code: KeyCode, kind: KeyEventKind) -> Option<Command> {
+        self.key_event(KeyEvent::new_with_kind(code, KeyModifiers::NONE, kind))
+    }
+
+    fn key_event(&mut self, key: KeyEvent) -> Option<Command> {
+        update(&mut self.model, &self.session, Message::Key(key))
+    }
+
+    fn wait(&mut self, seconds: f64) {
+        self.model.now = self.model.now + SessionTime::from_secs_f64(seconds);
+    }
+
+    fn notice(&self) -> &str {
+        self.model.notice.as_ref().map_or("", |notice| &notice.text)
+    }
+}
+
+fn input(command: Option<Command>) -> Option<Event> {
+    match command {
+        Some(Command::Input(event)) => Some(event),
+        _ => None,
+    }
+}
+
+#[test]
+fn a_running_session_at_three_sizes() {
+    let stage = Stage::sushi(ParticipantKind::Simulated);
+    for size in SIZES {
+        insta::assert_snapshot!(format!("running_{}x{}", size.0, size.1), stage.screen(size));
+    }
+}
+
+#[test]
+fn the_participants_keys_stand_at_their_places() {
+    for name in ["sushi", "burger"] {
+        let mut stage = match name {
+            "sushi" => Stage::sushi(ParticipantKind::Keyboard),
+            _ => Stage::new(name, ParticipantKind::Keyboard),
+        };
+        assert_eq!(stage.key(KeyCode::Tab), None);
+        assert_eq!(stage.model.layer, Layer::Participant);
+        insta::assert_snapshot!(format!("participant_{name}_120x40"), stage.screen((120, 40)));
+        insta::assert_snapshot!(format!("participant_{name}_80x24"), stage.screen((80, 24)));
+    }
+}
+
+#[test]
+fn a_gaze_map_fills_the_room_of_what_the_wizard_may_not_see() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.console.visibility = Visibility::State;
+    stage.model.see(stage.model.now, GazeSample { x: 0.30, y: 0.4, confidence: 0.97, device_ns: None });
+    insta::assert_snapshot!("gaze_map_120x40", stage.screen((120, 40)));
+}
+
+#[test]
+fn help_and_questions_and_the_ascii_fallback() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.key(KeyCode::Char('?'));
+    assert_eq!(stage.model.dialog, Some(Dialog::Help));
+    insta::assert_snapshot!("help_80x24", stage.screen((80, 24)));
+    insta::assert_snapshot!("help_120x40", stage.screen((120, 40)));
+    stage.wait(1.0);
+    stage.key(KeyCode::Char('?'));
+    stage.control('c');
+    insta::assert_snapshot!("quit_80x24", stage.screen((80, 24)));
+    stage.model.dialog = None;
+    stage.model.theme = Theme { colour: false, unicode: false };
+    let screen = stage.screen((120, 40));
+    assert!(screen.is_ascii(), "only ASCII");
+    insta::assert_snapshot!("ascii_120x40", screen);
+}
+
+#[test]
+fn a_stopped_robot_is_seen_and_every_size_can_be_drawn() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.at(22.7, Event::RobotStopped);
+    insta::assert_snapshot!("stopped_120x40", stage.screen((120, 40)));
+    for columns in (1..220).step_by(7) {
+        for rows in (1..70).step_by(3) {
+            stage.screen((columns, rows));
+        }
+    }
+}
+
+#[test]
+fn each_signal_has_a_key_that_sends_it_once() {
+    for name in ["sushi", "burger"] {
+        let mut stage = Stage::new(name, ParticipantKind::Simulated);
+        let kitchen = stage.session.kitchen.clone();
+        stage.at(1.0, Event::TrialStarted);
+        for &order in &kitchen.orders {
+            let order = kitchen.location(order).name.clone();
+            stage.at(1.0, Event::OrderShown { order, dish: kitchen.dishes[0].name.clone() });
+        }
+        let mut sent = Vec::new();
+        for location in &kitchen.locations {
+            stage.wait(5.0);
+            let key = location.signal_key.expect("every location of the shipped kitchens has a key");
+            let Some(Event::SignalShown { signal, .. }) = input(stage.key(KeyCode::Char(key))) else {
+                assert_eq!(location.kind, LocationKind::Hand(Agent::Human), "{}: {}", location.name, stage.notice());
+                continue;
+            };
+            assert_eq!(signal.target(), location.name);
+            sent.push(signal);
+            for _ in 0..40 {
+                stage.wait(0.03);
+                assert_eq!(stage.key(KeyCode::Char(key)), None, "a held key repeats");
+            }
+        }
+        assert_eq!(sent.len(), kitchen.locations.len() - 1);
+    }
+}
+
+#[test]
+fn a_terminal_that_reports_repeats_lets_the_same_key_be_pressed_twice() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Keyboard);
+    stage.at(1.0, Event::TrialStarted);
+    stage.kind(KeyCode::Tab, KeyEventKind::Press);
+    stage.kind(KeyCode::Tab, KeyEventKind::Release);
+    let key = KeyCode::Char('a');
+    for _ in 0..3 {
+        assert!(input(stage.kind(key, KeyEventKind::Press)).is_some());
+        assert_eq!(stage.kind(key, KeyEventKind::Repeat), None);
+        assert_eq!(stage.kind(key, KeyEventKind::Release), None);
+        stage.wait(0.05);
+    }
+}
+
+#[test]
+fn the_space_bar_stops_the_robot_in_every_view() {
+    let mut stage = Stage::sushi(ParticipantKind::Keyboard);
+    for dialog in [None, Some(Dialog::Help), Some(Dialog::Quit), Some(Dialog::EndTrial)] {
+        for layer in [Layer::Wizard, Layer::Participant] {
+            stage.model.dialog = dialog;
+            stage.model.layer = layer;
+            assert_eq!(input(stage.key(KeyCode::Char(' '))), Some(Event::RobotStopped));
+        }
+    }
+    stage.at(23.0, Event::RobotStopped);
+    assert_eq!(stage.key(KeyCode::Char(' ')), None, "it is stopped already");
+    stage.model.dialog = None;
+    assert_eq!(input(stage.control('r')), Some(Event::RobotResumed));
+}
+
+#[test]
+fn the_trial_is_started_paused_and_ended_by_keys() {
+    let mut stage = Stage::new("burger", ParticipantKind::Simulated);
+    assert_eq!(input(stage.key(KeyCode::Char('a'))), None, "no signal before the trial");
+    assert!(stage.notice().contains("while the trial runs"), "{}", stage.notice());
+    assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialStarted));
+    stage.at(1.0, Event::TrialStarted);
+    assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialPaused));
+    stage.at(2.0, Event::TrialPaused);
+    assert_eq!(stage.session.phase, Phase::Paused);
+    assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialResumed));
+    stage.at(3.0, Event::TrialResumed);
+    assert_eq!(input(stage.key(KeyCode::Char('3'))), Some(Event::Marker { note: "slip".to_string() }));
+    assert_eq!(stage.control('e'), None);
+    assert_eq!(stage.model.dialog, Some(Dialog::EndTrial));
+    stage.wait(1.0);
+    assert!(matches!(input(stage.key(KeyCode::Char('y'))), Some(Event::TrialEnded { .. })));
+    assert_eq!(stage.control('c'), None);
+    assert_eq!(stage.model.dialog, Some(Dialog::Quit));
+    assert_eq!(stage.key(KeyCode::Char('n')), None);
+    assert_eq!(stage.model.dialog, None);
+    stage.wait(1.0);
+    stage.control('c');
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('y')), Some(Command::Quit));
+}
+
+#[test]
+fn every_place_of_the_panel_is_its_place_on_the_display_and_back() {
+    for name in ["sushi", "burger"] {
+        let kitchen = kitchen(name);
+        for size in SIZES {
+            let panel = Regions::new(size, Visibility::Recommendation).kitchen_inside();
+            let plan = Plan::new(&kitchen, panel, size.0 == 120);
+            assert_eq!(plan.spots.len(), kitchen.locations.len() + kitchen.storages.len());
+            for spot in &plan.spots {
+                let area = match spot.thing {
+                    Thing::Location(id) => kitchen.location(id).display,
+                    Thing::Storage(index) => kitchen.storages[index].display,
+                };
+                assert_eq!(panel.union(spot.cells), panel, "{name} {size:?}: inside of the panel");
+                for (x, y) in [(spot.cells.x, spot.cells.y), (spot.cells.right() - 1, spot.cells.bottom() - 1)] {
+                    let point = plan.display_point(x, y);
+                    let distance_m = area.distance_m(point, kitchen.display_m);
+                    assert_eq!(distance_m, 0.0, "{name} {size:?} {:?} {point:?} {area:?}", spot.thing);
+                    assert_eq!(plan.cell(point), Some((x, y)), "{name} {size:?}");
+                }
+            }
+            for (index, spot) in plan.spots.iter().enumerate() {
+                let others = plan.spots[index + 1..].iter();
+                assert!(others.clone().all(|other| !spot.cells.intersects(other.cells)), "{name} {size:?}: apart");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_layout_cannot_take_a_key_twice() {
+    let mut kitchen = Kitchen::clone(&kitchen("sushi"));
+    let spec: SessionSpec = toml::from_str("layout = \"\"").expect("the settings have defaults");
+    kitchen.locations[0].signal_key = Some('3');
+    let clash = Keys::live(&kitchen, &spec).expect_err("3 is a marker");
+    assert_eq!(clash.key, '3');
+}

@@ -20,6 +20,15 @@ pub struct GazeSample {
     pub device_ns: Option<u64>,
 }
 
+impl GazeSample {
+    /// The sample as it is recorded: places to a hundred thousandth of the display (15 um on a wall display, far below
+    /// what any tracker resolves), confidence to a thousandth.
+    pub fn rounded(self) -> GazeSample {
+        let to = |value: f64, parts: f64| (value * parts).round() / parts;
+        GazeSample { x: to(self.x, 1e5), y: to(self.y, 1e5), confidence: to(self.confidence, 1e3), ..self }
+    }
+}
+
 /// The location nearest to a display point, and its distance in metres (0 inside its area).
 pub fn nearest_location(kitchen: &Kitchen, point: [f64; 2]) -> Option<(LocationId, f64)> {
     let distance = |index: usize| kitchen.locations[index].display.distance_m(point, kitchen.display_m);

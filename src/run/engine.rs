@@ -9,12 +9,14 @@ use std::sync::Arc;
 use super::follower::{Follower, JudgedPress};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, ButtonId, Kitchen};
+use crate::kitchen::{Agent, ButtonId, Kitchen, State};
+use crate::participant::{Deed, SimulatedParticipant};
 use crate::robot::timed::{RobotDeed, TimedRobot};
 use crate::session::admit::admit;
 use crate::session::apply::ApplyError;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::orders::OrderList;
+use crate::session::settings::ParticipantKind;
 use crate::session::timers::TimerQueue;
 use crate::session::{Effect, Event, Session, SessionSpec, Stamped, Timer};
 
@@ -25,6 +27,7 @@ pub struct Engine {
     timers: TimerQueue,
     orders: OrderList,
     robot: TimedRobot,
+    participant: Option<SimulatedParticipant>,
     next_seq: u64,
     /// Stamped events that were not handed out yet.
     out: Vec<Stamped>,
@@ -45,6 +48,7 @@ pub struct Outcome {
 enum Source {
     Timer,
     Robot,
+    Participant,
 }
 
 impl Engine {
@@ -53,8 +57,10 @@ impl Engine {
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64, cost: CostToGo) -> Engine {
         let orders = OrderList::new(kitchen.dishes.len(), spec.seed, trial);
         let robot = TimedRobot::new(spec.robot.press_s, spec.robot.press_spread, spec.seed, trial);
+        let is_simulated = spec.participant.kind == ParticipantKind::Simulated;
+        let participant = is_simulated.then(|| SimulatedParticipant::new(kitchen.clone(), spec.seed, trial));
         let follower = Follower::new(kitchen, spec, cost);
-        Engine { follower, timers: TimerQueue::default(), orders, robot, next_seq: 0, out: Vec::new() }
+        Engine { follower, timers: TimerQueue::default(), orders, robot, participant, next_seq: 0, out: Vec::new() }
     }
 
     /// The session as it is now.
@@ -101,7 +107,12 @@ impl Engine {
         if !self.session().is_running() {
             return None;
         }
-        let sources = [(self.timers.next_due(), Source::Timer), (self.robot.next_due(), Source::Robot)];
+        let participant = self.participant.as_ref().and_then(SimulatedParticipant::next_due);
+        let sources = [
+            (self.timers.next_due(), Source::Timer),
+            (self.robot.next_due(), Source::Robot),
+            (participant, Source::Participant),
+        ];
         sources.into_iter().filter_map(|(due, source)| Some((due?, source))).min()
     }
 
@@ -116,8 +127,26 @@ impl Engine {
                     self.record_deed(now, deed);
                 }
             }
+            Source::Participant => self.let_participant_act(now),
         }
         self.settle(now);
+    }
+
+    fn let_participant_act(&mut self, now: SessionTime) {
+        let state = self.session().state;
+        let deed = self.participant.as_mut().and_then(|one| one.act(now, state, &mut self.follower.cost));
+        match deed {
+            Some(Deed::Gaze(sample)) if self.session().spec.participant.simulates_gaze() => {
+                self.record_own(now, Event::Gaze(sample));
+            }
+            // A tracker tells where somebody else looks.
+            Some(Deed::Gaze(_)) | None => {}
+            Some(Deed::Press { button, belief }) => {
+                let button = self.session().kitchen.button(Agent::Human, button).name.clone();
+                self.record_own(now, Event::ParticipantBelieves(belief));
+                self.record_own(now, Event::Press { agent: Agent::Human, button });
+            }
+        }
     }
 
     fn fire_timer(&mut self, now: SessionTime) {
@@ -169,26 +198,18 @@ impl Engine {
         self.record(now, event).expect("an engine's own events fit its session");
     }
 
-    /// Stamps and applies an event, does what it asks for, and keeps it for the caller.
+    /// Stamps and applies an event, does what it asks for, tells robot and participant, and keeps it for the caller.
     fn record(&mut self, now: SessionTime, event: Event) -> Result<(), ApplyError> {
+        let event = match event {
+            Event::Gaze(sample) => Event::Gaze(sample.rounded()),
+            other => other,
+        };
         let stamped = Stamped { seq: self.next_seq, time: now, event };
+        let before = self.session().state;
         let effects = self.follower.apply(&stamped)?;
         self.next_seq += 1;
-        for effect in effects {
-            match effect {
-                Effect::At { time, timer } => self.timers.set(time, timer),
-                Effect::Cancel(timer) => self.timers.cancel(timer),
-                Effect::CancelAll => {
-                    self.timers.cancel_all();
-                    self.robot.rest();
-                }
-                Effect::Postpone(by) => {
-                    self.timers.postpone(by);
-                    self.robot.postpone(by);
-                }
-                Effect::Close => {}
-            }
-        }
+        effects.into_iter().for_each(|effect| self.perform(effect));
+        self.tell_participant(&stamped, before);
         let given_up = match &stamped.event {
             Event::RobotStopped => self.robot.stop(),
             Event::RobotResumed => {
@@ -202,5 +223,47 @@ impl Engine {
             self.record_deed(now, deed);
         }
         Ok(())
+    }
+
+    fn perform(&mut self, effect: Effect) {
+        match effect {
+            Effect::At { time, timer } => self.timers.set(time, timer),
+            Effect::Cancel(timer) => self.timers.cancel(timer),
+            Effect::CancelAll => {
+                self.timers.cancel_all();
+                self.robot.rest();
+            }
+            Effect::Postpone(by) => {
+                self.timers.postpone(by);
+                self.robot.postpone(by);
+                if let Some(participant) = &mut self.participant {
+                    participant.postpone(by);
+                }
+            }
+            Effect::Close => {}
+        }
+    }
+
+    /// What the participant may notice of an event that was just applied; `before` is the state that it met.
+    fn tell_participant(&mut self, stamped: &Stamped, before: State) {
+        let Some(participant) = &mut self.participant else { return };
+        let session = &self.follower.session;
+        let (now, state, kitchen) = (stamped.time, session.state, &session.kitchen);
+        match &stamped.event {
+            Event::TrialStarted => participant.on_trial_start(now, state),
+            Event::Press { agent, button } if session.is_running() => {
+                if let Some(button) = kitchen.button_named(*agent, button) {
+                    // A press that has an effect changes the state.
+                    participant.on_press(now, *agent, button, before, (state != before).then_some(state));
+                }
+            }
+            Event::SignalShown { signal, .. } => {
+                if let Some(location) = kitchen.location_named(signal.target()) {
+                    participant.on_signal(now, location, signal, state);
+                }
+            }
+            Event::SignalEnded { .. } => participant.on_signal_end(now),
+            _ => {}
+        }
     }
 }

@@ -83,7 +83,10 @@ impl Again {
                 let outcome = self.engine.input(recorded.time, recorded.event.clone());
                 self.produced.extend(outcome.events);
             } else {
-                self.produced.extend(self.engine.fire());
+                // A participant may also act without anything to record.
+                while self.produced.is_empty() && self.engine.next_due().is_some_and(|due| due <= recorded.time) {
+                    self.produced.extend(self.engine.fire());
+                }
             }
         }
         let again = self.produced.pop_front().map(|stamped| event_line(&stamped));

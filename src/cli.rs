@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use miette::MietteHandlerOpts;
 use serde::Serialize;
 
 use crate::edge::files::{self, FileError};
@@ -27,6 +28,7 @@ const FOLLOW_INTERVAL: Duration = Duration::from_millis(50);
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
 #[derive(Debug, Parser)]
 #[command(name = "tomcom", version, arg_required_else_help = true)]
+#[command(after_help = "Example: tomcom kitchen layouts/sushi.toml")]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -105,6 +107,8 @@ enum Failure {
     Failed(miette::Report),
     /// It was done, and the answer is no; it was printed already.
     No,
+    /// Whoever read the output has read enough, as `head` does.
+    Unread,
 }
 
 impl From<FileError> for Failure {
@@ -121,19 +125,24 @@ impl From<WriteError> for Failure {
 
 impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Failure {
-        Failure::Failed(miette::miette!("the result cannot be printed: {error}"))
+        match error.kind() {
+            std::io::ErrorKind::BrokenPipe => Failure::Unread,
+            _ => Failure::Failed(miette::miette!("the result cannot be printed: {error}")),
+        }
     }
 }
 
 /// Runs the command of the arguments. Exit codes: 0 done, 1 failed, 2 wrong arguments or files.
 pub fn main() -> ExitCode {
+    // Lines are not wrapped, so that file and line can be searched for; a hook that is set already is as good.
+    let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build())));
     let done = match Cli::parse().command {
         Command::Replay(args) => replay(&args),
         Command::Simulate(args) => simulate(&args),
         Command::Kitchen(args) => kitchen(&args),
     };
     let (code, report) = match done {
-        Ok(()) => return ExitCode::SUCCESS,
+        Ok(()) | Err(Failure::Unread) => return ExitCode::SUCCESS,
         Err(Failure::No) => return ExitCode::from(FAILED),
         Err(Failure::Failed(report)) => (FAILED, report),
         Err(Failure::Wrong(report)) => (WRONG, report),

@@ -20,7 +20,7 @@ impl SessionTime {
 
     /// Seconds since the beginning.
     pub fn as_secs_f64(self) -> f64 {
-        self.0 as f64 * 1e-9
+        self.0 as f64 / 1e9
     }
 
     /// Seconds from `earlier` to this moment, zero if `earlier` is later.

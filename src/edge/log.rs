@@ -2,7 +2,7 @@
 //! log: a header line, then one event a line; the only source of truth).
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufRead, BufReader, BufWriter, Write};
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -18,6 +18,9 @@ pub const LOG_NAME: &str = "events.jsonl";
 pub const SETTINGS_NAME: &str = "session.toml";
 /// Gaze samples wait at most so long, in session time, before they are handed to the operating system.
 const FLUSH_AFTER: SessionTime = SessionTime(50_000_000);
+
+/// No line of a log is longer, in bytes: what is longer is no log.
+const MAX_LINE: usize = 1 << 24;
 
 /// The log could not be written: what was acknowledged before is there, nothing after it.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -145,7 +148,8 @@ impl LogReader {
         let file = File::open(&path).map_err(|reason| FileError::unreadable(&path, reason, remedy))?;
         let mut input = BufReader::with_capacity(1 << 16, file);
         let mut line = Vec::new();
-        input.read_until(b'\n', &mut line).map_err(|reason| FileError::unreadable(&path, reason, remedy))?;
+        let read = input.by_ref().take(MAX_LINE as u64).read_until(b'\n', &mut line);
+        read.map_err(|reason| FileError::unreadable(&path, reason, remedy))?;
         let text = String::from_utf8_lossy(&line).into_owned();
         let header = read_header(&path, text.trim_end())?;
         let layout = (Path::new(&header.layout.path), header.layout.text.clone());
@@ -159,10 +163,15 @@ impl LogReader {
     /// # Errors
     /// A line that is no event, or not the next one.
     pub fn next_line(&mut self) -> FileResult<Option<LogLine>> {
-        let read = self.input.read_until(b'\n', &mut self.partial);
+        let room = (MAX_LINE - self.partial.len()) as u64;
+        let read = self.input.by_ref().take(room).read_until(b'\n', &mut self.partial);
         read.map_err(|reason| FileError::unreadable(&self.path, reason, "a readable recording"))?;
         if self.partial.last() != Some(&b'\n') {
-            return Ok(None);
+            self.number += usize::from(self.partial.len() == MAX_LINE);
+            return match self.partial.len() {
+                MAX_LINE => Err(self.wrong("", 0, "a line without an end")),
+                _ => Ok(None),
+            };
         }
         self.partial.pop();
         self.number += 1;

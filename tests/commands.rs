@@ -1,0 +1,119 @@
+//! The commands as they are typed: exit codes, what is on stdout, and what is said about wrong files.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// Runs the program with these arguments and demands the exit code.
+fn check(arguments: &[&str], code: i32) -> Output {
+    let output = Command::new(env!("CARGO_BIN_EXE_tomcom")).args(arguments).output().expect("the program starts");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "tomcom {arguments:?}\n{told}");
+    output
+}
+
+/// The one JSON object on stdout.
+fn figures(arguments: &[&str], code: i32) -> Value {
+    let output = check(arguments, code);
+    serde_json::from_slice(&output.stdout).expect("one JSON object on stdout")
+}
+
+/// What is said on stderr about something wrong.
+fn complaint(arguments: &[&str]) -> String {
+    let output = check(arguments, 2);
+    assert!(output.stdout.is_empty(), "{arguments:?} prints something although it is wrong");
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("commands").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+#[test]
+fn kitchen_prints_the_state_space_and_the_plans() {
+    let sushi = figures(&["kitchen", "layouts/sushi.toml", "--format", "json"], 0);
+    assert_eq!(sushi["states"], "83878450387200000");
+    assert_eq!(sushi["aspects"].as_array().map(Vec::len), Some(16));
+    let plans = sushi["plans"].as_array().expect("plans");
+    let mut lengths: Vec<u64> = plans.iter().filter_map(|plan| plan["actions"].as_u64()).collect();
+    lengths.sort_unstable();
+    assert_eq!(lengths, [15, 15, 16, 16, 18, 19]);
+    for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
+        let kitchen = figures(&["kitchen", layout, "--format", "json"], 0);
+        for plan in kitchen["plans"].as_array().expect("plans") {
+            let presses = plan["presses"].as_array().map(|presses| presses.len() as u64);
+            assert_eq!(presses, plan["actions"].as_u64(), "{layout}: {plan}");
+        }
+        check(&["kitchen", layout], 0);
+    }
+}
+
+#[test]
+fn simulate_records_what_replay_verifies() {
+    let out = folder("simulate");
+    let out = out.to_str().expect("a path in UTF-8");
+    let simulate = ["simulate", "sessions/default.toml", "--trials", "2", "--seed", "7", "--out", out];
+    let found = figures(&[&simulate[..], &["--format", "json"]].concat(), 0);
+    for key in ["trials", "human_actions", "robot_actions", "errors", "signals", "orders_served", "presses_per_order"] {
+        assert!(found[key].is_number(), "{key} in {found}");
+    }
+    for key in ["belief_related_errors", "sequences", "mean_sequence_length"] {
+        assert!(found.get(key).is_some(), "{key} in {found}");
+    }
+    let recordings = found["recordings"].as_array().expect("recordings");
+    assert_eq!(recordings.len(), 2);
+    for recording in recordings {
+        let recording = recording.as_str().expect("a path");
+        let verified = figures(&["replay", recording, "--verify", "--format", "json"], 0);
+        assert_eq!((&verified["verified"], &verified["cut"]), (&Value::Bool(true), &Value::Bool(false)));
+        let replayed = figures(&["replay", recording, "--format", "json"], 0);
+        assert_eq!(replayed["events"], verified["events"]);
+        let log = fs::read_to_string(Path::new(recording).join("events.jsonl")).expect("a log");
+        let header: Value = serde_json::from_str(log.lines().next().unwrap_or_default()).expect("a header");
+        assert_eq!((header.get("started"), &header["session"]["trial"]["condition"]), (None, &Value::from("none")));
+    }
+    // What was changed does not verify, which is an answer and no wrong argument.
+    let log = Path::new(recordings[0].as_str().expect("a path")).join("events.jsonl");
+    let text = fs::read_to_string(&log).expect("a log").replacen("take nori", "take rice", 1);
+    fs::write(&log, text).expect("the log can be written");
+    let log = log.to_str().expect("a path in UTF-8");
+    assert_eq!(figures(&["replay", log, "--verify", "--format", "json"], 1)["verified"], Value::Bool(false));
+}
+
+#[test]
+fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
+    let folder = folder("wrong");
+    let session = |name: &str, text: &str| {
+        let path = folder.join(name);
+        fs::write(&path, text).expect("a file");
+        path.to_str().expect("a path in UTF-8").to_string()
+    };
+    let sushi = fs::canonicalize("layouts/sushi.toml").expect("the layout");
+    let layout = format!("layout = \"{}\"\n", sushi.display());
+    let cases = [
+        ("no-layout.toml", "seed = 1\n\nlayout = \"nowhere.toml\"\n".to_string(), 3, "nowhere.toml"),
+        ("minus.toml", format!("{layout}[robot]\npress_s = -1.0\n"), 3, "a number above 0"),
+        ("name.toml", format!("{layout}[participant]\ncode = \"Jane Doe\"\n"), 3, "never a name"),
+        ("gaze.toml", format!("{layout}[participant]\nkind = \"keyboard\"\ngaze = \"simulated\"\n"), 4, "mouse"),
+        ("unknown.toml", format!("{layout}[trial]\nlength = 3\n"), 3, "unknown field"),
+        ("condition.toml", format!("{layout}[trial]\ncondition = \"both\"\n"), 3, "wizard"),
+        ("broken.toml", format!("{layout}[trial\n"), 2, "found"),
+    ];
+    for (name, text, line, says) in cases {
+        let told = complaint(&["simulate", &session(name, &text)]);
+        assert!(told.contains(&format!("{name}:{line}:")), "{name}:{line} is not named in\n{told}");
+        assert!(told.contains(says), "{says:?} is not in\n{told}");
+    }
+    let keyboard = format!("{layout}[participant]\nkind = \"keyboard\"\ngaze = \"none\"\n");
+    assert!(complaint(&["simulate", &session("keyboard.toml", &keyboard)]).contains("simulated"));
+    assert!(complaint(&["replay", "nowhere", "--verify"]).contains("nowhere"));
+    assert!(complaint(&["replay", "Cargo.toml", "--verify"]).contains("Cargo.toml:1:"));
+    assert!(complaint(&["kitchen", "recipes/sushi.toml"]).contains("recipes/sushi.toml:"));
+    complaint(&["simulate", "sessions/default.toml", "--trials", "0"]);
+    complaint(&["dance"]);
+}

@@ -1,0 +1,229 @@
+//! What a running session does: the trial's clock, pauses, the robot, signals, and the judgement of presses.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use tomcom::base::time::SessionTime;
+use tomcom::communication::{Sender, Signal};
+use tomcom::edge::files::read_session;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::kitchen::{Agent, Kitchen, OrderContent, State};
+use tomcom::measures::errors::{Judge, Verdict};
+use tomcom::run::engine::{Engine, Outcome};
+use tomcom::session::event::{EndReason, SignalEnd};
+use tomcom::session::settings::{Condition, GazeSource, ParticipantKind, SessionSpec};
+use tomcom::session::{Event, Phase};
+
+fn kitchen() -> Arc<Kitchen> {
+    Arc::new(read_session(Path::new("sessions/default.toml")).expect("the default session").kitchen.kitchen)
+}
+
+/// An engine of the default session with a person at the keyboard, and `change`d settings.
+fn engine(change: impl Fn(&mut SessionSpec)) -> Engine {
+    let mut spec = read_session(Path::new("sessions/default.toml")).expect("the default session").spec;
+    spec.participant.kind = ParticipantKind::Keyboard;
+    spec.participant.gaze = GazeSource::None;
+    change(&mut spec);
+    let kitchen = kitchen();
+    Engine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen))
+}
+
+fn at(seconds: f64) -> SessionTime {
+    SessionTime::from_secs_f64(seconds)
+}
+
+fn press(button: &str) -> Event {
+    Event::Press { agent: Agent::Human, button: button.to_string() }
+}
+
+fn highlight(location: &str) -> Event {
+    Event::SignalShown { by: Sender::Wizard, signal: Signal::Highlight(location.to_string()) }
+}
+
+/// Gives the inputs in turn; the kinds of all events with their seconds.
+fn check(engine: &mut Engine, inputs: &[(f64, Event)]) -> Vec<(&'static str, f64)> {
+    let mut kinds = Vec::new();
+    for (seconds, event) in inputs {
+        let Outcome { events, refused } = engine.input(at(*seconds), event.clone());
+        assert_eq!(refused, None, "{event:?}");
+        kinds.extend(events.iter().map(|stamped| (stamped.event.kind(), stamped.time.as_secs_f64())));
+    }
+    kinds
+}
+
+/// Why the input is refused.
+fn refused(engine: &mut Engine, seconds: f64, event: Event) -> String {
+    engine.input(at(seconds), event).refused.expect("a refusal")
+}
+
+#[test]
+fn a_trial_ends_after_its_time_and_pauses_do_not_count() {
+    let mut engine = engine(|spec| spec.trial.seconds = 10.0);
+    check(&mut engine, &[(1.0, Event::TrialStarted), (4.0, Event::TrialPaused), (9.0, Event::TrialResumed)]);
+    assert_eq!(engine.session().trial_clock(at(10.0)), at(4.0));
+    let kinds = check(&mut engine, &[(30.0, Event::Marker { note: "later".to_string() })]);
+    assert!(kinds.contains(&("trial_ended", 16.0)), "{kinds:?}");
+    assert_eq!(engine.session().phase, Phase::Over(EndReason::Time));
+    assert_eq!(engine.next_due(), None);
+}
+
+#[test]
+fn a_trial_ends_after_its_number_of_presses_at_once() {
+    let mut engine = engine(|spec| spec.trial.presses = 2);
+    check(&mut engine, &[(0.0, Event::TrialStarted), (0.5, press("take rice"))]);
+    let kinds = check(&mut engine, &[(0.6, press("counter"))]);
+    assert_eq!(kinds, [("press", 0.6), ("trial_ended", 0.6)]);
+}
+
+#[test]
+fn presses_before_the_start_and_in_a_pause_are_recorded_and_change_nothing() {
+    let mut engine = engine(|_| ());
+    let started = [(0.1, press("take rice")), (1.0, Event::TrialStarted), (1.1, Event::TrialPaused)];
+    let kinds = check(&mut engine, &started);
+    assert_eq!(kinds[0], ("press", 0.1));
+    let before = engine.session().state;
+    check(&mut engine, &[(1.2, press("take rice"))]);
+    assert_eq!((engine.session().state, engine.session().presses), (before, [0, 0]));
+    assert!(engine.judged().is_empty());
+    check(&mut engine, &[(2.0, Event::TrialResumed), (2.1, press("take rice"))]);
+    assert_eq!((engine.session().presses, engine.judged().len()), ([1, 0], 1));
+}
+
+#[test]
+fn a_pause_postpones_the_arm_the_orders_and_the_signal() {
+    let inputs = |pause_s: f64| {
+        let mut inputs = vec![(0.0, Event::TrialStarted), (0.2, highlight("counter"))];
+        if pause_s > 0.0 {
+            inputs.extend([(0.3, Event::TrialPaused), (0.3 + pause_s, Event::TrialResumed)]);
+        }
+        inputs.push((10.0 + pause_s, Event::Marker { note: String::new() }));
+        inputs
+    };
+    let run = |pause_s: f64| check(&mut engine(|_| ()), &inputs(pause_s));
+    let (straight, paused) = (run(0.0), run(64.0));
+    let after_pause = |(kind, seconds): &(&'static str, f64)| (*kind, *seconds + 64.0);
+    let late: Vec<_> = straight.iter().filter(|(_, seconds)| *seconds > 0.3).map(after_pause).collect();
+    assert!(late.iter().any(|(kind, _)| *kind == "signal_ended") && late.iter().any(|(kind, _)| *kind == "press"));
+    let seen: Vec<_> = paused.iter().filter(|(_, seconds)| *seconds > 64.5).copied().collect();
+    assert_eq!(seen.len(), late.len());
+    for (seen, expected) in seen.iter().zip(&late) {
+        assert!(seen.0 == expected.0 && (seen.1 - expected.1).abs() < 1e-6, "{seen:?} is not {expected:?}");
+    }
+}
+
+#[test]
+fn a_stopped_robot_gives_up_its_press_and_waits_for_the_wizard() {
+    let mut engine = engine(|_| ());
+    let started = check(&mut engine, &[(0.0, Event::TrialStarted)]);
+    assert!(started.contains(&("robot_intends", 0.0)), "{started:?}");
+    let stopped = check(&mut engine, &[(1.0, Event::RobotStopped)]);
+    assert_eq!(stopped, [("robot_stopped", 1.0), ("robot_aborts", 1.0)]);
+    let waits = check(&mut engine, &[(60.0, Event::Marker { note: String::new() })]);
+    assert_eq!(waits, [("marker", 60.0)]);
+    let goes_on = check(&mut engine, &[(61.0, Event::RobotResumed)]);
+    assert_eq!(goes_on, [("robot_resumed", 61.0), ("robot_intends", 61.0)]);
+}
+
+#[test]
+fn a_served_order_is_shown_as_served_then_cleared_then_there_is_a_new_one() {
+    let mut engine = engine(|spec| spec.trial.seconds = 300.0);
+    check(&mut engine, &[(0.0, Event::TrialStarted)]);
+    let mut served = None;
+    let mut after = Vec::new();
+    while engine.session().is_running() {
+        // The human's part is played by whatever brings the orders nearer.
+        let due = engine.next_due().expect("the trial's end is pending");
+        engine.fire().iter().filter(|_| served.is_some()).for_each(|s| after.push((s.event.kind(), s.time)));
+        served = served.or(engine.session().served.first().map(|served| served.time));
+        let kitchen = engine.session().kitchen.clone();
+        let mut cost = CostToGo::new(kitchen.clone());
+        if let Some(button) = helpful(&kitchen, &mut cost, engine.session().state)
+            && engine.session().is_running()
+        {
+            let name = kitchen.button(Agent::Human, button).name.clone();
+            let outcome = engine.input(due, press(&name));
+            served = served.or(engine.session().served.first().map(|served| served.time));
+            outcome.events.iter().filter(|_| served.is_some()).for_each(|s| after.push((s.event.kind(), s.time)));
+        }
+    }
+    let served = served.expect("an order is served in five minutes");
+    let first = |kind| after.iter().find(|(other, _)| *other == kind).map(|(_, time)| time.secs_since(served));
+    assert_eq!((first("order_cleared"), first("order_shown")), (Some(2.0), Some(5.0)));
+}
+
+/// A press of the human that brings the orders nearer.
+fn helpful(kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<tomcom::kitchen::ButtonId> {
+    let recipes = kitchen.true_recipes();
+    let here = cost.all_orders(state, &recipes);
+    let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| tomcom::kitchen::ButtonId(index as u8));
+    buttons.into_iter().find(|&button| {
+        let next = kitchen.press(state, &recipes, Agent::Human, button);
+        next.is_some_and(|next| cost.all_orders(next, &recipes) < here)
+    })
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_its_reason() {
+    let mut unassisted = engine(|spec| spec.trial.condition = Condition::None);
+    check(&mut unassisted, &[(0.0, Event::TrialStarted)]);
+    assert!(refused(&mut unassisted, 1.0, highlight("counter")).contains("unassisted"));
+
+    let mut engine = engine(|_| ());
+    assert!(refused(&mut engine, 0.0, highlight("counter")).contains("while the trial runs"));
+    assert!(refused(&mut engine, 0.0, Event::TrialPaused).contains("no trial runs"));
+    check(&mut engine, &[(1.0, Event::TrialStarted), (1.5, highlight("counter"))]);
+    assert!(refused(&mut engine, 2.0, highlight("human_hand")).contains("own hand"));
+    assert!(refused(&mut engine, 2.0, highlight("order_1")).contains("cannot be highlighted"));
+    assert!(refused(&mut engine, 2.0, highlight("cellar")).contains("no such location"));
+    assert!(refused(&mut engine, 2.0, press("cellar")).contains("a button that the agent has"));
+    assert!(refused(&mut engine, 2.0, Event::TrialStarted).contains("started already"));
+    assert!(refused(&mut engine, 2.0, Event::RobotResumed).contains("not stopped"));
+    check(&mut engine, &[(2.5, Event::SignalEnded { reason: SignalEnd::TakenBack })]);
+    assert!(refused(&mut engine, 3.0, Event::SignalEnded { reason: SignalEnd::TakenBack }).contains("no signal"));
+    check(&mut engine, &[(4.0, Event::SessionEnded)]);
+    assert!(refused(&mut engine, 5.0, press("take rice")).contains("session is over"));
+}
+
+/// The verdict on the human's last press of a list by both agents, one second apart but for the last one, that comes
+/// `after_s` after the one before it; orders of these dishes are present.
+fn verdict(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> Verdict {
+    let kitchen = kitchen();
+    let (recipes, mut cost) = (kitchen.true_recipes(), CostToGo::new(kitchen.clone()));
+    let mut judge = Judge::new(kitchen.clone());
+    let mut state = kitchen.empty_state();
+    for (order, dish) in kitchen.orders.iter().zip(dishes) {
+        let dish = kitchen.dishes.iter().position(|known| known.name == *dish).expect("a dish of the menu");
+        state.set_order(*order, OrderContent::Dish(tomcom::kitchen::DishId(dish as u8)));
+    }
+    let mut last = None;
+    for (index, (agent, name)) in presses.iter().enumerate() {
+        let button = kitchen.button_named(*agent, name).expect("a button");
+        let is_last = index + 1 == presses.len();
+        let now = at(if is_last { index as f64 - 1.0 + after_s } else { index as f64 });
+        let after = kitchen.press(state, &recipes, *agent, button).unwrap_or(state);
+        match agent {
+            Agent::Robot => judge.robot_pressed(now, state, after),
+            Agent::Human => last = Some(judge.human_pressed(&mut cost, now, button, state, after)),
+        }
+        state = after;
+    }
+    last.expect("a press of the human")
+}
+
+#[test]
+fn errors_are_presses_that_lose_more_than_the_best_one() {
+    use Agent::{Human, Robot};
+    let good = verdict(&["crab maki"], &[(Human, "take crab")], 1.0);
+    assert_eq!(good, Verdict { regret: 0, excess: 0, race: false, error: false });
+    // The wrong shellfish has to be thrown away.
+    let wrong = verdict(&["crab maki"], &[(Human, "take shrimp")], 1.0);
+    assert_eq!((wrong.excess, wrong.error), (2, true));
+    let nothing_to_cut = verdict(&["crab maki"], &[(Human, "cut")], 1.0);
+    assert_eq!((nothing_to_cut.regret, nothing_to_cut.error), (1, true));
+    // Without an order no press is better than another.
+    assert!(!verdict(&[], &[(Human, "cut")], 1.0).error);
+    // The robot was faster at the board by a quarter of a second, or by two.
+    let both = [(Human, "take nori"), (Robot, "take nori"), (Robot, "assembly_board"), (Human, "assembly_board")];
+    let (race, late) = (verdict(&["crab maki"], &both, 0.25), verdict(&["crab maki"], &both, 2.0));
+    assert_eq!((race.race, race.error, late.race, late.error), (true, false, false, true));
+}

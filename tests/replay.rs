@@ -162,6 +162,40 @@ fn a_cut_recording_opens_says_so_and_verifies_up_to_its_cut() {
 }
 
 #[test]
+fn a_session_that_is_still_recorded_can_be_followed() {
+    let (log, engine) = by_hand("default.toml", "followed", 9);
+    let text = fs::read(&log).expect("a recording");
+    let growing = log.with_file_name("growing.jsonl");
+    fs::write(&growing, &text[..text.len() / 2]).expect("the folder can be written");
+    let mut replay = Replay::open(&growing).expect("the header is there");
+    replay.run().expect("the first half");
+    assert!(replay.log().is_cut());
+    fs::write(&growing, &text).expect("the folder can be written");
+    replay.run().expect("the second half");
+    assert!(!replay.log().is_cut());
+    assert_eq!(replay.session().timeline, engine.session().timeline);
+}
+
+#[test]
+fn what_is_appended_to_a_live_recording_is_there_at_once_and_nothing_is_lost_silently() {
+    let files = session("default.toml");
+    let kitchen = Arc::new(files.kitchen.kitchen);
+    let header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+    let root = folder("prompt");
+    let [mut log, second] =
+        [1, 2].map(|_| LogWriter::create_live(&root, "2026-03-14", &header).expect("the folder can be written"));
+    let names = [&log, &second].map(|log| log.folder().file_name().map(|name| name.to_string_lossy().into_owned()));
+    assert_eq!(names, [1, 2].map(|n| Some(format!("2026-03-14-P01-{n}"))));
+    let mut engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+    let events = engine.input(SessionTime::ZERO, Event::TrialStarted).events;
+    events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
+    let written = fs::read_to_string(log.folder().join(LOG_NAME)).expect("a recording");
+    assert_eq!(written.lines().count(), events.len() + 1);
+    let no_folder = LogWriter::create_live(&log.folder().join(LOG_NAME), "2026-03-14", &header);
+    assert!(no_folder.expect_err("a file is no folder").to_string().contains("cannot be written"));
+}
+
+#[test]
 fn a_changed_recording_does_not_verify_and_the_first_difference_is_named() {
     let (log, _) = by_hand("default.toml", "changed", 6);
     let text = fs::read_to_string(&log).expect("a recording");

@@ -4,6 +4,7 @@ use super::admit::admit;
 use super::event::{EndReason, Event, SignalEnd, Stamped};
 use super::{Entry, Happening, Phase, Served, Session, ShownSignal};
 use crate::base::time::SessionTime;
+use crate::communication::{Sender, Signal};
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 use crate::kitchen::{Action, Agent, ButtonId, DishId, LocationId, OrderContent, State};
 
@@ -54,18 +55,7 @@ type Applied = Result<Vec<Effect>, ApplyError>;
 /// Names that the kitchen does not have, times that run backwards, and events that cannot be at this point (see
 /// [`admit`]); the session is unchanged then.
 pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
-    if stamped.time < session.time {
-        return Err(ApplyError {
-            seq: stamped.seq,
-            found: format!("t_ns = {} after {}", stamped.time.0, session.time.0),
-            remedy: "times that never decrease".to_string(),
-        });
-    }
-    if let Err(reason) = admit(session, &stamped.event) {
-        let found = format!("\"{}\", but {reason}", stamped.event.kind());
-        let remedy = "an event that is possible at this point of the session".to_string();
-        return Err(ApplyError { seq: stamped.seq, found, remedy });
-    }
+    check(session, stamped)?;
     let now = stamped.time;
     let named = Named { session, seq: stamped.seq };
     let mut effects = Vec::new();
@@ -93,45 +83,41 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
             session.robot.intention = Some((button, now, *until_ns));
             session.robot.idle = None;
         }
-        Event::RobotAborts { .. } => session.robot.intention = None,
+        Event::RobotAborts { button, .. } => {
+            named.button(Agent::Robot, button)?;
+            session.robot.intention = None;
+        }
         Event::RobotIdles { reason } => session.robot.idle = Some(*reason),
-        Event::RobotStopped => {
-            session.robot.stopped = true;
-            session.robot.idle = None;
-            note(session, now, Happening::RobotStopped);
-        }
-        Event::RobotResumed => {
-            session.robot.stopped = false;
-            note(session, now, Happening::RobotResumed);
-        }
+        Event::RobotStopped => stop_robot(session, now, true),
+        Event::RobotResumed => stop_robot(session, now, false),
         Event::SignalShown { by, signal } => {
             named.location(signal.target())?;
-            let until = now + SessionTime::from_secs_f64(session.spec.signals.shown_s);
-            session.shown = Some(ShownSignal { signal: signal.clone(), by: *by, since: now, until });
-            effects.push(Effect::Cancel(Timer::EndSignal));
-            effects.push(Effect::At { time: until, timer: Timer::EndSignal });
-            note(session, now, Happening::Signal { by: *by, signal: signal.clone() });
+            show(session, now, *by, signal, &mut effects);
         }
-        Event::SignalEnded { reason } => {
-            session.shown = None;
-            if *reason == SignalEnd::TakenBack {
-                effects.push(Effect::Cancel(Timer::EndSignal));
-                note(session, now, Happening::SignalEnded(*reason));
-            }
-        }
+        Event::SignalEnded { reason } => end_signal(session, now, *reason, &mut effects),
         Event::Marker { note: text } => note(session, now, Happening::Marker(text.clone())),
         Event::ParticipantBelieves(_) => {}
-        Event::SessionEnded => {
-            stop_clock(session, now);
-            session.phase = Phase::Closed;
-            session.robot.intention = None;
-            session.shown = None;
-            effects.push(Effect::CancelAll);
-            effects.push(Effect::Close);
-        }
+        Event::SessionEnded => close(session, now, &mut effects),
     }
     session.time = now;
     Ok(effects)
+}
+
+/// Whether the event can come next.
+fn check(session: &Session, stamped: &Stamped) -> Result<(), ApplyError> {
+    if stamped.time < session.time {
+        return Err(ApplyError {
+            seq: stamped.seq,
+            found: format!("t_ns = {} after {}", stamped.time.0, session.time.0),
+            remedy: "times that never decrease".to_string(),
+        });
+    }
+    if let Err(reason) = admit(session, &stamped.event) {
+        let found = format!("\"{}\", but {reason}", stamped.event.kind());
+        let remedy = "an event that is possible at this point of the session".to_string();
+        return Err(ApplyError { seq: stamped.seq, found, remedy });
+    }
+    Ok(())
 }
 
 /// Looks up names of an event.
@@ -242,6 +228,37 @@ fn end_trial(session: &mut Session, now: SessionTime, reason: EndReason, effects
     session.shown = None;
     effects.push(Effect::CancelAll);
     note(session, now, Happening::Trial(session.phase));
+}
+
+fn close(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
+    stop_clock(session, now);
+    session.phase = Phase::Closed;
+    session.robot.intention = None;
+    session.shown = None;
+    effects.push(Effect::CancelAll);
+    effects.push(Effect::Close);
+}
+
+fn stop_robot(session: &mut Session, now: SessionTime, stopped: bool) {
+    session.robot.stopped = stopped;
+    session.robot.idle = None;
+    note(session, now, if stopped { Happening::RobotStopped } else { Happening::RobotResumed });
+}
+
+fn show(session: &mut Session, now: SessionTime, by: Sender, signal: &Signal, effects: &mut Vec<Effect>) {
+    let until = now + SessionTime::from_secs_f64(session.spec.signals.shown_s);
+    session.shown = Some(ShownSignal { signal: signal.clone(), by, since: now, until });
+    effects.push(Effect::Cancel(Timer::EndSignal));
+    effects.push(Effect::At { time: until, timer: Timer::EndSignal });
+    note(session, now, Happening::Signal { by, signal: signal.clone() });
+}
+
+fn end_signal(session: &mut Session, now: SessionTime, reason: SignalEnd, effects: &mut Vec<Effect>) {
+    session.shown = None;
+    if reason == SignalEnd::TakenBack {
+        effects.push(Effect::Cancel(Timer::EndSignal));
+        note(session, now, Happening::SignalEnded(reason));
+    }
 }
 
 fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId, effects: &mut Vec<Effect>) {

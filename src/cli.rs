@@ -13,9 +13,11 @@ use serde::Serialize;
 
 use crate::edge::files::{self, FileError};
 use crate::edge::log::WriteError;
+use crate::run::live::{self, LiveError};
+use crate::run::options::{self, OperateOptions, Overrides};
 use crate::run::replay::Replay;
 use crate::run::{kitchen, simulate, tell, verify};
-use crate::session::settings::{GazeSource, ParticipantKind};
+use crate::session::settings::{Condition, GazeSource, ParticipantKind};
 
 /// Exit code: something failed.
 const FAILED: u8 = 1;
@@ -27,15 +29,20 @@ const FOLLOW_INTERVAL: Duration = Duration::from_millis(50);
 
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
 #[derive(Debug, Parser)]
-#[command(name = "tomcom", version, arg_required_else_help = true)]
-#[command(after_help = "Example: tomcom kitchen layouts/sushi.toml")]
+#[command(name = "tomcom", version, args_conflicts_with_subcommands = true)]
+#[command(
+    after_help = "Without a command: operate the default session.\nExample: tomcom --participant keyboard --gaze mouse"
+)]
 struct Cli {
     #[command(subcommand)]
-    command: Command,
+    command: Option<Command>,
+    #[command(flatten)]
+    operate: OperateFlags,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Operate(OperateArgs),
     Replay(ReplayArgs),
     Simulate(SimulateArgs),
     Kitchen(KitchenArgs),
@@ -48,6 +55,63 @@ enum Format {
     Text,
     /// One JSON object.
     Json,
+}
+
+/// Opens the wizard's console and runs a session; everything that happens is recorded.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom operate sessions/default.toml --participant keyboard --gaze mouse")]
+struct OperateArgs {
+    /// The session file; by default sessions/default.toml, or the one that the program carries.
+    session: Option<PathBuf>,
+    #[command(flatten)]
+    flags: OperateFlags,
+}
+
+#[derive(Debug, Args)]
+struct OperateFlags {
+    /// Who plays the human's part, instead of the session file's.
+    #[arg(long, value_enum)]
+    participant: Option<Participant>,
+    /// Where gaze samples come from, instead of the session file's.
+    #[arg(long, value_enum)]
+    gaze: Option<Gaze>,
+    /// Who sends signals, instead of the session file's.
+    #[arg(long, value_enum)]
+    condition: Option<ConditionArg>,
+    /// Everything random follows from it; by default the session file's.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Where the recording's folder is made.
+    #[arg(long, default_value = "sessions")]
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Participant {
+    /// A simulated person.
+    Simulated,
+    /// Somebody at this keyboard: tab switches between the wizard's and the participant's keys.
+    Keyboard,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Gaze {
+    /// The simulated person's.
+    Simulated,
+    /// The mouse pointer over the kitchen.
+    Mouse,
+    /// Lines of JSON over TCP on localhost.
+    Json,
+    /// Nobody is looked at.
+    None,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ConditionArg {
+    /// Nobody.
+    None,
+    /// The wizard.
+    Wizard,
 }
 
 /// Replays a recording: what happened, line by line, or whether it comes out the same again.
@@ -123,6 +187,12 @@ impl From<WriteError> for Failure {
     }
 }
 
+impl From<LiveError> for Failure {
+    fn from(error: LiveError) -> Failure {
+        Failure::Failed(miette::Report::new(error))
+    }
+}
+
 impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Failure {
         match error.kind() {
@@ -136,7 +206,10 @@ impl From<std::io::Error> for Failure {
 pub fn main() -> ExitCode {
     // Lines are not wrapped, so that file and line can be searched for; a hook that is set already is as good.
     let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build())));
-    let done = match Cli::parse().command {
+    let cli = Cli::parse();
+    let command = cli.command.unwrap_or(Command::Operate(OperateArgs { session: None, flags: cli.operate }));
+    let done = match command {
+        Command::Operate(args) => operate(&args),
         Command::Replay(args) => replay(&args),
         Command::Simulate(args) => simulate(&args),
         Command::Kitchen(args) => kitchen(&args),
@@ -159,6 +232,34 @@ fn print(format: Format, figures: &impl Serialize, text: impl FnOnce() -> String
         Format::Text => write!(out, "{}", text())?,
     }
     Ok(out.flush()?)
+}
+
+fn operate(args: &OperateArgs) -> Result<(), Failure> {
+    let flags = &args.flags;
+    let mut files = options::session_or_default(args.session.as_deref())?;
+    let overrides = Overrides {
+        participant: flags.participant.map(|participant| match participant {
+            Participant::Simulated => ParticipantKind::Simulated,
+            Participant::Keyboard => ParticipantKind::Keyboard,
+        }),
+        gaze: flags.gaze.map(|gaze| match gaze {
+            Gaze::Simulated => GazeSource::Simulated,
+            Gaze::Mouse => GazeSource::Mouse,
+            Gaze::Json => GazeSource::Json,
+            Gaze::None => GazeSource::None,
+        }),
+        condition: flags.condition.map(|condition| match condition {
+            ConditionArg::None => Condition::None,
+            ConditionArg::Wizard => Condition::Wizard,
+        }),
+        seed: flags.seed,
+    };
+    overrides
+        .apply(&mut files)
+        .map_err(|error| Failure::Wrong(miette::miette!(help = error.remedy, "found {}", error.found)))?;
+    let end = live::operate(OperateOptions { files, out: flags.out.clone() })?;
+    writeln!(std::io::stdout(), "{}", end.describe())?;
+    Ok(())
 }
 
 fn replay(args: &ReplayArgs) -> Result<(), Failure> {

@@ -2,4 +2,6 @@
 
 pub mod clock;
 pub mod files;
+pub mod gaze_json;
 pub mod log;
+pub mod terminal;

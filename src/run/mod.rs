@@ -5,6 +5,7 @@ pub mod figures;
 pub mod follower;
 pub mod headless;
 pub mod kitchen;
+pub mod live;
 pub mod options;
 pub mod replay;
 pub mod simulate;

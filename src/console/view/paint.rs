@@ -65,7 +65,8 @@ impl Brush<'_> {
             return x;
         }
         let text = fit(text, columns.min(area.right() - x), self.theme.signs().ellipsis);
-        self.buffer.set_stringn(x, y, &text, usize::from(columns), style).0
+        // What was there before leaves no trace in the style.
+        self.buffer.set_stringn(x, y, &text, usize::from(columns), Style::reset().patch(style)).0
     }
 
     /// Writes a text that ends before column `right`.

@@ -1,0 +1,125 @@
+//! Gaze from any other program: lines {"t": seconds, "x": 0..1, "y": 0..1, "confidence": 0..1} over TCP on localhost.
+//! Coordinates are fractions of the wall display, the origin at the top left. Lines that are no samples are counted.
+
+use std::io;
+use std::net::Ipv4Addr;
+
+use serde::Deserialize;
+use tokio::io::AsyncReadExt;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::mpsc::{Receiver, Sender, channel};
+
+use crate::gaze::GazeSample;
+
+/// A line may be so long, in bytes.
+const MAX_LINE: usize = 4096;
+/// So many samples may wait to be taken.
+const WAITING: usize = 1024;
+
+/// A line of the gaze input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GazeLine {
+    Sample(GazeSample),
+    /// It was no sample.
+    Malformed,
+}
+
+#[derive(Deserialize)]
+struct Line {
+    #[serde(default)]
+    t: Option<f64>,
+    x: f64,
+    y: f64,
+    confidence: f64,
+}
+
+/// Listens on this port of localhost; trackers may come and go.
+///
+/// # Errors
+/// The port cannot be listened on.
+pub async fn listen(port: u16) -> io::Result<Receiver<GazeLine>> {
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).await?;
+    let (sender, receiver) = channel(WAITING);
+    tokio::spawn(async move {
+        while !sender.is_closed() {
+            match listener.accept().await {
+                Ok((stream, _)) => drop(tokio::spawn(read(stream, sender.clone()))),
+                // Out of sockets, or the like: try again, but not in a hot loop.
+                Err(_) => tokio::time::sleep(std::time::Duration::from_millis(100)).await,
+            }
+        }
+    });
+    Ok(receiver)
+}
+
+/// Reads lines until the tracker goes; one that never ends a line cannot fill the memory.
+async fn read(mut stream: TcpStream, lines: Sender<GazeLine>) {
+    let mut buffer = vec![0; MAX_LINE];
+    let mut line: Vec<u8> = Vec::new();
+    let mut too_long = false;
+    while let Ok(count @ 1..) = stream.read(&mut buffer).await {
+        for &byte in &buffer[..count] {
+            match byte {
+                b'\n' => {
+                    let found = if too_long { Some(GazeLine::Malformed) } else { parse(&line) };
+                    line.clear();
+                    too_long = false;
+                    if let Some(found) = found
+                        && lines.send(found).await.is_err()
+                    {
+                        return;
+                    }
+                }
+                _ if line.len() < MAX_LINE => line.push(byte),
+                _ => too_long = true,
+            }
+        }
+    }
+}
+
+/// What a line says; nothing for an empty one.
+fn parse(line: &[u8]) -> Option<GazeLine> {
+    if line.trim_ascii().is_empty() {
+        return None;
+    }
+    let Ok(found) = serde_json::from_slice::<Line>(line) else { return Some(GazeLine::Malformed) };
+    let device_ns = found.t.filter(|t| (0.0..1e10).contains(t)).map(|t| (t * 1e9) as u64);
+    Some(GazeLine::Sample(GazeSample { x: found.x, y: found.y, confidence: found.confidence, device_ns }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tokio::io::AsyncWriteExt;
+
+    #[tokio::test]
+    async fn samples_arrive_and_what_is_none_is_counted() {
+        // Port 0: the system chooses; so the test listens itself.
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
+        let address = listener.local_addr().expect("an address");
+        let (sender, mut lines) = channel(WAITING);
+        let reader = tokio::spawn(async move {
+            let (stream, _) = listener.accept().await.expect("a tracker");
+            read(stream, sender).await;
+        });
+        let mut tracker = TcpStream::connect(address).await.expect("connected");
+        let text = [
+            "{\"t\": 1.5, \"x\": 0.25, \"y\": 0.5, \"confidence\": 0.9}\n",
+            "\n{\"x\": 0.1, \"y\": 2, \"confidence\": 0, \"more\": 1}\r\n",
+            "{\"x\": NaN, \"y\": 2, \"confidence\": 1}\nnonsense\n",
+            &"9".repeat(3 * MAX_LINE),
+            "\n{\"x\": 1e999, \"y\": 0, \"confidence\": 1}\n",
+        ];
+        tracker.write_all(text.concat().as_bytes()).await.expect("sent");
+        drop(tracker);
+        reader.await.expect("the reader ends with its tracker");
+        let mut found = Vec::new();
+        while let Some(line) = lines.recv().await {
+            found.push(line);
+        }
+        let sample = |x, y, confidence, device_ns| GazeLine::Sample(GazeSample { x, y, confidence, device_ns });
+        let expected = [sample(0.25, 0.5, 0.9, Some(1_500_000_000)), sample(0.1, 2.0, 0.0, None)];
+        assert_eq!(found[..2], expected);
+        assert_eq!(found[2..], [GazeLine::Malformed; 4]);
+    }
+}

@@ -210,6 +210,24 @@ fn a_changed_recording_does_not_verify_and_the_first_difference_is_named() {
 }
 
 #[test]
+fn no_broken_byte_makes_the_reader_panic() {
+    let (log, _) = by_hand("burger.toml", "bytes", 11);
+    let text = fs::read(&log).expect("a recording");
+    let path = log.with_file_name("bytes.jsonl");
+    let mut random = stream(11, "bytes", 0);
+    for _ in 0..150 {
+        let mut broken = text.clone();
+        for _ in 0..random.random_range(1..4) {
+            // Half of the changes are in the header and the first events, where more depends on them.
+            let within = if random.random() { broken.len() } else { 12_000 };
+            broken[random.random_range(0..within)] = random.random_range(9..128);
+        }
+        fs::write(&path, &broken).expect("the folder can be written");
+        let _ = verify(&path).map_err(|error| format!("{:?}", miette::Report::new(error)));
+    }
+}
+
+#[test]
 fn what_is_broken_is_named_with_its_line_and_what_would_be_right() {
     let (log, _) = by_hand("default.toml", "broken", 8);
     let line = |number: usize, from: &'static str, to: &'static str| {

@@ -27,6 +27,9 @@ fn default_seed() -> u64 {
     1
 }
 
+/// No trial is longer, in seconds.
+const MAX_TRIAL_S: f64 = 86_400.0;
+
 /// A setting that cannot be.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SettingError {
@@ -50,6 +53,10 @@ impl SessionSpec {
         };
         above_0("presses", f64::from(self.trial.presses))?;
         above_0("seconds", self.trial.seconds)?;
+        if self.trial.seconds > MAX_TRIAL_S {
+            let found = format!("seconds = {}", self.trial.seconds);
+            return Err(SettingError { key: "seconds", found, remedy: "at most 86400, a day" });
+        }
         above_0("press_s", self.robot.press_s)?;
         above_0("shown_s", self.signals.shown_s)?;
         if !(0.0..=2.0).contains(&self.robot.press_spread) {

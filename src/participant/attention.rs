@@ -10,7 +10,7 @@ use super::eyes::Glance;
 use super::learning::involved;
 use super::population::chance;
 use crate::base::time::SessionTime;
-use crate::kitchen::{Agent, ContentId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::kitchen::{Agent, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
 
 /// Belief in what was just read.
 const READ: f64 = 0.97;
@@ -20,6 +20,8 @@ const EXPECTATION: f64 = 3.0;
 const CAPTURE_REACH_M: f64 = 0.6;
 /// After this many seconds a place is as worth looking at as it gets.
 const STALE_S: f64 = 6.0;
+/// What is left of the belief in a recipe when the robot's doings speak against it.
+const HINT_LEAVES: f64 = 0.2;
 /// At most so many places are kept in mind to look at next.
 const MOST_GLANCES: usize = 6;
 
@@ -163,42 +165,70 @@ impl SimulatedParticipant {
         self.beliefs.settle(aspect, seen, READ);
         if seen != believed {
             self.rethink = true;
-            self.on_news(location, values.values[seen]);
+            self.on_news(location, values.values[believed], values.values[seen]);
         }
     }
 
     /// Something is otherwise than it was believed to be.
-    fn on_news(&mut self, location: LocationId, code: u8) {
+    fn on_news(&mut self, location: LocationId, believed: u8, code: u8) {
         let kitchen = self.kitchen.clone();
+        let wanted: Vec<_> = kitchen
+            .orders
+            .iter()
+            .filter(|&&order| order != location)
+            .filter_map(|&order| wanted_dish(&kitchen, &self.beliefs, order))
+            .collect();
         if kitchen.location(location).kind == LocationKind::Order {
-            if let OrderContent::Dish(dish) = OrderContent::from_code(code) {
+            if let OrderContent::Dish(dish) = OrderContent::from_code(code)
+                && !wanted.contains(&dish)
+            {
                 self.memory.recall(&kitchen, &mut self.beliefs, dish);
             }
             return;
         }
-        // The robot knows the recipes: what it carries or has stacked should be part of something that is wanted.
-        let content = ContentId(code);
-        let is_robots = location == kitchen.hands[Agent::Robot.index()] || location == kitchen.board;
-        if content.is_empty() || !is_robots {
-            return;
-        }
+        // The robot knows the recipes: what it carries, stacks or throws away is a hint.
         let (_, recipes) = self.beliefs.point(&kitchen);
-        let wanted: Vec<_> = kitchen.orders.iter().filter_map(|&o| wanted_dish(&kitchen, &self.beliefs, o)).collect();
-        if wanted.is_empty() || wanted.iter().any(|&dish| could_become(&kitchen, content, recipes.get(dish))) {
-            return;
+        let (before, now) = (ContentId(believed), ContentId(code));
+        let has_place =
+            |content: ContentId| wanted.iter().any(|&dish| could_become(&kitchen, content, recipes.get(dish)));
+        let is_robots_hand = location == kitchen.hands[Agent::Robot.index()];
+        let is_strange = (is_robots_hand || location == kitchen.board) && !now.is_empty() && !has_place(now);
+        let is_lost =
+            is_robots_hand && now.is_empty() && !before.is_empty() && has_place(before) && !self.is_about(before);
+        if is_strange {
+            self.take_hint(&wanted, |variant| could_become(&kitchen, now, variant));
+        } else if is_lost {
+            self.take_hint(&wanted, |variant| !could_become(&kitchen, before, variant));
         }
+    }
+
+    /// Whether everything in `content` seems to be somewhere in the kitchen.
+    fn is_about(&self, content: ContentId) -> bool {
+        let kitchen = &self.kitchen;
+        let (state, _) = self.beliefs.point(kitchen);
+        let places = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
+        let places = places.filter(|&place| kitchen.location(place).kind != LocationKind::Order);
+        let lying: Vec<ContentId> =
+            places.flat_map(|place| kitchen.content(state.content(place)).items.clone()).collect();
+        kitchen.content(content).items.iter().all(|item| lying.contains(item))
+    }
+
+    /// What the robot does fits none of the recipes that are held: perhaps one of them is another one, as `fits` says.
+    fn take_hint(&mut self, wanted: &[DishId], fits: impl Fn(ContentId) -> bool) {
         if !chance(&mut self.mind, self.person.takes_hints) {
             return;
         }
-        let fitting = |variant: ContentId| could_become(&kitchen, content, variant);
-        let candidates = wanted.iter().filter(|&&dish| kitchen.dish(dish).variants.iter().any(|&v| fitting(v)));
-        let least_sure = candidates.min_by(|&&a, &&b| {
-            let sure = |dish| self.beliefs.certainty(of_dish(&kitchen, dish));
-            sure(a).total_cmp(&sure(b))
-        });
-        if let Some(&dish) = least_sure {
-            self.memory.doubt(&kitchen, &mut self.beliefs, dish, fitting);
+        let kitchen = self.kitchen.clone();
+        let candidates = wanted.iter().filter(|&&dish| kitchen.dish(dish).variants.iter().any(|&v| fits(v)));
+        if let Some(dish) = self.least_sure(candidates.copied()) {
+            self.memory.doubt(&kitchen, &mut self.beliefs, dish, HINT_LEAVES, fits);
         }
+    }
+
+    /// The dish whose recipe is held least surely.
+    pub(super) fn least_sure(&self, dishes: impl Iterator<Item = DishId>) -> Option<DishId> {
+        let sure = |dish| self.beliefs.certainty(of_dish(&self.kitchen, dish));
+        dishes.min_by(|&a, &b| sure(a).total_cmp(&sure(b)))
     }
 }
 
@@ -210,7 +240,7 @@ fn look_alike_codes(kitchen: &Kitchen, location: LocationId, state: State) -> Ve
     let OrderContent::Dish(dish) = state.order(location) else { return Vec::new() };
     let alike = &kitchen.content(kitchen.dish(dish).stack()).look_alikes;
     let dishes = kitchen.dishes.iter().enumerate().filter(|(_, other)| alike.contains(&other.stack()));
-    dishes.map(|(index, _)| OrderContent::Dish(crate::kitchen::DishId(index as u8)).code()).collect()
+    dishes.map(|(index, _)| OrderContent::Dish(DishId(index as u8)).code()).collect()
 }
 
 /// Whether everything in `content` has its place in `stack`: a stack's items as they are, a single item by its ingredient.

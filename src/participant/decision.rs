@@ -111,7 +111,7 @@ pub fn effective_presses(kitchen: &Kitchen, state: State, recipes: &Recipes) -> 
     (0..kitchen.buttons[Agent::Human.index()].len()).filter_map(step).collect()
 }
 
-/// Nothing seems to help: the press that does the least harm, but no throwing away.
+/// Nothing seems to help: the press that does the least harm; one throws away only what nothing else can be done with.
 pub fn try_something(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -120,7 +120,9 @@ pub fn try_something(
     random: &mut Stream,
 ) -> Option<ButtonId> {
     let mut presses = effective_presses(kitchen, state, recipes);
-    presses.retain(|(button, _)| kitchen.button(Agent::Human, *button).action != Action::Trash);
+    if presses.len() > 1 {
+        presses.retain(|(button, _)| kitchen.button(Agent::Human, *button).action != Action::Trash);
+    }
     let least = presses.iter().map(|(_, next)| cost.all_orders(*next, recipes)).min()?;
     presses.retain(|(_, next)| cost.all_orders(*next, recipes) == least);
     Some(presses[random.random_range(0..presses.len())].0)

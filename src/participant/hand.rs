@@ -2,12 +2,12 @@
 
 use rand::RngExt;
 
-use super::beliefs::{of_dish, of_location, wanted_dish};
+use super::beliefs::{of_location, wanted_dish};
 use super::population::{chance, normal};
 use super::{Deed, SimulatedParticipant, decision, learning, witness};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, ButtonId, DishId, LocationId, State};
+use crate::kitchen::{Agent, ButtonId, LocationId, State};
 
 /// Below this certainty of a place one looks before using it.
 const UNSURE: f64 = 0.6;
@@ -17,7 +17,11 @@ const MOST_LOOKS_FIRST: u32 = 2;
 /// While there is nothing to do one thinks again after this time, in seconds.
 const THINK_AGAIN_S: [f64; 2] = [0.4, 0.8];
 /// After so many times its patience without anything to do a person tries something.
-const DESPAIR: f64 = 3.0;
+const DESPAIR: f64 = 2.5;
+/// After so many times its patience it asks itself whether it has the recipe right.
+const WONDERS: f64 = 1.5;
+/// What is left of the belief in a recipe when nothing goes on.
+const STANDSTILL_LEAVES: f64 = 0.35;
 
 impl SimulatedParticipant {
     /// Presses, or waits for something to do.
@@ -103,16 +107,11 @@ impl SimulatedParticipant {
         for &location in stale.iter().take(3) {
             self.attention.later(location);
         }
-        let wanted: Vec<DishId> =
-            kitchen.orders.iter().filter_map(|&order| wanted_dish(&kitchen, &self.beliefs, order)).collect();
-        if now.secs_since(self.last_doubt) > self.person.patience_s && !wanted.is_empty() {
+        if now.secs_since(self.last_doubt) > self.person.patience_s && idle_s > WONDERS * self.person.patience_s {
             self.last_doubt = now;
-            let least_sure = wanted.into_iter().min_by(|&a, &b| {
-                let sure = |dish| self.beliefs.certainty(of_dish(&kitchen, dish));
-                sure(a).total_cmp(&sure(b))
-            });
-            if let Some(dish) = least_sure.filter(|_| chance(&mut self.mind, self.person.takes_hints)) {
-                self.memory.doubt(&kitchen, &mut self.beliefs, dish, |_| false);
+            let wanted = kitchen.orders.iter().filter_map(|&order| wanted_dish(&kitchen, &self.beliefs, order));
+            if let Some(dish) = self.least_sure(wanted) {
+                self.memory.doubt(&kitchen, &mut self.beliefs, dish, STANDSTILL_LEAVES, |_| false);
             }
         }
         if idle_s < self.person.patience_s * DESPAIR {

@@ -13,8 +13,6 @@ use crate::kitchen::{ContentId, DishId, Kitchen};
 const RECALLED: f64 = 0.92;
 /// Belief in a recipe that was just shown, or that has just been served.
 const CONFIRMED: f64 = 0.97;
-/// What is left of the belief in a recipe that was found not to work.
-const DISCREDITED: f64 = 0.1;
 /// How much more a variant is thought of that fits what was seen.
 const FITS: f64 = 4.0;
 
@@ -24,6 +22,8 @@ pub struct Memory {
     random: Stream,
     /// What each dish's memory decays to, over its variants.
     faded: Vec<Vec<f64>>,
+    /// What was learned in the instruction: it comes back when the person stops to think.
+    learned: Vec<Vec<f64>>,
     half_life_s: f64,
     last: SessionTime,
 }
@@ -37,7 +37,7 @@ impl Memory {
         mut random: Stream,
         beliefs: &mut Beliefs,
     ) -> Memory {
-        let mut faded = Vec::new();
+        let (mut faded, mut learned) = (Vec::new(), Vec::new());
         for (index, dish) in kitchen.dishes.iter().enumerate() {
             let alike = &kitchen.content(dish.stack()).look_alikes;
             let weight = |variant: &ContentId| {
@@ -50,10 +50,12 @@ impl Memory {
             };
             // Some dishes are remembered better than others.
             let odds = person.learned / (1.0 - person.learned) * (0.5 * normal(&mut random)).exp();
-            beliefs.replace(of_dish(kitchen, DishId(index as u8)), &with_truth(odds / (1.0 + odds)));
+            let known = with_truth(odds / (1.0 + odds));
+            beliefs.replace(of_dish(kitchen, DishId(index as u8)), &known);
+            learned.push(known);
             faded.push(with_truth(person.half_forgotten));
         }
-        Memory { random, faded, half_life_s: person.half_life_s, last: SessionTime::ZERO }
+        Memory { random, faded, learned, half_life_s: person.half_life_s, last: SessionTime::ZERO }
     }
 
     /// Time passes: memories of dishes that are not being made fade.
@@ -97,15 +99,22 @@ impl Memory {
         self.recall(kitchen, beliefs, dish);
     }
 
-    /// What is held for the recipe seems wrong: another version comes to mind, rather one that `fits`.
-    pub fn doubt(&mut self, kitchen: &Kitchen, beliefs: &mut Beliefs, dish: DishId, fits: impl Fn(ContentId) -> bool) {
+    /// What is held for the recipe may be wrong: one stops to think, and another version comes to mind, rather one that
+    /// `fits`. `trust` is what is left of the belief in the one that was held.
+    pub fn doubt(
+        &mut self,
+        kitchen: &Kitchen,
+        beliefs: &mut Beliefs,
+        dish: DishId,
+        trust: f64,
+        fits: impl Fn(ContentId) -> bool,
+    ) {
         let aspect = of_dish(kitchen, dish);
         let held = beliefs.most_likely(aspect);
         let variants = &kitchen.dish(dish).variants;
-        // What was learned once is still there below what was held.
-        beliefs.mix(aspect, &self.faded[dish.index()], 0.5);
+        beliefs.replace(aspect, &self.learned[dish.index()]);
         beliefs.weigh(aspect, |value| match (value == held, fits(variants[value])) {
-            (true, _) => DISCREDITED,
+            (true, _) => trust,
             (false, true) => FITS,
             (false, false) => 1.0,
         });

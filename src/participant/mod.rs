@@ -45,6 +45,8 @@ pub enum Deed {
 const SURE_AT_START: f64 = 0.97;
 /// Chance to glance at what the last press changed.
 const LOOKS_AT_RESULT: f64 = 0.5;
+/// What is left of the belief in a recipe when what it says cannot be served.
+const FAILURE_LEAVES: f64 = 0.05;
 /// Belief that an order which was served is gone after the usual time.
 const EXPECTED: f64 = 0.8;
 
@@ -281,7 +283,7 @@ impl SimulatedParticipant {
                     let gone = now + SessionTime::from_secs_f64(kitchen.served_shown_s);
                     self.clearing.push((gone, order));
                 }
-                false => self.memory.doubt(&kitchen, &mut self.beliefs, dish, |variant| variant != plate),
+                false => self.memory.doubt(&kitchen, &mut self.beliefs, dish, FAILURE_LEAVES, |v| v != plate),
             }
         }
         self.rethink = true;

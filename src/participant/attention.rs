@@ -18,6 +18,10 @@ const READ: f64 = 0.97;
 const EXPECTATION: f64 = 3.0;
 /// A change draws the eye the less, the farther away it is: half as often at this distance, in metres.
 const CAPTURE_REACH_M: f64 = 0.6;
+/// A place of the next press has so many chances to draw the eye.
+const WATCHED: i32 = 3;
+/// So many presses ahead one looks at the places that will be used.
+const LOOKS_AHEAD: usize = 2;
 /// After this many seconds a place is as worth looking at as it gets.
 const STALE_S: f64 = 6.0;
 /// What is left of the belief in a recipe when the robot's doings speak against it.
@@ -79,6 +83,7 @@ impl SimulatedParticipant {
         }
         let kitchen = self.kitchen.clone();
         let eye = self.eyes.position(now);
+        let needed = self.needed();
         for (index, location) in kitchen.locations.iter().enumerate() {
             let id = LocationId(index as u8);
             if state.code(id) == self.display.code(id) {
@@ -93,7 +98,10 @@ impl SimulatedParticipant {
                 _ => self.person.capture,
             };
             let distance_m = location.display.distance_m(eye, kitchen.display_m);
-            if chance(&mut self.mind, strength * 0.5_f64.powf(distance_m / CAPTURE_REACH_M)) {
+            let seen = strength * 0.5_f64.powf(distance_m / CAPTURE_REACH_M);
+            // What one is about to use one has half an eye on.
+            let seen = if needed.contains(&id) { 1.0 - (1.0 - seen).powi(WATCHED) } else { seen };
+            if chance(&mut self.mind, seen) {
                 self.attention.first(id);
             }
         }
@@ -109,7 +117,7 @@ impl SimulatedParticipant {
             return None;
         }
         let kitchen = self.kitchen.clone();
-        let needed = self.intent.plan.front().map(|&button| involved(&kitchen, button)).unwrap_or_default();
+        let needed = self.needed();
         let weight = |index: usize| {
             let id = LocationId(index as u8);
             let worth = match kitchen.locations[index].kind {
@@ -134,6 +142,14 @@ impl SimulatedParticipant {
                 draw < 0.0
             })
             .map(|index| LocationId(index as u8))
+    }
+
+    /// The places of the next press and of the one after it, but not the own hand, which one feels.
+    pub(super) fn needed(&self) -> Vec<LocationId> {
+        let next = self.intent.plan.iter().take(LOOKS_AHEAD);
+        let mut places: Vec<LocationId> = next.flat_map(|&button| involved(&self.kitchen, button)).collect();
+        places.retain(|&place| place != self.kitchen.hands[Agent::Human.index()]);
+        places
     }
 
     /// A point that is no place of the task: a storage, or anywhere.

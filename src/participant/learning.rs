@@ -5,6 +5,8 @@ use crate::kitchen::{Action, Agent, ButtonId, Kitchen, LocationId, State};
 
 /// Belief in what one has done oneself.
 const DONE: f64 = 0.97;
+/// So much rather than the own hand another place is blamed.
+const FELT: f64 = 0.3;
 /// What is left of values that an outcome speaks against.
 const SPOKEN_AGAINST: f64 = 0.04;
 
@@ -85,7 +87,10 @@ fn blame(kitchen: &Kitchen, beliefs: &mut Beliefs, state: State, button: ButtonI
     }
     let recipes = kitchen.true_recipes();
     let mut places = involved(kitchen, button);
-    places.sort_by(|&a, &b| beliefs.certainty(of_location(a)).total_cmp(&beliefs.certainty(of_location(b))));
+    // What one holds one feels.
+    let hand = kitchen.hands[Agent::Human.index()];
+    let trust = |place| beliefs.certainty(of_location(place)) + if place == hand { FELT } else { 0.0 };
+    places.sort_by(|&a, &b| trust(a).total_cmp(&trust(b)));
     let Some(&place) = places.first() else { return };
     let aspect = of_location(place);
     let would_work = |value: usize| {

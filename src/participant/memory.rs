@@ -13,6 +13,8 @@ use crate::kitchen::{ContentId, DishId, Kitchen};
 const RECALLED: f64 = 0.92;
 /// Belief in a recipe that was just shown, or that has just been served.
 const CONFIRMED: f64 = 0.97;
+/// What is left of the belief in a recipe when what it says cannot be served.
+const FAILED: f64 = 0.05;
 /// How much more a variant is thought of that fits what was seen.
 const FITS: f64 = 4.0;
 
@@ -24,6 +26,8 @@ pub struct Memory {
     faded: Vec<Vec<f64>>,
     /// What was learned in the instruction: it comes back when the person stops to think.
     learned: Vec<Vec<f64>>,
+    /// What is left of each version of a recipe after failures to serve it.
+    left: Vec<Vec<f64>>,
     half_life_s: f64,
     last: SessionTime,
 }
@@ -55,7 +59,8 @@ impl Memory {
             learned.push(known);
             faded.push(with_truth(person.half_forgotten));
         }
-        Memory { random, faded, learned, half_life_s: person.half_life_s, last: SessionTime::ZERO }
+        let left = learned.iter().map(|known| vec![1.0; known.len()]).collect();
+        Memory { random, faded, learned, left, half_life_s: person.half_life_s, last: SessionTime::ZERO }
     }
 
     /// Time passes: memories of dishes that are not being made fade.
@@ -113,16 +118,25 @@ impl Memory {
         let held = beliefs.most_likely(aspect);
         let variants = &kitchen.dish(dish).variants;
         beliefs.replace(aspect, &self.learned[dish.index()]);
+        let left = &self.left[dish.index()];
         beliefs.weigh(aspect, |value| match (value == held, fits(variants[value])) {
-            (true, _) => trust,
-            (false, true) => FITS,
-            (false, false) => 1.0,
+            (true, _) => trust * left[value],
+            (false, true) => FITS * left[value],
+            (false, false) => left[value],
         });
         self.recall(kitchen, beliefs, dish);
     }
 
+    /// What is held for the recipe could not be served: it is another one.
+    pub fn fail(&mut self, kitchen: &Kitchen, beliefs: &mut Beliefs, dish: DishId) {
+        let held = beliefs.most_likely(of_dish(kitchen, dish));
+        self.left[dish.index()][held] *= FAILED;
+        self.doubt(kitchen, beliefs, dish, 1.0, |_| false);
+    }
+
     /// The recipe was shown, or what it says was served.
     pub fn confirm(&mut self, kitchen: &Kitchen, beliefs: &mut Beliefs, dish: DishId, variant: usize) {
+        self.left[dish.index()].fill(1.0);
         beliefs.settle(of_dish(kitchen, dish), variant, CONFIRMED);
     }
 }

@@ -45,8 +45,8 @@ pub enum Deed {
 const SURE_AT_START: f64 = 0.97;
 /// Chance to glance at what the last press changed.
 const LOOKS_AT_RESULT: f64 = 0.5;
-/// What is left of the belief in a recipe when what it says cannot be served.
-const FAILURE_LEAVES: f64 = 0.05;
+/// What was read so many seconds ago one takes for granted.
+const SEEN_JUST_NOW_S: f64 = 5.0;
 /// Belief that an order which was served is gone after the usual time.
 const EXPECTED: f64 = 0.8;
 
@@ -275,7 +275,6 @@ impl SimulatedParticipant {
             }
         }
         if let (Action::Serve(order), OrderContent::Dish(dish)) = (action, serve_of(action, state)) {
-            let plate = state.content(kitchen.plate);
             match effective {
                 true => {
                     let variant = kitchen.dish(dish).variants.iter().position(|&v| v == recipes.get(dish));
@@ -283,7 +282,11 @@ impl SimulatedParticipant {
                     let gone = now + SessionTime::from_secs_f64(kitchen.served_shown_s);
                     self.clearing.push((gone, order));
                 }
-                false => self.memory.doubt(&kitchen, &mut self.beliefs, dish, FAILURE_LEAVES, |v| v != plate),
+                // Was it on the plate at all? Only who has just seen it there asks himself about the recipe.
+                false if now.secs_since(self.attention.read_at[kitchen.plate.index()]) < SEEN_JUST_NOW_S => {
+                    self.memory.fail(&kitchen, &mut self.beliefs, dish);
+                }
+                false => {}
             }
         }
         self.rethink = true;
@@ -298,9 +301,9 @@ impl SimulatedParticipant {
         let before = self.intent.plan.front().copied();
         decision::think(&kitchen, cost, &self.beliefs, &mut self.intent, now + commitment, now, &mut self.mind);
         let next = self.intent.plan.front().copied();
-        if let Some(button) = next.filter(|_| next != before) {
-            for place in learning::involved(&kitchen, button) {
-                if place != kitchen.hands[Agent::Human.index()] && chance(&mut self.mind, self.person.checks) {
+        if next != before {
+            for place in self.needed() {
+                if chance(&mut self.mind, self.person.checks) {
                     self.attention.later(place);
                 }
             }

@@ -14,8 +14,8 @@ use crate::kitchen::{Agent, ContentId, DishId, Kitchen, LocationId, LocationKind
 
 /// Belief in what was just read.
 const READ: f64 = 0.97;
-/// Expecting the look-alike makes it so much more likely to be seen.
-const EXPECTATION: f64 = 3.0;
+/// Expecting the look-alike makes it so much more likely to be seen, expecting the right thing so much less.
+const EXPECTATION: f64 = 4.0;
 /// A change draws the eye the less, the farther away it is: half as often at this distance, in metres.
 const CAPTURE_REACH_M: f64 = 0.6;
 /// A place of the next press has so many chances to draw the eye.
@@ -172,7 +172,11 @@ impl SimulatedParticipant {
         let alike: Vec<usize> = alike.into_iter().filter_map(|code| values.index_of(code)).collect();
         let mut seen = shown;
         for other in alike {
-            let bias = if other == believed { EXPECTATION } else { 1.0 };
+            let bias = match believed {
+                expected if expected == other => EXPECTATION,
+                expected if expected == shown => 1.0 / EXPECTATION,
+                _ => 1.0,
+            };
             if chance(&mut self.mind, (self.person.misreads * bias).min(0.5)) {
                 seen = other;
             }

@@ -16,6 +16,7 @@ use crate::edge::log::WriteError;
 use crate::run::live::{self, LiveError};
 use crate::run::options::{self, OperateOptions, Overrides};
 use crate::run::replay::Replay;
+use crate::run::review::{self, ReviewError};
 use crate::run::{kitchen, simulate, tell, verify};
 use crate::session::settings::{Condition, GazeSource, ParticipantKind};
 
@@ -114,7 +115,7 @@ enum ConditionArg {
     Wizard,
 }
 
-/// Replays a recording: what happened, line by line, or whether it comes out the same again.
+/// Opens the console over a recording. Through a pipe: what happened, line by line. Or checks that it comes out the same.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify")]
 struct ReplayArgs {
@@ -193,6 +194,15 @@ impl From<LiveError> for Failure {
     }
 }
 
+impl From<ReviewError> for Failure {
+    fn from(error: ReviewError) -> Failure {
+        match error {
+            ReviewError::File(error) => Failure::from(*error),
+            error => Failure::Failed(miette::Report::new(error)),
+        }
+    }
+}
+
 impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Failure {
         match error.kind() {
@@ -267,6 +277,9 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         let found = verify::verify(&args.recording)?;
         print(args.format, &found, || verify::describe(&found))?;
         return if found.verified { Ok(()) } else { Err(Failure::No) };
+    }
+    if args.format == Format::Text && std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
+        return Ok(review::review(&args.recording, args.follow)?);
     }
     let mut replay = Replay::open(&args.recording)?;
     let mut events = 0;

@@ -178,6 +178,7 @@ impl Keys {
         ];
         let line = |(code, to, help, footer)| binding(Chord::plain(code), Action::Move(to), REPLAY, help, footer);
         let mut keys = Keys { bindings: moves.into_iter().map(line).collect() };
+        keys.bindings.push(binding(Chord::plain(Char('q')), Action::Quit, CONSOLE, "quit", Some("quit")));
         keys.console();
         keys
     }

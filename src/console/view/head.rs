@@ -68,7 +68,7 @@ fn facts(session: &Session, model: &Model) -> Vec<String> {
 /// Recording, gaze and robot: each with its state in words.
 fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> {
     let mut healths = Vec::new();
-    if !model.focused {
+    if !model.focused && model.playback.is_none() {
         healths.push((" KEYBOARD IS ELSEWHERE ".to_string(), Role::Alarm));
     }
     match &model.playback {
@@ -90,7 +90,7 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
     }
     healths.push(gaze(session, model));
     let robot = if session.robot.stopped { ("ROBOT STOPPED", Role::Alarm) } else { ("robot ok", Role::Text) };
-    if room > Room::Small || session.robot.stopped {
+    if (room > Room::Small && model.playback.is_none()) || session.robot.stopped {
         healths.push((robot.0.to_string(), robot.1));
     }
     healths

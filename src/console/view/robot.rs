@@ -18,7 +18,11 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
         return;
     }
-    let remark = if session.robot.stopped { "STOPPED" } else { "space stops it" };
+    let remark = match (session.robot.stopped, &model.playback) {
+        (true, _) => "STOPPED",
+        (false, None) => "space stops it",
+        (false, Some(_)) => "",
+    };
     let inside = brush.panel(area, "Robot", remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);

@@ -1,0 +1,346 @@
+//! The console over a recording, or over a session that is still running: pause, step, seek, speed.
+//!
+//! The recording is read once, with every press judged; what is shown is a session of its own that the same events are
+//! applied to. Sessions kept on the way make steps back cheap.
+
+use std::io;
+use std::path::Path;
+use std::time::Duration;
+
+use tokio::time::{Instant, sleep_until};
+
+use super::replay::Replay;
+use crate::base::time::SessionTime;
+use crate::console::playback::{Move, Playback, SPEEDS};
+use crate::console::{Command, Keys, Message, Model, update};
+use crate::edge::files::{FileError, FileResult};
+use crate::edge::terminal::{Hands, Screen, asked_to_end, theme};
+use crate::session::{Event, Session, Stamped, apply};
+
+/// A session is kept every so many events.
+const KEEP_EVERY: usize = 4096;
+/// At most 30 frames a second.
+const FRAME: Duration = Duration::from_millis(33);
+/// At full speed, so much of every frame goes into applying events.
+const WORK: Duration = Duration::from_millis(20);
+/// A growing recording is looked at so often.
+const LOOK: Duration = Duration::from_millis(50);
+/// How far a seek goes.
+const SEEK: SessionTime = SessionTime(10_000_000_000);
+
+/// Why a recording could not be shown.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum ReviewError {
+    #[error("the console cannot be opened: {0}")]
+    #[diagnostic(help("run it in a terminal, or through a pipe for the recording in words"))]
+    Terminal(io::Error),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    File(#[from] Box<FileError>),
+}
+
+impl From<FileError> for ReviewError {
+    fn from(error: FileError) -> ReviewError {
+        ReviewError::File(Box::new(error))
+    }
+}
+
+/// Opens the console over a recording; with `follow`, at the growing end of a running session.
+///
+/// # Errors
+/// The recording cannot be read, or there is no terminal.
+pub fn review(recording: &Path, follow: bool) -> Result<(), ReviewError> {
+    let film = Film::open(recording)?;
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(ReviewError::Terminal)?;
+    runtime.block_on(Review::open(film, recording, follow)?.run())
+}
+
+/// A recording that can be wound forward and back.
+#[derive(Debug)]
+pub struct Film {
+    replay: Replay,
+    events: Vec<Stamped>,
+    /// Times of the presses that were errors.
+    pub errors: Vec<SessionTime>,
+    judged: usize,
+    /// The session after the first `position` events.
+    pub session: Session,
+    pub position: usize,
+    /// Sessions after every [`KEEP_EVERY`] events, the first before any.
+    kept: Vec<Session>,
+}
+
+impl Film {
+    /// Reads a recording to its end, and winds it to its beginning.
+    ///
+    /// # Errors
+    /// Those of [`Replay::step`].
+    pub fn open(recording: &Path) -> FileResult<Film> {
+        let replay = Replay::open(recording)?;
+        let session = replay.session().clone();
+        let kept = vec![session.clone()];
+        let mut film = Film { replay, events: Vec::new(), errors: Vec::new(), judged: 0, session, position: 0, kept };
+        film.read()?;
+        Ok(film)
+    }
+
+    /// Reads what was added since; whether anything was.
+    ///
+    /// # Errors
+    /// Those of [`Replay::step`].
+    pub fn read(&mut self) -> FileResult<bool> {
+        let before = self.events.len();
+        while let Some(line) = self.replay.step()? {
+            self.events.push(line.stamped);
+        }
+        let judged = &self.replay.follower.judged;
+        let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
+        self.errors.extend(new);
+        self.judged = judged.len();
+        Ok(self.events.len() > before)
+    }
+
+    /// Whether the session's end is missing.
+    pub fn is_cut(&self) -> bool {
+        self.replay.log().is_cut()
+    }
+
+    /// The time of the last event, and the number of events.
+    pub fn length(&self) -> (SessionTime, usize) {
+        (self.events.last().map_or(SessionTime::ZERO, |stamped| stamped.time), self.events.len())
+    }
+
+    /// Applies the next event and hands it out.
+    pub fn forward(&mut self) -> Option<&Stamped> {
+        let stamped = self.events.get(self.position)?;
+        apply(&mut self.session, stamped).expect("it was applied when it was read");
+        self.position += 1;
+        if self.position == self.kept.len() * KEEP_EVERY {
+            self.kept.push(self.session.clone());
+        }
+        Some(stamped)
+    }
+
+    /// Winds to the place after the first `position` events.
+    pub fn wind(&mut self, position: usize) {
+        if position < self.position {
+            let index = (position / KEEP_EVERY).min(self.kept.len() - 1);
+            self.session = self.kept[index].clone();
+            self.position = index * KEEP_EVERY;
+        }
+        while self.position < position && self.forward().is_some() {}
+    }
+
+    /// The number of events until and with this time.
+    pub fn until(&self, time: SessionTime) -> usize {
+        self.events.partition_point(|stamped| stamped.time <= time)
+    }
+
+    /// The place after the next event that is no gaze sample.
+    pub fn next_step(&self) -> usize {
+        let rest = self.events[self.position..].iter();
+        self.position + rest.take_while(|stamped| is_gaze(stamped)).count() + 1
+    }
+
+    /// The place after the last event but one that is no gaze sample.
+    pub fn last_step(&self) -> usize {
+        let steps = |end: usize| self.events[..end].iter().rposition(|stamped| !is_gaze(stamped));
+        let last = steps(self.position).unwrap_or(0);
+        steps(last).map_or(0, |index| index + 1)
+    }
+
+    /// The time of the last applied event.
+    pub fn time(&self) -> SessionTime {
+        self.session.time
+    }
+}
+
+fn is_gaze(stamped: &Stamped) -> bool {
+    matches!(stamped.event, Event::Gaze(_))
+}
+
+struct Review {
+    film: Film,
+    model: Model,
+    screen: Screen,
+    /// The moment that is shown, and when it was reached.
+    now: SessionTime,
+    at: Instant,
+    /// When the newest event of a growing recording was read.
+    read_at: Instant,
+    grows: bool,
+    dirty: bool,
+}
+
+impl Review {
+    fn open(film: Film, recording: &Path, follow: bool) -> Result<Review, ReviewError> {
+        let screen = Screen::take(false).map_err(ReviewError::Terminal)?;
+        let size = Screen::size().map_err(ReviewError::Terminal)?;
+        let mut model = Model::new(Keys::replay(), theme(false), size);
+        let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
+        model.playback = Some(Playback::new(name));
+        let now = Instant::now();
+        let mut review =
+            Review { film, model, screen, now: SessionTime::ZERO, at: now, read_at: now, grows: follow, dirty: true };
+        review.playback(|playback| playback.playing = true);
+        if follow {
+            review.go(Move::ToEnd);
+        }
+        Ok(review)
+    }
+
+    async fn run(mut self) -> Result<(), ReviewError> {
+        let mut hands = Hands::default();
+        let end = asked_to_end();
+        tokio::pin!(end);
+        let mut next_frame = Instant::now();
+        let mut next_look = Instant::now();
+        while !self.screen.is_lost() {
+            tokio::select! {
+                biased;
+                _ = &mut end => break,
+                message = hands.next() => match message {
+                    Some(message) => if self.take(message) { break },
+                    None => break,
+                },
+                () = sleep_until(next_look), if self.grows => {
+                    next_look = Instant::now() + LOOK;
+                    self.look()?;
+                }
+                () = sleep_until(next_frame) => {
+                    next_frame = Instant::now() + FRAME;
+                    self.play();
+                    self.draw().map_err(ReviewError::Terminal)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes a message of the terminal; whether somebody has quit.
+    fn take(&mut self, message: Message) -> bool {
+        self.dirty = true;
+        match update(&mut self.model, &self.film.session, message) {
+            Some(Command::Move(to)) => self.go(to),
+            Some(Command::Quit) => return true,
+            Some(Command::Input(_)) | None => {}
+        }
+        false
+    }
+
+    fn playback(&mut self, change: impl FnOnce(&mut Playback)) {
+        if let Some(playback) = &mut self.model.playback {
+            change(playback);
+        }
+    }
+
+    fn is(&self, what: impl FnOnce(&Playback) -> bool) -> bool {
+        self.model.playback.as_ref().is_some_and(what)
+    }
+
+    fn go(&mut self, to: Move) {
+        let speeds = SPEEDS.len() - 1;
+        match to {
+            Move::PlayPause => {
+                let at_end = self.film.position == self.film.length().1 && !self.grows;
+                if at_end {
+                    self.stand_at(0);
+                }
+                self.playback(|playback| playback.playing = !playback.playing);
+            }
+            Move::Faster => self.playback(|playback| playback.speed = (playback.speed + 1).min(speeds)),
+            Move::Slower => self.playback(|playback| playback.speed = playback.speed.saturating_sub(1)),
+            Move::StepForward => self.stand_at(self.film.next_step()),
+            Move::StepBack => self.stand_at(self.film.last_step()),
+            Move::ToStart => self.stand_at(0),
+            Move::SeekForward => self.seek(self.now + SEEK),
+            Move::SeekBack => self.seek(self.now - SEEK),
+            Move::ToEnd => {
+                let (length, events) = self.film.length();
+                self.wind(events);
+                self.now = length;
+                let grows = self.grows;
+                self.playback(|playback| playback.playing = grows);
+            }
+        }
+        let follows = self.grows && to == Move::ToEnd;
+        if !matches!(to, Move::Faster | Move::Slower) {
+            self.playback(|playback| playback.follows = follows);
+        }
+        self.at = Instant::now();
+    }
+
+    fn stand_at(&mut self, position: usize) {
+        self.wind(position);
+        self.now = self.film.time();
+        self.playback(|playback| playback.playing = false);
+    }
+
+    fn seek(&mut self, time: SessionTime) {
+        self.now = time.min(self.film.length().0);
+        self.wind(self.film.until(self.now));
+    }
+
+    fn wind(&mut self, position: usize) {
+        self.model.trail.clear();
+        self.film.wind(position);
+    }
+
+    /// Reads on in a growing recording.
+    fn look(&mut self) -> Result<(), ReviewError> {
+        if self.film.read()? {
+            self.read_at = Instant::now();
+        }
+        if !self.film.is_cut() {
+            self.grows = false;
+        }
+        Ok(())
+    }
+
+    /// Moves on by the time that has passed.
+    fn play(&mut self) {
+        let passed = self.at.elapsed();
+        self.at = Instant::now();
+        let (length, events) = self.film.length();
+        if self.is(|playback| playback.follows) {
+            // Between two events of the running session its clock goes on.
+            let ahead = if self.grows { self.read_at.elapsed().as_nanos() as u64 } else { 0 };
+            self.now = self.now.max(length + SessionTime(ahead));
+        } else if self.is(|playback| playback.playing) {
+            let speed = self.model.playback.as_ref().map_or(1.0, |playback| SPEEDS[playback.speed]);
+            self.now = match speed.is_finite() {
+                true => (self.now + SessionTime::from_secs_f64(passed.as_secs_f64() * speed)).min(length),
+                false => length,
+            };
+        } else {
+            return;
+        }
+        let until = self.film.until(self.now);
+        let began = Instant::now();
+        while self.film.position < until && began.elapsed() < WORK {
+            let Some(stamped) = self.film.forward() else { break };
+            if let Event::Gaze(sample) = stamped.event {
+                self.model.see(stamped.time, sample);
+            }
+        }
+        if self.film.position < until {
+            self.now = self.film.time();
+        } else if self.film.position == events && !self.grows {
+            self.playback(|playback| playback.playing = false);
+        }
+        self.dirty = true;
+    }
+
+    fn draw(&mut self) -> io::Result<()> {
+        if !self.dirty || !self.screen.is_ready() {
+            return Ok(());
+        }
+        self.dirty = false;
+        self.model.now = self.now;
+        self.model.errors.clone_from(&self.film.errors);
+        let (length, events) = self.film.length();
+        let (event, cut) = (self.film.position, self.film.is_cut());
+        self.playback(|playback| *playback = Playback { length, event, events, cut, ..playback.clone() });
+        self.screen.draw(&self.film.session, &self.model)
+    }
+}

@@ -15,6 +15,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen};
 use tomcom::run::engine::Engine;
 use tomcom::run::replay::Replay;
+use tomcom::run::review::Film;
 use tomcom::run::simulate::{Simulation, simulate};
 use tomcom::run::verify::verify;
 use tomcom::session::event::{EndReason, SignalEnd};
@@ -245,4 +246,42 @@ fn what_is_broken_is_named_with_its_line_and_what_would_be_right() {
     refused(&log, 3, &["order_hidden"], line(3, "order_shown", "order_hidden"));
     refused(&log, 3, &["after 500000000", "never decrease"], line(3, "\"t_ns\":500000000", "\"t_ns\":4"));
     refused(&log, 3, &["the trial was started already"], line(3, "order_shown", "trial_started"));
+}
+
+#[test]
+fn a_recording_can_be_wound_forward_and_back() {
+    for name in SESSIONS {
+        let out = simulated(name, &format!("film-{name}"), 1, 3);
+        let recording = fs::read_dir(&out).expect("the folder").next().expect("a recording").expect("readable").path();
+        let mut film = Film::open(&recording).expect("it opens");
+        let (length, events) = film.length();
+        let mut straight = Film::open(&recording).expect("it opens");
+        let mut random = stream(5, "places of a film", 0);
+        for _ in 0..20 {
+            let position = random.random_range(0..=events);
+            film.wind(position);
+            straight = match straight.position <= position {
+                true => straight,
+                false => Film::open(&recording).expect("it opens"),
+            };
+            while straight.position < position {
+                straight.forward().expect("an event");
+            }
+            assert_eq!(film.position, position);
+            assert_eq!(film.session.state, straight.session.state, "{name}: at {position} of {events}");
+            assert_eq!(film.session.timeline, straight.session.timeline);
+            assert_eq!(film.session.gaze, straight.session.gaze);
+        }
+        film.wind(0);
+        let mut steps = 0;
+        while film.position < events {
+            film.wind(film.next_step());
+            steps += 1;
+        }
+        assert_eq!(film.time(), length);
+        for _ in 0..steps {
+            film.wind(film.last_step());
+        }
+        assert_eq!(film.position, 0, "as many steps back as forward");
+    }
 }

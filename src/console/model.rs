@@ -83,8 +83,8 @@ pub struct Model {
     pub playback: Option<Playback>,
     /// The terminal tells key repeat from key press.
     pub(super) exact_keys: bool,
-    /// Keys that were pressed a moment ago, against key repeat.
-    pub(super) pressed: Vec<(KeyCode, SessionTime)>,
+    /// The key that was pressed last, and when it was last reported: against key repeat.
+    pub(super) pressed: Option<(KeyCode, SessionTime)>,
 }
 
 impl Model {
@@ -106,7 +106,7 @@ impl Model {
             errors: Vec::new(),
             playback: None,
             exact_keys: false,
-            pressed: Vec::new(),
+            pressed: None,
         }
     }
 

@@ -39,7 +39,7 @@ pub fn update(model: &mut Model, session: &Session, message: Message) -> Option<
         }
         Message::Focus(focused) => {
             model.focused = focused;
-            model.pressed.clear();
+            model.pressed = None;
             None
         }
         Message::Refused(reason) => {
@@ -78,10 +78,9 @@ fn is_first(model: &mut Model, key: &KeyEvent) -> bool {
     if model.exact_keys {
         return true;
     }
-    let now = model.now;
-    let held = model.pressed.iter().any(|&(code, at)| code == key.code && now.secs_since(at) < REPEAT_GUARD_S);
-    model.pressed.retain(|&(code, at)| code != key.code && now.secs_since(at) < REPEAT_GUARD_S);
-    model.pressed.push((key.code, now));
+    // Only the key that went down last repeats.
+    let held = model.pressed.is_some_and(|(code, at)| code == key.code && model.now.secs_since(at) < REPEAT_GUARD_S);
+    model.pressed = Some((key.code, model.now));
     !held
 }
 

@@ -29,10 +29,14 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         return;
     }
     let source = Model::gaze_label(session.spec.participant.gaze);
-    let inside = brush.panel(area, "Gaze", source);
+    let remark = match model.malformed {
+        0 => source.to_string(),
+        lines => format!("{source}, {lines} malformed"),
+    };
+    let inside = brush.panel(area, "Gaze", &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
-    quality(brush, x, inside.y + 1, columns, session, model);
+    quality(brush, x, inside.y + 1, columns, session);
     let list = if unseen.is_empty() { "nothing".to_string() } else { unseen.join(", ") };
     let list = format!("changed unseen: {list}");
     let text = brush.style(Role::Text);
@@ -63,14 +67,11 @@ fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, mode
     )
 }
 
-fn quality(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
+fn quality(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session) {
     let gaze = &session.gaze;
     let unusable = 100.0 * gaze.unusable as f64 / gaze.samples.max(1) as f64;
     let confidence = gaze.last.map_or("-".to_string(), |(_, sample)| format!("{:.2}", sample.confidence));
-    let mut text = format!("{:.0} Hz, confidence {confidence}, {unusable:.0} % unusable", gaze.rate_hz);
-    if model.malformed > 0 {
-        text = format!("{text}, {} malformed", model.malformed);
-    }
+    let text = format!("{:.0} Hz, confidence {confidence}, {unusable:.0}% unusable", gaze.rate_hz);
     brush.parts(x, y, columns, &[(&text, Role::Quiet)]);
 }
 

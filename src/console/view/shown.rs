@@ -41,7 +41,7 @@ fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, mode
         _ => words::signal(&shown.signal),
     };
     let (left_s, share) = left(session, shown, model);
-    let bar = 8.min(columns / 4);
+    let bar = if columns < 44 { 4 } else { 8 };
     let room = columns.saturating_sub(bar + 7);
     let end = brush.parts(x, y, room, &[(&title, Role::Signal)]);
     let by = format!(" by {}", words::sender(shown.by));

@@ -1,0 +1,373 @@
+//! The real program in a real terminal: every test runs the binary in tmux, presses keys and moves the mouse as a person
+//! does, and reads the screen and the recording. Without tmux the tests say that they were skipped.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use tomcom::console::arrange::{Plan, Thing};
+use tomcom::console::view::regions::Regions;
+use tomcom::edge::files::read_session;
+use tomcom::edge::terminal::Screen;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::kitchen::{Action, Agent, ButtonId, Kitchen};
+use tomcom::run::replay::Replay;
+use tomcom::session::settings::Visibility;
+
+const SIZE: (u16, u16) = (120, 40);
+const PATIENCE: Duration = Duration::from_secs(30);
+const TOMCOM: &str = env!("CARGO_BIN_EXE_tomcom");
+
+/// A terminal with a shell in it, in a folder of its own.
+struct Terminal {
+    socket: String,
+    folder: PathBuf,
+}
+
+impl Terminal {
+    /// `None`, and a word about it, where there is no tmux.
+    fn open(name: &str) -> Option<Terminal> {
+        if Command::new("tmux").arg("-V").output().is_err() {
+            eprintln!("skipped: {name} needs tmux");
+            return None;
+        }
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("terminal").join(name);
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).expect("a folder");
+        let terminal = Terminal { socket: format!("tomcom-{}-{name}", std::process::id()), folder };
+        let (columns, rows) = (SIZE.0.to_string(), SIZE.1.to_string());
+        let shell = "env -u NO_COLOR LC_ALL=C.UTF-8 PS1='$ ' sh";
+        terminal.tmux(&["-f", "/dev/null", "new-session", "-d", "-x", &columns, "-y", &rows, shell]);
+        terminal.tmux(&["set-option", "-g", "status", "off"]);
+        terminal.tmux(&["set-option", "-sg", "escape-time", "0"]);
+        Some(terminal)
+    }
+
+    fn tmux(&self, arguments: &[&str]) -> String {
+        let output = Command::new("tmux").args(["-u", "-L", &self.socket]).args(arguments).output().expect("tmux runs");
+        assert!(output.status.success(), "tmux {arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    }
+
+    fn screen(&self) -> String {
+        self.tmux(&["capture-pane", "-p"])
+    }
+
+    /// A key by its tmux name: "a", "Space", "C-c".
+    fn key(&self, key: &str) {
+        self.tmux(&["send-keys", key]);
+    }
+
+    /// Types a command line into the shell.
+    fn shell(&self, line: &str) {
+        self.tmux(&["send-keys", "-l", line]);
+        self.key("Enter");
+    }
+
+    /// Moves the mouse pointer to a cell, as the terminal reports it (SGR).
+    fn point(&self, column: u16, row: u16) {
+        self.tmux(&["send-keys", "-l", &format!("\x1b[<35;{};{}M", column + 1, row + 1)]);
+    }
+
+    fn see(&self, text: &str) {
+        self.wait(&format!("\"{text}\" on the screen"), || self.screen().contains(text));
+    }
+
+    fn wait(&self, what: &str, mut is_so: impl FnMut() -> bool) {
+        let began = Instant::now();
+        while !is_so() {
+            assert!(began.elapsed() < PATIENCE, "waited in vain for {what}; the screen is\n{}", self.screen());
+            std::thread::sleep(Duration::from_millis(30));
+        }
+    }
+
+    /// Runs a program in the shell, which notes its process id and how the terminal was before and after.
+    fn run(&self, program: &str) {
+        let folder = self.folder.display();
+        self.shell(&format!(
+            "clear; stty -g > {folder}/before; sh -c 'echo $$ > {folder}/pid; exec {program}'; \
+             echo exit $? > {folder}/exit; stty -g > {folder}/after"
+        ));
+    }
+
+    /// Starts a session of this file with these arguments, and waits for the console.
+    fn operate(&self, session: &str, arguments: &str) {
+        let root = env!("CARGO_MANIFEST_DIR");
+        let out = self.folder.display();
+        self.run(&format!("{TOMCOM} operate {root}/sessions/{session} --out {out}/recordings {arguments}"));
+        self.see("READY");
+    }
+
+    fn recording(&self) -> PathBuf {
+        let folder = fs::read_dir(self.folder.join("recordings")).expect("recordings").next();
+        folder.expect("a recording").expect("readable").path()
+    }
+
+    fn log(&self) -> String {
+        fs::read_to_string(self.recording().join("events.jsonl")).expect("a log")
+    }
+
+    fn count(&self, text: &str) -> usize {
+        self.log().lines().skip(1).filter(|line| line.contains(text)).count()
+    }
+
+    /// Presses a key and waits until the log has one more line with this text.
+    fn key_logs(&self, key: &str, text: &str) {
+        let before = self.count(text);
+        self.key(key);
+        self.wait(&format!("{text} after {key}"), || self.count(text) > before);
+    }
+
+    /// Waits for the program's end and checks that the terminal is as it was before.
+    fn is_whole(&self, exit: &str) {
+        self.wait("the end", || self.folder.join("after").exists());
+        self.wait("stty", || !self.read("after").is_empty());
+        assert_eq!(self.read("exit").trim(), format!("exit {exit}"), "{}", self.screen());
+        assert_eq!(self.read("before"), self.read("after"), "the line discipline");
+        let flags = "#{alternate_on} #{cursor_flag} #{mouse_any_flag} #{mouse_sgr_flag}";
+        self.wait("a whole terminal", || self.tmux(&["display-message", "-p", flags]).trim() == "0 1 0 0");
+        fs::remove_file(self.folder.join("after")).expect("read before");
+    }
+
+    fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.folder.join(name)).unwrap_or_default()
+    }
+
+    fn quit(&self) {
+        self.key("C-c");
+        self.see("Quit tomcom?");
+        self.key("y");
+        self.is_whole("0");
+        self.see("recorded in");
+    }
+
+    fn verifies(&self) {
+        let recording = self.recording();
+        let output = tomcom(&["replay", &recording.display().to_string(), "--verify"]);
+        assert!(output.status.success(), "{output:?}");
+    }
+}
+
+impl Drop for Terminal {
+    fn drop(&mut self) {
+        let _ = Command::new("tmux").args(["-L", &self.socket, "kill-server"]).output();
+    }
+}
+
+fn tomcom(arguments: &[&str]) -> Output {
+    Command::new(TOMCOM).args(arguments).output().expect("tomcom runs")
+}
+
+fn kitchen(session: &str) -> Arc<Kitchen> {
+    let files = read_session(&Path::new("sessions").join(session)).expect("a session of the project");
+    Arc::new(files.kitchen.kitchen)
+}
+
+/// A wizard's whole session: every key that concerns participant, robot or analysis, and its line in the log.
+fn check_wizard(session: &str) {
+    let Some(terminal) = Terminal::open(&format!("wizard-{session}")) else { return };
+    let kitchen = kitchen(session);
+    terminal.operate(session, "");
+    terminal.key_logs(".", "trial_started");
+    terminal.see("RUNNING");
+    for location in &kitchen.locations {
+        let Some(key) = location.signal_key.filter(|_| location.name != "human_hand") else { continue };
+        // An order that was served has no recipe to show until the next one comes.
+        let shown = format!("\":\"{}\"}}}}", location.name);
+        terminal.wait(&shown, || {
+            terminal.key(&key.to_string());
+            std::thread::sleep(Duration::from_millis(800));
+            terminal.count(&shown) > 0
+        });
+    }
+    let shown = terminal.count("signal_shown");
+    terminal.key_logs("BSpace", "taken_back");
+    terminal.see("taken back");
+    for _ in 0..20 {
+        terminal.key("a");
+    }
+    terminal.wait("a held key", || terminal.count("signal_shown") > shown);
+    terminal.key_logs("3", "\"marker\",\"note\":\"slip\"");
+    terminal.key_logs("Space", "robot_stopped");
+    terminal.see("STOPPED");
+    assert_eq!(terminal.count("signal_shown"), shown + 1, "a held key sends once");
+    terminal.key_logs("C-r", "robot_resumed");
+    std::thread::sleep(Duration::from_millis(800));
+    terminal.key_logs(".", "trial_paused");
+    terminal.see("PAUSED");
+    std::thread::sleep(Duration::from_millis(800));
+    terminal.key_logs(".", "trial_resumed");
+    terminal.key("?");
+    terminal.see("any key closes");
+    terminal.key("x");
+    std::thread::sleep(Duration::from_millis(800));
+    terminal.key("C-e");
+    terminal.see("End the trial?");
+    terminal.key_logs("y", "trial_ended");
+    terminal.quit();
+    assert_eq!(terminal.count("session_ended"), 1);
+    terminal.verifies();
+}
+
+#[test]
+fn a_wizard_runs_a_session_in_the_sushi_kitchen() {
+    check_wizard("default.toml");
+}
+
+#[test]
+fn a_wizard_runs_a_session_in_the_burger_kitchen() {
+    check_wizard("burger.toml");
+}
+
+#[test]
+fn a_signal_to_the_program_closes_the_recording_and_gives_the_terminal_back() {
+    for signal in ["TERM", "INT", "HUP"] {
+        let Some(terminal) = Terminal::open(&format!("signal-{signal}")) else { return };
+        terminal.operate("default.toml", "--participant keyboard --gaze mouse");
+        terminal.key_logs(".", "trial_started");
+        let pid = terminal.read("pid");
+        let killed = Command::new("kill").args([&format!("-{signal}"), pid.trim()]).status().expect("kill runs");
+        assert!(killed.success());
+        terminal.is_whole("0");
+        assert_eq!(terminal.count("session_ended"), 1);
+        terminal.verifies();
+    }
+}
+
+/// Not a test by itself: what the next one runs in a terminal.
+#[test]
+#[ignore = "panics on purpose, inside of the terminal of another test"]
+fn a_program_that_panics() {
+    let _screen = Screen::take(true).expect("a terminal");
+    panic!("on purpose");
+}
+
+#[test]
+fn a_panic_gives_the_terminal_back_and_its_message_can_be_read() {
+    let Some(terminal) = Terminal::open("panic") else { return };
+    let this = std::env::current_exe().expect("a path");
+    terminal.run(&format!("{} --ignored --exact a_program_that_panics --nocapture", this.display()));
+    terminal.is_whole("101");
+    terminal.see("on purpose");
+}
+
+/// Makes and serves an order by hand: the person looks at the place and presses its button, the robot helps.
+fn check_by_hand(session: &str) {
+    let Some(terminal) = Terminal::open(&format!("by-hand-{session}")) else { return };
+    let kitchen = kitchen(session);
+    terminal.operate(session, "--participant keyboard --gaze mouse");
+    terminal.key_logs(".", "trial_started");
+    terminal.key("Tab");
+    terminal.see("KEYS: PARTICIPANT");
+    let panel = Regions::new(SIZE, Visibility::Recommendation).kitchen_inside();
+    let plan = Plan::new(&kitchen, panel, true);
+    let mut cost = CostToGo::new(kitchen.clone());
+    let mut replay = Replay::open(&terminal.recording()).expect("it opens while it is written");
+    let recipes = kitchen.true_recipes();
+    let mut hands = 0;
+    let began = Instant::now();
+    while replay.session().served.is_empty() {
+        assert!(began.elapsed() < 6 * PATIENCE, "no order was served:\n{}", terminal.screen());
+        while replay.step().expect("it can be read while it is written").is_some() {}
+        let state = replay.session().state;
+        let here = cost.all_orders(state, &recipes);
+        let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+        let helps = |button: &ButtonId| {
+            let next = kitchen.press(state, &recipes, Agent::Human, *button);
+            next.is_some_and(|next| cost.all_orders(next, &recipes) < here)
+        };
+        let Some(button) = buttons.filter(|_| here > 0).find(helps) else {
+            std::thread::sleep(Duration::from_millis(50));
+            continue;
+        };
+        let button = kitchen.button(Agent::Human, button);
+        let place = |thing: &Thing| match button.action {
+            Action::Use(location) | Action::Serve(location) => *thing == Thing::Location(location),
+            Action::Take(item) => matches!(thing, Thing::Storage(index)
+                if kitchen.storages[*index].agent == Agent::Human && kitchen.storages[*index].item == item),
+            Action::Process(_) | Action::Trash => *thing == Thing::Location(kitchen.hands[Agent::Human.index()]),
+        };
+        let spot = plan.spots.iter().find(|spot| place(&spot.thing)).expect("every button is about a place");
+        terminal.point(spot.cells.x + spot.cells.width / 2, spot.cells.y + spot.cells.height / 2);
+        let key = button.key.expect("every button of the human has a key").to_string();
+        terminal.key_logs(&key, &format!("\"agent\":\"human\",\"button\":\"{}\"", button.name));
+        hands += 1;
+        // The same key again at once would count as held down.
+        std::thread::sleep(Duration::from_millis(750));
+    }
+    terminal.see("1 served");
+    assert!(hands > 4, "the person did {hands} presses of it");
+    assert!(replay.session().gaze.samples > 100, "the pointer is a steady stream of gaze");
+    assert!(replay.session().gaze.looked_at.iter().flatten().count() > 1, "the person looked at several places");
+    terminal.quit();
+    terminal.verifies();
+}
+
+#[test]
+fn an_order_is_made_and_served_by_hand_in_the_sushi_kitchen() {
+    check_by_hand("default.toml");
+}
+
+#[test]
+fn an_order_is_made_and_served_by_hand_in_the_burger_kitchen() {
+    check_by_hand("burger.toml");
+}
+
+#[test]
+fn a_running_session_is_watched_from_another_terminal_and_looked_at_again() {
+    let Some(terminal) = Terminal::open("watched") else { return };
+    let Some(other) = Terminal::open("watching") else { return };
+    terminal.operate("default.toml", "");
+    terminal.key_logs(".", "trial_started");
+    let recording = terminal.recording();
+    other.run(&format!("{TOMCOM} replay {} --follow", recording.display()));
+    other.see("RUNNING");
+    other.see("live");
+    terminal.key_logs("a", "signal_shown");
+    other.see("highlight assembly board");
+    terminal.quit();
+    other.see("CLOSED");
+    other.key("q");
+    other.is_whole("0");
+    other.run(&format!("{TOMCOM} replay {}", recording.display()));
+    other.see("play 1x");
+    for (key, seen) in [("+", "play 2x"), (".", "stand 2x"), ("End", "CLOSED"), ("Home", "event 0/")] {
+        other.key(key);
+        other.see(seen);
+    }
+    other.key("Right");
+    other.see("event 1/");
+    other.key("q");
+    other.is_whole("0");
+}
+
+#[test]
+fn gaze_comes_from_any_program_that_writes_lines() {
+    use std::io::Write;
+    let Some(terminal) = Terminal::open("json") else { return };
+    let free = std::net::TcpListener::bind(("127.0.0.1", 0)).and_then(|listener| listener.local_addr());
+    let port = free.expect("a free port").port();
+    let text = fs::read_to_string("sessions/default.toml").expect("the default session");
+    let root = env!("CARGO_MANIFEST_DIR");
+    let text = text.replace("../layouts", &format!("{root}/layouts")).replace("50021", &port.to_string());
+    let session = terminal.folder.join("session.toml");
+    fs::write(&session, text).expect("written");
+    let out = terminal.folder.display();
+    let arguments = "--participant keyboard --gaze json";
+    terminal.run(&format!("{TOMCOM} operate {} --out {out}/recordings {arguments}", session.display()));
+    terminal.see("READY");
+    let mut tracker = std::net::TcpStream::connect(("127.0.0.1", port)).expect("it listens");
+    for step in 0..50 {
+        let t = f64::from(step) / 50.0;
+        writeln!(tracker, "{{\"t\": {t}, \"x\": 0.40, \"y\": 0.35, \"confidence\": 0.9}}").expect("sent");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    writeln!(tracker, "nonsense").expect("sent");
+    terminal.see("1 malformed");
+    terminal.see("assembly board");
+    assert_eq!(terminal.count("\"gaze\""), 50);
+    terminal.quit();
+    terminal.verifies();
+}

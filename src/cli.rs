@@ -103,7 +103,7 @@ enum Gaze {
     Mouse,
     /// Lines of JSON over TCP on localhost.
     Json,
-    /// Nobody is looked at.
+    /// No gaze at all.
     None,
 }
 

@@ -149,7 +149,7 @@ pub enum GazeSource {
     Mouse,
     /// Newline separated JSON over TCP on localhost.
     Json,
-    /// Nobody is looked at.
+    /// No gaze at all.
     None,
 }
 

@@ -152,7 +152,7 @@ def check_kitchen(layout):
     for size in sizes.values():
         states *= size
     assert told["states"] == str(states), told["states"]
-    print(f"{layout}: {states} states, computed again")
+    print(f"{layout.name}: {states} states, computed again")
 
 
 def check_readme_kitchen(scratch):

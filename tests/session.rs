@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use tomcom::base::time::SessionTime;
 use tomcom::communication::{Sender, Signal};
-use tomcom::edge::files::read_session;
+use tomcom::console::Keys;
+use tomcom::edge::files::{parse, read_session};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen, OrderContent, State};
 use tomcom::measures::errors::{Judge, Verdict};
@@ -26,6 +27,26 @@ fn engine(change: impl Fn(&mut SessionSpec)) -> Engine {
     change(&mut spec);
     let kitchen = kitchen();
     Engine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen))
+}
+
+#[test]
+fn every_session_file_loads_and_its_keys_are_unambiguous() {
+    for entry in std::fs::read_dir("sessions").expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        let mut files = read_session(&path).unwrap_or_else(|error| panic!("{error}"));
+        files.spec.participant.kind = ParticipantKind::Keyboard;
+        Keys::live(&files.kitchen.kitchen, &files.spec).unwrap_or_else(|clash| panic!("{}: {clash}", path.display()));
+    }
+}
+
+#[test]
+fn the_default_session_spells_out_every_default() {
+    let path = Path::new("sessions/default.toml");
+    let only_layout: SessionSpec = parse(path, "layout = \"../layouts/sushi.toml\"").expect("a session file");
+    assert_eq!(read_session(path).expect("the default session").spec, only_layout);
 }
 
 fn at(seconds: f64) -> SessionTime {

@@ -169,6 +169,17 @@ def check_readme_kitchen(scratch):
     check_counts(figures["recordings"], figures)
     found = tomcom("replay", figures["recordings"][0], "--verify")
     assert found["verified"] is True, found
+    check_readme_pandas(figures["recordings"][0])
+
+
+def check_readme_pandas(recording):
+    """The line of pandas that the README prints reads a recording."""
+    (code,) = re.findall(r"```python\n(events = .*?)```", README, re.DOTALL)
+    found = {"pandas": pandas}
+    exec(code.replace("events.jsonl", str(Path(recording) / "events.jsonl")), found)
+    _, events = read(recording)
+    assert found["events"]["kind"].tolist() == events["kind"].tolist()
+    assert found["events"]["t_ns"].tolist() == events["t_ns"].tolist()
 
 
 if __name__ == "__main__":

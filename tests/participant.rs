@@ -215,6 +215,11 @@ impl Figures {
             self.seconds,
             self.wall_s,
         );
+        let mut lengths: BTreeMap<usize, usize> = BTreeMap::new();
+        for &length in &self.sequences {
+            *lengths.entry(length).or_default() += 1;
+        }
+        println!("    sequences by length: {lengths:?}");
         for (cause, count) in &self.causes {
             println!("    {count:5} {cause}");
         }
@@ -318,17 +323,19 @@ fn the_same_seed_does_the_same_and_another_one_something_else() {
 
 #[test]
 fn it_makes_what_is_ordered_by_itself() {
-    for seed in 0..5 {
+    // The robot stands still. Some take a wrong recipe for the right one and need several attempts.
+    let mut served = 0;
+    for seed in 0..20 {
         let mut bench = Bench::new(&Population::default(), seed);
         let order = bench.location("order_1");
         bench.order("order_1", "crab maki");
-        for _ in 0..60 {
-            bench.pass(5.0);
-        }
-        assert_eq!(bench.state.order(order), OrderContent::Served, "seed {seed}");
-        let presses = bench.presses.iter().filter(|(time, _)| *time < 30.0).count();
-        assert!((8..=20).contains(&presses), "{presses} presses in 30 s");
+        bench.pass(300.0);
+        served += usize::from(bench.state.order(order) == OrderContent::Served);
+        let intervals: Vec<f64> = bench.presses.windows(2).map(|two| two[1].0 - two[0].0).collect();
+        let quick = intervals.iter().filter(|interval| **interval < 4.0).count();
+        assert!(quick * 2 > intervals.len(), "seed {seed}: {intervals:?}");
     }
+    assert!(served >= 15, "{served} of 20 in five minutes");
 }
 
 #[test]
@@ -393,7 +400,7 @@ fn a_noticed_signal_makes_the_aspect_right() {
 #[test]
 fn a_signal_taken_back_in_time_is_not_read() {
     let ignorant = Population { learned: Spread { median: 0.02, sigma: 0.0 }, ..unmoved() };
-    for seed in 0..20 {
+    for seed in 0..40 {
         let mut bench = Bench::new(&ignorant, seed);
         bench.order("order_1", "tuna nigiri");
         let order = bench.location("order_1");

@@ -25,6 +25,8 @@ pub struct Intent {
     pub plan: VecDeque<ButtonId>,
     /// The order that it works on, and until when it stays with it.
     pub order: Option<(LocationId, SessionTime)>,
+    /// What it has just tried because nothing went on: not to be undone at once.
+    pub tried: Option<ButtonId>,
 }
 
 /// A press and the state that it is believed to lead to.
@@ -41,7 +43,12 @@ pub fn think(
     random: &mut Stream,
 ) {
     let (state, recipes) = beliefs.point(kitchen);
-    let good = good_presses(kitchen, cost, state, &recipes);
+    let mut good = good_presses(kitchen, cost, state, &recipes);
+    if let Some(tried) = intent.tried
+        && good.len() > 1
+    {
+        good.retain(|(button, _)| *button != tried);
+    }
     if let Some(planned) = intent.plan.front()
         && good.iter().any(|(button, _)| button == planned)
     {
@@ -63,7 +70,15 @@ pub fn think(
         let here = cost.order(state, &recipes, order);
         choices.retain(|(_, next)| cost.order(*next, &recipes, order) < here);
     }
-    let choices = if choices.is_empty() { good } else { choices };
+    let mut choices = if choices.is_empty() { good } else { choices };
+    // One does not take up what one could only stand about with.
+    let goes_on = |cost: &mut CostToGo, next: State| {
+        kitchen.wanted(next).next().is_none() || !good_presses(kitchen, cost, next, &recipes).is_empty()
+    };
+    let going_on: Vec<Step> = choices.iter().copied().filter(|(_, next)| goes_on(cost, *next)).collect();
+    if !going_on.is_empty() {
+        choices = going_on;
+    }
     let (button, mut state) = choices[random.random_range(0..choices.len())];
     intent.plan.push_back(button);
     let hand = kitchen.hands[Agent::Human.index()];

@@ -7,21 +7,23 @@ use super::population::{chance, normal};
 use super::{Deed, SimulatedParticipant, decision, learning, witness};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, ButtonId, LocationId, State};
+use crate::kitchen::{Action, Agent, ButtonId, DishId, LocationId, State};
 
 /// Below this certainty of a place one looks before using it.
 const UNSURE: f64 = 0.6;
 /// How long a press waits for such a look, in seconds, and how often.
-const LOOK_FIRST_S: f64 = 0.45;
+const LOOK_FIRST_S: f64 = 0.4;
 const MOST_LOOKS_FIRST: u32 = 2;
+/// What was read so many seconds ago may be otherwise by now.
+const FRESH_S: f64 = 0.8;
 /// While there is nothing to do one thinks again after this time, in seconds.
 const THINK_AGAIN_S: [f64; 2] = [0.4, 0.8];
-/// After so many times its patience without anything to do a person tries something.
-const DESPAIR: f64 = 2.5;
-/// After so many times its patience it asks itself whether it has the recipe right.
-const WONDERS: f64 = 1.5;
+/// After its patience without a press of anybody, or so many times that without anything to do, a person tries something.
+const DESPAIR: f64 = 3.0;
+/// Chance that it then asks itself whether it has a recipe right, before it tries something.
+const WONDERS: f64 = 0.5;
 /// What is left of the belief in a recipe when nothing goes on.
-const STANDSTILL_LEAVES: f64 = 0.35;
+const STANDSTILL_LEAVES: f64 = 0.4;
 
 impl SimulatedParticipant {
     /// Presses, or waits for something to do.
@@ -29,11 +31,8 @@ impl SimulatedParticipant {
         let kitchen = self.kitchen.clone();
         self.think(now, cost);
         let Some(&button) = self.intent.plan.front() else { return self.wait(now, state, cost) };
-        let unsure = learning::involved(&kitchen, button)
-            .into_iter()
-            .find(|&place| self.beliefs.certainty(of_location(place)) < UNSURE);
-        if let Some(place) = unsure
-            && self.looks_first < MOST_LOOKS_FIRST
+        if self.looks_first < MOST_LOOKS_FIRST
+            && let Some(place) = self.worth_a_look(now, button)
         {
             self.looks_first += 1;
             self.attention.first(place);
@@ -41,12 +40,31 @@ impl SimulatedParticipant {
             return None;
         }
         self.intent.plan.pop_front();
+        self.intent.tried = None;
         let (pressed, cause) = self.slip(button);
         let cause = match cause {
             Some(cause) => cause,
             None => witness::cause(&kitchen, cost, &self.beliefs, state, button),
         };
         Some(self.press(now, state, pressed, cause))
+    }
+
+    /// A place to look at before pressing: one that the person is unsure of, or one that it has not seen for a while, if
+    /// it is careful. Before fetching something one looks whether the robot does so already.
+    fn worth_a_look(&mut self, now: SessionTime, button: ButtonId) -> Option<LocationId> {
+        let kitchen = self.kitchen.clone();
+        let own = kitchen.hands[Agent::Human.index()];
+        let mut places = learning::involved(&kitchen, button);
+        let unsure = places.iter().find(|&&place| self.beliefs.certainty(of_location(place)) < UNSURE);
+        if unsure.is_some() {
+            return unsure.copied();
+        }
+        if let Action::Take(_) = kitchen.button(Agent::Human, button).action {
+            places.push(kitchen.hands[Agent::Robot.index()]);
+        }
+        let is_old = |place: LocationId| now.secs_since(self.attention.read_at[place.index()]) > FRESH_S;
+        let old = places.into_iter().find(|&place| place != own && is_old(place));
+        old.filter(|_| self.looks_first == 0 && chance(&mut self.hand, self.person.makes_sure))
     }
 
     fn press(&mut self, now: SessionTime, state: State, button: ButtonId, cause: String) -> Deed {
@@ -96,6 +114,7 @@ impl SimulatedParticipant {
         let kitchen = self.kitchen.clone();
         let since = *self.idle_since.get_or_insert(now);
         let idle_s = now.secs_since(since);
+        let standstill_s = now.secs_since(since.max(self.robot_pressed_at));
         let again_s = THINK_AGAIN_S[0] + (THINK_AGAIN_S[1] - THINK_AGAIN_S[0]) * self.hand.random::<f64>();
         self.press_at = now + SessionTime::from_secs_f64(again_s);
         self.rethink = true;
@@ -107,20 +126,24 @@ impl SimulatedParticipant {
         for &location in stale.iter().take(3) {
             self.attention.later(location);
         }
-        if now.secs_since(self.last_doubt) > self.person.patience_s && idle_s > WONDERS * self.person.patience_s {
-            self.last_doubt = now;
+        if idle_s < self.person.patience_s * DESPAIR && standstill_s < self.person.patience_s {
+            return None;
+        }
+        if chance(&mut self.mind, WONDERS) {
+            self.idle_since = Some(now);
             let wanted = kitchen.orders.iter().filter_map(|&order| wanted_dish(&kitchen, &self.beliefs, order));
-            if let Some(dish) = self.least_sure(wanted) {
+            let wanted: Vec<DishId> = wanted.collect();
+            if !wanted.is_empty() {
+                let dish = wanted[self.mind.random_range(0..wanted.len())];
                 self.memory.doubt(&kitchen, &mut self.beliefs, dish, STANDSTILL_LEAVES, |_| false);
             }
-        }
-        if idle_s < self.person.patience_s * DESPAIR {
             return None;
         }
         let (believed, recipes) = self.beliefs.point(&kitchen);
         kitchen.wanted(believed).next()?;
         let button = decision::try_something(&kitchen, cost, believed, &recipes, &mut self.mind)?;
         self.meant = None;
+        self.intent.tried = Some(button);
         Some(self.press(now, state, button, "tries something, as nothing goes on".to_string()))
     }
 

@@ -26,7 +26,7 @@ pub struct Memory {
     faded: Vec<Vec<f64>>,
     /// What was learned in the instruction: it comes back when the person stops to think.
     learned: Vec<Vec<f64>>,
-    /// What is left of each version of a recipe after failures to serve it.
+    /// What is left of each version of a recipe after it was doubted, until one is confirmed.
     left: Vec<Vec<f64>>,
     half_life_s: f64,
     last: SessionTime,
@@ -118,9 +118,10 @@ impl Memory {
         let held = beliefs.most_likely(aspect);
         let variants = &kitchen.dish(dish).variants;
         beliefs.replace(aspect, &self.learned[dish.index()]);
-        let left = &self.left[dish.index()];
+        let left = &mut self.left[dish.index()];
+        left[held] *= trust;
         beliefs.weigh(aspect, |value| match (value == held, fits(variants[value])) {
-            (true, _) => trust * left[value],
+            (true, _) => left[value],
             (false, true) => FITS * left[value],
             (false, false) => left[value],
         });
@@ -129,9 +130,7 @@ impl Memory {
 
     /// What is held for the recipe could not be served: it is another one.
     pub fn fail(&mut self, kitchen: &Kitchen, beliefs: &mut Beliefs, dish: DishId) {
-        let held = beliefs.most_likely(of_dish(kitchen, dish));
-        self.left[dish.index()][held] *= FAILED;
-        self.doubt(kitchen, beliefs, dish, 1.0, |_| false);
+        self.doubt(kitchen, beliefs, dish, FAILED, |_| false);
     }
 
     /// The recipe was shown, or what it says was served.

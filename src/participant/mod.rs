@@ -72,7 +72,8 @@ pub struct SimulatedParticipant {
     presses: u32,
     looks_first: u32,
     idle_since: Option<SessionTime>,
-    last_doubt: SessionTime,
+    /// When the robot last pressed something.
+    robot_pressed_at: SessionTime,
     /// The press under way: what was meant, if the person takes it for done.
     meant: Option<ButtonId>,
     signal: Option<(SessionTime, LocationId, Signal)>,
@@ -113,7 +114,7 @@ impl SimulatedParticipant {
             presses: 0,
             looks_first: 0,
             idle_since: None,
-            last_doubt: SessionTime::ZERO,
+            robot_pressed_at: SessionTime::ZERO,
             meant: None,
             signal: None,
             clearing: Vec::new(),
@@ -143,7 +144,7 @@ impl SimulatedParticipant {
         self.eyes.start(now);
         self.memory.fade(&self.kitchen, &mut self.beliefs, now, &[]);
         self.attention.read_at.fill(now);
-        self.last_doubt = now;
+        self.robot_pressed_at = now;
         self.press_at = now + self.reaction();
     }
 
@@ -152,7 +153,7 @@ impl SimulatedParticipant {
         self.eyes.postpone(by);
         self.memory.postpone(by);
         self.press_at = self.press_at + by;
-        self.last_doubt = self.last_doubt + by;
+        self.robot_pressed_at = self.robot_pressed_at + by;
         self.idle_since = self.idle_since.map(|since| since + by);
         self.signal = self.signal.take().map(|(time, location, signal)| (time + by, location, signal));
         self.intent.order = self.intent.order.map(|(order, until)| (order, until + by));
@@ -183,7 +184,10 @@ impl SimulatedParticipant {
     /// An agent pressed a button: of the robot's press only that it happened is noticed.
     pub fn on_press(&mut self, now: SessionTime, agent: Agent, button: ButtonId, _before: State, after: Option<State>) {
         match agent {
-            Agent::Robot => self.wonder(),
+            Agent::Robot => {
+                self.robot_pressed_at = now;
+                self.wonder();
+            }
             Agent::Human => {
                 let button = self.meant.take().unwrap_or(button);
                 self.take_in(now, button, after.is_some());

@@ -64,6 +64,8 @@ pub struct Population {
     pub notices_slip: f64,
     /// Chance to look at a place right before using it.
     pub checks: Spread,
+    /// Chance to look once more before a press if the last look is some time ago.
+    pub makes_sure: Spread,
     /// Chance that a change anywhere on the display draws the eye.
     pub capture: Spread,
     /// Chance that a new order draws the eye.
@@ -109,15 +111,16 @@ pub struct Population {
 impl Default for Population {
     fn default() -> Self {
         Population {
-            press_s: Spread::of(1.75, 0.12),
+            press_s: Spread::of(1.5, 0.12),
             press_jitter: 0.3,
-            novice_slowdown: 0.35,
+            novice_slowdown: 0.3,
             practice_presses: 25.0,
             slip: Spread::of(0.016, 0.4),
             look_alike_slip: Spread::of(0.012, 0.4),
             thoughtless: Spread::of(0.005, 0.4),
             notices_slip: 0.85,
             checks: Spread::of(0.9, 0.3),
+            makes_sure: Spread::of(0.4, 0.5),
             capture: Spread::of(0.6, 0.3),
             order_capture: Spread::of(0.75, 0.3),
             wanders: Spread::of(0.15, 0.3),
@@ -150,6 +153,7 @@ pub struct Individual {
     pub look_alike_slip: f64,
     pub thoughtless: f64,
     pub checks: f64,
+    pub makes_sure: f64,
     pub capture: f64,
     pub order_capture: f64,
     pub wanders: f64,
@@ -180,6 +184,7 @@ impl Population {
             look_alike_slip: self.look_alike_slip.draw_chance(random),
             thoughtless: self.thoughtless.draw_chance(random),
             checks: self.checks.draw_chance(random),
+            makes_sure: self.makes_sure.draw_chance(random),
             capture: self.capture.draw_chance(random),
             order_capture: self.order_capture.draw_chance(random),
             wanders: self.wanders.draw_chance(random),

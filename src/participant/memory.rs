@@ -15,6 +15,8 @@ const RECALLED: f64 = 0.92;
 const CONFIRMED: f64 = 0.97;
 /// What is left of the belief in a recipe when what it says cannot be served.
 const FAILED: f64 = 0.05;
+/// The length of menu that the population's memory parameters are for.
+const USUAL_MENU: f64 = 6.0;
 /// How much more a variant is thought of that fits what was seen.
 const FITS: f64 = 4.0;
 
@@ -42,6 +44,9 @@ impl Memory {
         beliefs: &mut Beliefs,
     ) -> Memory {
         let (mut faded, mut learned) = (Vec::new(), Vec::new());
+        // A short menu is easier to remember.
+        let ease = USUAL_MENU / kitchen.dishes.len() as f64;
+        let odds_of = |p: f64| p / (1.0 - p) * ease;
         for (index, dish) in kitchen.dishes.iter().enumerate() {
             let alike = &kitchen.content(dish.stack()).look_alikes;
             let weight = |variant: &ContentId| {
@@ -53,11 +58,12 @@ impl Memory {
                 std::iter::once(p_truth).chain(weights.iter().map(|w| w / total * (1.0 - p_truth))).collect()
             };
             // Some dishes are remembered better than others.
-            let odds = person.learned / (1.0 - person.learned) * (0.5 * normal(&mut random)).exp();
+            let odds = odds_of(person.learned) * (0.5 * normal(&mut random)).exp();
             let known = with_truth(odds / (1.0 + odds));
             beliefs.replace(of_dish(kitchen, DishId(index as u8)), &known);
             learned.push(known);
-            faded.push(with_truth(person.half_forgotten));
+            let odds = odds_of(person.half_forgotten);
+            faded.push(with_truth(odds / (1.0 + odds)));
         }
         let left = learned.iter().map(|known| vec![1.0; known.len()]).collect();
         Memory { random, faded, learned, left, half_life_s: person.half_life_s, last: SessionTime::ZERO }

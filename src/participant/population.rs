@@ -82,9 +82,9 @@ pub struct Population {
     pub doubts_robot_hand: Spread,
     /// The same for an unseen shared place.
     pub doubts_places: Spread,
-    /// Belief in the true recipe after the instruction.
+    /// Belief in the true recipe after the instruction, on a menu of six.
     pub learned: Spread,
-    /// Belief in the true recipe to which an unused memory of it decays.
+    /// Belief in the true recipe to which an unused memory of it decays, on a menu of six.
     pub half_forgotten: Spread,
     /// Half-life of that decay in seconds.
     pub half_life_s: Spread,

@@ -310,7 +310,7 @@ fn spot(item: &Item, region: Rect, display: Bounds) -> Spot {
     let cells = match item.thing {
         Thing::Location(_) => {
             // Lower boxes leave air between them; where there is much room, they grow with it.
-            let height = region.height.min((region.height / 2 + 1).max(5));
+            let height = region.height.min((region.height / 3 + 2).max(5));
             let width = region.width.saturating_sub(u16::from(region.width > MIN_BOX));
             Rect { y: region.y + (region.height - height) / 2, width, height, ..region }
         }

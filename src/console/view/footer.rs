@@ -26,7 +26,10 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let notice = model.notice.as_ref().filter(|notice| model.now.secs_since(notice.at) < NOTICE_S);
     let said = notice.map_or(0, |notice| width(&notice.text) + 3).min(area.width / 2);
     let end = area.right().saturating_sub(said);
-    for binding in &model.keys.bindings {
+    // The end of the trial is rare, and gives its room to the others.
+    let (late, first): (Vec<&Binding>, Vec<&Binding>) =
+        model.keys.bindings.iter().partition(|binding| binding.action == Action::EndTrial);
+    for binding in first.into_iter().chain(late) {
         let Some(label) = label(binding, session, model) else { continue };
         let key = match binding.action {
             Action::Note(_) => format!("1-{}", NOTES.len()),

@@ -69,7 +69,7 @@ fn facts(session: &Session, model: &Model) -> Vec<String> {
 fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> {
     let mut healths = Vec::new();
     if !model.focused && model.playback.is_none() {
-        healths.push((" KEYBOARD IS ELSEWHERE ".to_string(), Role::Alarm));
+        healths.push((" NO KEYBOARD ".to_string(), Role::Alarm));
     }
     match &model.playback {
         Some(playback) => {

@@ -14,7 +14,7 @@ use crate::console::model::Model;
 use crate::console::words;
 use crate::kitchen::{Action, Agent, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
 use crate::session::Session;
-use crate::session::settings::ParticipantKind;
+use crate::session::settings::{Condition, ParticipantKind};
 
 /// How long a change is told, in seconds.
 const FRESH_S: f64 = 5.0;
@@ -29,6 +29,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     if regions.room > Room::Small {
         let remark = match model.layer {
             Layer::Wizard if model.playback.is_some() => "",
+            Layer::Wizard if session.spec.trial.condition == Condition::None => "unassisted: no signals",
             Layer::Wizard => "[key] tells the participant",
             Layer::Participant => "[key] is the participant's button",
         };

@@ -302,7 +302,8 @@ fn served_dish(action: &Action, before: State) -> OrderContent {
 fn gaze(session: &mut Session, now: SessionTime, sample: GazeSample) {
     let status = &mut session.gaze;
     status.samples += 1;
-    let interval_s = status.last.map_or(1.0, |(last, _)| now.secs_since(last));
+    let interval_s = status.arrived.map_or(1.0, |last| now.secs_since(last));
+    status.arrived = Some(now);
     let weight = interval_s.clamp(0.0, 1.0);
     status.rate_hz += weight * (1.0 / interval_s.max(1e-3) - status.rate_hz);
     let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);

@@ -94,6 +94,8 @@ pub struct ShownSignal {
 /// The participant's gaze as far as the console needs it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GazeStatus {
+    /// When the newest sample came, usable or not.
+    pub arrived: Option<SessionTime>,
     pub last: Option<(SessionTime, GazeSample)>,
     /// When each location was last looked at (gaze inside its area), indexed by location.
     pub looked_at: [Option<SessionTime>; MAX_LOCATIONS],

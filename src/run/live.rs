@@ -107,7 +107,7 @@ impl Live {
         let log = LogWriter::create_live(&options.out, &wall.date(), &header)?;
         let cost = CostToGo::new(kitchen.clone());
         let size = Screen::size().map_err(LiveError::Terminal)?;
-        let mut model = Model::new(keys, theme(false), size);
+        let mut model = Model::new(keys, theme(files.spec.console.ascii), size);
         model.recording = Recording::On(log.folder().display().to_string());
         let engine = Engine::new(kitchen, files.spec, 0, cost);
         Ok(Live { engine, model, log, failed: None, screen, began: Instant::now(), judged: 0, dirty: true })

@@ -176,7 +176,7 @@ impl Review {
     fn open(film: Film, recording: &Path, follow: bool) -> Result<Review, ReviewError> {
         let screen = Screen::take(false).map_err(ReviewError::Terminal)?;
         let size = Screen::size().map_err(ReviewError::Terminal)?;
-        let mut model = Model::new(Keys::replay(), theme(false), size);
+        let mut model = Model::new(Keys::replay(), theme(film.session.spec.console.ascii), size);
         let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
         model.playback = Some(Playback::new(name));
         let now = Instant::now();

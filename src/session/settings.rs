@@ -190,11 +190,13 @@ impl Default for SignalSpec {
 #[serde(deny_unknown_fields, default)]
 pub struct ConsoleSpec {
     pub visibility: Visibility,
+    /// Draw with ASCII signs only, for terminals and fonts without the others.
+    pub ascii: bool,
 }
 
 impl Default for ConsoleSpec {
     fn default() -> Self {
-        ConsoleSpec { visibility: Visibility::Recommendation }
+        ConsoleSpec { visibility: Visibility::Recommendation, ascii: false }
     }
 }
 

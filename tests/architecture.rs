@@ -155,7 +155,8 @@ fn imports_go_one_way() {
 fn nothing_left_of_the_edge_touches_the_outside() {
     for source in sources().iter().filter(|source| source.floor() < EDGE) {
         for name in BANNED_BELOW_EDGE {
-            let at = source.code.lines().position(|line| line.contains(name));
+            // The maps of rustc-hash have no random seed: their order is the same in every run.
+            let at = source.code.lines().position(|line| line.replace("FxHashMap", "").contains(name));
             assert!(at.is_none(), "{}:{}: {name}", source.path.display(), at.unwrap_or_default() + 1);
         }
     }

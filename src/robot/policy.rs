@@ -16,13 +16,9 @@ pub enum Decision {
 
 /// The presses of the robot that bring the goal nearer: those after which the cost to go is one less.
 pub fn best_presses(kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Vec<ButtonId> {
-    let recipes = kitchen.true_recipes();
-    let here = cost.all_orders(state, &recipes);
-    let nearer = |button: &ButtonId| {
-        let next = kitchen.press(state, &recipes, Agent::Robot, *button);
-        next.is_some_and(|next| cost.all_orders(next, &recipes) < here)
-    };
-    (0..kitchen.buttons[Agent::Robot.index()].len()).map(|index| ButtonId(index as u8)).filter(nearer).collect()
+    let decision = cost.decision(state, &kitchen.true_recipes(), Agent::Robot);
+    let buttons = (0..kitchen.buttons[Agent::Robot.index()].len()).map(|index| ButtonId(index as u8));
+    buttons.filter(|button| decision.after[button.index()] < decision.here).collect()
 }
 
 /// Decides for the state as it truly is: of several best presses one at random, idle if none brings the goal nearer.

@@ -2,9 +2,9 @@
 //!
 //! For the cost to go only the worth of a content matters: all contents that are of no use are one class, "in the way".
 
-use crate::kitchen::{Action, Agent, ContentId, Kitchen};
+use crate::kitchen::{Action, Agent, ContentId, Kitchen, LocationId, State};
 
-use super::journeys::{Journeys, NEVER};
+use super::journeys::{Journeys, NEVER, Needs};
 
 /// At most so many targets, see [`crate::kitchen::compile::MAX_ORDERS`].
 pub const MAX_TARGETS: usize = 2;
@@ -27,20 +27,34 @@ pub struct Goal {
     pub fills: [Vec<u8>; MAX_TARGETS],
     /// `[target][class]`: the same for those that can be stacked as they are.
     pub ready: [Vec<u8>; MAX_TARGETS],
+    /// `[target][location * classes + class]`: presses that bring it onto the board if nothing is in the way.
+    pub near: [Vec<u8>; MAX_TARGETS],
+    /// The same index: what that cannot do without.
+    pub near_needs: [Vec<Needs>; MAX_TARGETS],
+    /// `[target][j]`: presses for the j-th item from a storage, and what that cannot do without.
+    pub fresh: [Vec<(u8, Needs)>; MAX_TARGETS],
     /// For each target the component index of its j-th item.
     pub components: [Vec<usize>; MAX_TARGETS],
     /// For each target the bits of all its items.
     pub complete: [u8; MAX_TARGETS],
     /// The class that a target itself has.
     pub target_class: [u8; MAX_TARGETS],
+    /// `[target][bits]`: the class of a stack of these items of the target.
+    pub part_class: [Vec<u8>; MAX_TARGETS],
     /// What can be taken from storages: by agent, classes.
     pub takes: [Vec<u8>; 2],
     /// `[process][class]`: the useful result, else 0.
     pub becomes: Vec<Vec<u8>>,
     /// `[below * classes + above]`: the useful stack, else 0.
     pub stacks: Vec<u8>,
-    /// `[location][content]`: the class times the location's stride; the sum over locations is the state's key.
-    pub key_parts: Vec<[u64; 256]>,
+    /// The first physical location, and one past the last one.
+    first: usize,
+    last: usize,
+    /// `[(location - first) * contents + content]`: the class times the location's stride; the sum over the locations is the
+    /// state's key.
+    key_by_content: Vec<u64>,
+    /// `[(location - first) * classes + class]`: the same for classes.
+    key_by_class: Vec<u64>,
 }
 
 impl Goal {
@@ -62,13 +76,20 @@ impl Goal {
             class_of,
             fills: Default::default(),
             ready: Default::default(),
+            near: Default::default(),
+            near_needs: Default::default(),
+            fresh: Default::default(),
             components: Default::default(),
             complete: [0; MAX_TARGETS],
             target_class: [0; MAX_TARGETS],
+            part_class: Default::default(),
             takes: Default::default(),
             becomes: Vec::new(),
             stacks: Vec::new(),
-            key_parts: Vec::new(),
+            first: kitchen.orders.len(),
+            last: kitchen.locations.len(),
+            key_by_content: Vec::new(),
+            key_by_class: Vec::new(),
             content,
             targets,
         };
@@ -77,15 +98,52 @@ impl Goal {
             goal.components[index] = items.iter().filter_map(|&item| journeys.component(item)).collect();
             goal.complete[index] = ((1u32 << items.len()) - 1) as u8;
             goal.target_class[index] = goal.class_of[target.index()];
+            goal.part_class[index] = vec![0; usize::from(goal.complete[index]) + 1];
             for (class, &content) in goal.content.iter().enumerate() {
                 let useful = class > usize::from(USELESS);
                 goal.fills[index].push(if useful { worth(target, content.index()) } else { 0 });
                 goal.ready[index].push(if useful { ready(kitchen, target, content) } else { 0 });
             }
         }
+        for target in 0..goal.targets.len() {
+            for class in 2..goal.content.len() {
+                let bits = usize::from(goal.ready[target][class]);
+                if bits != 0 {
+                    goal.part_class[target][bits] = class as u8;
+                }
+            }
+        }
+        goal.fill_distances(kitchen, journeys);
         goal.fill_moves(kitchen);
         goal.fill_keys(kitchen);
         goal
+    }
+
+    fn fill_distances(&mut self, kitchen: &Kitchen, journeys: &Journeys) {
+        for target in 0..self.targets.len() {
+            for &component in &self.components[target] {
+                let presses = journeys.storage_presses(journeys.all_free, component);
+                self.fresh[target].push((presses, journeys.storage_needs(component)));
+            }
+            for location in 0..kitchen.locations.len() {
+                let is_hand = kitchen.hands.iter().any(|hand| hand.index() == location);
+                for (class, content) in self.content.iter().enumerate() {
+                    let fills = self.fills[target][class];
+                    let (presses, needs) = match fills.count_ones() {
+                        0 => (NEVER, 0),
+                        1 => {
+                            let component = self.components[target][fills.trailing_zeros() as usize];
+                            let free = journeys.all_free;
+                            let presses = journeys.presses(free, component, location, content.0);
+                            (presses, journeys.needs(component, location, content.0))
+                        }
+                        _ => (if is_hand { 1 } else { 2 }, 0),
+                    };
+                    self.near[target].push(presses);
+                    self.near_needs[target].push(needs);
+                }
+            }
+        }
     }
 
     fn fill_moves(&mut self, kitchen: &Kitchen) {
@@ -116,20 +174,32 @@ impl Goal {
         }
     }
 
+    /// A number that tells states apart as far as this goal is concerned.
+    #[inline]
+    pub fn key_of_state(&self, state: State) -> u64 {
+        let contents = self.class_of.len();
+        let rows = self.key_by_content.chunks_exact(contents).enumerate();
+        rows.map(|(row, parts)| parts[state.content(LocationId((self.first + row) as u8)).index()]).sum()
+    }
+
+    /// The same for a state of classes.
+    #[inline]
+    pub fn key_of_classes(&self, state: &Classes) -> u64 {
+        let rows = self.key_by_class.chunks_exact(self.content.len());
+        rows.zip(&state[self.first..self.last]).map(|(parts, &class)| parts[usize::from(class)]).sum()
+    }
+
     fn fill_keys(&mut self, kitchen: &Kitchen) {
         let mut stride = 1u64;
-        for index in kitchen.orders.len()..kitchen.locations.len() {
-            let location = crate::kitchen::LocationId(index as u8);
+        for index in self.first..self.last {
+            let location = LocationId(index as u8);
             let can_be = |&content: &usize| content == 0 || kitchen.accepts(location, ContentId(content as u8));
             let mut classes: Vec<u8> = (0..kitchen.contents.len()).filter(can_be).map(|c| self.class_of[c]).collect();
             classes.sort_unstable();
             classes.dedup();
-            let mut parts = [0u64; 256];
-            for (content, class) in self.class_of.iter().enumerate() {
-                let digit = classes.iter().position(|other| other == class).unwrap_or(0);
-                parts[content] = digit as u64 * stride;
-            }
-            self.key_parts.push(parts);
+            let digit = |class: u8| classes.iter().position(|&other| other == class).unwrap_or(0) as u64;
+            self.key_by_content.extend(self.class_of.iter().map(|&class| digit(class) * stride));
+            self.key_by_class.extend((0..self.content.len()).map(|class| digit(class as u8) * stride));
             stride = stride.saturating_mul(classes.len() as u64);
         }
     }

@@ -28,8 +28,11 @@ pub struct Journeys {
     /// `[((mask * components + component) * locations + location) * contents + content]`, in presses.
     presses: Vec<u8>,
     /// `[mask * components + component]`: the same for an item that is still in a storage, taking it included.
-    from_storage: Vec<u8>,
+    storage_presses: Vec<u8>,
 }
+
+/// What a journey cannot do without.
+pub type Needs = u16;
 
 impl Journeys {
     pub fn new(kitchen: &Kitchen) -> Journeys {
@@ -61,7 +64,7 @@ impl Journeys {
             contents: kitchen.contents.len(),
             locations: kitchen.locations.len(),
             presses: Vec::new(),
-            from_storage: Vec::new(),
+            storage_presses: Vec::new(),
         };
         journeys.fill(kitchen);
         journeys
@@ -82,8 +85,23 @@ impl Journeys {
 
     /// Presses until this component, taken from a storage, lies on the board.
     #[inline]
-    pub fn from_storage(&self, free: FreeMask, component: usize) -> u8 {
-        self.from_storage[free * self.components.len() + component]
+    pub fn storage_presses(&self, free: FreeMask, component: usize) -> u8 {
+        self.storage_presses[free * self.components.len() + component]
+    }
+
+    /// Which single bits of the free mask such a journey cannot do without.
+    pub fn needs(&self, component: usize, location: usize, content: u8) -> Needs {
+        self.indispensable(|free| self.presses(free | self.bit[location], component, location, content))
+    }
+
+    /// The same for an item from a storage.
+    pub fn storage_needs(&self, component: usize) -> Needs {
+        self.indispensable(|free| self.storage_presses(free, component))
+    }
+
+    fn indispensable(&self, presses: impl Fn(FreeMask) -> u8) -> Needs {
+        let bits = (0..Needs::BITS).map(|bit| 1 << bit).filter(|bit| self.all_free & bit != 0);
+        bits.filter(|&bit| presses(self.all_free & !bit) == NEVER).map(|bit| bit as Needs).sum()
     }
 
     fn fill(&mut self, kitchen: &Kitchen) {
@@ -99,7 +117,7 @@ impl Journeys {
                     })
                 };
                 let best = Agent::BOTH.into_iter().flat_map(take).map(|(hand, item)| presses[hand][item.index()]).min();
-                self.from_storage.push(best.unwrap_or(NEVER).saturating_add(1));
+                self.storage_presses.push(best.unwrap_or(NEVER).saturating_add(1));
                 for row in &presses[..self.locations] {
                     self.presses.extend_from_slice(row);
                 }

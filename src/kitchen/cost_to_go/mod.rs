@@ -1,54 +1,127 @@
 //! Cost to go: the least number of presses, of both agents one after another, until the orders are served.
+//!
+//! It is computed backwards from the goal. For every part of the wanted stacks the tables of [`journeys`] say how many presses
+//! it is away from the board, from every place and for everything that may be in the way. An [`assign::Assignment`] chooses
+//! which item becomes which part, which gives a lower bound; a [`plan::Plan`] carries it out, press by press, and clears what
+//! is in the way, which gives an upper bound. Where they agree, the value is settled; where they do not, a bounded
+//! [`search`] over single presses decides. What was found is kept by state classes (see [`goal`]: all that is of no use is
+//! one class), and whole decisions are kept by state. A value depends on the state and the recipes alone, never on what was
+//! asked before.
 
+mod assign;
 mod cache;
+mod clear;
 mod goal;
+mod ground;
 mod journeys;
 mod plan;
+mod rating;
+mod search;
 
 use std::sync::Arc;
 
-use self::cache::Cache;
+use self::cache::{Cache, Decisions};
+pub use self::cache::{Decision, MAX_BUTTONS};
 use self::goal::{Classes, Goal};
-use self::plan::{BLOCKED, Ground, Planner};
+use self::ground::Ground;
+use self::rating::Rating;
+use self::search::Search;
+use super::action::Agent;
 use super::content::ContentId;
 use super::layout::LocationId;
 use super::state::{OrderContent, Recipes, State};
-use super::{Kitchen, LocationKind};
+use super::{ButtonId, Kitchen};
 
 /// The value of states from which the goal cannot be reached.
 pub const UNREACHABLE: u32 = 255;
-/// Expansions of the bounded search, at most.
-const MAX_EXPANSIONS: usize = 400;
+/// 2^20 values and 2^17 decisions: 8 MiB each.
+const CACHE_BITS: u32 = 20;
+const DECISION_BITS: u32 = 17;
+/// Keys leave so many bits for the goal.
+const SLOT_BITS: u32 = 16;
 
 /// Computes costs to go and remembers them.
 #[derive(Clone, Debug)]
 pub struct CostToGo {
     kitchen: Arc<Kitchen>,
     ground: Ground,
-    /// `[first * (contents + 1) + second]`: goals by their targets, made when first wanted.
+    /// `[first target * contents + second target]`, made when first wanted; no second target: 0.
     goals: Vec<Option<Arc<Goal>>>,
     cache: Cache,
-    pub stats: Stats,
+    decisions: Decisions,
+    counts: Counts,
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Stats {
-    pub calls: u64,
-    pub misses: u64,
-    pub searched: u64,
-    pub expansions: u64,
+/// How often what was done since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Decisions that had to be put together, button by button.
+    pub decisions_missed: u64,
+    /// Single values asked for, and those that had to be computed.
+    pub values: u64,
+    pub values_missed: u64,
+    /// Those for which bound and plans did not agree.
+    pub searches: u64,
 }
 
 impl CostToGo {
     pub fn new(kitchen: Arc<Kitchen>) -> CostToGo {
         let ground = Ground::new(&kitchen);
         let goals = vec![None; kitchen.contents.len() * kitchen.contents.len()];
-        CostToGo { kitchen, ground, goals, cache: Cache::new(20), stats: Stats::default() }
+        let (cache, decisions) = (Cache::new(CACHE_BITS), Decisions::new(DECISION_BITS));
+        CostToGo { kitchen, ground, goals, cache, decisions, counts: Counts::default() }
     }
 
-    /// C(s, recipes): presses until all present orders are served; 0 if there is none.
+    /// C(s, recipes): presses until all present orders are served; 0 if there is none, [`UNREACHABLE`] if they never can be.
     pub fn all_orders(&mut self, state: State, recipes: &Recipes) -> u32 {
-        let mut targets = [ContentId::EMPTY; 2];
+        let (mut targets, count) = self.targets(state, recipes);
+        self.cost(state, &mut targets[..count])
+    }
+
+    /// C_k(s, recipes): presses until the order at this location is served; 0 if it wants nothing.
+    pub fn order(&mut self, state: State, recipes: &Recipes, order: LocationId) -> u32 {
+        match state.order(order) {
+            OrderContent::Dish(dish) => self.cost(state, &mut [recipes.get(dish)]),
+            _ => 0,
+        }
+    }
+
+    /// C of the state and of every state that a button of `agent` leads to, in one look-up where it was asked before: what
+    /// decisions, inference and rollouts need.
+    #[inline]
+    pub fn decision(&mut self, state: State, recipes: &Recipes, agent: Agent) -> &Decision {
+        let (targets, _) = self.targets(state, recipes);
+        let question = u32::from(targets[0].0) | u32::from(targets[1].0) << 8 | (agent as u32) << 16;
+        let (index, known) = self.decisions.find(state, question);
+        if !known {
+            self.decide(index, question, state, recipes, agent);
+        }
+        self.decisions.get(index)
+    }
+
+    /// How much was looked up and how much computed since the start.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Puts a decision together and keeps it.
+    fn decide(&mut self, index: usize, question: u32, state: State, recipes: &Recipes, agent: Agent) {
+        self.counts.decisions_missed += 1;
+        let kitchen = self.kitchen.clone();
+        let here = self.all_orders(state, recipes) as u8;
+        let mut after = [here; MAX_BUTTONS];
+        for (button, after) in after.iter_mut().enumerate().take(kitchen.buttons[agent.index()].len()) {
+            if let Some(next) = kitchen.press(state, recipes, agent, ButtonId(button as u8)) {
+                *after = self.all_orders(next, recipes) as u8;
+            }
+        }
+        self.decisions.set(index, state, question, here, after);
+    }
+
+    /// The stacks that the present orders want, in the order of the orders, and their number.
+    #[inline]
+    fn targets(&self, state: State, recipes: &Recipes) -> ([ContentId; goal::MAX_TARGETS], usize) {
+        let mut targets = [ContentId::EMPTY; goal::MAX_TARGETS];
         let mut count = 0;
         for order in 0..self.ground.first {
             if let OrderContent::Dish(dish) = state.order(LocationId(order as u8)) {
@@ -56,99 +129,83 @@ impl CostToGo {
                 count += 1;
             }
         }
-        self.cost(state, &mut targets[..count])
-    }
-
-    /// C_k(s, recipes): presses until the order at this location is served; 0 if there is none.
-    pub fn order(&mut self, state: State, recipes: &Recipes, order: LocationId) -> u32 {
-        debug_assert_eq!(self.kitchen.location(order).kind, LocationKind::Order);
-        match state.order(order) {
-            OrderContent::Dish(dish) => self.cost(state, &mut [recipes.get(dish)]),
-            _ => 0,
-        }
+        (targets, count)
     }
 
     fn cost(&mut self, state: State, targets: &mut [ContentId]) -> u32 {
         if targets.is_empty() {
             return 0;
         }
-        self.stats.calls += 1;
+        self.counts.values += 1;
         targets.sort_unstable();
-        let slot = self.goal_slot(targets);
+        let slot = self.slot(targets);
+        self.make_goal(slot, targets);
+        let Some(goal) = &self.goals[slot] else { return UNREACHABLE };
+        let key = goal.key_of_state(state) << SLOT_BITS | slot as u64;
+        if let Some(value) = self.cache.get(key) {
+            return value;
+        }
+        let goal = goal.clone();
+        let mut classes: Classes = [0; 16];
+        for location in self.ground.places() {
+            classes[location] = goal.class_of[state.content(LocationId(location as u8)).index()];
+        }
+        self.compute(key, slot, &goal, &classes)
+    }
+
+    /// The value of a state of classes without one of its targets, which has just been served.
+    fn without(&mut self, goal: &Goal, state: &Classes, served: usize) -> u32 {
+        let rest = goal.targets.iter().enumerate().filter(|(index, _)| *index != served);
+        let rest: Vec<ContentId> = rest.map(|(_, &target)| target).collect();
+        if rest.is_empty() {
+            return 0;
+        }
+        let slot = self.slot(&rest);
+        self.make_goal(slot, &rest);
+        let Some(rest) = self.goals[slot].clone() else { return UNREACHABLE };
+        let mut classes: Classes = [0; 16];
+        for location in self.ground.places() {
+            classes[location] = rest.class_of[goal.content[usize::from(state[location])].index()];
+        }
+        let key = self.key(slot, &rest, &classes);
+        self.cache.get(key).unwrap_or_else(|| self.compute(key, slot, &rest, &classes))
+    }
+
+    fn compute(&mut self, key: u64, slot: usize, goal: &Goal, state: &Classes) -> u32 {
+        self.counts.values_missed += 1;
+        let value = self.solve(slot, goal, state).min(UNREACHABLE);
+        self.cache.insert(key, value);
+        value
+    }
+
+    fn solve(&mut self, slot: usize, goal: &Goal, state: &Classes) -> u32 {
+        let rating = Rating::new(&self.ground, goal, state);
+        let upper = rating.upper(&self.ground, goal, state);
+        if upper <= rating.lower {
+            return upper;
+        }
+        self.counts.searches += 1;
+        let best = Search::run(self, slot, goal, state, rating.lower, upper, search::NEAR);
+        match best < rating.lower + 2 {
+            true => best,
+            false => Search::run(self, slot, goal, state, rating.lower, best, search::FAR),
+        }
+    }
+
+    fn key(&self, slot: usize, goal: &Goal, state: &Classes) -> u64 {
+        goal.key_of_classes(state) << SLOT_BITS | slot as u64
+    }
+
+    fn slot(&self, targets: &[ContentId]) -> usize {
+        let second = targets.get(1).map_or(0, |target| target.index());
+        targets[0].index() * self.kitchen.contents.len() + second
+    }
+
+    #[inline]
+    fn make_goal(&mut self, slot: usize, targets: &[ContentId]) {
         if self.goals[slot].is_none() {
             let goal = Goal::new(&self.kitchen, &self.ground.journeys, targets.to_vec());
             self.goals[slot] = Some(Arc::new(goal));
         }
-        let Some(goal) = &self.goals[slot] else { return UNREACHABLE };
-        let mut key = 0;
-        for (index, parts) in goal.key_parts.iter().enumerate() {
-            key += parts[usize::from(state.code(LocationId((self.ground.first + index) as u8)))];
-        }
-        let key = (key << 12) ^ slot as u64;
-        if let Some(value) = self.cache.get(key) {
-            return u32::from(value);
-        }
-        self.stats.misses += 1;
-        let goal = goal.clone();
-        let mut classes: Classes = [0; 16];
-        for location in self.ground.first..self.ground.last {
-            classes[location] = goal.class_of[state.content(LocationId(location as u8)).index()];
-        }
-        let value = solve(&self.ground, &goal, &classes, &mut self.stats).min(UNREACHABLE);
-        self.cache.insert(key, value as u8);
-        value
     }
-
-    fn goal_slot(&self, targets: &[ContentId]) -> usize {
-        let first = targets[0].index();
-        let second = targets.get(1).map_or(0, |target| target.index());
-        first * self.kitchen.contents.len() + second
-    }
-}
-
-fn solve(ground: &Ground, goal: &Goal, start: &Classes, stats: &mut Stats) -> u32 {
-    let planner = Planner { ground, goal };
-    let lower = planner.serial(start, true);
-    let mut best = planner.serial(start, false);
-    if best <= lower {
-        return best;
-    }
-    stats.searched += 1;
-    // Best first over single presses; every state met ends at least in its serial plan.
-    let mut open: Vec<Vec<(u32, Classes)>> = vec![Vec::new(); 128];
-    let mut seen: std::collections::HashMap<Classes, u32> = std::collections::HashMap::new();
-    open[lower as usize].push((0, *start));
-    let mut expansions = 0;
-    let mut bound = lower as usize;
-    while bound < open.len() && (bound as u32) < best {
-        let Some((cost, state)) = open[bound].pop() else {
-            bound += 1;
-            continue;
-        };
-        if seen.get(&state).is_some_and(|&seen| seen < cost) {
-            continue;
-        }
-        expansions += 1;
-        if expansions > MAX_EXPANSIONS && best < BLOCKED {
-            break;
-        }
-        planner.successors(&state, |next| {
-            let cost = cost + 1;
-            if seen.get(&next).is_some_and(|&seen| seen <= cost) {
-                return;
-            }
-            let lower = cost + planner.serial(&next, true);
-            if lower >= best {
-                return;
-            }
-            seen.insert(next, cost);
-            let upper = cost + planner.serial(&next, false);
-            best = best.min(upper);
-            if lower < best && (lower as usize) < open.len() {
-                open[(lower as usize).max(bound)].push((cost, next));
-            }
-        });
-    }
-    stats.expansions += expansions as u64;
-    best
 }

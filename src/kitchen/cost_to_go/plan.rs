@@ -1,319 +1,271 @@
-//! The computation behind a miss of the cache: a lower bound, plans that serve one target after another, and, where the
-//! two differ, a bounded search over single presses that ends in such plans.
+//! Plans: the presses that carry out an assignment, one target after another, and clear what is in the way.
 
-use crate::kitchen::{Action, Agent, Kitchen};
+use super::assign::{Assignment, STORAGE, Task};
+use super::goal::{Classes, Goal};
+use super::ground::Ground;
+use super::journeys::{FreeMask, NEVER};
 
-use super::goal::{Classes, Goal, USELESS};
-use super::journeys::{FreeMask, Journeys, NEVER};
-
-/// Not possible without clearing something first.
+/// No plan found.
 pub const BLOCKED: u32 = 1000;
+/// Steps of a plan, at most: a guard against moving things in circles.
+const MAX_STEPS: usize = 40;
 
-/// What is fixed for one kitchen.
-#[derive(Clone, Debug)]
-pub struct Ground {
-    pub journeys: Journeys,
-    /// Physical locations: first and one past the last index.
-    pub first: usize,
-    pub last: usize,
-    pub hands: [usize; 2],
-    pub board: usize,
-    pub plate: usize,
-    /// Places where anything can be put for a moment.
-    pub spare: Vec<usize>,
-    /// The presses other than taking: agent and action.
-    pub moves: Vec<(Agent, Action)>,
-    /// Where each process happens; none: in the hand.
-    process_place: Vec<Option<usize>>,
-    /// `[location * contents + content]`.
-    accepts: Vec<bool>,
-    contents: usize,
+/// A plan in the making.
+pub struct Plan<'a> {
+    pub(super) ground: &'a Ground,
+    pub(super) goal: &'a Goal,
+    pub(super) state: Classes,
+    pub(super) choice: Assignment,
+    /// Whether a complete stack may wait in a hand, and items may be brought on their way through a place that is needed.
+    pub(super) bold: bool,
+    /// Tasks that are not done, one bit each.
+    pub(super) open: u32,
+    pub(super) presses: u32,
 }
 
-impl Ground {
-    pub fn new(kitchen: &Kitchen) -> Ground {
-        let contents = kitchen.contents.len();
-        let first = kitchen.orders.len();
-        let last = kitchen.locations.len();
-        let id = |index: usize| crate::kitchen::LocationId(index as u8);
-        let content = |index: usize| crate::kitchen::ContentId(index as u8);
-        let mut accepts = vec![false; last * contents];
-        for location in first..last {
-            for item in 1..contents {
-                accepts[location * contents + item] = kitchen.accepts(id(location), content(item));
-            }
-        }
-        let hands = kitchen.hands.map(|hand| hand.index());
-        let board = kitchen.board.index();
-        let takes_all = |&location: &usize| (1..contents).all(|item| accepts[location * contents + item]);
-        let spare = (first..last).filter(|location| !hands.contains(location) && *location != board);
-        let spare = spare.filter(takes_all).collect();
-        let mut moves: Vec<(Agent, Action)> = Vec::new();
-        for agent in Agent::BOTH {
-            for button in &kitchen.buttons[agent.index()] {
-                let counts = match button.action {
-                    Action::Take(_) | Action::Serve(_) => false,
-                    // What happens at a place is the same whoever presses.
-                    Action::Process(process) if kitchen.processes[usize::from(process)].place.is_some() => {
-                        !moves.iter().any(|(_, other)| *other == button.action)
-                    }
-                    _ => true,
-                };
-                if counts {
-                    moves.push((agent, button.action));
+impl<'a> Plan<'a> {
+    pub fn new(ground: &'a Ground, goal: &'a Goal, state: &Classes, choice: &Assignment, bold: bool) -> Plan<'a> {
+        Plan { ground, goal, state: *state, choice: *choice, bold, open: choice.all(), presses: 0 }
+    }
+
+    /// The presses of the whole plan, [`BLOCKED`] if it comes to a standstill or takes more than `limit`.
+    pub fn carry_out(mut self, limit: u32) -> u32 {
+        let mut steps = MAX_STEPS;
+        let order = self.choice.order;
+        for &target in &order[..self.goal.targets.len()] {
+            while !self.serve(target) {
+                let lifts = self.bold && self.goal.targets.len() > 1;
+                let advanced = self.bring_part(target) || lifts && self.lift(target, 1 - target) || self.clear(target);
+                steps -= 1;
+                if !advanced || steps == 0 || self.presses > limit {
+                    return BLOCKED;
                 }
             }
         }
-        let process_place = kitchen.processes.iter().map(|process| process.place.map(|place| place.index())).collect();
-        Ground {
-            journeys: Journeys::new(kitchen),
-            first,
-            last,
-            hands,
-            board,
-            plate: kitchen.plate.index(),
-            spare,
-            moves,
-            process_place,
-            accepts,
-            contents,
-        }
+        self.presses
     }
 
-    /// What is free in a state.
-    #[inline]
-    fn free(&self, state: &Classes) -> FreeMask {
-        let mut free = 0;
-        for location in self.first..self.last {
-            if state[location] == 0 {
-                free |= self.journeys.bit[location];
+    /// Does what is certain to be right: serves a complete stack if the way is free, processes parts where they are, and
+    /// brings what the stack on the board needs as long as nothing is in the way. Gives the presses, the state after them, and the target if one was served.
+    pub fn settle(mut self) -> (u32, Classes, Option<usize>) {
+        let order = self.choice.order;
+        loop {
+            for &target in &order[..self.goal.targets.len()] {
+                if self.serve(target) {
+                    return (self.presses, self.state, Some(target));
+                }
             }
-        }
-        if self.spare.iter().any(|&place| state[place] == 0) {
-            free |= self.journeys.spare_bit;
-        }
-        free
-    }
-
-    #[inline]
-    fn any_hand(free: FreeMask) -> bool {
-        free & 3 != 0
-    }
-
-    #[inline]
-    fn is_hand(&self, location: usize) -> bool {
-        location == self.hands[0] || location == self.hands[1]
-    }
-
-    /// Presses that bring a full stack from `location` to the customer.
-    #[inline]
-    fn finish(&self, location: usize, free: FreeMask, plate_free: bool) -> u32 {
-        if location == self.plate {
-            return 1;
-        }
-        match (plate_free, self.is_hand(location), Self::any_hand(free)) {
-            (true, true, _) => 2,
-            (true, false, true) => 3,
-            _ => BLOCKED,
-        }
-    }
-}
-
-/// The plans for one goal.
-pub struct Planner<'a> {
-    pub ground: &'a Ground,
-    pub goal: &'a Goal,
-}
-
-impl Planner<'_> {
-    /// A lower bound (nothing is ever in the way) or, `relaxed` = false, the presses of a plan that serves one target
-    /// after another; [`BLOCKED`] or more if something has to be cleared first.
-    pub fn serial(&self, state: &Classes, relaxed: bool) -> u32 {
-        match self.goal.targets.len() {
-            0 => 0,
-            1 => self.serve(&mut state.clone(), 0, relaxed),
-            _ if self.goal.targets[0] == self.goal.targets[1] => {
-                let mut rest = *state;
-                self.serve(&mut rest, 0, relaxed) + self.serve(&mut rest, 1, relaxed)
+            for index in 0..self.choice.count {
+                let at = self.choice.tasks[index].at;
+                if at != STORAGE && self.open & (1 << index) != 0 {
+                    self.process(index, usize::from(at));
+                }
             }
-            _ => {
-                let mut rest = *state;
-                let first = self.serve(&mut rest, 0, relaxed);
-                let forwards = if first >= BLOCKED { BLOCKED } else { first + self.serve(&mut rest, 1, relaxed) };
-                let mut rest = *state;
-                let first = self.serve(&mut rest, 1, relaxed);
-                let backwards = if first >= BLOCKED { BLOCKED } else { first + self.serve(&mut rest, 0, relaxed) };
-                forwards.min(backwards)
+            if !self.begun().is_some_and(|target| self.bring_part(target)) {
+                return (self.presses, self.state, None);
             }
         }
     }
 
-    /// Serves one target and leaves in `state` what it did not use.
-    fn serve(&self, state: &mut Classes, target: usize, relaxed: bool) -> u32 {
+    /// The target that the board is certain to be for: the only one, or the only one that can use what is on it.
+    fn begun(&self) -> Option<usize> {
+        let class = usize::from(self.state[self.ground.board]);
+        let mut can_be = (0..self.goal.targets.len()).filter(|&target| self.goal.ready[target][class] != 0);
+        match (self.goal.targets.len(), can_be.next(), can_be.next()) {
+            (1, _, _) => Some(0),
+            (_, Some(target), None) => Some(target),
+            (_, Some(target), Some(other)) if self.goal.targets[target] == self.goal.targets[other] => {
+                self.tasks().find(|(_, task)| self.is_ready(task)).map(|(_, task)| usize::from(task.target))
+            }
+            _ => None,
+        }
+    }
+
+    /// Decides for a target where the board could be for more than one: the presses and the state after bringing a part.
+    pub fn begin(mut self, target: usize) -> Option<(u32, Classes)> {
+        let begins = self.begun().is_none() && self.bring_part(target);
+        begins.then_some((self.presses, self.state))
+    }
+
+    #[inline]
+    pub(super) fn tasks(&self) -> impl Iterator<Item = (usize, Task)> + '_ {
+        let mut open = self.open;
+        std::iter::from_fn(move || {
+            let index = open.trailing_zeros() as usize;
+            open &= open.wrapping_sub(1);
+            self.choice.tasks.get(index).map(|&task| (index, task))
+        })
+    }
+
+    /// A task of the target; the only one if its stack is complete.
+    fn first_of(&self, target: usize) -> Option<(usize, Task)> {
+        self.tasks().find(|(_, task)| usize::from(task.target) == target)
+    }
+
+    pub(super) fn finish(&mut self, index: usize) {
+        self.open &= !(1 << index);
+    }
+
+    /// Serves the target if its stack is complete and the way is free.
+    fn serve(&mut self, target: usize) -> bool {
         let ground = self.ground;
-        let class = self.goal.target_class[target];
-        if let Some(location) = self.nearest_full(state, class) {
-            let free = if relaxed { ground.journeys.all_free } else { ground.free(state) };
-            let plate_free = relaxed || state[ground.plate] == 0;
-            let presses = ground.finish(location, free, plate_free);
-            if presses < BLOCKED {
-                state[location] = 0;
-            }
-            return presses;
-        }
-        let mut cost = 0;
-        let on_board = usize::from(state[ground.board]);
-        let mut have = self.goal.ready[target][on_board];
         let complete = self.goal.complete[target];
-        if have == 0 && on_board != 0 && !relaxed {
-            return BLOCKED;
+        let Some((index, task)) = self.first_of(target) else { return false };
+        if task.bits != complete {
+            return false;
         }
-        if have != 0 {
-            state[ground.board] = 0;
+        let at = usize::from(task.at);
+        let hand_free = self.state[ground.hands[0]] == 0 || self.state[ground.hands[1]] == 0;
+        let plate_free = self.state[ground.plate] == 0;
+        let can = at == ground.plate || plate_free && (ground.is_hand(at) || hand_free);
+        if can {
+            self.presses += ground.last_presses(at);
+            self.state[at] = 0;
+            self.finish(index);
         }
-        while have != complete {
-            match self.next_part(state, target, have, relaxed) {
-                Some((location, bits, presses)) => {
-                    cost += u32::from(presses);
-                    have |= bits;
-                    if let Some(location) = location {
-                        state[location] = 0;
-                    }
-                }
-                None => return BLOCKED,
-            }
-        }
-        let free = if relaxed { ground.journeys.all_free } else { ground.free(state) };
-        cost + ground.finish(ground.board, free, relaxed || state[ground.plate] == 0)
+        can
     }
 
-    fn nearest_full(&self, state: &Classes, class: u8) -> Option<usize> {
+    /// Whether a task's item lies on the board as it has to be.
+    pub(super) fn is_ready(&self, task: &Task) -> bool {
+        let at = usize::from(task.at);
+        at == self.ground.board && self.goal.ready[usize::from(task.target)][usize::from(self.state[at])] == task.bits
+    }
+
+    /// Whether the board is free for parts of this target: empty, or started for it.
+    pub(super) fn board_is_open(&self, target: usize) -> bool {
+        let board = self.ground.board;
+        if self.state[board] == 0 {
+            return true;
+        }
+        let ours = |(_, task): (usize, Task)| usize::from(task.target) == target && self.is_ready(&task);
+        self.tasks().any(ours)
+    }
+
+    /// When the plate is not free: lifts the complete stack off the board, so that the next target's parts, one of which may
+    /// be what lies on the plate, can come onto it meanwhile.
+    fn lift(&mut self, target: usize, next: usize) -> bool {
         let ground = self.ground;
-        let mut best = None;
-        for location in ground.first..ground.last {
-            if state[location] == class {
-                let rank = if location == ground.plate { 0 } else { 2 - u32::from(ground.is_hand(location)) };
-                if best.is_none_or(|(least, _)| rank < least) {
-                    best = Some((rank, location));
+        let Some((index, task)) = self.first_of(target) else { return false };
+        if task.bits != self.goal.complete[target] || next >= self.goal.targets.len() {
+            return false;
+        }
+        if ground.is_hand(usize::from(task.at)) {
+            return self.bring_part(next);
+        }
+        if self.state[ground.plate] == 0 || usize::from(task.at) != ground.board {
+            return false;
+        }
+        let of_next = self.tasks().filter(|(_, task)| usize::from(task.target) == next);
+        let needs = of_next.fold(0, |needs, (_, task)| needs | self.needs(&task));
+        let mut free = (0..2).filter(|&index| self.state[ground.hands[index]] == 0);
+        let hand = match (free.next(), free.next()) {
+            (Some(only), None) => Some(only),
+            _ if self.task_at(ground.plate).is_some() => None,
+            (Some(_), Some(_)) => (0..2).find(|&index| needs & (1 << index) == 0),
+            _ => None,
+        };
+        match hand {
+            Some(hand) => {
+                self.presses += 1;
+                self.relocate(index, ground.hands[hand]);
+                true
+            }
+            None => false,
+        }
+    }
+
+    pub(super) fn bring_part(&mut self, target: usize) -> bool {
+        if !self.board_is_open(target) {
+            return false;
+        }
+        let ground = self.ground;
+        let free = ground.free(&self.state);
+        let mut best: Option<(u32, usize, u8)> = None;
+        for (index, task) in self.tasks().filter(|(_, task)| usize::from(task.target) == target) {
+            if self.is_ready(&task) {
+                continue;
+            }
+            let presses = self.bring(&task, free);
+            if presses != NEVER && u32::from(presses) <= self.least(&task) {
+                let rank = match task.at {
+                    STORAGE => 2,
+                    at if ground.is_hand(usize::from(at)) => 0,
+                    _ => 1,
+                };
+                if best.is_none_or(|(least, ..)| rank < least) {
+                    best = Some((rank, index, presses));
                 }
             }
         }
-        best.map(|(_, location)| location)
+        let Some((_, index, presses)) = best else { return false };
+        self.presses += u32::from(presses);
+        self.take_in(target, index);
+        true
     }
 
-    /// The next component to bring to the board: where it is now (none: in a storage), which items of the target it is,
-    /// and the presses. Parts in hands first, since they set hands free.
-    fn next_part(&self, state: &Classes, target: usize, have: u8, relaxed: bool) -> Option<(Option<usize>, u8, u8)> {
+    /// The part is on the board now: it and what was there become one.
+    fn take_in(&mut self, target: usize, index: usize) {
+        let board = self.ground.board;
+        let task = self.choice.tasks[index];
+        if task.at != STORAGE {
+            self.state[usize::from(task.at)] = 0;
+        }
+        let there = self.tasks().find(|(_, other)| usize::from(other.target) == target && self.is_ready(other));
+        let bits = task.bits | there.map_or(0, |(_, other)| other.bits);
+        self.finish(index);
+        let keep = match there {
+            Some((other, _)) => other,
+            None => {
+                self.open |= 1 << index;
+                index
+            }
+        };
+        self.choice.tasks[keep] = Task { target: target as u8, bits, at: board as u8 };
+        self.state[board] = self.goal.part_class[target][usize::from(bits)];
+    }
+
+    /// Presses of a task now.
+    pub(super) fn bring(&self, task: &Task, free: FreeMask) -> u8 {
         let (ground, goal) = (self.ground, self.goal);
-        let free = if relaxed { ground.journeys.all_free } else { ground.free(state) };
-        let mut best: Option<(i32, usize, u8, u8)> = None;
-        for location in ground.first..ground.last {
-            let class = usize::from(state[location]);
-            let fills = goal.fills[target][class];
-            if fills == 0 || fills & have != 0 {
-                continue;
-            }
-            let presses = self.bring(location, class, target, fills, free);
-            if presses == NEVER {
-                continue;
-            }
-            // What it saves against taking the same from the storages decides; a full hand is worth something too.
-            let fresh: i32 = self.fresh(target, fills, ground.journeys.all_free);
-            let saves = 2 * (fresh - i32::from(presses)) + i32::from(ground.is_hand(location));
-            if saves >= 0 && best.is_none_or(|(most, ..)| saves > most) {
-                best = Some((saves, location, fills, presses));
-            }
-        }
-        if let Some((_, location, fills, presses)) = best {
-            return Some((Some(location), fills, presses));
-        }
-        let missing = goal.complete[target] & !have;
-        let bit = missing.trailing_zeros();
-        let presses = ground.journeys.from_storage(free, goal.components[target][bit as usize]);
-        (presses != NEVER).then_some((None, 1 << bit, presses))
-    }
-
-    fn fresh(&self, target: usize, bits: u8, free: FreeMask) -> i32 {
-        let mut sum = 0;
-        for (bit, &component) in self.goal.components[target].iter().enumerate() {
-            if bits & (1 << bit) != 0 {
-                sum += i32::from(self.ground.journeys.from_storage(free, component));
-            }
-        }
-        sum
-    }
-
-    /// Presses that bring what lies at `location` onto the board.
-    #[inline]
-    fn bring(&self, location: usize, class: usize, target: usize, fills: u8, free: FreeMask) -> u8 {
-        let ground = self.ground;
-        if fills.count_ones() > 1 {
-            return match (ground.is_hand(location), Ground::any_hand(free)) {
+        let target = usize::from(task.target);
+        if task.bits.count_ones() > 1 {
+            return match (ground.is_hand(usize::from(task.at)), free & 3 != 0) {
                 (true, _) => 1,
                 (false, true) => 2,
                 (false, false) => NEVER,
             };
         }
-        let component = self.goal.components[target][fills.trailing_zeros() as usize];
-        let free = free | ground.journeys.bit[location];
-        ground.journeys.presses(free, component, location, self.goal.content[class].0)
+        let component = goal.components[target][task.bits.trailing_zeros() as usize];
+        if task.at == STORAGE {
+            return ground.journeys.storage_presses(free, component);
+        }
+        let at = usize::from(task.at);
+        let content = goal.content[usize::from(self.state[at])].0;
+        ground.journeys.presses(free | ground.journeys.bit[at], component, at, content)
     }
 
-    /// Calls `visit` with every state that one press can lead to, but presses that can never help.
-    pub fn successors(&self, state: &Classes, mut visit: impl FnMut(Classes)) {
-        let (ground, goal) = (self.ground, self.goal);
-        for agent in Agent::BOTH {
-            let hand = ground.hands[agent.index()];
-            if state[hand] == 0 {
-                for &class in &goal.takes[agent.index()] {
-                    let mut next = *state;
-                    next[hand] = class;
-                    visit(next);
-                }
-            }
+    /// Presses of a task if nothing were in the way.
+    pub(super) fn least(&self, task: &Task) -> u32 {
+        u32::from(self.bring(task, self.ground.journeys.all_free))
+    }
+
+    /// What the rest of a task cannot do without.
+    pub(super) fn needs(&self, task: &Task) -> FreeMask {
+        let goal = self.goal;
+        let target = usize::from(task.target);
+        if task.bits.count_ones() > 1 {
+            return 0;
         }
-        for &(agent, action) in &ground.moves {
-            let hand = ground.hands[agent.index()];
-            let held = state[hand];
-            let mut next = *state;
-            match action {
-                Action::Use(location) => {
-                    let location = location.index();
-                    let there = state[location];
-                    match (held, there) {
-                        (0, 0) => continue,
-                        (0, _) => (next[hand], next[location]) = (there, 0),
-                        // What is of no use is thrown away rather than put down.
-                        (USELESS, _) => continue,
-                        (_, 0) => {
-                            let content = goal.content[usize::from(held)].index();
-                            if !ground.accepts[location * ground.contents + content] {
-                                continue;
-                            }
-                            (next[hand], next[location]) = (0, held);
-                        }
-                        _ if location == ground.board => {
-                            let stack = goal.stacks[usize::from(there) * goal.content.len() + usize::from(held)];
-                            if stack == 0 {
-                                continue;
-                            }
-                            (next[hand], next[location]) = (0, stack);
-                        }
-                        _ => continue,
-                    }
-                }
-                Action::Process(process) => {
-                    let place = ground.process_place[usize::from(process)].unwrap_or(hand);
-                    let result = goal.becomes[usize::from(process)][usize::from(state[place])];
-                    if result == 0 {
-                        continue;
-                    }
-                    next[place] = result;
-                }
-                Action::Trash if held != 0 => next[hand] = 0,
-                _ => continue,
-            }
-            visit(next);
+        if task.at == STORAGE {
+            return usize::from(goal.fresh[target][task.bits.trailing_zeros() as usize].1);
         }
+        let at = usize::from(task.at);
+        usize::from(goal.near_needs[target][at * goal.content.len() + usize::from(self.state[at])])
+    }
+
+    /// The task whose item lies at a location.
+    pub(super) fn task_at(&self, location: usize) -> Option<(usize, Task)> {
+        self.tasks().find(|(_, task)| usize::from(task.at) == location)
     }
 }

@@ -1,0 +1,205 @@
+//! What is fixed for one kitchen, and the single presses over classes.
+
+use std::ops::Range;
+
+use crate::kitchen::{Action, Agent, ContentId, Kitchen, LocationId};
+
+use super::goal::{Classes, Goal, MAX_TARGETS, USELESS};
+use super::journeys::{FreeMask, Journeys};
+
+/// What is fixed for one kitchen.
+#[derive(Clone, Debug)]
+pub struct Ground {
+    pub journeys: Journeys,
+    /// Physical locations: first and one past the last index.
+    pub first: usize,
+    pub last: usize,
+    pub hands: [usize; 2],
+    pub board: usize,
+    pub plate: usize,
+    /// Places where anything can be put for a moment.
+    spare: Vec<usize>,
+    /// How much it is worth, in half presses, that a location becomes free.
+    pub in_the_way: Vec<i32>,
+    /// The presses other than taking and serving, once each.
+    moves: Vec<(Agent, Action)>,
+    /// Where each process happens; none: in the hand.
+    pub process_place: Vec<Option<usize>>,
+    /// `[location * contents + content]`.
+    accepts: Vec<bool>,
+    contents: usize,
+    is_hand: Vec<bool>,
+    /// Presses that serve a complete stack from each location if nothing is in the way.
+    last_presses: Vec<u32>,
+}
+
+impl Ground {
+    pub fn new(kitchen: &Kitchen) -> Ground {
+        let contents = kitchen.contents.len();
+        let first = kitchen.orders.len();
+        let last = kitchen.locations.len();
+        let id = |index: usize| LocationId(index as u8);
+        let content = |index: usize| ContentId(index as u8);
+        let mut accepts = vec![false; last * contents];
+        for location in first..last {
+            for item in 1..contents {
+                accepts[location * contents + item] = kitchen.accepts(id(location), content(item));
+            }
+        }
+        let hands = kitchen.hands.map(|hand| hand.index());
+        let (board, plate) = (kitchen.board.index(), kitchen.plate.index());
+        let takes_all = |&location: &usize| (1..contents).all(|item| accepts[location * contents + item]);
+        let spare = (first..last).filter(|location| !hands.contains(location) && *location != board);
+        let spare = spare.filter(takes_all).collect();
+        let journeys = Journeys::new(kitchen);
+        let in_the_way = |location: usize| match location {
+            _ if location == board || location == plate => 4,
+            _ if hands.contains(&location) => 2,
+            _ if journeys.bit[location] != 0 => 1,
+            _ => 0,
+        };
+        let last_presses = |location: usize| match location {
+            _ if location == plate => 1,
+            _ if hands.contains(&location) => 2,
+            _ => 3,
+        };
+        Ground {
+            first,
+            last,
+            hands,
+            board,
+            plate,
+            spare,
+            in_the_way: (0..last).map(in_the_way).collect(),
+            moves: moves(kitchen),
+            process_place: kitchen.processes.iter().map(|process| process.place.map(|place| place.index())).collect(),
+            accepts,
+            contents,
+            is_hand: (0..last).map(|location| hands.contains(&location)).collect(),
+            last_presses: (0..last).map(last_presses).collect(),
+            journeys,
+        }
+    }
+
+    /// The physical locations: all but the orders.
+    #[inline]
+    pub fn places(&self) -> Range<usize> {
+        self.first..self.last
+    }
+
+    #[inline]
+    pub fn is_hand(&self, location: usize) -> bool {
+        self.is_hand[location]
+    }
+
+    /// Whether `location` takes `content` when it is empty.
+    #[inline]
+    pub fn accepts(&self, location: usize, content: ContentId) -> bool {
+        self.accepts[location * self.contents + content.index()]
+    }
+
+    #[inline]
+    pub fn last_presses(&self, location: usize) -> u32 {
+        self.last_presses[location]
+    }
+
+    /// What is free in a state.
+    #[inline]
+    pub fn free(&self, state: &Classes) -> FreeMask {
+        let mut free = 0;
+        for location in self.places() {
+            if state[location] == 0 {
+                free |= self.journeys.bit[location];
+            }
+        }
+        if self.spare.iter().any(|&place| state[place] == 0) {
+            free |= self.journeys.spare_bit;
+        }
+        free
+    }
+}
+
+/// The presses other than taking and serving, each once: what happens at a place is the same whoever presses.
+fn moves(kitchen: &Kitchen) -> Vec<(Agent, Action)> {
+    let mut moves: Vec<(Agent, Action)> = Vec::new();
+    for agent in Agent::BOTH {
+        for button in &kitchen.buttons[agent.index()] {
+            let counts = match button.action {
+                Action::Take(_) | Action::Serve(_) => false,
+                Action::Process(process) if kitchen.processes[usize::from(process)].place.is_some() => {
+                    !moves.iter().any(|(_, other)| *other == button.action)
+                }
+                _ => true,
+            };
+            if counts {
+                moves.push((agent, button.action));
+            }
+        }
+    }
+    moves
+}
+
+/// Calls `visit` with every state that one press can lead to, but presses that can never help. Only what `wanted` says is
+/// taken from a storage: for each target, bits of its items.
+pub fn successors(
+    ground: &Ground,
+    goal: &Goal,
+    state: &Classes,
+    wanted: [u8; MAX_TARGETS],
+    mut visit: impl FnMut(Classes),
+) {
+    let is_wanted =
+        |class: u8| (0..goal.targets.len()).any(|target| goal.fills[target][usize::from(class)] & wanted[target] != 0);
+    for agent in Agent::BOTH {
+        let hand = ground.hands[agent.index()];
+        if state[hand] == 0 {
+            for &class in goal.takes[agent.index()].iter().filter(|&&class| is_wanted(class)) {
+                let mut next = *state;
+                next[hand] = class;
+                visit(next);
+            }
+        }
+    }
+    for &(agent, action) in &ground.moves {
+        let hand = ground.hands[agent.index()];
+        let held = state[hand];
+        let mut next = *state;
+        match action {
+            Action::Use(location) => {
+                let location = location.index();
+                let there = state[location];
+                match (held, there) {
+                    (0, 0) => continue,
+                    (0, _) => (next[hand], next[location]) = (there, 0),
+                    // What is of no use is thrown away rather than put down.
+                    (USELESS, _) => continue,
+                    (_, 0) => {
+                        if !ground.accepts(location, goal.content[usize::from(held)]) {
+                            continue;
+                        }
+                        (next[hand], next[location]) = (0, held);
+                    }
+                    _ if location == ground.board => {
+                        let stack = goal.stacks[usize::from(there) * goal.content.len() + usize::from(held)];
+                        if stack == 0 {
+                            continue;
+                        }
+                        (next[hand], next[location]) = (0, stack);
+                    }
+                    _ => continue,
+                }
+            }
+            Action::Process(process) => {
+                let place = ground.process_place[usize::from(process)].unwrap_or(hand);
+                let result = goal.becomes[usize::from(process)][usize::from(state[place])];
+                if result == 0 {
+                    continue;
+                }
+                next[place] = result;
+            }
+            Action::Trash if held != 0 => next[hand] = 0,
+            _ => continue,
+        }
+        visit(next);
+    }
+}

@@ -1,0 +1,66 @@
+//! What a state is at least and at most worth, without a search.
+
+use super::assign::Assignment;
+use super::goal::{Classes, Goal, MAX_TARGETS};
+use super::ground::Ground;
+use super::plan::{BLOCKED, Plan};
+
+/// The assignments for both orders of serving, the one with the lower bound first.
+pub struct Rating {
+    choices: [Assignment; 2],
+    count: usize,
+    /// The lower bound.
+    pub lower: u32,
+}
+
+impl Rating {
+    pub fn new(ground: &Ground, goal: &Goal, state: &Classes) -> Rating {
+        let forwards = Assignment::choose(ground, goal, state, [0, 1]);
+        let lower = forwards.bound(ground, state);
+        if goal.targets.len() < 2 || goal.targets[0] == goal.targets[1] {
+            return Rating { choices: [forwards, forwards], count: 1, lower };
+        }
+        let is_shared = |class: u8| goal.fills[0][usize::from(class)] != 0 && goal.fills[1][usize::from(class)] != 0;
+        if !state.iter().any(|&class| is_shared(class)) {
+            return Rating { choices: [forwards, forwards.reversed()], count: 2, lower };
+        }
+        let backwards = Assignment::choose(ground, goal, state, [1, 0]);
+        let other = backwards.bound(ground, state);
+        match lower <= other {
+            true => Rating { choices: [forwards, backwards], count: 2, lower },
+            false => Rating { choices: [backwards, forwards], count: 2, lower: other },
+        }
+    }
+
+    pub fn choices(&self) -> &[Assignment] {
+        &self.choices[..self.count]
+    }
+
+    pub fn best_choice(&self) -> &Assignment {
+        &self.choices[0]
+    }
+
+    /// What the targets that may be served first want from the storages: for each target, bits of its items.
+    pub fn wanted(&self) -> [u8; MAX_TARGETS] {
+        let mut wanted = [0; MAX_TARGETS];
+        for choice in self.choices() {
+            let first = choice.order[0];
+            wanted[first] |= choice.stored(first);
+        }
+        wanted
+    }
+
+    /// The presses of the best plan, [`BLOCKED`] if there is none.
+    pub fn upper(&self, ground: &Ground, goal: &Goal, state: &Classes) -> u32 {
+        let mut upper = BLOCKED;
+        for bold in [false, true] {
+            for choice in self.choices() {
+                upper = upper.min(Plan::new(ground, goal, state, choice, bold).carry_out(upper));
+                if upper <= self.lower {
+                    return upper;
+                }
+            }
+        }
+        upper
+    }
+}

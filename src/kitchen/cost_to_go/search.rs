@@ -1,0 +1,206 @@
+//! The bounded search behind a state that neither bounds nor plans settle: best first over single presses. It stops where
+//! something is known of a state, and wherever a plan reaches the bound.
+
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
+
+use rustc_hash::FxHashMap;
+
+use super::CostToGo;
+use super::goal::{Classes, Goal};
+use super::ground::successors;
+use super::plan::{BLOCKED, Plan};
+use super::rating::Rating;
+
+/// How far a search goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reach {
+    /// States that are expanded, at most.
+    expansions: usize,
+    /// Whether items may be taken from a storage before they can be brought all the way to the board.
+    takes: bool,
+}
+
+/// Enough for 99 % of the states met in sessions and 95 % of those after random presses.
+pub const NEAR: Reach = Reach { expansions: 32, takes: false };
+/// For what is left two presses or more above the bound.
+pub const FAR: Reach = Reach { expansions: 24, takes: true };
+
+/// A state that was not looked at closely yet.
+const UNSEEN: u32 = u32::MAX;
+
+/// A state that the search may go on from.
+struct Open {
+    /// Presses so far and at least to come.
+    bound: u32,
+    /// How many presses its plan is above the bound, or [`UNSEEN`].
+    gap: u32,
+    /// The number of the state, in the order in which they were met.
+    met: usize,
+    /// Presses so far.
+    presses: u32,
+    state: Classes,
+}
+
+impl Open {
+    /// The least bound goes first; of several the one whose plan is nearest to it, and that was met last.
+    fn rank(&self) -> (Reverse<u32>, Reverse<u32>, usize) {
+        (Reverse(self.bound), Reverse(self.gap), self.met)
+    }
+}
+
+impl PartialEq for Open {
+    fn eq(&self, other: &Open) -> bool {
+        self.rank() == other.rank()
+    }
+}
+
+impl Eq for Open {}
+
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Open) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Open {
+    fn cmp(&self, other: &Open) -> Ordering {
+        self.rank().cmp(&other.rank())
+    }
+}
+
+/// One search.
+pub struct Search<'a> {
+    costs: &'a mut CostToGo,
+    slot: usize,
+    goal: &'a Goal,
+    /// The least presses of a whole way found so far.
+    best: u32,
+    open: BinaryHeap<Open>,
+    /// How many states were kept as open so far.
+    met: usize,
+    /// The least presses with which each state was met, by its key.
+    seen: FxHashMap<u64, u32>,
+    reach: Reach,
+}
+
+impl<'a> Search<'a> {
+    /// The presses of the best way from `start` that the search finds, `best` if it finds none better; it need not look for
+    /// any below `lower`.
+    pub fn run(
+        costs: &'a mut CostToGo,
+        slot: usize,
+        goal: &'a Goal,
+        start: &Classes,
+        lower: u32,
+        best: u32,
+        reach: Reach,
+    ) -> u32 {
+        let mut search =
+            Search { costs, slot, goal, best, open: BinaryHeap::new(), met: 0, seen: FxHashMap::default(), reach };
+        let rating = Rating::new(&search.costs.ground, goal, start);
+        search.look(start, rating, 0, lower);
+        if search.open.is_empty() {
+            search.keep(lower, 0, 0, start);
+        }
+        let mut expansions = 0;
+        while let Some(next) = search.open.pop() {
+            if next.bound >= search.best || expansions >= reach.expansions && search.best < BLOCKED {
+                break;
+            }
+            if next.gap == UNSEEN {
+                let rating = Rating::new(&search.costs.ground, goal, &next.state);
+                search.look(&next.state, rating, next.presses, next.bound);
+                continue;
+            }
+            expansions += 1;
+            search.expand(&next);
+        }
+        search.best
+    }
+
+    fn keep(&mut self, bound: u32, gap: u32, presses: u32, state: &Classes) {
+        self.met += 1;
+        self.open.push(Open { bound, gap, met: self.met, presses, state: *state });
+    }
+
+    fn expand(&mut self, open: &Open) {
+        let goal = self.goal;
+        let rating = Rating::new(&self.costs.ground, goal, &open.state);
+        if goal.targets.len() > 1 {
+            for choice in rating.choices() {
+                let plan = Plan::new(&self.costs.ground, goal, &open.state, choice, false);
+                if let Some((presses, next)) = plan.begin(choice.order[0]) {
+                    self.meet(&next, open.presses + presses, open.bound);
+                }
+            }
+        }
+        let wanted = if self.reach.takes { rating.wanted() } else { Default::default() };
+        let mut nexts = Vec::with_capacity(32);
+        successors(&self.costs.ground, goal, &open.state, wanted, |next| nexts.push(next));
+        for next in &nexts {
+            if self.best <= open.bound {
+                break;
+            }
+            self.meet(next, open.presses + 1, open.bound);
+        }
+    }
+
+    /// Whether a state is worth a look: not if its value is known, nor if it was met with as few presses before.
+    fn is_new(&mut self, state: &Classes, presses: u32) -> bool {
+        let key = self.costs.key(self.slot, self.goal, state);
+        if self.seen.get(&key).is_some_and(|&seen| seen <= presses) {
+            return false;
+        }
+        self.seen.insert(key, presses);
+        true
+    }
+
+    /// A state met after `presses`.
+    fn meet(&mut self, state: &Classes, presses: u32, bound: u32) {
+        if !self.is_new(state, presses) {
+            return;
+        }
+        let rating = Rating::new(&self.costs.ground, self.goal, state);
+        let lower = presses + rating.lower;
+        if lower >= self.best {
+            return;
+        }
+        // Such as are not on a best way may never be wanted; a closer look can wait.
+        match lower > bound {
+            true => self.keep(lower, UNSEEN, presses, state),
+            false => self.look(state, rating, presses, bound),
+        }
+    }
+
+    /// A closer look at a state: does what is certain to be right, and plans from there.
+    fn look(&mut self, state: &Classes, mut rating: Rating, presses: u32, bound: u32) {
+        let goal = self.goal;
+        let plan = Plan::new(&self.costs.ground, goal, state, rating.best_choice(), false);
+        let (settling, settled, served) = plan.settle();
+        let presses = presses + settling;
+        if let Some(target) = served {
+            let value = self.costs.without(goal, &settled, target);
+            self.best = self.best.min(presses + value);
+            return;
+        }
+        if settling > 0 {
+            if !self.is_new(&settled, presses) {
+                return;
+            }
+            rating = Rating::new(&self.costs.ground, goal, &settled);
+        }
+        if presses + rating.lower >= self.best {
+            return;
+        }
+        let upper = rating.upper(&self.costs.ground, goal, &settled);
+        self.best = self.best.min(presses + upper);
+        if upper <= rating.lower {
+            let key = self.costs.key(self.slot, goal, &settled);
+            self.costs.cache.insert(key, upper);
+        } else {
+            let bound = bound.max(presses + rating.lower);
+            self.keep(bound, upper - rating.lower, presses, &settled);
+        }
+    }
+}

@@ -1,11 +1,11 @@
-//! The robot's task policy: backwards from the current goal, one of the best presses at random.
+//! The robot's task policy (paper, "Robot task policy"): backwards from the current goal, one of the best presses at random.
 
 use rand::RngExt;
 
 use super::IdleReason;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, ButtonId, Kitchen, State};
+use crate::kitchen::{Action, Agent, ButtonId, Kitchen, LocationId, State};
 
 /// What the robot does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,14 +21,37 @@ pub fn best_presses(kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Vec
     buttons.filter(|button| decision.after[button.index()] < decision.here).collect()
 }
 
+/// Of these presses those for the order that is nearer to being served, which is the one that the human works on as a rule;
+/// all of them if none is for it, or if both orders are as near.
+fn for_the_nearer_order(kitchen: &Kitchen, cost: &mut CostToGo, state: State, presses: Vec<ButtonId>) -> Vec<ButtonId> {
+    let recipes = kitchen.true_recipes();
+    let mut orders: Vec<(u32, LocationId)> =
+        kitchen.wanted(state).map(|(order, _)| (cost.order(state, &recipes, order), order)).collect();
+    orders.sort_unstable();
+    let [(presses_left, nearer), (others, _)] = orders[..] else { return presses };
+    if presses_left == others {
+        return presses;
+    }
+    let helps = |button: &ButtonId| {
+        let next = kitchen.press(state, &recipes, Agent::Robot, *button);
+        next.is_some_and(|next| cost.order(next, &recipes, nearer) < presses_left)
+    };
+    let helping: Vec<ButtonId> = presses.iter().copied().filter(helps).collect();
+    if helping.is_empty() { presses } else { helping }
+}
+
 /// Decides for the state as it truly is: of several best presses one at random, idle if none brings the goal nearer.
 pub fn decide(kitchen: &Kitchen, cost: &mut CostToGo, state: State, random: &mut Stream) -> Decision {
     if kitchen.wanted(state).next().is_none() {
         return Decision::Idle(IdleReason::NoOrder);
     }
     let best = best_presses(kitchen, cost, state);
-    match best.is_empty() {
-        true => Decision::Idle(IdleReason::HumanTurn),
-        false => Decision::Press(best[random.random_range(0..best.len())]),
+    let best = for_the_nearer_order(kitchen, cost, state, best);
+    // What serves no order is thrown away: put down somewhere, it would soon be in the way again.
+    let trash = best.iter().copied().find(|&button| kitchen.button(Agent::Robot, button).action == Action::Trash);
+    match (trash, best.is_empty()) {
+        (Some(trash), _) => Decision::Press(trash),
+        (None, true) => Decision::Idle(IdleReason::HumanTurn),
+        (None, false) => Decision::Press(best[random.random_range(0..best.len())]),
     }
 }

@@ -51,6 +51,7 @@ impl Stage {
 
     fn at(&mut self, seconds: f64, event: Event) {
         self.model.now = SessionTime::from_secs_f64(seconds);
+        self.model.clock = self.model.now;
         let stamped = Stamped { seq: self.seq, time: self.model.now, event };
         apply(&mut self.session, &stamped).expect("the event fits");
         self.seq += 1;
@@ -127,6 +128,7 @@ impl Stage {
 
     fn wait(&mut self, seconds: f64) {
         self.model.now = self.model.now + SessionTime::from_secs_f64(seconds);
+        self.model.clock = self.model.now;
     }
 
     fn notice(&self) -> &str {
@@ -243,6 +245,49 @@ fn a_terminal_that_reports_repeats_lets_the_same_key_be_pressed_twice() {
         assert_eq!(stage.kind(key, KeyEventKind::Release), None);
         stage.wait(0.05);
     }
+}
+
+#[test]
+fn without_key_releases_two_presses_count_twice_and_a_held_key_once() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Keyboard);
+    stage.at(1.0, Event::TrialStarted);
+    stage.key(KeyCode::Tab);
+    let key = KeyCode::Char('a');
+    for _ in 0..3 {
+        stage.wait(0.2);
+        assert!(input(stage.key(key)).is_some(), "a second press: {}", stage.notice());
+    }
+    for _ in 0..20 {
+        stage.wait(0.03);
+        assert_eq!(stage.key(key), None);
+        assert!(stage.notice().contains("held down"), "{}", stage.notice());
+    }
+    stage.wait(0.5);
+    stage.key(KeyCode::Char('?'));
+    stage.wait(0.2);
+    stage.key(KeyCode::Char('?'));
+    assert_eq!(stage.model.dialog, None, "help opens and closes");
+    stage.control('c');
+    for gap_s in [0.5, 0.03, 0.03] {
+        stage.wait(gap_s);
+        assert_eq!(stage.control('c'), None, "a held key does not answer its own question");
+        assert_eq!(stage.model.dialog, Some(Dialog::Quit));
+    }
+    stage.wait(1.0);
+    assert_eq!(stage.control('c'), Some(Command::Quit));
+}
+
+#[test]
+fn a_signal_is_not_sent_again_while_it_is_shown() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.at(1.0, Event::TrialStarted);
+    let signal = input(stage.key(KeyCode::Char('a'))).expect("sent");
+    stage.at(1.1, signal.clone());
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('a')), None);
+    assert!(stage.notice().contains("shown already"), "{}", stage.notice());
+    stage.at(3.0, Event::SignalEnded { reason: SignalEnd::TakenBack });
+    assert_eq!(input(stage.key(KeyCode::Char('a'))), Some(signal));
 }
 
 #[test]

@@ -295,12 +295,31 @@ fn check_by_hand(session: &str) {
         terminal.key_logs(&key, &format!("\"agent\":\"human\",\"button\":\"{}\"", button.name));
         hands += 1;
         // The same key again at once would count as held down.
-        std::thread::sleep(Duration::from_millis(750));
+        std::thread::sleep(Duration::from_millis(200));
     }
     terminal.see("1 served");
     assert!(hands > 4, "the person did {hands} presses of it");
     assert!(replay.session().gaze.samples > 100, "the pointer is a steady stream of gaze");
     assert!(replay.session().gaze.looked_at.iter().flatten().count() > 1, "the person looked at several places");
+    terminal.quit();
+    terminal.verifies();
+}
+
+#[test]
+fn the_same_button_pressed_twice_is_in_the_log_twice() {
+    let Some(terminal) = Terminal::open("twice") else { return };
+    let kitchen = kitchen("default.toml");
+    terminal.operate("default.toml", "--participant keyboard --gaze mouse");
+    terminal.key_logs(".", "trial_started");
+    terminal.key("Tab");
+    terminal.see("KEYS: PARTICIPANT");
+    let button = kitchen.button_named(Agent::Human, "assembly_board").expect("a button of the sushi kitchen");
+    let key = kitchen.button(Agent::Human, button).key.expect("a key").to_string();
+    terminal.key(&key);
+    std::thread::sleep(Duration::from_millis(360));
+    terminal.key(&key);
+    let presses = "\"agent\":\"human\",\"button\":\"assembly_board\"";
+    terminal.wait("two presses", || terminal.count(presses) == 2);
     terminal.quit();
     terminal.verifies();
 }

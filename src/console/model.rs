@@ -42,6 +42,7 @@ pub enum Level {
 pub struct Notice {
     pub text: String,
     pub level: Level,
+    /// On [`Model::clock`].
     pub at: SessionTime,
 }
 
@@ -61,6 +62,8 @@ pub enum Recording {
 pub struct Model {
     /// The moment that is drawn.
     pub now: SessionTime,
+    /// A clock that always runs, also while a replay stands or races: for keys and notices.
+    pub clock: SessionTime,
     /// Columns and rows of the terminal.
     pub size: (u16, u16),
     pub theme: Theme,
@@ -83,7 +86,7 @@ pub struct Model {
     pub playback: Option<Playback>,
     /// The terminal tells key repeat from key press.
     pub(super) exact_keys: bool,
-    /// The key that was pressed last, and when it was last reported: against key repeat.
+    /// The key that was pressed last, and when it was last reported, on [`Model::clock`]: against key repeat.
     pub(super) pressed: Option<(KeyCode, SessionTime)>,
 }
 
@@ -92,6 +95,7 @@ impl Model {
     pub fn new(keys: Keys, theme: Theme, size: (u16, u16)) -> Model {
         Model {
             now: SessionTime::ZERO,
+            clock: SessionTime::ZERO,
             size,
             theme,
             keys,
@@ -112,7 +116,7 @@ impl Model {
 
     /// Says something to the wizard.
     pub fn say(&mut self, level: Level, text: impl Into<String>) {
-        self.notice = Some(Notice { text: text.into(), level, at: self.now });
+        self.notice = Some(Notice { text: text.into(), level, at: self.clock });
     }
 
     /// Remembers a gaze sample for the gaze map.

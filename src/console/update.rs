@@ -15,9 +15,12 @@ use crate::session::event::{EndReason, SignalEnd};
 use crate::session::settings::ParticipantKind;
 use crate::session::{Event, Phase, Session};
 
-/// A key that the terminal reports again within this time is held down, not pressed again: longer than the usual delay
-/// before key repeat sets in (0.25 to 0.66 s). Only where the terminal does not report repeats as such.
-const REPEAT_GUARD_S: f64 = 0.7;
+/// A key that the terminal reports again within this time is held down, not pressed again: terminals repeat a held key
+/// about every 0.03 s, and no finger is that fast. Only where the terminal does not report repeats as such.
+const REPEAT_S: f64 = 0.15;
+/// A question is not answered by its own key within this time: longer than the usual delay before key repeat sets in
+/// (0.25 to 0.7 s), when a key that stays down can not be told from a second press.
+const ANSWER_S: f64 = 0.7;
 
 /// Takes a message at the time `model.now`.
 pub fn update(model: &mut Model, session: &Session, message: Message) -> Option<Command> {
@@ -50,8 +53,8 @@ pub fn update(model: &mut Model, session: &Session, message: Message) -> Option<
 }
 
 fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Command> {
-    let first = is_first(model, key);
-    if key.kind == KeyEventKind::Release {
+    let touch = touch(model, key);
+    if touch == Touch::Release {
         return None;
     }
     let chord = Chord::of(key);
@@ -59,8 +62,13 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
     match action {
         Some(Action::StopRobot) => stop_robot(model, session),
         Some(Action::Move(to)) if model.dialog.is_none() => Some(Command::Move(to)),
-        _ if !first => None,
-        action if model.dialog.is_some() => answer(model, chord, action),
+        _ if touch == Touch::Held => {
+            if model.dialog.is_none() {
+                model.say(Level::Refused, format!("\"{chord}\" is held down: it counts once"));
+            }
+            None
+        }
+        action if model.dialog.is_some() => answer(model, chord, action, touch),
         Some(action) => act(model, session, action),
         None => {
             unknown(model, session, key.code);
@@ -69,19 +77,34 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
     }
 }
 
-/// Whether the key went down just now, and does not only repeat.
-fn is_first(model: &mut Model, key: &KeyEvent) -> bool {
-    if key.kind != KeyEventKind::Press {
-        model.exact_keys = true;
-        return false;
-    }
-    if model.exact_keys {
-        return true;
+/// What a report of the terminal says of a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Touch {
+    /// It went down just now.
+    Press,
+    /// It was pressed a second time, or is held down since the first and begins to repeat.
+    Again,
+    /// It is held down.
+    Held,
+    Release,
+}
+
+fn touch(model: &mut Model, key: &KeyEvent) -> Touch {
+    match key.kind {
+        KeyEventKind::Press if model.exact_keys => return Touch::Press,
+        KeyEventKind::Press => {}
+        kind => {
+            model.exact_keys = true;
+            return if kind == KeyEventKind::Release { Touch::Release } else { Touch::Held };
+        }
     }
     // Only the key that went down last repeats.
-    let held = model.pressed.is_some_and(|(code, at)| code == key.code && model.now.secs_since(at) < REPEAT_GUARD_S);
-    model.pressed = Some((key.code, model.now));
-    !held
+    let last = model.pressed.replace((key.code, model.clock)).filter(|(code, _)| *code == key.code);
+    match last.map(|(_, at)| model.clock.secs_since(at)) {
+        Some(gap_s) if gap_s < REPEAT_S => Touch::Held,
+        Some(gap_s) if gap_s < ANSWER_S => Touch::Again,
+        _ => Touch::Press,
+    }
 }
 
 /// The space bar: works in every view, and does nothing twice.
@@ -92,13 +115,17 @@ fn stop_robot(model: &mut Model, session: &Session) -> Option<Command> {
     send(model, session, Event::RobotStopped, Level::Alarm, "the robot is stopped")
 }
 
-fn answer(model: &mut Model, chord: Chord, action: Option<Action>) -> Option<Command> {
-    let dialog = model.dialog.take()?;
+fn answer(model: &mut Model, chord: Chord, action: Option<Action>, touch: Touch) -> Option<Command> {
+    let dialog = model.dialog?;
     let again = match dialog {
         Dialog::Quit => Some(Action::Quit),
         Dialog::EndTrial => Some(Action::EndTrial),
         Dialog::Help => None,
     };
+    if touch == Touch::Again && again.is_some() && action == again {
+        return None;
+    }
+    model.dialog = None;
     let yes = matches!(chord.code, KeyCode::Char('y') | KeyCode::Enter) || (again.is_some() && action == again);
     match dialog {
         Dialog::Quit if yes => Some(Command::Quit),
@@ -110,6 +137,11 @@ fn answer(model: &mut Model, chord: Chord, action: Option<Action>) -> Option<Com
 fn act(model: &mut Model, session: &Session, action: Action) -> Option<Command> {
     match action {
         Action::Signal(_, signal) => {
+            let shown = session.shown.as_ref();
+            if shown.is_some_and(|shown| shown.by == Sender::Wizard && shown.signal == signal) {
+                model.say(Level::Refused, format!("{} is shown already", words::signal(&signal)));
+                return None;
+            }
             let words = format!("shown: {}", words::signal(&signal));
             send(model, session, Event::SignalShown { by: Sender::Wizard, signal }, Level::Done, &words)
         }

@@ -163,9 +163,15 @@ impl Live {
         SessionTime(self.began.elapsed().as_nanos() as u64)
     }
 
+    /// Tells the model what time it is.
+    fn tick(&mut self) {
+        self.model.now = self.now();
+        self.model.clock = self.model.now;
+    }
+
     /// Takes a message of the terminal; whether the wizard has quit.
     fn take(&mut self, message: Message) -> bool {
-        self.model.now = self.now();
+        self.tick();
         self.dirty |= !matches!(message, Message::Pointer(..));
         match update(&mut self.model, self.engine.session(), message) {
             Some(Command::Input(event)) => self.input(event),
@@ -238,7 +244,7 @@ impl Live {
     }
 
     fn draw(&mut self) -> io::Result<()> {
-        self.model.now = self.now();
+        self.tick();
         // A terminal that is still busy with the last frame gets this one later.
         self.dirty = !self.screen.is_ready();
         self.screen.draw(self.engine.session(), &self.model)

@@ -163,6 +163,7 @@ struct Review {
     film: Film,
     model: Model,
     screen: Screen,
+    opened: Instant,
     /// The moment that is shown, and when it was reached.
     now: SessionTime,
     at: Instant,
@@ -180,8 +181,17 @@ impl Review {
         let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
         model.playback = Some(Playback::new(name));
         let now = Instant::now();
-        let mut review =
-            Review { film, model, screen, now: SessionTime::ZERO, at: now, read_at: now, grows: follow, dirty: true };
+        let mut review = Review {
+            film,
+            model,
+            screen,
+            opened: now,
+            now: SessionTime::ZERO,
+            at: now,
+            read_at: now,
+            grows: follow,
+            dirty: true,
+        };
         review.playback(|playback| playback.playing = true);
         if follow {
             review.go(Move::ToEnd);
@@ -220,12 +230,18 @@ impl Review {
     /// Takes a message of the terminal; whether somebody has quit.
     fn take(&mut self, message: Message) -> bool {
         self.dirty = true;
+        self.tick();
         match update(&mut self.model, &self.film.session, message) {
             Some(Command::Move(to)) => self.go(to),
             Some(Command::Quit) => return true,
             Some(Command::Input(_)) | None => {}
         }
         false
+    }
+
+    /// Moves the clock on that also runs while the replay stands.
+    fn tick(&mut self) {
+        self.model.clock = SessionTime(self.opened.elapsed().as_nanos() as u64);
     }
 
     fn playback(&mut self, change: impl FnOnce(&mut Playback)) {
@@ -336,6 +352,7 @@ impl Review {
             return Ok(());
         }
         self.dirty = false;
+        self.tick();
         self.model.now = self.now;
         self.model.errors.clone_from(&self.film.errors);
         let (length, events) = self.film.length();

@@ -23,7 +23,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         let badge = brush.theme.badge(role);
         x = brush.text(x, area.y, area.width, label, badge);
     }
-    let notice = model.notice.as_ref().filter(|notice| model.now.secs_since(notice.at) < NOTICE_S);
+    let notice = model.notice.as_ref().filter(|notice| model.clock.secs_since(notice.at) < NOTICE_S);
     let said = notice.map_or(0, |notice| width(&notice.text) + 3).min(area.width / 2);
     let end = area.right().saturating_sub(said);
     // The end of the trial is rare, and gives its room to the others.

@@ -59,7 +59,7 @@ impl Assignment {
         for &target in &order[..goal.targets.len()] {
             choice.choose_for(ground, goal, state, target, useful);
         }
-        choice.exchange(goal, state);
+        choice.exchange(ground, goal, state);
         for index in 0..choice.count {
             choice.account(goal, state, index);
         }
@@ -122,11 +122,13 @@ impl Assignment {
     }
 
     /// Lets two targets exchange their items where that saves presses.
-    fn exchange(&mut self, goal: &Goal, state: &Classes) {
+    fn exchange(&mut self, ground: &Ground, goal: &Goal, state: &Classes) {
         let fits = |task: &Task, at: u8| {
             at == STORAGE || goal.fills[usize::from(task.target)][usize::from(state[usize::from(at)])] == task.bits
         };
         let of_first = self.tasks[..self.count].iter().take_while(|task| task.target == self.tasks[0].target).count();
+        let stored = self.tasks[..of_first].iter().filter(|task| task.at == STORAGE);
+        let wanted = stored.fold(0, |needs, task| needs | usize::from(Self::way(goal, state, task, STORAGE).1)) & 3;
         for first in 0..of_first {
             for second in of_first..self.count {
                 let (a, b) = (self.tasks[first], self.tasks[second]);
@@ -135,7 +137,10 @@ impl Assignment {
                     continue;
                 }
                 let presses = |task: &Task, at: u8| u32::from(Self::way(goal, state, task, at).0);
-                if presses(&a, b.at) + presses(&b, a.at) < presses(&a, a.at) + presses(&b, b.at) {
+                let (exchanged, kept) = (presses(&a, b.at) + presses(&b, a.at), presses(&a, a.at) + presses(&b, b.at));
+                // Of two hands the one that the first target needs should be free first.
+                let frees = |at: u8| at != STORAGE && wanted & ground.journeys.bit[usize::from(at)] != 0;
+                if exchanged < kept || exchanged == kept && frees(b.at) && !frees(a.at) {
                     self.tasks[first].at = b.at;
                     self.tasks[second].at = a.at;
                 }

@@ -8,7 +8,8 @@ impl Plan<'_> {
     /// Makes room for the target: one press or two that throw away, pick up, or put aside.
     pub(super) fn clear(&mut self, target: usize) -> bool {
         let of_target = || self.tasks().filter(move |(_, task)| usize::from(task.target) == target);
-        let assembling = of_target().any(|(_, task)| !self.is_ready(&task));
+        let complete = self.goal.complete[target];
+        let assembling = of_target().any(|(_, task)| task.bits != complete && !self.is_ready(&task));
         let needs = of_target().filter(|(_, task)| !self.is_ready(task));
         let needs = needs.fold(0, |needs, (_, task)| needs | self.needs(&task));
         // Which hand the coming work can spare.

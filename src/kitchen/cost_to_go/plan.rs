@@ -183,7 +183,7 @@ impl<'a> Plan<'a> {
         let free = ground.free(&self.state);
         let mut best: Option<(u32, usize, u8)> = None;
         for (index, task) in self.tasks().filter(|(_, task)| usize::from(task.target) == target) {
-            if self.is_ready(&task) {
+            if self.is_ready(&task) || task.bits == self.goal.complete[target] {
                 continue;
             }
             let presses = self.bring(&task, free);

@@ -11,13 +11,14 @@ use tomcom::communication::{Sender, Signal};
 use tomcom::console::arrange::{Plan, Thing};
 use tomcom::console::keys::Layer;
 use tomcom::console::model::{Dialog, Recording};
+use tomcom::console::playback::Playback;
 use tomcom::console::view::regions::Regions;
 use tomcom::console::view::theme::Theme;
 use tomcom::console::{Command, Keys, Message, Model, update, view};
 use tomcom::edge::files::read_kitchen;
 use tomcom::gaze::GazeSample;
 use tomcom::kitchen::{Agent, Kitchen, LocationKind};
-use tomcom::session::event::{Event, SignalEnd, Stamped};
+use tomcom::session::event::{EndReason, Event, SignalEnd, Stamped};
 use tomcom::session::settings::{GazeSource, ParticipantKind, Visibility};
 use tomcom::session::{Phase, Session, SessionSpec, apply};
 
@@ -288,6 +289,75 @@ fn a_signal_is_not_sent_again_while_it_is_shown() {
     assert!(stage.notice().contains("shown already"), "{}", stage.notice());
     stage.at(3.0, Event::SignalEnded { reason: SignalEnd::TakenBack });
     assert_eq!(input(stage.key(KeyCode::Char('a'))), Some(signal));
+}
+
+#[test]
+fn ages_stand_still_in_a_pause_and_after_the_end() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.at(1.0, Event::TrialStarted);
+    let shown = SessionTime::from_secs_f64(2.0);
+    stage.at(2.0, Event::OrderShown { order: "order_1".to_string(), dish: "tuna nigiri".to_string() });
+    stage.at(5.0, Event::TrialPaused);
+    let age_s = |stage: &Stage, now_s: f64| stage.session.age(shown, SessionTime::from_secs_f64(now_s)).as_secs_f64();
+    assert_eq!(age_s(&stage, 100.0), 3.0);
+    stage.at(105.0, Event::TrialResumed);
+    assert_eq!(age_s(&stage, 106.0), 4.0);
+    stage.at(107.0, Event::TrialEnded { reason: EndReason::Wizard });
+    assert_eq!(age_s(&stage, 200.0), 5.0);
+    let screen = stage.screen((120, 40));
+    assert!(screen.contains("^c closes the session"), "{screen}");
+    assert!(!screen.contains("STOP ROBOT"), "{screen}");
+}
+
+#[test]
+fn the_rate_of_the_gaze_begins_anew_after_a_gap() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Keyboard);
+    stage.at(1.0, Event::TrialStarted);
+    for start_s in [2.0, 7.0] {
+        for step in 0..24 {
+            stage.look(start_s + f64::from(step) / 120.0, 0.5, 0.5);
+        }
+        let hz = stage.session.gaze_hz(stage.model.now).expect("samples come");
+        assert!((hz - 120.0).abs() < 1.0, "{hz} Hz");
+        stage.wait(1.5);
+        assert_eq!(stage.session.gaze_hz(stage.model.now), None);
+        let screen = stage.screen((120, 40));
+        assert!(screen.contains("NO GAZE") && screen.contains("0 Hz, confidence -"), "{screen}");
+    }
+}
+
+#[test]
+fn a_question_is_seen_in_the_smallest_window() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('c');
+    let screen = stage.screen((50, 12));
+    assert!(screen.contains("Quit tomcom? y yes, any other key no"), "{screen}");
+}
+
+#[test]
+fn the_timeline_loses_no_signal_no_note_and_no_error() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    for note in ["wrong recipe", "overlooked a change", "slip"] {
+        stage.at(22.6, Event::Marker { note: note.to_string() });
+    }
+    for size in SIZES {
+        assert!(stage.screen(size).contains("123"), "{}", stage.screen(size));
+    }
+}
+
+#[test]
+fn the_keys_of_a_replay_and_the_served_orders_fit_the_smallest_console() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.keys = Keys::replay();
+    let mut playback = Playback::new("2026-03-14-P01-1".to_string());
+    (playback.playing, playback.event, playback.events) = (true, 43210, 59289);
+    stage.model.playback = Some(playback);
+    for size in SIZES {
+        let screen = stage.screen(size);
+        for words in ["q quit", "? help", "left/right step", "0 served", "play 1x"] {
+            assert!(screen.contains(words), "{words} is missing:\n{screen}");
+        }
+    }
 }
 
 #[test]

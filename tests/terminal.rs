@@ -352,7 +352,7 @@ fn a_running_session_is_watched_from_another_terminal_and_looked_at_again() {
     other.is_whole("0");
     other.run(&format!("{TOMCOM} replay {}", recording.display()));
     other.see("play 1x");
-    for (key, seen) in [("+", "play 2x"), (".", "stand 2x"), ("End", "CLOSED"), ("Home", "event 0/")] {
+    for (key, seen) in [("+", "play 2x"), (".", "paused 2x"), ("End", "CLOSED"), ("Home", "event 0/")] {
         other.key(key);
         other.see(seen);
     }

@@ -166,20 +166,23 @@ impl Keys {
     pub fn replay() -> Keys {
         use KeyCode::{Char, End, Home, Left, PageDown, PageUp, Right};
         let moves = [
-            (Char('.'), Move::PlayPause, "play, pause", Some("play/pause")),
             (Right, Move::StepForward, "to the next event", Some("step")),
             (Left, Move::StepBack, "to the last event", None),
-            (PageDown, Move::SeekForward, "ten seconds on", Some("+10 s")),
-            (PageUp, Move::SeekBack, "ten seconds back", Some("-10 s")),
-            (Char('+'), Move::Faster, "faster", Some("faster")),
-            (Char('-'), Move::Slower, "slower", Some("slower")),
+            (PageDown, Move::SeekForward, "ten seconds on", Some("10 s")),
+            (PageUp, Move::SeekBack, "ten seconds back", None),
+            (Char('+'), Move::Faster, "faster", Some("speed")),
+            (Char('-'), Move::Slower, "slower", None),
             (Home, Move::ToStart, "to the beginning", None),
-            (End, Move::ToEnd, "to the end; stays there if the recording grows", Some("end")),
+            (End, Move::ToEnd, "to the end; stays there if the recording grows", Some("ends")),
         ];
         let line = |(code, to, help, footer)| binding(Chord::plain(code), Action::Move(to), REPLAY, help, footer);
-        let mut keys = Keys { bindings: moves.into_iter().map(line).collect() };
-        keys.bindings.push(binding(Chord::plain(Char('q')), Action::Quit, CONSOLE, "quit", Some("quit")));
-        keys.console();
+        let mut keys = Keys { bindings: vec![line((Char('.'), Move::PlayPause, "play, pause", Some("play/pause")))] };
+        keys.bindings.extend([
+            binding(Chord::plain(Char('q')), Action::Quit, CONSOLE, "quit", Some("quit")),
+            binding(Chord::plain(Char('?')), Action::Help, CONSOLE, "this help", Some("help")),
+            binding(Chord::ctrl('c'), Action::Quit, CONSOLE, "quit", None),
+        ]);
+        keys.bindings.extend(moves.into_iter().map(line));
         keys
     }
 

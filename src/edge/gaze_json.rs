@@ -83,6 +83,10 @@ fn parse(line: &[u8]) -> Option<GazeLine> {
         return None;
     }
     let Ok(found) = serde_json::from_slice::<Line>(line) else { return Some(GazeLine::Malformed) };
+    // Beside the display is a place, too; a confidence beyond its scale is a tracker that speaks another language.
+    if !(found.x.is_finite() && found.y.is_finite() && (0.0..=1.0).contains(&found.confidence)) {
+        return Some(GazeLine::Malformed);
+    }
     let device_ns = found.t.filter(|t| (0.0..1e10).contains(t)).map(|t| (t * 1e9) as u64);
     Some(GazeLine::Sample(GazeSample { x: found.x, y: found.y, confidence: found.confidence, device_ns }))
 }
@@ -106,6 +110,7 @@ mod tests {
         let text = [
             "{\"t\": 1.5, \"x\": 0.25, \"y\": 0.5, \"confidence\": 0.9}\n",
             "\n{\"x\": 0.1, \"y\": 2, \"confidence\": 0, \"more\": 1}\r\n",
+            "{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1.01}\n{\"x\": 0.5, \"y\": 0.5, \"confidence\": -0.1}\n",
             "{\"x\": NaN, \"y\": 2, \"confidence\": 1}\nnonsense\n",
             &"9".repeat(3 * MAX_LINE),
             "\n{\"x\": 1e999, \"y\": 0, \"confidence\": 1}\n",
@@ -120,6 +125,6 @@ mod tests {
         let sample = |x, y, confidence, device_ns| GazeLine::Sample(GazeSample { x, y, confidence, device_ns });
         let expected = [sample(0.25, 0.5, 0.9, Some(1_500_000_000)), sample(0.1, 2.0, 0.0, None)];
         assert_eq!(found[..2], expected);
-        assert_eq!(found[2..], [GazeLine::Malformed; 4]);
+        assert_eq!(found[2..], [GazeLine::Malformed; 6]);
     }
 }

@@ -8,6 +8,9 @@ use crate::communication::{Sender, Signal};
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 use crate::kitchen::{Action, Agent, ButtonId, DishId, LocationId, OrderContent, State};
 
+/// After so many seconds without a gaze sample its rate is measured anew.
+const GAP_S: f64 = 0.5;
+
 /// What has to be done because of an event, by whoever runs the session. A replay does none of it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
@@ -191,6 +194,7 @@ fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
 fn pause(session: &mut Session, now: SessionTime) {
     stop_clock(session, now);
     session.phase = Phase::Paused;
+    session.gaze.steady_since = None;
     note(session, now, Happening::Trial(Phase::Paused));
 }
 
@@ -208,6 +212,8 @@ fn stop_clock(session: &mut Session, now: SessionTime) {
 /// Goes on after a pause: what was on its way comes later by the pause's length.
 fn resume(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
     let by = now - session.paused_at;
+    session.pauses.push((session.paused_at, now));
+    session.gaze.steady_since = None;
     session.paused_total = session.paused_total + by;
     session.phase = Phase::Running;
     if let Some((_, _, until)) = &mut session.robot.intention {
@@ -302,10 +308,20 @@ fn served_dish(action: &Action, before: State) -> OrderContent {
 fn gaze(session: &mut Session, now: SessionTime, sample: GazeSample) {
     let status = &mut session.gaze;
     status.samples += 1;
-    let interval_s = status.arrived.map_or(1.0, |last| now.secs_since(last));
+    let interval_s = status.arrived.map_or(GAP_S, |last| now.secs_since(last));
     status.arrived = Some(now);
-    let weight = interval_s.clamp(0.0, 1.0);
-    status.rate_hz += weight * (1.0 / interval_s.max(1e-3) - status.rate_hz);
+    match status.steady_since.filter(|_| interval_s < GAP_S) {
+        Some(since) => {
+            // The mean since the last gap; after a second of it, of about the last second. A few milliseconds at least,
+            // so that samples of one packet are no rate.
+            let window_s = now.secs_since(since).clamp(0.005, 1.0);
+            status.rate_hz += ((1.0 - interval_s * status.rate_hz) / window_s).max(-status.rate_hz);
+        }
+        None => {
+            status.rate_hz = 0.0;
+            status.steady_since = Some(now);
+        }
+    }
     let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
     if !on_display || sample.confidence < MIN_CONFIDENCE {
         status.unusable += 1;

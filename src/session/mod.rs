@@ -21,6 +21,9 @@ pub use event::{Event, Stamped};
 pub use header::Header;
 pub use settings::SessionSpec;
 
+/// After so many seconds without a sample there is no gaze.
+const SILENT_S: f64 = 1.0;
+
 /// Where the trial is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
@@ -46,6 +49,8 @@ pub struct Session {
     pub trial_start: SessionTime,
     pub paused_total: SessionTime,
     pub paused_at: SessionTime,
+    /// The pauses that are over: from, until.
+    pub pauses: Vec<(SessionTime, SessionTime)>,
     /// The task state, as it truly is.
     pub state: State,
     /// When each location last changed, indexed by location.
@@ -102,8 +107,10 @@ pub struct GazeStatus {
     /// Samples so far; those with too low a confidence or outside of the display are counted apart.
     pub samples: u64,
     pub unusable: u64,
-    /// Samples a second, smoothed over about a second.
-    pub rate_hz: f64,
+    /// Samples a second, smoothed over about a second: see [`Session::gaze_hz`].
+    pub(crate) rate_hz: f64,
+    /// Since when samples come without a gap; nothing after a pause.
+    pub(crate) steady_since: Option<SessionTime>,
 }
 
 /// An entry of the timeline.
@@ -139,6 +146,7 @@ impl Session {
             trial_start: SessionTime::ZERO,
             paused_total: SessionTime::ZERO,
             paused_at: SessionTime::ZERO,
+            pauses: Vec::new(),
             state,
             changed_at: [SessionTime::ZERO; MAX_LOCATIONS],
             presses: [0; 2],
@@ -158,6 +166,22 @@ impl Session {
             Phase::Paused => self.paused_at - self.trial_start - self.paused_total,
             Phase::Over(_) | Phase::Closed => self.paused_at - self.trial_start - self.paused_total,
         }
+    }
+
+    /// How long ago `at` is in the trial's time at `now`: pauses do not count, and after the end it stands still.
+    pub fn age(&self, at: SessionTime, now: SessionTime) -> SessionTime {
+        let end = match self.phase {
+            Phase::Ready | Phase::Running => now,
+            Phase::Paused | Phase::Over(_) | Phase::Closed => self.paused_at,
+        };
+        let paused = self.pauses.iter().map(|&(from, until)| until.min(end) - from.max(at));
+        paused.fold(end - at, |age, pause| age - pause)
+    }
+
+    /// Gaze samples a second at `now`; nothing if none came for a second.
+    pub fn gaze_hz(&self, now: SessionTime) -> Option<f64> {
+        let arrived = self.gaze.arrived.filter(|&arrived| now.secs_since(arrived) <= SILENT_S);
+        arrived.map(|_| self.gaze.rate_hz)
     }
 
     /// Whether presses count now.

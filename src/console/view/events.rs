@@ -17,7 +17,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let newest = session.timeline.iter().rev();
     for (row, entry) in newest.take(usize::from(inside.height)).enumerate() {
         let y = inside.y + row as u16;
-        let age = (model.now - entry.time).to_string();
+        let age = session.age(entry.time, model.now).to_string();
         let (who, what) = words::happening(&session.kitchen, &entry.what);
         let is_error = model.is_error(entry);
         let role = match &entry.what {

@@ -5,6 +5,7 @@ use super::regions::Regions;
 use super::theme::Role;
 use crate::console::keys::{Action, Binding, Layer, NOTES};
 use crate::console::model::{Level, Model};
+use crate::console::playback::Move;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Phase, Session};
 
@@ -26,13 +27,22 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let notice = model.notice.as_ref().filter(|notice| model.clock.secs_since(notice.at) < NOTICE_S);
     let said = notice.map_or(0, |notice| width(&notice.text) + 3).min(area.width / 2);
     let end = area.right().saturating_sub(said);
-    // The end of the trial is rare, and gives its room to the others.
-    let (late, first): (Vec<&Binding>, Vec<&Binding>) =
-        model.keys.bindings.iter().partition(|binding| binding.action == Action::EndTrial);
+    // The end of the trial is rare, and gives its room to the others; after it only leaving is left to do.
+    let is_over = is_over(session, model);
+    let is_late = |binding: &&Binding| match is_over {
+        true => binding.action != Action::Quit,
+        false => binding.action == Action::EndTrial,
+    };
+    let (late, first): (Vec<&Binding>, Vec<&Binding>) = model.keys.bindings.iter().partition(is_late);
     for binding in first.into_iter().chain(late) {
         let Some(label) = label(binding, session, model) else { continue };
         let key = match binding.action {
             Action::Note(_) => format!("1-{}", NOTES.len()),
+            // One label for the keys of both directions.
+            Action::Move(Move::StepForward) => "left/right".to_string(),
+            Action::Move(Move::SeekForward) => "pgup/pgdn".to_string(),
+            Action::Move(Move::Faster) => "+/-".to_string(),
+            Action::Move(Move::ToEnd) => "home/end".to_string(),
             _ => binding.chord.to_string(),
         };
         if x + width(&key) + width(label) + 3 > end {
@@ -51,6 +61,11 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     }
 }
 
+/// Whether a live trial is over.
+fn is_over(session: &Session, model: &Model) -> bool {
+    model.playback.is_none() && matches!(session.phase, Phase::Over(_) | Phase::Closed)
+}
+
 /// What the footer says of a key, if it does something now.
 fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&'a str> {
     let label = binding.footer?;
@@ -58,6 +73,14 @@ fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&
         return None;
     }
     let runs = matches!(session.phase, Phase::Running | Phase::Paused);
+    if is_over(session, model) {
+        return match binding.action {
+            Action::Quit => Some("closes the session"),
+            Action::Note(_) if session.phase != Phase::Closed => Some(label),
+            Action::Help => Some(label),
+            _ => None,
+        };
+    }
     match binding.action {
         Action::Advance => match session.phase {
             Phase::Ready => Some("start"),

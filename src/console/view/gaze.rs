@@ -36,7 +36,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let inside = brush.panel(area, "Gaze", &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
-    quality(brush, x, inside.y + 1, columns, session);
+    quality(brush, x, inside.y + 1, columns, session, model);
     let list = if unseen.is_empty() { "nothing".to_string() } else { unseen.join(", ") };
     let list = format!("changed unseen: {list}");
     let text = brush.style(Role::Text);
@@ -50,7 +50,7 @@ fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, mode
         return brush.parts(x, y, columns, &[("no sample so far", Role::Quiet)]);
     };
     let sign = brush.theme.signs().gaze;
-    let age_s = model.now.secs_since(at);
+    let age_s = session.age(at, model.now).as_secs_f64();
     let place = match nearest_location(&session.kitchen, [sample.x, sample.y]) {
         Some((location, 0.0)) => session.kitchen.location(location).label(),
         Some((location, distance_m)) => {
@@ -67,11 +67,16 @@ fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, mode
     )
 }
 
-fn quality(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session) {
+fn quality(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
     let gaze = &session.gaze;
     let unusable = 100.0 * gaze.unusable as f64 / gaze.samples.max(1) as f64;
-    let confidence = gaze.last.map_or("-".to_string(), |(_, sample)| format!("{:.2}", sample.confidence));
-    let text = format!("{:.0} Hz, confidence {confidence}, {unusable:.0}% unusable", gaze.rate_hz);
+    let text = match (session.gaze_hz(model.now), gaze.last) {
+        (Some(hz), Some((_, sample))) => {
+            format!("{hz:.0} Hz, confidence {:.2}, {unusable:.0}% unusable", sample.confidence)
+        }
+        (Some(hz), None) => format!("{hz:.0} Hz, confidence -, {unusable:.0}% unusable"),
+        (None, _) => "0 Hz, confidence -, -% unusable".to_string(),
+    };
     brush.parts(x, y, columns, &[(&text, Role::Quiet)]);
 }
 
@@ -90,7 +95,7 @@ fn unseen(session: &Session, model: &Model) -> Vec<String> {
     unseen.sort_by_key(|&index| session.changed_at[index]);
     let label = |index: usize| {
         let location = session.kitchen.location(LocationId(index as u8)).label();
-        format!("{location} {}", model.now - session.changed_at[index])
+        format!("{location} {}", session.age(session.changed_at[index], model.now))
     };
     unseen.into_iter().map(label).collect()
 }
@@ -107,7 +112,7 @@ pub fn draw_map(brush: &mut Brush, regions: &Regions, session: &Session, model: 
     };
     for (index, location) in session.kitchen.locations.iter().enumerate() {
         let (x, y) = cell(location.display.centre());
-        let seen = session.gaze.looked_at[index].map(|at| model.now.secs_since(at));
+        let seen = session.gaze.looked_at[index].map(|at| session.age(at, model.now).as_secs_f64());
         let y = y.min(inside.bottom().saturating_sub(2));
         let label = match model.keys.of_signal(LocationId(index as u8)) {
             Some(key) => format!("[{key}]"),

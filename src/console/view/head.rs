@@ -13,7 +13,10 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let area = regions.head;
     let gap = if regions.room == Room::Small { 1 } else { 3 };
     let strong = brush.style(Role::Strong);
-    let mut x = brush.text(area.x + 1, area.y, area.width, "tomcom", strong) + gap;
+    // A small replay needs the room of the name.
+    let is_tight = model.playback.is_some() && regions.room == Room::Small;
+    let name = if is_tight { "" } else { "tomcom" };
+    let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
     let badge = brush.theme.badge(phase_role(session.phase));
     x = brush.text(x, area.y, 14, &format!(" {} ", words::phase(session.phase)), badge) + gap;
     x = clock(brush, x, area.y, session, model) + gap;
@@ -57,10 +60,11 @@ fn facts(session: &Session, model: &Model) -> Vec<String> {
         Condition::Wizard => "wizard",
     };
     let served = format!("{} served", session.served.len());
-    let mut facts = vec![session.spec.participant.code.clone(), condition.to_string(), served];
-    if let Some(playback) = &model.playback {
-        facts.push(playback.name.clone());
-    }
+    let code = session.spec.participant.code.clone();
+    let mut facts = match &model.playback {
+        None => vec![code, condition.to_string(), served],
+        Some(playback) => vec![served, code, condition.to_string(), playback.name.clone()],
+    };
     facts.push(session.kitchen.title.clone());
     facts
 }
@@ -73,10 +77,11 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
     }
     match &model.playback {
         Some(playback) => {
-            let state = if playback.playing { "play" } else { "stand" };
+            let state = if playback.playing { "play" } else { "paused" };
             let follows = if playback.follows { " live" } else { "" };
-            let label =
-                format!("{state} {}{follows}  event {}/{}", playback.speed_label(), playback.event, playback.events);
+            let what = if room == Room::Small { "" } else { " event" };
+            let (speed, event, events) = (playback.speed_label(), playback.event, playback.events);
+            let label = format!("{state} {speed}{follows} {what} {event}/{events}");
             healths.push((label, Role::Strong));
             if playback.cut && !playback.follows {
                 healths.push(("cut".to_string(), Role::Alarm));
@@ -88,7 +93,9 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
             Recording::Lost(reason) => (format!("RECORDING LOST: {reason}"), Role::Alarm),
         }),
     }
-    healths.push(gaze(session, model));
+    if room > Room::Small || model.playback.is_none() {
+        healths.push(gaze(session, model));
+    }
     let robot = if session.robot.stopped { ("ROBOT STOPPED", Role::Alarm) } else { ("robot ok", Role::Text) };
     if (room > Room::Small && model.playback.is_none()) || session.robot.stopped {
         healths.push((robot.0.to_string(), robot.1));
@@ -97,11 +104,14 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
 }
 
 fn gaze(session: &Session, model: &Model) -> (String, Role) {
-    let age_s = session.gaze.last.map(|(at, _)| model.now.secs_since(at));
-    match age_s {
-        _ if session.spec.participant.gaze == GazeSource::None => ("no gaze".to_string(), Role::Quiet),
-        Some(age_s) if age_s < 1.0 => (format!("gaze {:>3.0} Hz", session.gaze.rate_hz), Role::Text),
-        Some(age_s) if session.is_running() => (format!("NO GAZE {age_s:.0} s"), Role::Alarm),
+    if session.spec.participant.gaze == GazeSource::None {
+        return ("no gaze".to_string(), Role::Quiet);
+    }
+    let usable = session.gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= 1.0);
+    match (session.gaze_hz(model.now), session.gaze.arrived) {
+        (Some(_), _) if !usable => ("GAZE UNUSABLE".to_string(), Role::Alarm),
+        (Some(hz), _) => (format!("gaze {hz:>3.0} Hz"), Role::Text),
+        (None, Some(at)) if session.is_running() => (format!("NO GAZE {:.0} s", model.now.secs_since(at)), Role::Alarm),
         _ => ("gaze waits".to_string(), Role::Quiet),
     }
 }

@@ -125,7 +125,7 @@ impl<'a> Place<'a> {
             false => session.state.content(id).is_empty(),
         };
         let at = session.changed_at[id.index()];
-        let age_s = model.now.secs_since(at);
+        let age_s = session.age(at, model.now).as_secs_f64();
         let fresh = (at > SessionTime::ZERO && age_s < FRESH_S).then(|| (age_s, words::changed_by(session, at)));
         let is_shown = session.shown.as_ref().is_some_and(|shown| shown.signal.target() == kitchen.location(id).name);
         Place { session, model, id, kitchen, content, is_empty, fresh, is_shown }
@@ -213,7 +213,7 @@ impl<'a> Place<'a> {
     fn order(&self, brush: &mut Brush, room: Rect) {
         let style = self.content_style(brush);
         let is_wanted = matches!(self.session.state.order(self.id), OrderContent::Dish(_));
-        let age = self.model.now - self.session.changed_at[self.id.index()];
+        let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
         let sign = brush.theme.signs().served;
         let text = match self.session.state.order(self.id) {
             OrderContent::Served => format!("{sign} served"),

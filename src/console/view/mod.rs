@@ -17,7 +17,7 @@ pub mod timeline;
 
 use ratatui::Frame;
 
-use super::model::Model;
+use super::model::{Dialog, Model};
 use crate::session::Session;
 use paint::Brush;
 use regions::{LEAST, Regions};
@@ -28,7 +28,7 @@ pub fn view(session: &Session, model: &Model, frame: &mut Frame) {
     let area = frame.area();
     let mut brush = Brush { buffer: frame.buffer_mut(), theme: model.theme };
     if area.width < LEAST.0 || area.height < LEAST.1 {
-        too_small(&mut brush, session);
+        too_small(&mut brush, session, model);
         return;
     }
     let regions = Regions::new((area.width, area.height), session.spec.console.visibility);
@@ -46,11 +46,21 @@ pub fn view(session: &Session, model: &Model, frame: &mut Frame) {
     dialog::draw(&mut brush, area, session, model);
 }
 
-fn too_small(brush: &mut Brush, session: &Session) {
+fn too_small(brush: &mut Brush, session: &Session, model: &Model) {
     let area = *brush.buffer.area();
     let (alarm, text) = (brush.style(Role::Alarm), brush.style(Role::Text));
     let need = format!("{}x{} is too small: the console needs {}x{}", area.width, area.height, LEAST.0, LEAST.1);
     brush.text(0, 0, area.width, &need, text);
     let stop = if session.robot.stopped { "ROBOT STOPPED" } else { "the space bar stops the robot" };
     brush.text(0, 1, area.width, stop, alarm);
+    let question = match model.dialog {
+        Some(Dialog::Quit) => "Quit tomcom? y yes, any other key no",
+        Some(Dialog::EndTrial) => "End the trial? y yes, any other key no",
+        Some(Dialog::Help) => "The help needs more room; any key closes it",
+        None => return,
+    };
+    let strong = brush.style(Role::Strong);
+    for (row, line) in paint::wrap(question, area.width).iter().enumerate() {
+        brush.text(0, 2 + row as u16, area.width, line, strong);
+    }
 }

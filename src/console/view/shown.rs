@@ -7,7 +7,7 @@ use crate::communication::Signal;
 use crate::console::keys::Action;
 use crate::console::model::Model;
 use crate::console::words;
-use crate::session::{Session, ShownSignal};
+use crate::session::{Phase, Session, ShownSignal};
 
 /// Draws what the participant is shown.
 pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
@@ -32,6 +32,13 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
 
 /// The signal with its remaining time in one line.
 fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
+    let start = model.keys.of(&Action::Advance).filter(|_| session.phase == Phase::Ready);
+    if let Some(key) = start {
+        let key = key.to_string();
+        let parts = [("press ", Role::Strong), (&key, Role::Signal), (" to start the trial", Role::Strong)];
+        brush.parts(x, y, columns, &parts);
+        return;
+    }
     let Some(shown) = &session.shown else {
         brush.parts(x, y, columns, &[("no signal: the kitchen only", Role::Quiet)]);
         return;

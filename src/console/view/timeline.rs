@@ -33,17 +33,51 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let plot = Rect { x: inside.x + LABELS, width: inside.width.saturating_sub(LABELS + 1), ..inside };
     axis(brush, plot);
     let now = column(model.now);
-    for entry in session.timeline.iter().rev() {
-        let age = now - column(entry.time);
-        if age >= i64::from(plot.width) {
-            break;
-        }
-        let Some((row, sign, role)) = mark(brush, session, model, entry) else { continue };
-        let row = if is_small { row.min(3) } else { row };
-        let (x, y) = (plot.right() - 1 - age.max(0) as u16, plot.y + row);
-        let style = brush.style(role);
-        if y < plot.bottom() && is_louder(brush, x, y, &sign) {
-            brush.text(x, y, 1, &sign, style);
+    let newest = session.timeline.iter().rev();
+    let entries = newest.map(|entry| (now - column(entry.time), entry));
+    let in_view: Vec<Mark> = entries
+        .take_while(|(age, _)| *age < i64::from(plot.width))
+        .filter_map(|(age, entry)| {
+            let (row, sign, role) = mark(brush, session, model, entry)?;
+            let row = if is_small { row.min(3) } else { row };
+            Some(Mark { x: plot.right() - 1 - age.max(0) as u16, y: plot.y + row, sign, role })
+        })
+        .filter(|mark| mark.y < plot.bottom())
+        .collect();
+    place(brush, plot, &in_view);
+}
+
+/// A sign in the plot.
+struct Mark {
+    x: u16,
+    y: u16,
+    sign: String,
+    role: Role,
+}
+
+/// Writes the signs, the newest first. Of presses in one column one stands for all; everything else is never lost: what
+/// finds its cell taken moves to the next free one, towards the past.
+fn place(brush: &mut Brush, plot: Rect, marks: &[Mark]) {
+    let signs = brush.theme.signs();
+    let rank = |mark: &Mark| match mark.sign.as_str() {
+        sign if sign == signs.press => 2,
+        sign if sign == signs.no_effect => 1,
+        _ => 0,
+    };
+    for wanted in 0..3 {
+        for mark in marks.iter().filter(|mark| rank(mark) == wanted) {
+            let is_free = |x: &u16| brush.buffer.cell((*x, mark.y)).is_some_and(|cell| cell.symbol() == " ");
+            let free = (plot.x..=mark.x).rev().find(is_free);
+            let style = brush.style(mark.role);
+            match free {
+                Some(x) if wanted == 0 || x == mark.x => {
+                    brush.text(x, mark.y, 1, &mark.sign, style);
+                }
+                None if wanted == 0 => {
+                    brush.text(plot.x, mark.y, 1, "+", style);
+                }
+                _ => {}
+            }
         }
     }
 }
@@ -55,18 +89,6 @@ fn legend(brush: &Brush) -> String {
 
 fn column(time: SessionTime) -> i64 {
     (time.as_secs_f64() / COLUMN_S) as i64
-}
-
-/// Two events in one column: the one that matters more stays.
-fn is_louder(brush: &Brush, x: u16, y: u16, sign: &str) -> bool {
-    let signs = brush.theme.signs();
-    let rank = |sign: &str| match sign {
-        " " => 0,
-        sign if sign == signs.press => 1,
-        sign if sign == signs.no_effect => 2,
-        _ => 3,
-    };
-    brush.buffer.cell((x, y)).is_none_or(|cell| rank(cell.symbol()) <= rank(sign))
 }
 
 fn axis(brush: &mut Brush, plot: Rect) {

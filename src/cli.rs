@@ -14,7 +14,7 @@ use serde::Serialize;
 use crate::edge::files::{self, FileError};
 use crate::edge::log::WriteError;
 use crate::run::live::{self, LiveError};
-use crate::run::options::{self, OperateOptions, Overrides};
+use crate::run::options::{self, Beginning, Overrides};
 use crate::run::replay::Replay;
 use crate::run::review::{self, ReviewError};
 use crate::run::{kitchen, simulate, tell, verify};
@@ -64,6 +64,9 @@ enum Format {
 struct OperateArgs {
     /// The session file; by default sessions/default.toml, or the one that the program carries.
     session: Option<PathBuf>,
+    /// Take up this recording, which was cut, in a new part beside it; its session is the same, a running trial is paused.
+    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "participant", "gaze", "condition", "seed", "out"])]
+    recording: Option<PathBuf>,
     #[command(flatten)]
     flags: OperateFlags,
 }
@@ -190,7 +193,10 @@ impl From<WriteError> for Failure {
 
 impl From<LiveError> for Failure {
     fn from(error: LiveError) -> Failure {
-        Failure::Failed(miette::Report::new(error))
+        match error {
+            LiveError::Resume(error) => Failure::Wrong(miette::Report::new(error)),
+            error => Failure::Failed(miette::Report::new(error)),
+        }
     }
 }
 
@@ -217,7 +223,8 @@ pub fn main() -> ExitCode {
     // Lines are not wrapped, so that file and line can be searched for; a hook that is set already is as good.
     let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build())));
     let cli = Cli::parse();
-    let command = cli.command.unwrap_or(Command::Operate(OperateArgs { session: None, flags: cli.operate }));
+    let command =
+        cli.command.unwrap_or(Command::Operate(OperateArgs { session: None, recording: None, flags: cli.operate }));
     let done = match command {
         Command::Operate(args) => operate(&args),
         Command::Replay(args) => replay(&args),
@@ -245,6 +252,16 @@ fn print(format: Format, figures: &impl Serialize, text: impl FnOnce() -> String
 }
 
 fn operate(args: &OperateArgs) -> Result<(), Failure> {
+    let beginning = match &args.recording {
+        Some(recording) => Beginning::Continued(recording.clone()),
+        None => new_session(args)?,
+    };
+    let end = live::operate(beginning)?;
+    writeln!(std::io::stdout(), "{}", end.describe())?;
+    Ok(())
+}
+
+fn new_session(args: &OperateArgs) -> Result<Beginning, Failure> {
     let flags = &args.flags;
     let mut files = options::session_or_default(args.session.as_deref())?;
     let overrides = Overrides {
@@ -267,9 +284,7 @@ fn operate(args: &OperateArgs) -> Result<(), Failure> {
     overrides
         .apply(&mut files)
         .map_err(|error| Failure::Wrong(miette::miette!(help = error.remedy, "found {}", error.found)))?;
-    let end = live::operate(OperateOptions { files, out: flags.out.clone() })?;
-    writeln!(std::io::stdout(), "{}", end.describe())?;
-    Ok(())
+    Ok(Beginning::New { files: Box::new(files), out: flags.out.clone() })
 }
 
 fn replay(args: &ReplayArgs) -> Result<(), Failure> {

@@ -176,6 +176,15 @@ fn outside_crates_are_named_only_where_they_belong() {
     }
 }
 
+/// A clock that can be set is no measure of time: what has to be measured is measured with the monotonic one.
+#[test]
+fn the_wall_clock_is_named_in_one_file() {
+    for source in sources() {
+        let is_clock = source.path == Path::new("src/edge/clock.rs");
+        assert!(is_clock || !source.code.contains("SystemTime"), "{}", source.path.display());
+    }
+}
+
 #[test]
 fn files_stay_short() {
     for source in sources() {

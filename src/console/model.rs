@@ -53,8 +53,8 @@ pub enum Recording {
     Off,
     /// Written to this folder.
     On(String),
-    /// The log cannot be written, for this reason.
-    Lost(String),
+    /// The log cannot be written.
+    Lost,
 }
 
 /// Everything that only concerns the screen and the hands at the keyboard.

@@ -1,6 +1,78 @@
-//! The wall clock: only for the names of recordings and for the header of live ones.
+//! The clocks. Session time comes from the monotonic one. The wall clock, which can be set and jumps, is only for the
+//! names of recordings and the headers of live ones, and is watched, so that the log says where it jumped.
 
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use crate::base::time::SessionTime;
+
+/// A live session looks at its clock much more often; after a longer gap, everything stood still.
+const STANDSTILL: Duration = Duration::from_secs(1);
+/// Smaller differences between the clocks, in milliseconds, are no jumps: time servers nudge, programs wait.
+const JUMP_MS: i64 = 500;
+
+/// The time of a live session. It stands still while the program does (suspended, stopped, or blocked for more than a
+/// second): what robot and participant were about to do then is still to come, and does not happen all at once.
+#[derive(Clone, Debug)]
+pub struct SessionClock {
+    /// The session time at `began`.
+    offset: SessionTime,
+    began: Instant,
+    looked: Instant,
+    /// How long everything stood still since `began`.
+    stood: Duration,
+    /// The wall clock less session time, in milliseconds, when they were last compared.
+    ahead_ms: i64,
+}
+
+impl SessionClock {
+    /// A clock that shows `offset` now.
+    pub fn start(offset: SessionTime) -> SessionClock {
+        let now = Instant::now();
+        let ahead_ms = WallTime::now().unix_ms as i64 - millis(offset);
+        SessionClock { offset, began: now, looked: now, stood: Duration::ZERO, ahead_ms }
+    }
+
+    /// The session time now.
+    pub fn now(&mut self) -> SessionTime {
+        self.at(Instant::now())
+    }
+
+    /// When the session time will be this, if nothing stands still until then.
+    pub fn instant_of(&self, time: SessionTime) -> Instant {
+        self.began + self.stood + Duration::from_nanos((time - self.offset).0)
+    }
+
+    /// By how much, in milliseconds, the wall clock jumped since this was last asked.
+    pub fn jump(&mut self) -> Option<i64> {
+        let wall = WallTime::now();
+        let now = self.now();
+        self.jump_at(now, wall)
+    }
+
+    fn at(&mut self, now: Instant) -> SessionTime {
+        let gap = now.saturating_duration_since(self.looked);
+        self.looked = now;
+        if gap > STANDSTILL {
+            self.stood += gap;
+        }
+        let passed = now.saturating_duration_since(self.began).saturating_sub(self.stood);
+        self.offset + SessionTime(passed.as_nanos() as u64)
+    }
+
+    fn jump_at(&mut self, now: SessionTime, wall: WallTime) -> Option<i64> {
+        let ahead_ms = wall.unix_ms as i64 - millis(now);
+        let by_ms = ahead_ms - self.ahead_ms;
+        if by_ms.abs() < JUMP_MS {
+            return None;
+        }
+        self.ahead_ms = ahead_ms;
+        Some(by_ms)
+    }
+}
+
+fn millis(time: SessionTime) -> i64 {
+    (time.0 / 1_000_000) as i64
+}
 
 /// A moment of the wall clock, in UTC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +120,28 @@ fn civil(days: u64) -> (u64, u64, u64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn session_time_knows_no_wall_clock_and_stands_still_with_the_program() {
+        let offset = SessionTime(5_000_000_000);
+        let mut clock = SessionClock::start(offset);
+        let (began, wall) = (clock.began, WallTime::now());
+        let after = |ms: u64| began + Duration::from_millis(ms);
+        let shows = |ms: u64| offset + SessionTime(ms * 1_000_000);
+        let wall_after = |ms: i64| WallTime { unix_ms: (wall.unix_ms as i64 + ms) as u64 };
+        assert_eq!(clock.at(after(400)), shows(400));
+        assert_eq!(clock.jump_at(shows(400), wall_after(410)), None);
+        // Set forward by an hour, then back again: told once each, and no session time passes.
+        let told = clock.jump_at(shows(400), wall_after(3_600_400)).expect("a jump");
+        assert!((told - 3_600_000).abs() < 100, "{told}");
+        assert_eq!(clock.jump_at(shows(400), wall_after(3_600_400)), None);
+        assert!(clock.jump_at(shows(400), wall_after(400)).is_some_and(|by_ms| by_ms < -3_599_000));
+        // The computer sleeps for a minute.
+        assert_eq!(clock.at(after(60_400)), shows(400));
+        assert!(clock.jump_at(shows(400), wall_after(60_400)).is_some_and(|by_ms| (59_900..60_100).contains(&by_ms)));
+        assert_eq!(clock.at(after(60_500)), shows(500));
+        assert_eq!(clock.instant_of(shows(700)), after(60_700));
+    }
 
     #[test]
     fn dates_are_those_of_the_calendar() {

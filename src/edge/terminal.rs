@@ -227,6 +227,25 @@ pub fn theme(ascii: bool) -> Theme {
     Theme { colour: !is_set("NO_COLOR"), unicode: !ascii && !locale.as_deref().is_some_and(plain) }
 }
 
+/// A file that grows beyond the limit for files (`ulimit -f`) kills the program by a signal, unless somebody receives it:
+/// then the write fails, as on a full disk.
+///
+/// # Errors
+/// Signals cannot be received.
+#[cfg(target_os = "linux")]
+pub fn outlive_file_limits() -> io::Result<()> {
+    use tokio::signal::unix::{SignalKind, signal};
+    const SIGXFSZ: i32 = 25;
+    // The handler stays after what receives from it is gone.
+    signal(SignalKind::from_raw(SIGXFSZ)).map(drop)
+}
+
+/// No such signal, or another number.
+#[cfg(not(target_os = "linux"))]
+pub fn outlive_file_limits() -> io::Result<()> {
+    Ok(())
+}
+
 /// Waits until the program is asked to end by a signal (terminate, interrupt, hang up).
 ///
 /// # Errors

@@ -10,14 +10,15 @@ use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
 use super::engine::Engine;
 use super::figures::TrialFigures;
-use super::options::OperateOptions;
+use super::options::Beginning;
+use super::resume::{ResumeError, resume};
 use crate::base::time::SessionTime;
 use crate::console::model::{Level, Recording};
 use crate::console::{Command, Keys, Message, Model, update};
-use crate::edge::clock::WallTime;
+use crate::edge::clock::{SessionClock, WallTime};
 use crate::edge::gaze_json::{self, GazeLine};
-use crate::edge::log::{LogWriter, WriteError};
-use crate::edge::terminal::{Hands, Screen, asked_to_end, theme};
+use crate::edge::log::{Lock, LogWriter, WriteError};
+use crate::edge::terminal::{Hands, Screen, asked_to_end, outlive_file_limits, theme};
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::settings::GazeSource;
@@ -32,6 +33,8 @@ const RESTING: Duration = Duration::from_millis(250);
 const POINTER: Duration = Duration::from_nanos(16_666_667);
 /// Gaze that waits is handed to the operating system so often.
 const FLUSH: Duration = Duration::from_millis(50);
+/// So often somebody looks whether the recording is still where it should be, and whether the clock jumped.
+const WATCH: Duration = Duration::from_millis(250);
 
 /// Why a live session could not be run, or not to its end.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -48,6 +51,9 @@ pub enum LiveError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] WriteError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Resume(#[from] ResumeError),
 }
 
 /// What came of a live session.
@@ -75,42 +81,84 @@ impl LiveEnd {
 ///
 /// # Errors
 /// There is no terminal, the session cannot be recorded, or the gaze input cannot be opened.
-pub fn operate(options: OperateOptions) -> Result<LiveEnd, LiveError> {
+pub fn operate(beginning: Beginning) -> Result<LiveEnd, LiveError> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(LiveError::Terminal)?;
-    runtime.block_on(Live::open(options)?.run())
+    // Opened inside, since signals and sockets belong to the runtime.
+    runtime.block_on(async { Live::open(beginning)?.run().await })
 }
 
 struct Live {
     engine: Engine,
     model: Model,
     log: LogWriter,
+    /// The part that is continued is not to be written by anybody else.
+    _before: Option<Lock>,
     /// The log cannot be written any more.
     failed: Option<WriteError>,
     screen: Screen,
-    began: Instant,
+    clock: SessionClock,
     /// How many judged presses the model knows.
     judged: usize,
     /// Something changed since the last frame.
     dirty: bool,
 }
 
+/// A session that is about to be run and recorded.
+struct Begun {
+    engine: Engine,
+    header: Header,
+    /// What belongs at the beginning of the recording.
+    first: Vec<Stamped>,
+    /// When it begins.
+    time: SessionTime,
+    place: Place,
+}
+
+/// Where the recording goes.
+enum Place {
+    In(PathBuf),
+    /// Beside the part before, which stays locked.
+    After(PathBuf, Lock),
+}
+
+fn begin(beginning: Beginning) -> Result<Begun, LiveError> {
+    match beginning {
+        Beginning::New { files, out } => {
+            let kitchen = Arc::new(files.kitchen.kitchen);
+            let header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+            let engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+            Ok(Begun { engine, header, first: Vec::new(), time: SessionTime::ZERO, place: Place::In(out) })
+        }
+        Beginning::Continued(recording) => {
+            let resumed = resume(&recording)?;
+            let place = Place::After(resumed.folder, resumed.lock);
+            let (header, first, time) = (resumed.header, resumed.first, resumed.time);
+            Ok(Begun { engine: resumed.engine, header, first, time, place })
+        }
+    }
+}
+
 impl Live {
-    fn open(options: OperateOptions) -> Result<Live, LiveError> {
-        let files = options.files;
-        let kitchen = Arc::new(files.kitchen.kitchen);
-        let keys = Keys::live(&kitchen, &files.spec)?;
-        let mut header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+    fn open(beginning: Beginning) -> Result<Live, LiveError> {
+        let Begun { engine, mut header, first, time, place } = begin(beginning)?;
+        let (kitchen, spec) = (engine.session().kitchen.clone(), engine.session().spec.clone());
+        let keys = Keys::live(&kitchen, &spec)?;
+        outlive_file_limits().map_err(LiveError::Terminal)?;
         let wall = WallTime::now();
         header.started = Some(wall.rfc3339());
-        let with_mouse = files.spec.participant.gaze == GazeSource::Mouse;
-        let screen = Screen::take(with_mouse).map_err(LiveError::Terminal)?;
-        let log = LogWriter::create_live(&options.out, &wall.date(), &header)?;
-        let cost = CostToGo::new(kitchen.clone());
+        let screen = Screen::take(spec.participant.gaze == GazeSource::Mouse).map_err(LiveError::Terminal)?;
+        let (log, before) = match place {
+            Place::In(root) => (LogWriter::create_live(&root, &wall.date(), &header)?, None),
+            Place::After(folder, lock) => (LogWriter::create_part(&folder, &header)?, Some(lock)),
+        };
         let size = Screen::size().map_err(LiveError::Terminal)?;
-        let mut model = Model::new(keys, theme(files.spec.console.ascii), size);
+        let mut model = Model::new(keys, theme(spec.console.ascii), size);
         model.recording = Recording::On(log.folder().display().to_string());
-        let engine = Engine::new(kitchen, files.spec, 0, cost);
-        Ok(Live { engine, model, log, failed: None, screen, began: Instant::now(), judged: 0, dirty: true })
+        let clock = SessionClock::start(time);
+        let mut live =
+            Live { engine, model, log, _before: before, failed: None, screen, clock, judged: 0, dirty: true };
+        live.record(&first);
+        Ok(live)
     }
 
     async fn run(mut self) -> Result<LiveEnd, LiveError> {
@@ -123,17 +171,18 @@ impl Live {
             _ => None,
         };
         let with_pointer = participant.gaze == GazeSource::Mouse;
-        self.began = Instant::now();
         let mut hands = Hands::default();
         let end = asked_to_end();
         tokio::pin!(end);
         let mut pointer = interval(POINTER);
         pointer.set_missed_tick_behavior(MissedTickBehavior::Skip);
         let mut flush = interval(FLUSH);
+        let mut watch = interval(WATCH);
         let mut next_frame = Instant::now();
         let mut next_move = Instant::now();
         while !self.screen.is_lost() {
-            let due = self.engine.next_due().map(|due| self.began + Duration::from_nanos(due.0));
+            self.tick();
+            let due = self.engine.next_due().map(|due| Instant::from_std(self.clock.instant_of(due)));
             tokio::select! {
                 biased;
                 _ = &mut end => break,
@@ -141,13 +190,14 @@ impl Live {
                     Some(message) => if self.take(message) { break },
                     None => break,
                 },
-                () = sleep_until(due.unwrap_or(self.began)), if due.is_some() => {
+                () = sleep_until(due.unwrap_or_else(Instant::now)), if due.is_some() => {
                     let events = self.engine.fire();
                     self.record(&events);
                 }
                 Some(line) = receive(&mut gaze) => self.gaze(line),
                 _ = pointer.tick(), if with_pointer => self.look(),
                 _ = flush.tick() => self.flush(),
+                _ = watch.tick() => self.watch(),
                 () = sleep_until(next_frame.max(next_move)), if !self.dirty => self.dirty = true,
                 () = sleep_until(next_frame), if self.dirty => {
                     next_frame = Instant::now() + FRAME;
@@ -159,13 +209,9 @@ impl Live {
         self.close()
     }
 
-    fn now(&self) -> SessionTime {
-        SessionTime(self.began.elapsed().as_nanos() as u64)
-    }
-
     /// Tells the model what time it is.
     fn tick(&mut self) {
-        self.model.now = self.now();
+        self.model.now = self.clock.now();
         self.model.clock = self.model.now;
     }
 
@@ -183,7 +229,7 @@ impl Live {
 
     fn input(&mut self, event: Event) {
         let is_gaze = matches!(event, Event::Gaze(_));
-        let outcome = self.engine.input(self.now(), event);
+        let outcome = self.engine.input(self.clock.now(), event);
         self.record(&outcome.events);
         if let Some(reason) = outcome.refused.filter(|_| !is_gaze) {
             update(&mut self.model, self.engine.session(), Message::Refused(reason));
@@ -217,15 +263,34 @@ impl Live {
         }
     }
 
+    /// Whether the recording is still where it should be, and whether the clock jumped.
+    fn watch(&mut self) {
+        if let Some(by_ms) = self.clock.jump() {
+            self.input(Event::ClockJumped { by_ms });
+            let text = format!("the clock jumped by {:.1} s: session time did not", by_ms as f64 / 1000.0);
+            self.model.say(Level::Alarm, text);
+        }
+        if self.failed.is_none()
+            && let Err(error) = self.log.check()
+        {
+            self.fail(error);
+        }
+    }
+
     /// The log cannot be written: alarm, stop the robot, end the session. The console stays until the wizard leaves.
     fn fail(&mut self, error: WriteError) {
-        self.model.recording = Recording::Lost(error.reason.to_string());
-        self.model.say(Level::Alarm, "the recording cannot be written: the session is over");
+        let (reason, saved) = match &error {
+            WriteError::Unwritable { reason, saved, .. } => (reason.to_string(), saved.clone()),
+            error => (error.to_string(), None),
+        };
+        let saved = saved.map_or(String::new(), |saved| format!(", saved in {}", saved.display()));
+        self.model.recording = Recording::Lost;
+        self.model.say(Level::Alarm, format!("session over, the recording ends here: {reason}{saved}"));
         self.failed = Some(error);
         self.dirty = true;
         for event in [Event::RobotStopped, Event::SessionEnded] {
             // Nothing of it can be recorded; a robot that is stopped already stays so.
-            let _ = self.engine.input(self.now(), event);
+            let _ = self.engine.input(self.clock.now(), event);
         }
     }
 

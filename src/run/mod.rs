@@ -8,6 +8,7 @@ pub mod kitchen;
 pub mod live;
 pub mod options;
 pub mod replay;
+pub mod resume;
 pub mod review;
 pub mod simulate;
 pub mod tell;

@@ -1,16 +1,17 @@
-//! What the command line changes in a session file, and what `tomcom operate` is asked for.
+//! What `tomcom operate` is asked for, and what the command line changes in a session file.
 
 use std::path::{Path, PathBuf};
 
 use crate::edge::files::{self, FileResult, SessionFiles};
 use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
 
-/// What `tomcom operate` is asked for: the settings in force, the kitchen, and where recordings go.
+/// What `tomcom operate` is asked for.
 #[derive(Clone, Debug)]
-pub struct OperateOptions {
-    pub files: SessionFiles,
-    /// The folder in which the recording's folder is made.
-    pub out: PathBuf,
+pub enum Beginning {
+    /// A new session with these settings, recorded in a folder in `out`.
+    New { files: Box<SessionFiles>, out: PathBuf },
+    /// The session of this recording, which was cut.
+    Continued(PathBuf),
 }
 
 /// Settings of the session file that arguments replace.

@@ -35,7 +35,7 @@ impl Replay {
         let Some(line) = self.log.next_line()? else { return Ok(None) };
         self.follower
             .apply(&line.stamped)
-            .map_err(|error| at_line(&self.log.path, line.number, &line.text, 0, error.found, error.remedy))?;
+            .map_err(|error| at_line(self.log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
         Ok(Some(line))
     }
 

@@ -3,7 +3,7 @@
 //! one by one must lead to the same state, too.
 
 use std::collections::VecDeque;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
@@ -33,6 +33,8 @@ pub struct Verification {
 pub struct Difference {
     /// Of the recorded event.
     pub seq: u64,
+    /// The log, of several parts that which it is in.
+    pub log: PathBuf,
     /// The line of the log, counted from 1.
     pub line: usize,
     pub recorded: String,
@@ -45,38 +47,56 @@ pub struct Difference {
 /// # Errors
 /// A recording that cannot be read, or whose events cannot be applied.
 pub fn verify(recording: &Path) -> FileResult<Verification> {
-    let mut log = LogReader::open(recording)?;
-    let (kitchen, header) = (log.kitchen.clone(), log.header.clone());
-    let cost = CostToGo::new(kitchen.clone());
-    let mut replayed = Follower::new(kitchen.clone(), header.session.clone(), cost.clone());
-    let engine = Engine::new(kitchen, header.session, header.trial, cost);
-    let mut again = Again { engine, produced: VecDeque::new() };
-    let mut events = 0;
-    let mut difference = None;
-    while let Some(line) = log.next_line()? {
-        events += 1;
-        replayed
-            .apply(&line.stamped)
-            .map_err(|error| at_line(&log.path, line.number, &line.text, 0, error.found, error.remedy))?;
-        if difference.is_none() {
-            difference = again.difference_at(&line);
-        }
-    }
+    let Rerun { log, again, replayed, difference } = Rerun::of(LogReader::open(recording)?)?;
     let same_end = difference.is_some() || log.is_cut() || again.ends_like(&replayed);
     let verified = difference.is_none() && same_end;
-    Ok(Verification { verified, events, cut: log.is_cut(), difference })
+    Ok(Verification { verified, events: log.events(), cut: log.is_cut(), difference })
+}
+
+/// A recording that was run again to where it ends.
+pub(super) struct Rerun {
+    pub log: LogReader,
+    pub again: Again,
+    /// What applying the recorded events leads to.
+    replayed: Follower,
+    /// Where they differ first.
+    pub difference: Option<Difference>,
+}
+
+impl Rerun {
+    /// Runs a recording again, from its first event to its last.
+    ///
+    /// # Errors
+    /// It cannot be read, or its events cannot be applied.
+    pub fn of(mut log: LogReader) -> FileResult<Rerun> {
+        let (kitchen, header) = (log.kitchen.clone(), log.header.clone());
+        let cost = CostToGo::new(kitchen.clone());
+        let mut replayed = Follower::new(kitchen.clone(), header.session.clone(), cost.clone());
+        let engine = Engine::new(kitchen, header.session, header.trial, cost);
+        let mut again = Again { engine, produced: VecDeque::new() };
+        let mut difference = None;
+        while let Some(line) = log.next_line()? {
+            replayed
+                .apply(&line.stamped)
+                .map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
+            if difference.is_none() {
+                difference = again.difference_at(&line, log.path());
+            }
+        }
+        Ok(Rerun { log, again, replayed, difference })
+    }
 }
 
 /// The session that is run again.
-struct Again {
-    engine: Engine,
-    /// What came out of it and was not compared yet.
-    produced: VecDeque<Stamped>,
+pub(super) struct Again {
+    pub engine: Engine,
+    /// What came out of it and was not compared yet; at the end of a cut recording, what it lacks.
+    pub produced: VecDeque<Stamped>,
 }
 
 impl Again {
     /// Runs on to the recorded line and compares it with what comes out there.
-    fn difference_at(&mut self, line: &LogLine) -> Option<Difference> {
+    fn difference_at(&mut self, line: &LogLine, log: &Path) -> Option<Difference> {
         let recorded = &line.stamped;
         if self.produced.is_empty() {
             if is_external(self.engine.session(), &recorded.event) {
@@ -91,7 +111,8 @@ impl Again {
         }
         let again = self.produced.pop_front().map(|stamped| event_line(&stamped));
         let same = again.as_deref() == Some(line.text.as_str());
-        (!same).then(|| Difference { seq: recorded.seq, line: line.number, recorded: line.text.clone(), again })
+        let log = log.to_path_buf();
+        (!same).then(|| Difference { seq: recorded.seq, log, line: line.number, recorded: line.text.clone(), again })
     }
 
     /// Whether the re-run stands where applying the recorded events leads, with nothing left over.
@@ -113,8 +134,9 @@ pub fn describe(found: &Verification) -> String {
         None if found.verified => format!("verified: {} events come out the same again{until}\n", found.events),
         None => "not verified: the re-run ends in another state than the recording\n".to_string(),
         Some(difference) => format!(
-            "not verified: event {} (line {}) differs\n  recorded: {}\n  again:    {}\n",
+            "not verified: event {} ({}:{}) differs\n  recorded: {}\n  again:    {}\n",
             difference.seq,
+            difference.log.display(),
             difference.line,
             difference.recorded,
             difference.again.as_deref().unwrap_or("nothing"),

@@ -61,6 +61,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::RobotStopped
         | Event::RobotResumed
         | Event::Marker { .. }
+        | Event::ClockJumped { .. }
         | Event::SessionEnded => true,
         Event::TrialEnded { reason } => *reason == EndReason::Wizard,
         Event::SignalShown { by, .. } => *by == Sender::Wizard,

@@ -82,6 +82,11 @@ pub enum Event {
     Marker {
         note: String,
     },
+    /// Witness: the wall clock went on by so much more than session time (less, if negative), in milliseconds: the
+    /// program or the computer stood still, or the clock was set.
+    ClockJumped {
+        by_ms: i64,
+    },
     /// Witness: what a simulated participant believes, written before each of its presses.
     ParticipantBelieves(BeliefWitness),
     /// The session is over; a log without it was cut.
@@ -108,6 +113,7 @@ impl Event {
             Event::SignalShown { .. } => "signal_shown",
             Event::SignalEnded { .. } => "signal_ended",
             Event::Marker { .. } => "marker",
+            Event::ClockJumped { .. } => "clock_jumped",
             Event::ParticipantBelieves(_) => "participant_believes",
             Event::SessionEnded => "session_ended",
         }

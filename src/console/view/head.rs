@@ -90,7 +90,7 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
         None => healths.push(match &model.recording {
             Recording::Off => ("not recorded".to_string(), Role::Quiet),
             Recording::On(_) => (format!("{} rec", model.theme.signs().recording), Role::Alarm),
-            Recording::Lost(reason) => (format!("RECORDING LOST: {reason}"), Role::Alarm),
+            Recording::Lost => (" RECORDING LOST ".to_string(), Role::Alarm),
         }),
     }
     if room > Room::Small || model.playback.is_none() {

@@ -1,118 +1,20 @@
-//! The recording of a session: a folder with `session.toml` (the settings as they were in force) and `events.jsonl` (the
-//! log: a header line, then one event a line; the only source of truth).
+//! Reads recordings, also those that are still being written, and over all their parts.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::files::{FileError, FileResult, compile_kitchen};
-use crate::base::time::SessionTime;
+use super::LOG_NAME;
+use crate::edge::files::{FileError, FileResult, compile_kitchen};
 use crate::kitchen::Kitchen;
-use crate::session::header::{FORMAT, VERSION};
+use crate::session::header::{Continues, FORMAT, VERSION};
 use crate::session::{Event, Header, Stamped};
-
-/// The name of the log in its folder.
-pub const LOG_NAME: &str = "events.jsonl";
-/// The name of the settings in the folder of a recording.
-pub const SETTINGS_NAME: &str = "session.toml";
-/// Gaze samples wait at most so long, in session time, before they are handed to the operating system.
-const FLUSH_AFTER: SessionTime = SessionTime(50_000_000);
 
 /// No line of a log is longer, in bytes: what is longer is no log.
 const MAX_LINE: usize = 1 << 24;
-
-/// The log could not be written: what was acknowledged before is there, nothing after it.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-#[error("{}: the recording cannot be written: {reason}", path.display())]
-#[diagnostic(help("a folder that can be written to, on a disk with free space"))]
-pub struct WriteError {
-    pub path: PathBuf,
-    pub reason: io::Error,
-}
-
-/// Writes the log of a session.
-#[derive(Debug)]
-pub struct LogWriter {
-    folder: PathBuf,
-    path: PathBuf,
-    out: BufWriter<File>,
-    /// Hand events to the operating system as they come, because somebody relies on them.
-    prompt: bool,
-    flushed_at: SessionTime,
-}
-
-impl LogWriter {
-    /// Starts a live recording `<date>-<participant>-<n>` in `root`, with the first n that is free. What is appended is
-    /// handed to the operating system at once, gaze within 50 ms of session time or by [`LogWriter::flush`].
-    pub fn create_live(root: &Path, date: &str, header: &Header) -> Result<LogWriter, WriteError> {
-        let failed = |path: &Path, reason| WriteError { path: path.to_path_buf(), reason };
-        fs::create_dir_all(root).map_err(|reason| failed(root, reason))?;
-        let mut n = 1;
-        loop {
-            let folder = root.join(format!("{date}-{}-{n}", header.session.participant.code));
-            match fs::create_dir(&folder) {
-                Ok(()) => return LogWriter::begin(folder, header, true),
-                Err(reason) if reason.kind() == io::ErrorKind::AlreadyExists => n += 1,
-                Err(reason) => return Err(failed(&folder, reason)),
-            }
-        }
-    }
-
-    /// Starts a simulated recording in this folder. One that was simulated before is replaced; a live one never is.
-    pub fn create_simulated(folder: &Path, header: &Header) -> Result<LogWriter, WriteError> {
-        let failed = |reason| WriteError { path: folder.to_path_buf(), reason };
-        fs::create_dir_all(folder).map_err(failed)?;
-        if folder.join(LOG_NAME).exists() && LogReader::open(folder).is_ok_and(|log| log.header.started.is_some()) {
-            let reason = "a live recording is there already";
-            return Err(failed(io::Error::new(io::ErrorKind::AlreadyExists, reason)));
-        }
-        LogWriter::begin(folder.to_path_buf(), header, false)
-    }
-
-    fn begin(folder: PathBuf, header: &Header, prompt: bool) -> Result<LogWriter, WriteError> {
-        let path = folder.join(LOG_NAME);
-        let failed = |reason| WriteError { path: path.clone(), reason };
-        let settings = toml::to_string(&header.session).map_err(|error| failed(io::Error::other(error)))?;
-        fs::write(folder.join(SETTINGS_NAME), settings).map_err(failed)?;
-        let file = OpenOptions::new().write(true).create(true).truncate(true).open(&path).map_err(failed)?;
-        let mut out = BufWriter::with_capacity(1 << 16, file);
-        write_line(&mut out, header).and_then(|()| out.flush()).map_err(failed)?;
-        Ok(LogWriter { folder, path, out, prompt, flushed_at: SessionTime::ZERO })
-    }
-
-    /// The folder of the recording.
-    pub fn folder(&self) -> &Path {
-        &self.folder
-    }
-
-    /// Adds an event.
-    pub fn append(&mut self, stamped: &Stamped) -> Result<(), WriteError> {
-        let written = write_line(&mut self.out, stamped);
-        written.map_err(|reason| WriteError { path: self.path.clone(), reason })?;
-        let waits = matches!(stamped.event, Event::Gaze(_)) && stamped.time - self.flushed_at < FLUSH_AFTER;
-        if self.prompt && !waits {
-            self.flushed_at = stamped.time;
-            self.flush()?;
-        }
-        Ok(())
-    }
-
-    /// Hands everything to the operating system.
-    pub fn flush(&mut self) -> Result<(), WriteError> {
-        self.out.flush().map_err(|reason| WriteError { path: self.path.clone(), reason })
-    }
-}
-
-fn write_line(out: &mut impl Write, value: &impl serde::Serialize) -> io::Result<()> {
-    serde_json::to_writer(&mut *out, value)?;
-    out.write_all(b"\n")
-}
-
-/// The line of the log for an event, without its end.
-pub fn event_line(stamped: &Stamped) -> String {
-    serde_json::to_string(stamped).expect("events have no maps with other keys than strings")
-}
+/// No recording has more parts.
+const MAX_PARTS: usize = 100;
 
 /// A line of the log.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,12 +25,15 @@ pub struct LogLine {
     pub stamped: Stamped,
 }
 
-/// Reads a log, line by line. A log that is still being written can be read on when it has grown.
+/// Reads a log, line by line, with the parts that it continues before it. A log that is still being written can be read
+/// on when it has grown.
 #[derive(Debug)]
 pub struct LogReader {
-    pub path: PathBuf,
     pub header: Header,
     pub kitchen: Arc<Kitchen>,
+    path: PathBuf,
+    /// The part that this one continues, until all that was continued of it is read.
+    before: Option<Box<LogReader>>,
     input: BufReader<File>,
     number: usize,
     next_seq: u64,
@@ -138,11 +43,15 @@ pub struct LogReader {
 }
 
 impl LogReader {
-    /// Opens a recording, by its folder or its log.
+    /// Opens a recording, by its folder or its log. One that continues another is read from the first part on.
     ///
     /// # Errors
-    /// No such file, another format or version, or a header that is broken.
+    /// No such file, another format or version, a header that is broken, or a part before it that is not there.
     pub fn open(recording: &Path) -> FileResult<LogReader> {
+        LogReader::open_part(recording, MAX_PARTS)
+    }
+
+    fn open_part(recording: &Path, parts: usize) -> FileResult<LogReader> {
         let path = if recording.is_dir() { recording.join(LOG_NAME) } else { recording.to_path_buf() };
         let remedy = "the folder of a recording, with its events.jsonl";
         let file = File::open(&path).map_err(|reason| FileError::unreadable(&path, reason, remedy))?;
@@ -151,11 +60,17 @@ impl LogReader {
         let read = input.by_ref().take(MAX_LINE as u64).read_until(b'\n', &mut line);
         read.map_err(|reason| FileError::unreadable(&path, reason, remedy))?;
         let text = String::from_utf8_lossy(&line).into_owned();
-        let header = read_header(&path, text.trim_end())?;
+        let text = text.trim_end();
+        let header = read_header(&path, text)?;
+        let before = match &header.continues {
+            Some(before) => Some(Box::new(open_before(&path, text, &header, before, parts)?)),
+            None => None,
+        };
+        let next_seq = header.continues.as_ref().map_or(0, |before| before.events);
         let layout = (Path::new(&header.layout.path), header.layout.text.clone());
         let recipes = (Path::new(&header.recipes.path), header.recipes.text.clone());
         let kitchen = Arc::new(compile_kitchen(layout, recipes)?.kitchen);
-        Ok(LogReader { path, header, kitchen, input, number: 1, next_seq: 0, partial: Vec::new(), ended: false })
+        Ok(LogReader { header, kitchen, path, before, input, number: 1, next_seq, partial: Vec::new(), ended: false })
     }
 
     /// The next event; `None` where the log ends for now.
@@ -163,6 +78,15 @@ impl LogReader {
     /// # Errors
     /// A line that is no event, or not the next one.
     pub fn next_line(&mut self) -> FileResult<Option<LogLine>> {
+        if let Some(before) = self.before.as_mut().filter(|before| before.events() < self.next_seq) {
+            let line = before.next_line()?;
+            let (found, wanted) = (before.events(), self.next_seq);
+            return line.map(Some).ok_or_else(|| {
+                let found = format!("the end after {found} events, where {wanted} are continued by a later part");
+                before.wrong("", 0, &found)
+            });
+        }
+        self.before = None;
         let room = (MAX_LINE - self.partial.len()) as u64;
         let read = self.input.by_ref().take(room).read_until(b'\n', &mut self.partial);
         read.map_err(|reason| FileError::unreadable(&self.path, reason, "a readable recording"))?;
@@ -176,6 +100,10 @@ impl LogReader {
         self.partial.pop();
         self.number += 1;
         let bytes = std::mem::take(&mut self.partial);
+        self.event_of(bytes).map(Some)
+    }
+
+    fn event_of(&mut self, bytes: Vec<u8>) -> FileResult<LogLine> {
         let text = String::from_utf8(bytes).map_err(|error| {
             let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
             self.wrong(&text, error.utf8_error().valid_up_to(), "bytes that are no text (UTF-8)")
@@ -187,7 +115,7 @@ impl LogReader {
         }
         self.next_seq += 1;
         self.ended = stamped.event == Event::SessionEnded;
-        Ok(Some(LogLine { number: self.number, text, stamped }))
+        Ok(LogLine { number: self.number, text, stamped })
     }
 
     /// Whether what was read so far lacks the session's end.
@@ -195,9 +123,56 @@ impl LogReader {
         !self.ended
     }
 
+    /// The number of events that were read so far.
+    pub fn events(&self) -> u64 {
+        self.before.as_ref().map_or(self.next_seq, |before| before.events())
+    }
+
+    /// The file of the last line that was read.
+    pub fn path(&self) -> &Path {
+        self.before.as_ref().map_or(&self.path, |before| before.path())
+    }
+
     fn wrong(&self, text: &str, column: usize, found: &str) -> FileError {
         let remedy = "one event of a tomcom log, numbered without gaps";
-        at_line(&self.path, self.number, text, column, found.to_string(), remedy.to_string())
+        at_line(&self.path, self.number.max(1), text, column, found.to_string(), remedy.to_string())
+    }
+}
+
+/// Opens the part that this one continues.
+fn open_before(path: &Path, text: &str, header: &Header, before: &Continues, parts: usize) -> FileResult<LogReader> {
+    let wrong = |found: String, remedy: &str| {
+        let column = text.find("\"continues\"").unwrap_or(0);
+        at_line(path, 1, text, column, found, remedy.to_string())
+    };
+    let name = &before.recording;
+    let is_name = !name.is_empty() && name != ".." && name != "." && !name.contains(['/', '\\']);
+    if !is_name {
+        return Err(wrong(format!("continues \"{name}\""), "the name of a folder beside this one"));
+    }
+    if parts == 0 {
+        return Err(wrong(format!("more than {MAX_PARTS} parts"), "parts that lead to a first one"));
+    }
+    // Resolved, so that the folder beside `.` is found too.
+    let log = path.canonicalize().map_err(|reason| FileError::unreadable(path, reason, "a readable recording"))?;
+    let beside = log.parent().and_then(Path::parent).unwrap_or(Path::new("."));
+    let beside = match path.parent().and_then(Path::parent) {
+        // As it was typed, where that is possible: messages are shorter.
+        Some(typed) if typed.join(name).exists() => typed,
+        _ => beside,
+    };
+    let folder = beside.join(name);
+    if !folder.join(LOG_NAME).exists() {
+        return Err(wrong(format!("continues {name}, which is not there"), "that recording, in a folder beside this"));
+    }
+    let first = LogReader::open_part(&folder, parts - 1)?;
+    let same = |other: &Header| {
+        (&other.session, &other.layout, &other.recipes, other.trial)
+            == (&header.session, &header.layout, &header.recipes, header.trial)
+    };
+    match same(&first.header) {
+        true => Ok(first),
+        false => Err(wrong(format!("another session than that of {name}"), "the session that it continues")),
     }
 }
 

@@ -1,0 +1,76 @@
+//! A recording is written by one program at a time.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+
+use super::WriteError;
+
+/// The name of the lock in the folder of a recording that is being written, with the number of the process in it.
+const LOCK_NAME: &str = "lock";
+/// How often somebody else may give the lock up between our opening and taking it.
+const ATTEMPTS: usize = 8;
+
+/// The right to write a recording, until it is dropped. The operating system holds it: it ends with the process, so a
+/// file that a killed program left behind locks nobody out, whichever process has its number now.
+#[derive(Debug)]
+pub struct Lock {
+    file: File,
+    path: PathBuf,
+}
+
+impl Lock {
+    /// Takes the lock of the recording in this folder.
+    ///
+    /// # Errors
+    /// Another program has it, or the folder cannot be written to.
+    pub fn take(folder: &Path) -> Result<Lock, WriteError> {
+        let path = folder.join(LOCK_NAME);
+        let failed = |reason| WriteError::unwritable(&path, reason);
+        for _ in 0..ATTEMPTS {
+            let options = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
+            let mut file = options.map_err(failed)?;
+            match file.try_lock() {
+                // Where a file system has no locks, a recording is still worth more than none.
+                Ok(()) | Err(TryLockError::Error(_)) => {}
+                Err(TryLockError::WouldBlock) => {
+                    let mut text = String::new();
+                    let pid = file.read_to_string(&mut text).ok().and_then(|_| text.trim().parse().ok());
+                    return Err(WriteError::InUse { folder: folder.to_path_buf(), pid });
+                }
+            }
+            // Its last holder may have removed the file after we opened it: then it locks nothing.
+            if is_same(&file, &path) {
+                file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id())).map_err(failed)?;
+                return Ok(Lock { file, path });
+            }
+        }
+        Err(WriteError::InUse { folder: folder.to_path_buf(), pid: None })
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        if is_same(&self.file, &self.path) {
+            // Left behind it does no harm.
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// Whether the file at this path is still the one that was opened.
+#[cfg(unix)]
+pub fn is_same(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let place = |data: fs::Metadata| (data.dev(), data.ino());
+    match (file.metadata(), fs::metadata(path)) {
+        (Ok(opened), Ok(there)) => place(opened) == place(there),
+        _ => false,
+    }
+}
+
+/// Whether there is still a file at this path.
+#[cfg(not(unix))]
+pub fn is_same(_: &File, path: &Path) -> bool {
+    path.exists()
+}

@@ -1,0 +1,87 @@
+//! Takes up a recording that was cut: the session is run again to where it was cut, and goes on from there in a new part.
+
+use std::path::{Path, PathBuf};
+
+use super::engine::Engine;
+use super::verify::Rerun;
+use crate::base::time::SessionTime;
+use crate::edge::files::FileError;
+use crate::edge::log::{LOG_NAME, Lock, LogReader, WriteError, check_continued};
+use crate::session::header::Continues;
+use crate::session::{Event, Header, Stamped};
+
+/// Why a recording cannot be continued.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum ResumeError {
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    File(#[from] Box<FileError>),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Recording(#[from] WriteError),
+    #[error("{}: this session was brought to its end: there is nothing to continue", .0.display())]
+    #[diagnostic(help("a recording that was cut; a new session: tomcom operate"))]
+    Ended(PathBuf),
+    #[error("{}: this recording is simulated", .0.display())]
+    #[diagnostic(help("simulate it again with the same seed: tomcom simulate"))]
+    Simulated(PathBuf),
+    #[error("{}: event {seq} does not come out the same again, so nobody knows how the session stood", log.display())]
+    #[diagnostic(help("the tomcom that wrote it; tomcom replay RECORDING --verify shows the difference"))]
+    Differs { log: PathBuf, seq: u64 },
+}
+
+impl From<FileError> for ResumeError {
+    fn from(error: FileError) -> ResumeError {
+        ResumeError::File(Box::new(error))
+    }
+}
+
+/// A session that was taken up again.
+#[derive(Debug)]
+pub struct Resumed {
+    pub engine: Engine,
+    /// The first events of the new part: what the cut took off, and the pause of a trial that was running.
+    pub first: Vec<Stamped>,
+    /// Of the new part.
+    pub header: Header,
+    /// When it goes on.
+    pub time: SessionTime,
+    /// The folder of the part before, which nobody else may continue or write meanwhile.
+    pub folder: PathBuf,
+    pub lock: Lock,
+}
+
+/// Runs a cut recording again to its end. A trial that was running is paused there: who takes part has to come back.
+///
+/// # Errors
+/// It cannot be read, is being written, was not cut, or does not come out the same again.
+pub fn resume(recording: &Path) -> Result<Resumed, ResumeError> {
+    // Resolved, since the part goes beside it and names it.
+    let there = recording.canonicalize();
+    let there = there.map_err(|reason| FileError::unreadable(recording, reason, "the folder of a cut recording"))?;
+    let folder = if there.is_dir() { there } else { there.parent().unwrap_or(Path::new("/")).to_path_buf() };
+    let log = LogReader::open(&folder.join(LOG_NAME))?;
+    if log.header.started.is_none() {
+        return Err(ResumeError::Simulated(folder));
+    }
+    let lock = Lock::take(&folder)?;
+    check_continued(&folder)?;
+    let Rerun { log, mut again, difference, .. } = Rerun::of(log)?;
+    if let Some(difference) = difference {
+        return Err(ResumeError::Differs { log: difference.log, seq: difference.seq });
+    }
+    if !log.is_cut() {
+        return Err(ResumeError::Ended(folder));
+    }
+    let time = again.engine.session().time;
+    let mut first = Vec::from(again.produced);
+    if again.engine.session().is_running() {
+        first.extend(again.engine.input(time, Event::TrialPaused).events);
+    }
+    let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let continues = Continues { recording: name, events: log.events(), t_ns: time };
+    let old = log.header;
+    let mut header = Header::new(old.session, old.trial, old.layout, old.recipes);
+    header.continues = Some(continues);
+    Ok(Resumed { engine: again.engine, first, header, time, folder, lock })
+}

@@ -1,0 +1,291 @@
+//! Recordings survive: the real program is killed, its disk fills up, its folder vanishes, its clock stands still, and what
+//! was acknowledged is there and goes on. Without tmux the tests say that they were skipped.
+//!
+//! `TOMCOM_KILLS=200 cargo test --release --test survival kill` kills that often, and demands 100 ms.
+
+mod tmux;
+
+use std::fs;
+use std::io::Write;
+use std::net::{TcpListener, TcpStream};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use rand::RngExt;
+use serde_json::Value;
+use tmux::{TOMCOM, Terminal, tomcom};
+use tomcom::base::rng::stream;
+use tomcom::edge::log::LOG_NAME;
+
+/// How soon the wizard is told that something is wrong.
+const ALARM: Duration = Duration::from_secs(1);
+
+fn signal(pid: &str, signal: &str) {
+    let done = Command::new("kill").args([&format!("-{signal}"), pid.trim()]).status().expect("kill runs");
+    assert!(done.success(), "kill -{signal} {pid}");
+}
+
+/// What `tomcom replay RECORDING --verify` finds.
+fn verified(recording: &Path) -> Value {
+    let output = tomcom(&["replay", &recording.display().to_string(), "--verify", "--format", "json"]);
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{output:?}"));
+    assert_eq!(found["verified"], true, "{}: {found}", recording.display());
+    found
+}
+
+/// A session file with gaze over TCP on a port of its own; the port.
+fn json_session(folder: &Path) -> (PathBuf, u16) {
+    let free = TcpListener::bind(("127.0.0.1", 0)).and_then(|listener| listener.local_addr());
+    let port = free.expect("a free port").port();
+    let root = env!("CARGO_MANIFEST_DIR");
+    let text = fs::read_to_string("sessions/default.toml").expect("the default session");
+    let text = text.replace("../layouts", &format!("{root}/layouts")).replace("50021", &port.to_string());
+    let session = folder.join("session.toml");
+    fs::write(&session, text).expect("written");
+    (session, port)
+}
+
+/// Takes a cut recording up, lets its trial run on, and ends it; the new part.
+fn goes_on(terminal: &Terminal, recording: &Path) -> PathBuf {
+    terminal.run(&format!("{TOMCOM} operate --continue {}", recording.display()));
+    terminal.see("PAUSED");
+    terminal.key(".");
+    terminal.see("RUNNING");
+    terminal.quit();
+    let name = recording.file_name().expect("a name").to_string_lossy().into_owned();
+    let numbered = name.rsplit_once("-part").map(|(first, n)| (first.to_string(), n.parse::<u32>().expect("a number")));
+    let (first, n) = numbered.unwrap_or((name, 1));
+    recording.with_file_name(format!("{first}-part{}", n + 1))
+}
+
+/// One session with gaze from outside, killed at a random moment. What was sent longer than `limit` ago is recorded.
+fn check_kill(number: u64, limit: Duration) {
+    let Some(terminal) = Terminal::open(&format!("kill-{number}")) else { return };
+    let mut random = stream(number, "kills", 0);
+    let (session, port) = json_session(&terminal.folder);
+    let out = terminal.folder.join("recordings");
+    terminal.run(&format!("{TOMCOM} operate {} --out {} --gaze json", session.display(), out.display()));
+    // Every fourth is killed on its way to the first frame.
+    if number % 4 == 3 {
+        terminal.wait("a process", || terminal.read("pid").ends_with('\n'));
+        std::thread::sleep(Duration::from_millis(random.random_range(0..60)));
+        signal(&terminal.read("pid"), "KILL");
+        let recordings = fs::read_dir(&out).into_iter().flatten().flatten().map(|entry| entry.path());
+        recordings.filter(|folder| folder.join(LOG_NAME).exists()).for_each(|folder| {
+            assert_eq!(verified(&folder)["cut"], true);
+        });
+        return;
+    }
+    terminal.see("READY");
+    terminal.key_logs(".", "trial_started");
+    let mut tracker = TcpStream::connect(("127.0.0.1", port)).expect("it listens");
+    tracker.set_nodelay(true).expect("a socket");
+    let length = Duration::from_millis(random.random_range(200..3000));
+    let began = Instant::now();
+    let mut sent = Vec::new();
+    while began.elapsed() < length {
+        let line = format!("{{\"t\": {}, \"x\": 0.4, \"y\": 0.3, \"confidence\": 0.9}}\n", sent.len());
+        tracker.write_all(line.as_bytes()).expect("sent");
+        sent.push(Instant::now());
+        std::thread::sleep(Duration::from_micros(random.random_range(7_000..9_700)));
+    }
+    let pid = terminal.read("pid");
+    let killed = Instant::now();
+    signal(&pid, "KILL");
+    let recording = terminal.recording();
+    assert_eq!(verified(&recording)["cut"], true);
+    let log = terminal.log();
+    let is_there = |index: usize| log.contains(&format!("\"device_ns\":{index}000000000}}")) || index == 0;
+    let lost = (0..sent.len()).find(|&index| !is_there(index)).map_or(Duration::ZERO, |index| killed - sent[index]);
+    println!("kill {number}: {} samples, the oldest lost one is {:.1} ms old", sent.len(), lost.as_secs_f64() * 1e3);
+    assert!(lost <= limit, "kill {number}: a sample of {lost:?} before the kill is lost");
+    let Some(other) = Terminal::open(&format!("kill-{number}-goes-on")) else { return };
+    let part = goes_on(&other, &recording);
+    let found = verified(&part);
+    assert_eq!(found["cut"], false, "{found}");
+    assert!(found["events"].as_u64() > verified(&recording)["events"].as_u64(), "{found}");
+}
+
+#[test]
+fn a_kill_at_any_moment_loses_nothing_and_the_session_goes_on_in_a_new_part() {
+    let kills: Option<u64> = std::env::var("TOMCOM_KILLS").ok().and_then(|count| count.parse().ok());
+    // Beside other tests, a program may wait for the processor for longer than for anything else.
+    let limit = Duration::from_millis(if kills.is_some() { 100 } else { 500 });
+    (0..kills.unwrap_or(6)).for_each(|number| check_kill(number, limit));
+}
+
+#[test]
+fn a_recording_is_written_by_one_program_and_continued_once() {
+    let Some(terminal) = Terminal::open("one-writer") else { return };
+    terminal.operate("default.toml", "");
+    terminal.key_logs(".", "trial_started");
+    let recording = terminal.recording();
+    let refused = |recording: &Path, says: &str| {
+        let output = tomcom(&["operate", "--continue", &recording.display().to_string()]);
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        assert!(told.contains(says), "{says:?} is not in\n{told}");
+    };
+    let pid = terminal.read("pid");
+    refused(&recording, &format!("another program (process {}) writes this recording", pid.trim()));
+    // Read it may be, by everybody.
+    assert_eq!(verified(&recording)["cut"], true);
+    signal(&pid, "KILL");
+    terminal.wait("the end", || terminal.folder.join("exit").exists());
+    assert!(recording.join("lock").exists(), "a killed program leaves its lock behind");
+    let Some(second) = Terminal::open("one-writer-goes-on") else { return };
+    let root = recording.parent().expect("a folder");
+    second.run(&format!("{TOMCOM} operate --continue {}", recording.display()));
+    second.see("PAUSED");
+    let part = recording.with_file_name(format!("{}-part2", recording.file_name().expect("a name").to_string_lossy()));
+    second.wait("a part", || part.join(LOG_NAME).exists());
+    signal(&second.read("pid"), "KILL");
+    second.wait("the end", || second.folder.join("exit").exists());
+    refused(&recording, "was continued already");
+    let Some(third) = Terminal::open("one-writer-third") else { return };
+    let last = goes_on(&third, &part);
+    assert!(last.ends_with(format!("{}-part3", recording.file_name().expect("a name").to_string_lossy())));
+    assert_eq!(verified(&last)["cut"], false);
+    refused(&last, "brought to its end");
+    assert!(!last.join("lock").exists() && !part.join("lock").exists());
+    // A part tells the whole session, and says which part is missing.
+    let told = tomcom(&["replay", &last.display().to_string()]);
+    assert!(String::from_utf8_lossy(&told.stdout).contains("trial started"), "{told:?}");
+    fs::rename(&recording, root.join("elsewhere")).expect("moved");
+    let output = tomcom(&["replay", &last.display().to_string(), "--verify"]);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.code() == Some(2) && told.contains("which is not there"), "{told}");
+}
+
+/// After the alarm: the robot is stopped, the session over, everything that the log had before is there, and verifies.
+fn is_over(terminal: &Terminal, before: &str, recording: &Path) {
+    terminal.see("resume robot");
+    terminal.see("ROBOT STOPPED");
+    terminal.see("CLOSED");
+    let after = fs::read_to_string(recording.join(LOG_NAME)).expect("a log");
+    let complete = before.rfind('\n').map_or("", |end| &before[..=end]);
+    assert!(after.starts_with(complete), "what was acknowledged is lost");
+    assert_eq!(verified(recording)["cut"], true);
+    terminal.key("C-c");
+    terminal.is_whole("1");
+    terminal.see("a folder that can be written to");
+}
+
+/// Does something bad to the recording of a running session, and demands the alarm.
+fn check_loss(name: &str, bad: impl FnOnce(&Path)) {
+    let Some(terminal) = Terminal::open(name) else { return };
+    terminal.operate("default.toml", "");
+    terminal.key_logs(".", "trial_started");
+    terminal.wait("gaze", || terminal.count("\"gaze\"") > 50);
+    let (recording, before) = (terminal.recording(), terminal.log());
+    let began = Instant::now();
+    bad(&recording);
+    terminal.see("RECORDING LOST");
+    let after = began.elapsed();
+    println!("{name}: alarm after {} ms", after.as_millis());
+    assert!(after <= ALARM, "{name}: alarm after {after:?}");
+    is_over(&terminal, &before, &recording);
+}
+
+#[test]
+fn a_folder_that_is_deleted_is_told_at_once_and_saved() {
+    check_loss("deleted", |recording| fs::remove_dir_all(recording).expect("deleted"));
+}
+
+#[test]
+fn a_folder_that_is_moved_away_is_told_at_once_and_saved() {
+    check_loss("moved", |recording| {
+        let away = recording.parent().and_then(Path::parent).expect("a folder").join("away");
+        fs::rename(recording, away).expect("moved");
+    });
+}
+
+#[test]
+fn a_folder_that_becomes_read_only_is_told_at_once() {
+    check_loss("read-only", |recording| {
+        let mut permissions = fs::metadata(recording).expect("a folder").permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(recording, permissions).expect("changed");
+    });
+}
+
+/// A small disk, unmounted when dropped.
+struct Disk(PathBuf);
+
+impl Disk {
+    fn mount(folder: PathBuf) -> Option<Disk> {
+        fs::create_dir_all(&folder).expect("a folder");
+        let arguments = ["-t", "tmpfs", "-o", "size=1m", "tomcom-test"];
+        let mounted = Command::new("mount").args(arguments).arg(&folder).output();
+        if !mounted.is_ok_and(|output| output.status.success()) {
+            eprintln!("skipped: mounting a small disk needs root");
+            return None;
+        }
+        Some(Disk(folder))
+    }
+}
+
+impl Drop for Disk {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg("-l").arg(&self.0).output();
+    }
+}
+
+#[test]
+fn a_full_disk_is_told_at_once_and_the_session_goes_on_when_there_is_room() {
+    let Some(terminal) = Terminal::open("full") else { return };
+    let Some(disk) = Disk::mount(terminal.folder.join("recordings")) else { return };
+    terminal.operate("default.toml", "");
+    terminal.key_logs(".", "trial_started");
+    terminal.wait("gaze", || terminal.count("\"gaze\"") > 50);
+    let (recording, before) = (terminal.recording(), terminal.log());
+    let filler = disk.0.join("filler");
+    let began = Instant::now();
+    // Copied until nothing fits any more.
+    let _ = fs::write(&filler, vec![0; 2 << 20]);
+    terminal.see("RECORDING LOST");
+    let after = began.elapsed();
+    println!("full disk: alarm after {} ms", after.as_millis());
+    assert!(after <= ALARM, "alarm after {after:?}");
+    is_over(&terminal, &before, &recording);
+    fs::remove_file(&filler).expect("room");
+    let Some(other) = Terminal::open("full-goes-on") else { return };
+    assert_eq!(verified(&goes_on(&other, &recording))["cut"], false);
+}
+
+#[test]
+fn a_limit_for_files_is_told_as_a_full_disk_is() {
+    let Some(terminal) = Terminal::open("limit") else { return };
+    // In blocks of 512 bytes.
+    terminal.shell("ulimit -f 120");
+    terminal.operate("default.toml", "");
+    terminal.key_logs(".", "trial_started");
+    let before = terminal.log();
+    terminal.see("RECORDING LOST");
+    is_over(&terminal, &before, &terminal.recording());
+}
+
+#[test]
+fn a_program_that_stood_still_goes_on_where_it_was_and_the_log_says_so() {
+    let Some(terminal) = Terminal::open("standstill") else { return };
+    // A shell with job control would take the terminal back from a stopped program.
+    terminal.shell("set +m");
+    terminal.operate("default.toml", "");
+    terminal.key_logs(".", "trial_started");
+    let pid = terminal.read("pid");
+    signal(&pid, "STOP");
+    std::thread::sleep(Duration::from_millis(2500));
+    signal(&pid, "CONT");
+    terminal.see("the clock jumped by");
+    terminal.wait("the jump", || terminal.count("clock_jumped") == 1);
+    let log = terminal.log();
+    let events: Vec<Value> = log.lines().skip(1).filter_map(|line| serde_json::from_str(line).ok()).collect();
+    let jump = events.iter().find_map(|event| event["by_ms"].as_i64()).expect("how far");
+    assert!((2300..4000).contains(&jump), "jumped by {jump} ms");
+    let times: Vec<u64> = events.iter().filter_map(|event| event["t_ns"].as_u64()).collect();
+    let widest = times.windows(2).map(|pair| pair[1] - pair[0]).max().expect("events");
+    assert!(widest < 1_500_000_000, "session time went on for {widest} ns");
+    terminal.quit();
+    terminal.verifies();
+}

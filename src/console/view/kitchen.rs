@@ -148,7 +148,11 @@ impl<'a> Place<'a> {
         let mut y = inner.y;
         if label_inside && inner.height >= 3 {
             let quiet = brush.style(Role::Quiet);
-            brush.text(inner.x, y, inner.width, &self.kitchen.location(self.id).label(), quiet);
+            let label = self.kitchen.location(self.id).label();
+            // A name that is too long by a letter takes the margin.
+            let margin = u16::from(width(&label) > inner.width);
+            let room = inner.width + margin;
+            brush.text(inner.x - margin, y, room, &squeeze(&label, room), quiet);
             y += 1;
         }
         let room = Rect { y, height: inner.bottom() - y, ..inner };
@@ -294,7 +298,7 @@ impl<'a> Place<'a> {
     }
 }
 
-/// A stack's name in a single line: first the spaces go, then the ends of the longest words.
+/// A name in a single line: first the spaces go, then the ends of the longest words.
 pub fn squeeze(name: &str, columns: u16) -> String {
     let mut words: Vec<String> = name.replace(" + ", " +").split(' ').map(str::to_string).collect();
     if width(name) <= columns {

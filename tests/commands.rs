@@ -63,20 +63,23 @@ fn simulate_records_what_replay_verifies() {
         assert!(found[key].is_number(), "{key} in {found}");
     }
     for key in ["belief_related_errors", "sequences", "mean_sequence_length"] {
-        assert!(found.get(key).is_some(), "{key} in {found}");
+        assert!(found[key].is_number(), "{key} in {found}");
     }
     let recordings = found["recordings"].as_array().expect("recordings");
     assert_eq!(recordings.len(), 2);
+    let mut related = 0;
     for recording in recordings {
         let recording = recording.as_str().expect("a path");
         let verified = figures(&["replay", recording, "--verify", "--format", "json"], 0);
         assert_eq!((&verified["verified"], &verified["cut"]), (&Value::Bool(true), &Value::Bool(false)));
         let replayed = figures(&["replay", recording, "--format", "json"], 0);
         assert_eq!(replayed["events"], verified["events"]);
+        related += replayed["belief_related_errors"].as_u64().expect("a number of errors");
         let log = fs::read_to_string(Path::new(recording).join("events.jsonl")).expect("a log");
         let header: Value = serde_json::from_str(log.lines().next().unwrap_or_default()).expect("a header");
         assert_eq!((header.get("started"), &header["session"]["trial"]["condition"]), (None, &Value::from("none")));
     }
+    assert_eq!(found["belief_related_errors"].as_u64(), Some(related), "replays find the causes that simulate found");
     // What was changed does not verify, which is an answer and no wrong argument.
     let log = Path::new(recordings[0].as_str().expect("a path")).join("events.jsonl");
     let text = fs::read_to_string(&log).expect("a log").replacen("take nori", "take rice", 1);

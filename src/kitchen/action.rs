@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Kitchen;
 use super::content::ContentId;
 use super::layout::LocationId;
 
@@ -72,4 +73,24 @@ pub struct Button {
     pub at_m: [f64; 2],
     /// The human's key for it.
     pub key: Option<char>,
+}
+
+impl Kitchen {
+    /// The agent's button nearest to another one of its buttons on the table.
+    pub fn nearest_button(&self, agent: Agent, button: ButtonId) -> Option<ButtonId> {
+        let buttons = &self.buttons[agent.index()];
+        let own = buttons[button.index()].at_m;
+        let distance = |index: usize| (buttons[index].at_m[0] - own[0]).hypot(buttons[index].at_m[1] - own[1]);
+        let others = (0..buttons.len()).filter(|&index| index != button.index());
+        others.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).map(|index| ButtonId(index as u8))
+    }
+
+    /// The agent's storage button whose symbol looks like that of another one.
+    pub fn look_alike_button(&self, agent: Agent, button: ButtonId) -> Option<ButtonId> {
+        let Action::Take(item) = self.button(agent, button).action else { return None };
+        let alike = &self.content(item).look_alikes;
+        let is_alike = |action| matches!(action, Action::Take(other) if alike.contains(&other));
+        let buttons = &self.buttons[agent.index()];
+        buttons.iter().position(|other| is_alike(other.action)).map(|index| ButtonId(index as u8))
+    }
 }

@@ -1,4 +1,9 @@
-//! The mind: what a human believes about the kitchen, one categorical distribution per state aspect.
+//! The mind: what a human believes about the kitchen, one categorical distribution per state aspect, and how it decides.
+
+pub mod belief;
+pub mod decision;
+
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
@@ -19,4 +24,9 @@ pub struct AspectBelief {
     pub believes: String,
     /// The probability that it gives to the truth.
     pub p_truth: f64,
+    /// The probability of every value that has at least [`WORTH_TELLING`]; what is left is spread over the others.
+    pub values: BTreeMap<String, f64>,
 }
+
+/// Less likely values are not told one by one in a [`BeliefWitness`].
+pub const WORTH_TELLING: f64 = 0.01;

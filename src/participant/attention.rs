@@ -5,12 +5,12 @@ use std::collections::VecDeque;
 use rand::RngExt;
 
 use super::SimulatedParticipant;
-use super::beliefs::{of_dish, of_location, wanted_dish};
+use super::beliefs::wanted_dish;
 use super::eyes::Glance;
 use super::learning::involved;
 use super::population::chance;
 use crate::base::time::SessionTime;
-use crate::kitchen::{Agent, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::kitchen::{Agent, AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
 
 /// Belief in what was just read.
 const READ: f64 = 0.97;
@@ -130,7 +130,7 @@ impl SimulatedParticipant {
                 LocationKind::Place => 0.25,
             };
             let stale = 1.0 - (-now.secs_since(self.attention.read_at[index]) / STALE_S).exp();
-            let open = 1.0 - self.beliefs.certainty(of_location(id));
+            let open = 1.0 - self.beliefs.certainty(AspectId::of_location(id));
             worth * (stale + open)
         };
         let weights: Vec<f64> = (0..kitchen.locations.len()).map(weight).collect();
@@ -164,7 +164,7 @@ impl SimulatedParticipant {
     /// Reads what a place shows, sometimes as something that looks like it.
     pub(super) fn read(&mut self, now: SessionTime, location: LocationId, state: State) {
         let kitchen = self.kitchen.clone();
-        let aspect = of_location(location);
+        let aspect = AspectId::of_location(location);
         let believed = self.beliefs.most_likely(aspect);
         let values = &kitchen.aspects[aspect.index()];
         let Some(shown) = values.index_of(state.code(location)) else { return };
@@ -247,7 +247,7 @@ impl SimulatedParticipant {
 
     /// The dish whose recipe is held least surely.
     pub(super) fn least_sure(&self, dishes: impl Iterator<Item = DishId>) -> Option<DishId> {
-        let sure = |dish| self.beliefs.certainty(of_dish(&self.kitchen, dish));
+        let sure = |dish| self.beliefs.certainty(self.kitchen.aspect_of_dish(dish));
         dishes.min_by(|&a, &b| sure(a).total_cmp(&sure(b)))
     }
 }

@@ -17,7 +17,7 @@ impl Beliefs {
         let mut beliefs = Beliefs { of: kitchen.aspects.iter().map(|a| uniform(a.values.len())).collect() };
         for index in 0..kitchen.aspects.len() {
             let aspect = AspectId(index as u8);
-            beliefs.settle(aspect, truth(kitchen, state, aspect), sure);
+            beliefs.settle(aspect, kitchen.true_value(state, aspect), sure);
         }
         beliefs
     }
@@ -95,32 +95,13 @@ impl Beliefs {
 
     /// The probability that the person gives to the truth about an aspect.
     pub fn p_truth(&self, kitchen: &Kitchen, state: State, aspect: AspectId) -> f64 {
-        self.distribution(aspect)[truth(kitchen, state, aspect)]
+        self.distribution(aspect)[kitchen.true_value(state, aspect)]
     }
-}
-
-/// The index of the true value of an aspect; a place that shows what it cannot hold counts as its first value.
-pub fn truth(kitchen: &Kitchen, state: State, aspect: AspectId) -> usize {
-    let aspect = &kitchen.aspects[aspect.index()];
-    match aspect.kind {
-        AspectKind::Location(location) => aspect.index_of(state.code(location)).unwrap_or(0),
-        AspectKind::Recipe(_) => 0,
-    }
-}
-
-/// The aspect of a location's content: locations come first among the aspects.
-pub fn of_location(location: LocationId) -> AspectId {
-    AspectId(location.0)
-}
-
-/// The aspect of a dish's recipe: recipes follow the locations.
-pub fn of_dish(kitchen: &Kitchen, dish: DishId) -> AspectId {
-    AspectId((kitchen.locations.len() + dish.index()) as u8)
 }
 
 /// The dish that an order is believed to want.
 pub fn wanted_dish(kitchen: &Kitchen, beliefs: &Beliefs, order: LocationId) -> Option<DishId> {
-    let aspect = of_location(order);
+    let aspect = AspectId::of_location(order);
     match OrderContent::from_code(kitchen.aspects[aspect.index()].values[beliefs.most_likely(aspect)]) {
         OrderContent::Dish(dish) => Some(dish),
         _ => None,

@@ -142,21 +142,3 @@ pub fn try_something(
     presses.retain(|(_, next)| cost.all_orders(*next, recipes) == least);
     Some(presses[random.random_range(0..presses.len())].0)
 }
-
-/// The human's button nearest to another one on the table.
-pub fn neighbour(kitchen: &Kitchen, button: ButtonId) -> Option<ButtonId> {
-    let at = |index: usize| kitchen.buttons[Agent::Human.index()][index].at_m;
-    let own = at(button.index());
-    let distance = |index: usize| (at(index)[0] - own[0]).hypot(at(index)[1] - own[1]);
-    let others = (0..kitchen.buttons[Agent::Human.index()].len()).filter(|&index| index != button.index());
-    others.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).map(|index| ButtonId(index as u8))
-}
-
-/// The human's storage button whose symbol looks like that of another one.
-pub fn look_alike(kitchen: &Kitchen, button: ButtonId) -> Option<ButtonId> {
-    let Action::Take(item) = kitchen.button(Agent::Human, button).action else { return None };
-    let alike = &kitchen.content(item).look_alikes;
-    let is_alike = |action| matches!(action, Action::Take(other) if alike.contains(&other));
-    let buttons = &kitchen.buttons[Agent::Human.index()];
-    buttons.iter().position(|other| is_alike(other.action)).map(|index| ButtonId(index as u8))
-}

@@ -2,12 +2,12 @@
 
 use rand::RngExt;
 
-use super::beliefs::{of_location, wanted_dish};
+use super::beliefs::wanted_dish;
 use super::population::{chance, normal};
 use super::{Deed, SimulatedParticipant, decision, learning, witness};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Action, Agent, ButtonId, DishId, LocationId, State};
+use crate::kitchen::{Action, Agent, AspectId, ButtonId, DishId, LocationId, State};
 
 /// Below this certainty of a place one looks before using it.
 const UNSURE: f64 = 0.6;
@@ -55,7 +55,7 @@ impl SimulatedParticipant {
         let kitchen = self.kitchen.clone();
         let own = kitchen.hands[Agent::Human.index()];
         let mut places = learning::involved(&kitchen, button);
-        let unsure = places.iter().find(|&&place| self.beliefs.certainty(of_location(place)) < UNSURE);
+        let unsure = places.iter().find(|&&place| self.beliefs.certainty(AspectId::of_location(place)) < UNSURE);
         if unsure.is_some() {
             return unsure.copied();
         }
@@ -85,8 +85,8 @@ impl SimulatedParticipant {
             chance(&mut self.hand, self.person.look_alike_slip),
             chance(&mut self.hand, self.person.thoughtless),
         );
-        let alike = decision::look_alike(&kitchen, button).filter(|_| is_alike);
-        let next = decision::neighbour(&kitchen, button).filter(|_| is_neighbour);
+        let alike = kitchen.look_alike_button(Agent::Human, button).filter(|_| is_alike);
+        let next = kitchen.nearest_button(Agent::Human, button).filter(|_| is_neighbour);
         let (pressed, cause) = match (alike, next) {
             (Some(other), _) => (other, format!("slip: took the look-alike, meant {}", name(button))),
             (None, Some(other)) => (other, format!("slip: hit the neighbouring button, meant {}", name(button))),

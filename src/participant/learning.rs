@@ -1,7 +1,7 @@
 //! What the participant learns from its own presses, whether they had an effect or not.
 
-use super::beliefs::{Beliefs, of_location};
-use crate::kitchen::{Action, Agent, ButtonId, Kitchen, LocationId, State};
+use super::beliefs::Beliefs;
+use crate::kitchen::{Action, Agent, AspectId, ButtonId, Kitchen, LocationId, State};
 
 /// Belief in what one has done oneself.
 const DONE: f64 = 0.97;
@@ -37,14 +37,14 @@ pub fn learn(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId, effecti
 /// It went as expected: everything involved is as the rules say, as surely as it was known before.
 fn carry_out(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId, next: State) {
     let places = involved(kitchen, button);
-    let sure = places.iter().map(|&place| beliefs.certainty(of_location(place))).fold(DONE, f64::min);
+    let sure = places.iter().map(|&place| beliefs.certainty(AspectId::of_location(place))).fold(DONE, f64::min);
     for place in places {
         settle(kitchen, beliefs, place, next, sure);
     }
 }
 
 fn settle(kitchen: &Kitchen, beliefs: &mut Beliefs, place: LocationId, state: State, sure: f64) {
-    let aspect = of_location(place);
+    let aspect = AspectId::of_location(place);
     if let Some(value) = kitchen.aspects[aspect.index()].index_of(state.code(place)) {
         beliefs.settle(aspect, value, sure);
     }
@@ -71,7 +71,7 @@ fn make_sense(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId) {
         }
         Action::Use(_) | Action::Process(_) => {
             for place in involved(kitchen, button) {
-                let aspect = of_location(place);
+                let aspect = AspectId::of_location(place);
                 let open = vec![1.0; beliefs.distribution(aspect).len()];
                 beliefs.mix(aspect, &open, 0.6);
             }
@@ -89,10 +89,10 @@ fn blame(kitchen: &Kitchen, beliefs: &mut Beliefs, state: State, button: ButtonI
     let mut places = involved(kitchen, button);
     // What one holds one feels.
     let hand = kitchen.hands[Agent::Human.index()];
-    let trust = |place| beliefs.certainty(of_location(place)) + if place == hand { FELT } else { 0.0 };
+    let trust = |place| beliefs.certainty(AspectId::of_location(place)) + if place == hand { FELT } else { 0.0 };
     places.sort_by(|&a, &b| trust(a).total_cmp(&trust(b)));
     let Some(&place) = places.first() else { return };
-    let aspect = of_location(place);
+    let aspect = AspectId::of_location(place);
     let would_work = |value: usize| {
         let mut other = state;
         other.set_code(place, kitchen.aspects[aspect.index()].values[value]);

@@ -3,7 +3,7 @@
 
 use rand::RngExt;
 
-use super::beliefs::{Beliefs, of_dish};
+use super::beliefs::Beliefs;
 use super::population::{Individual, Population, normal};
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
@@ -60,7 +60,7 @@ impl Memory {
             // Some dishes are remembered better than others.
             let odds = odds_of(person.learned) * (0.5 * normal(&mut random)).exp();
             let known = with_truth(odds / (1.0 + odds));
-            beliefs.replace(of_dish(kitchen, DishId(index as u8)), &known);
+            beliefs.replace(kitchen.aspect_of_dish(DishId(index as u8)), &known);
             learned.push(known);
             let odds = odds_of(person.half_forgotten);
             faded.push(with_truth(odds / (1.0 + odds)));
@@ -76,7 +76,7 @@ impl Memory {
         for (index, faded) in self.faded.iter().enumerate() {
             let dish = DishId(index as u8);
             if !in_use.contains(&dish) {
-                beliefs.mix(of_dish(kitchen, dish), faded, lost);
+                beliefs.mix(kitchen.aspect_of_dish(dish), faded, lost);
             }
         }
     }
@@ -93,7 +93,7 @@ impl Memory {
 
     /// An order asks for the dish: one version of its recipe comes to mind and is held for the true one.
     pub fn recall(&mut self, kitchen: &Kitchen, beliefs: &mut Beliefs, dish: DishId) {
-        let aspect = of_dish(kitchen, dish);
+        let aspect = kitchen.aspect_of_dish(dish);
         let mut draw = self.random.random::<f64>();
         let values = beliefs.distribution(aspect);
         let recalled = values.iter().position(|p| {
@@ -106,7 +106,7 @@ impl Memory {
 
     /// The thread is lost in the middle of the work: the recipe is recalled from a memory that has half faded.
     pub fn lose_thread(&mut self, kitchen: &Kitchen, beliefs: &mut Beliefs, dish: DishId) {
-        beliefs.mix(of_dish(kitchen, dish), &self.faded[dish.index()], 0.5);
+        beliefs.mix(kitchen.aspect_of_dish(dish), &self.faded[dish.index()], 0.5);
         self.recall(kitchen, beliefs, dish);
     }
 
@@ -120,7 +120,7 @@ impl Memory {
         trust: f64,
         fits: impl Fn(ContentId) -> bool,
     ) {
-        let aspect = of_dish(kitchen, dish);
+        let aspect = kitchen.aspect_of_dish(dish);
         let held = beliefs.most_likely(aspect);
         let variants = &kitchen.dish(dish).variants;
         beliefs.replace(aspect, &self.learned[dish.index()]);
@@ -142,6 +142,6 @@ impl Memory {
     /// The recipe was shown, or what it says was served.
     pub fn confirm(&mut self, kitchen: &Kitchen, beliefs: &mut Beliefs, dish: DishId, variant: usize) {
         self.left[dish.index()].fill(1.0);
-        beliefs.settle(of_dish(kitchen, dish), variant, CONFIRMED);
+        beliefs.settle(kitchen.aspect_of_dish(dish), variant, CONFIRMED);
     }
 }

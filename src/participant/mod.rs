@@ -22,11 +22,11 @@ use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Action, Agent, ButtonId, ContentId, DishId, Kitchen, LocationId, LocationKind};
+use crate::kitchen::{Action, Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, LocationKind};
 use crate::kitchen::{OrderContent, State};
 use crate::mind::BeliefWitness;
 use attention::Attention;
-use beliefs::{Beliefs, of_location, wanted_dish};
+use beliefs::{Beliefs, wanted_dish};
 use decision::Intent;
 use eyes::Eyes;
 use memory::Memory;
@@ -244,7 +244,7 @@ impl SimulatedParticipant {
             if location.kind == LocationKind::Order || id == own || self.attention.looking_at == Some(id) {
                 continue;
             }
-            let aspect = of_location(id);
+            let aspect = AspectId::of_location(id);
             let values = &kitchen.aspects[aspect.index()].values;
             let mut towards = vec![0.0; values.len()];
             let mut think_of = |content: ContentId, weight: f64| {
@@ -328,7 +328,7 @@ impl SimulatedParticipant {
         }
         let (beliefs, served) = (&mut self.beliefs, OrderContent::Served.code());
         self.clearing.retain(|&(gone, order)| {
-            let aspect = of_location(order);
+            let aspect = AspectId::of_location(order);
             let values = &kitchen.aspects[aspect.index()];
             let is_due = now >= gone;
             if is_due

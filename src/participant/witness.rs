@@ -1,19 +1,22 @@
 //! What a participant believes when it presses, and why it presses what it presses, for the record.
 
-use super::beliefs::{Beliefs, truth};
+use super::beliefs::Beliefs;
 use super::decision::good_presses;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{AspectId, AspectKind, ButtonId, ContentId, Kitchen, Recipes, State};
-use crate::mind::{AspectBelief, BeliefWitness};
+use crate::mind::{AspectBelief, BeliefWitness, WORTH_TELLING};
 
-/// Writes down every aspect: the value held most likely, and the probability that is given to the truth.
+/// Writes down every aspect: the value held most likely, the probability that is given to the truth, and those of all
+/// values that are worth telling.
 pub fn witness(kitchen: &Kitchen, beliefs: &Beliefs, state: State, cause: String) -> BeliefWitness {
     let of = |index: usize| {
         let (aspect, id) = (&kitchen.aspects[index], AspectId(index as u8));
+        let values = aspect.labels.iter().zip(beliefs.distribution(id)).filter(|(_, p)| **p >= WORTH_TELLING);
         AspectBelief {
             aspect: aspect.name.clone(),
             believes: aspect.labels[beliefs.most_likely(id)].clone(),
             p_truth: rounded(beliefs.p_truth(kitchen, state, id)),
+            values: values.map(|(label, &p)| (label.clone(), rounded(p))).collect(),
         }
     };
     BeliefWitness { aspects: (0..kitchen.aspects.len()).map(of).collect(), cause }
@@ -39,7 +42,7 @@ pub fn cause(kitchen: &Kitchen, cost: &mut CostToGo, beliefs: &Beliefs, state: S
     for (index, aspect) in kitchen.aspects.iter().enumerate() {
         let id = AspectId(index as u8);
         let value = beliefs.most_likely(id);
-        if value == truth(kitchen, state, id) {
+        if value == kitchen.true_value(state, id) {
             continue;
         }
         let said = format!("believes {}: {}", aspect.name, aspect.labels[value]);

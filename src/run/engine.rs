@@ -6,10 +6,11 @@
 
 use std::sync::Arc;
 
-use super::follower::{Follower, JudgedPress};
+use super::follower::Follower;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonId, Kitchen, State};
+use crate::measures::JudgedPress;
 use crate::participant::{Deed, SimulatedParticipant};
 use crate::robot::timed::{RobotDeed, TimedRobot};
 use crate::session::admit::admit;

@@ -4,7 +4,10 @@ use serde::Serialize;
 
 use super::follower::Follower;
 use crate::kitchen::{Agent, DishId};
+use crate::measures::attribution::Cause;
+use crate::measures::sequences::{Sequence, sequences, sequences_by_target};
 use crate::session::Happening;
+use crate::session::settings::ParticipantKind;
 
 /// The figures of one trial.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,6 +17,8 @@ pub struct TrialFigures {
     pub errors: u64,
     pub races: u64,
     pub signals: u64,
+    /// None where it is not known what the human believed.
+    pub beliefs: Option<TrialBeliefs>,
     /// For each served order, its dish and the presses of both agents since the one before it.
     pub served: Vec<(DishId, u32)>,
     /// The trial's length by its own clock, in seconds.
@@ -38,9 +43,98 @@ impl TrialFigures {
             errors: follower.errors() as u64,
             races: follower.judged.iter().filter(|press| press.verdict.race).count() as u64,
             signals: signals.count() as u64,
+            beliefs: TrialBeliefs::of(follower),
             served,
             seconds: session.trial_clock(session.time).as_secs_f64(),
         }
+    }
+}
+
+/// What false beliefs did in one trial.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TrialBeliefs {
+    /// Errors that are belief related.
+    pub related: u64,
+    /// Of those, the ones that no single target explains.
+    pub related_to_pairs: u64,
+    pub sequences: Vec<Sequence>,
+    pub by_target: Vec<Sequence>,
+    /// False belief episodes that caused at least one error.
+    pub episodes: u64,
+}
+
+impl TrialBeliefs {
+    /// Those of a session so far; none if it is not known for every press what the human believed.
+    fn of(follower: &Follower) -> Option<TrialBeliefs> {
+        let judged = &follower.judged;
+        let is_simulated = follower.session.spec.participant.kind == ParticipantKind::Simulated;
+        if !is_simulated || judged.iter().any(|press| !press.belief_known) {
+            return None;
+        }
+        let count = |is: fn(Cause) -> bool| judged.iter().filter_map(|press| press.cause).filter(|&c| is(c)).count();
+        Some(TrialBeliefs {
+            related: count(|cause| matches!(cause, Cause::Belief { .. })) as u64,
+            related_to_pairs: count(|cause| matches!(cause, Cause::Belief { with: Some(_), .. })) as u64,
+            sequences: sequences(judged),
+            by_target: sequences_by_target(judged),
+            episodes: follower.episodes.harmful().count() as u64,
+        })
+    }
+}
+
+/// What false beliefs did, in one trial or several. Null where it is not known what the human believed.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct BeliefFigures {
+    pub belief_related_errors: Option<u64>,
+    /// Of those, the ones that it takes two false beliefs to explain.
+    pub errors_of_two_beliefs: Option<u64>,
+    pub sequences: Option<u64>,
+    pub mean_sequence_length: Option<f64>,
+    /// Seconds from the first error of a sequence to the first correct press after its last.
+    pub mean_recovery_s: Option<f64>,
+    /// Sequences of errors about the same aspect alone.
+    pub sequences_by_aspect: Option<u64>,
+    pub mean_sequence_length_by_aspect: Option<f64>,
+    /// Times that an aspect was believed wrong and caused at least one error.
+    pub false_belief_episodes: Option<u64>,
+}
+
+impl BeliefFigures {
+    /// Sums up trials.
+    pub fn of<'a>(trials: impl IntoIterator<Item = &'a TrialFigures>) -> BeliefFigures {
+        let trials: Option<Vec<&TrialBeliefs>> = trials.into_iter().map(|trial| trial.beliefs.as_ref()).collect();
+        let Some(trials) = trials else { return BeliefFigures::default() };
+        let sum = |of: fn(&TrialBeliefs) -> u64| Some(trials.iter().map(|trial| of(trial)).sum());
+        let lengths = |of: fn(&TrialBeliefs) -> &[Sequence]| {
+            mean(trials.iter().flat_map(|trial| of(trial)).map(|sequence| f64::from(sequence.length)))
+        };
+        let recovery = |sequence: &Sequence| Some(sequence.recovered?.secs_since(sequence.began));
+        BeliefFigures {
+            belief_related_errors: sum(|trial| trial.related),
+            errors_of_two_beliefs: sum(|trial| trial.related_to_pairs),
+            sequences: sum(|trial| trial.sequences.len() as u64),
+            mean_sequence_length: lengths(|trial| &trial.sequences),
+            mean_recovery_s: mean(trials.iter().flat_map(|trial| &trial.sequences).filter_map(recovery)),
+            sequences_by_aspect: sum(|trial| trial.by_target.len() as u64),
+            mean_sequence_length_by_aspect: lengths(|trial| &trial.by_target),
+            false_belief_episodes: sum(|trial| trial.episodes),
+        }
+    }
+
+    /// The figures for people; `errors` is the number of all errors.
+    pub fn describe(&self, errors: u64) -> String {
+        let (Some(related), Some(sequences)) = (self.belief_related_errors, self.sequences) else {
+            return "belief related errors: not known, since nobody knows what the participant believed".to_string();
+        };
+        let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.1}"));
+        format!(
+            "belief related: {related} of {errors} errors ({:.0} %), in {sequences} sequences of {} errors each (by \
+             single aspect {}), over after {} s",
+            100.0 * related as f64 / errors.max(1) as f64,
+            number(self.mean_sequence_length),
+            number(self.mean_sequence_length_by_aspect),
+            number(self.mean_recovery_s),
+        )
     }
 }
 
@@ -53,10 +147,8 @@ pub struct SimulationFigures {
     pub errors: u64,
     /// Presses of the human that the robot may have overtaken; they are not counted as errors.
     pub races: u64,
-    /// Null until beliefs are related to errors.
-    pub belief_related_errors: Option<u64>,
-    pub sequences: Option<u64>,
-    pub mean_sequence_length: Option<f64>,
+    #[serde(flatten)]
+    pub beliefs: BeliefFigures,
     pub signals: u64,
     pub orders_served: u64,
     /// Median over the served orders of the presses of both agents since the order before.
@@ -79,9 +171,7 @@ impl SimulationFigures {
             robot_actions: sum(|trial| trial.robot_actions),
             errors: sum(|trial| trial.errors),
             races: sum(|trial| trial.races),
-            belief_related_errors: None,
-            sequences: None,
-            mean_sequence_length: None,
+            beliefs: BeliefFigures::of(trials),
             signals: sum(|trial| trial.signals),
             orders_served: served().count() as u64,
             presses_per_order: median(served().map(|(_, presses)| f64::from(*presses)).collect()),
@@ -93,6 +183,12 @@ impl SimulationFigures {
             recordings: Vec::new(),
         }
     }
+}
+
+/// The mean; none of nothing.
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
+    (count > 0).then(|| sum / f64::from(count))
 }
 
 /// The median; of an even number the mean of the middle two; none of nothing.

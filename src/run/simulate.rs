@@ -110,6 +110,7 @@ pub fn describe(figures: &SimulationFigures) -> String {
         "{} trials of unassisted simulated participants, {:.0} s simulated in {:.1} s\n\
          presses: {} of the human, {} of the robot\n\
          errors: {} ({share:.1} % of the human's presses)\n\
+         {}\n\
          orders served: {}, {} presses each in the median (at best {})\n\
          recordings:\n{}\n",
         figures.trials,
@@ -118,6 +119,7 @@ pub fn describe(figures: &SimulationFigures) -> String {
         figures.human_actions,
         figures.robot_actions,
         figures.errors,
+        figures.beliefs.describe(figures.errors),
         figures.orders_served,
         number(figures.presses_per_order),
         number(figures.optimal_presses_per_order),

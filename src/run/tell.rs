@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
-use super::figures::TrialFigures;
+use super::figures::{BeliefFigures, TrialFigures};
 use super::follower::Follower;
 use crate::communication::Signal;
-use crate::kitchen::Agent;
+use crate::kitchen::{Agent, Kitchen};
+use crate::measures::attribution::Cause;
 use crate::mind::BeliefWitness;
 use crate::robot::{AbortReason, IdleReason};
 use crate::session::event::{EndReason, SignalEnd};
@@ -21,6 +22,8 @@ pub struct RecordingFigures {
     pub robot_actions: u64,
     pub errors: u64,
     pub races: u64,
+    #[serde(flatten)]
+    pub beliefs: BeliefFigures,
     pub signals: u64,
     pub orders_served: u64,
     /// The trial's length by its own clock, in seconds.
@@ -37,6 +40,7 @@ impl RecordingFigures {
             robot_actions: trial.robot_actions,
             errors: trial.errors,
             races: trial.races,
+            beliefs: BeliefFigures::of([&trial]),
             signals: trial.signals,
             orders_served: trial.served.len() as u64,
             trial_s: trial.seconds,
@@ -48,14 +52,15 @@ impl RecordingFigures {
         let cut = if self.cut { "; it ends without its end event" } else { "" };
         format!(
             "{} events, {:.0} s of trial{cut}\n{} presses of the human ({} errors), {} of the robot, {} signals, \
-             {} orders served\n",
+             {} orders served\n{}\n",
             self.events,
             self.trial_s,
             self.human_actions,
             self.errors,
             self.robot_actions,
             self.signals,
-            self.orders_served
+            self.orders_served,
+            self.beliefs.describe(self.errors)
         )
     }
 }
@@ -96,12 +101,30 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
 
 /// What the press of the human was worth, if it was just judged.
 fn verdict(stamped: &Stamped, follower: &Follower) -> String {
-    let judged = follower.judged.last().filter(|press| press.seq == stamped.seq).map(|press| press.verdict);
+    let judged = follower.judged.last().filter(|press| press.seq == stamped.seq);
     match (&stamped.event, judged) {
         (Event::Press { agent: Agent::Human, .. }, None) => " (does not count)".to_string(),
-        (_, Some(verdict)) if verdict.error => format!(" (error, costs {} presses)", verdict.excess),
-        (_, Some(verdict)) if verdict.race => " (race with the robot)".to_string(),
+        (_, Some(press)) if press.verdict.error => {
+            format!(
+                " (error, costs {} presses{})",
+                press.verdict.excess,
+                because(press.cause, &follower.session.kitchen)
+            )
+        }
+        (_, Some(press)) if press.verdict.race => " (race with the robot)".to_string(),
         _ => String::new(),
+    }
+}
+
+/// What an error is put down to.
+fn because(cause: Option<Cause>, kitchen: &Kitchen) -> String {
+    match cause {
+        None => String::new(),
+        Some(Cause::Slip) => "; a slip".to_string(),
+        Some(Cause::Belief { target, with: None, .. }) => format!("; wrong about {}", target.label(kitchen)),
+        Some(Cause::Belief { target, with: Some(other), .. }) => {
+            format!("; wrong about {} and {}", target.label(kitchen), other.label(kitchen))
+        }
     }
 }
 

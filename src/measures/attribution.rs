@@ -1,0 +1,175 @@
+//! Why a press was an error: because of a false belief, or a slip.
+//!
+//! An error is belief related if log p(a | b) - log p(a | truth) >= ln 3, with b from before the press and p of the human
+//! model. It is put down to the target whose replacement by the truth lowers p(a | b) most. A single target explains the
+//! error if that makes the press three times less likely, too; where none does, the best pair is named. Whatever is not
+//! belief related is a slip.
+
+use crate::base::rng::stream;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{AspectId, ButtonId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::mind::belief::{Belief, Case};
+use crate::mind::decision::DecisionModel;
+
+/// So many times likelier under the belief than under the truth.
+pub const LIKELIER: f64 = 3.0;
+
+/// What a human can be wrong about and be told: an order and the recipe of its dish count as one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Target {
+    /// What an order wants, and how that is made.
+    Order(LocationId, Option<DishId>),
+    /// What lies at a location that is no order.
+    Place(LocationId),
+    /// The recipe of a dish that no order wants.
+    Recipe(DishId),
+}
+
+/// Why a press was an error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cause {
+    /// Not likelier for the belief than for the truth.
+    Slip,
+    Belief {
+        /// log p(a | b) - log p(a | truth), in nats.
+        gain_nats: f64,
+        target: Target,
+        /// The second target, where one alone does not explain the error.
+        with: Option<Target>,
+    },
+}
+
+impl Target {
+    /// Everything that a human can be told in this state.
+    pub fn all(kitchen: &Kitchen, state: State) -> Vec<Target> {
+        let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
+        let of_location = |location: LocationId| match (kitchen.location(location).kind, state.order(location)) {
+            (LocationKind::Order, OrderContent::Dish(dish)) => Target::Order(location, Some(dish)),
+            (LocationKind::Order, _) => Target::Order(location, None),
+            _ => Target::Place(location),
+        };
+        let dishes = (0..kitchen.dishes.len()).map(|index| DishId(index as u8));
+        let unwanted = dishes.filter(|dish| kitchen.wanted(state).all(|(_, wanted)| wanted != *dish));
+        locations.map(of_location).chain(unwanted.map(Target::Recipe)).collect()
+    }
+
+    /// The state aspects that it is about.
+    pub fn aspects(self, kitchen: &Kitchen) -> impl Iterator<Item = AspectId> {
+        let (location, dish) = match self {
+            Target::Order(location, dish) => (Some(location), dish),
+            Target::Place(location) => (Some(location), None),
+            Target::Recipe(dish) => (None, Some(dish)),
+        };
+        let recipe = dish.map(|dish| kitchen.aspect_of_dish(dish));
+        location.map(AspectId::of_location).into_iter().chain(recipe)
+    }
+
+    /// In words: "cooking pot", "tuna maki of order 1".
+    pub fn label(self, kitchen: &Kitchen) -> String {
+        match self {
+            Target::Order(order, Some(dish)) => {
+                format!("{} of {}", kitchen.dish(dish).name, kitchen.location(order).label())
+            }
+            Target::Order(location, None) | Target::Place(location) => kitchen.location(location).label(),
+            Target::Recipe(dish) => format!("recipe of {}", kitchen.dish(dish).name),
+        }
+    }
+}
+
+/// Finds the causes of errors.
+#[derive(Clone, Debug)]
+pub struct Attributor {
+    model: DecisionModel,
+    /// Everything random follows from it.
+    seed: u64,
+}
+
+/// An error that is looked into.
+struct Inquiry<'a> {
+    kitchen: &'a Kitchen,
+    model: &'a DecisionModel,
+    cases: Vec<Case>,
+    state: State,
+    button: ButtonId,
+}
+
+impl Attributor {
+    pub fn new(model: DecisionModel, seed: u64) -> Attributor {
+        Attributor { model, seed }
+    }
+
+    /// The cause of an error: of pressing `button` in `state`, with this belief. `index` tells the errors of a session
+    /// apart.
+    pub fn cause(
+        &self,
+        kitchen: &Kitchen,
+        cost: &mut CostToGo,
+        belief: &Belief,
+        state: State,
+        button: ButtonId,
+        index: u64,
+    ) -> Cause {
+        let mut random = stream(self.seed, "attribution", index);
+        let cases = self.model.cases(kitchen, belief, &mut random);
+        let error = Inquiry { kitchen, model: &self.model, cases, state, button };
+        let believed = error.log_p(cost, &error.cases);
+        let informed = error.log_p(cost, &[Case { state, recipes: kitchen.true_recipes(), weight: 1.0 }]);
+        let gain_nats = believed - informed;
+        let is_related = gain_nats >= LIKELIER.ln();
+        match is_related.then(|| error.explain(cost, believed)).flatten() {
+            Some((target, with)) => Cause::Belief { gain_nats, target, with },
+            None => Cause::Slip,
+        }
+    }
+}
+
+impl Inquiry<'_> {
+    /// The log probability of the press for somebody who holds these cases for possible.
+    fn log_p(&self, cost: &mut CostToGo, cases: &[Case]) -> f64 {
+        self.model.chances(self.kitchen, cost, cases).press[self.button.index()].ln()
+    }
+
+    /// The target, or pair of targets, that makes the press unlikely when it is put right.
+    fn explain(&self, cost: &mut CostToGo, believed: f64) -> Option<(Target, Option<Target>)> {
+        let targets: Vec<Target> = Target::all(self.kitchen, self.state)
+            .into_iter()
+            .filter(|&target| self.told(&self.cases, target) != self.cases)
+            .collect();
+        let mut best: Option<(f64, Target, Option<Target>)> = None;
+        let mut singles = Vec::with_capacity(targets.len());
+        for &target in &targets {
+            let p = self.log_p(cost, &self.told(&self.cases, target));
+            singles.push(p);
+            if best.is_none_or(|(least, _, _)| p < least) {
+                best = Some((p, target, None));
+            }
+        }
+        if best.is_none_or(|(least, _, _)| believed - least < LIKELIER.ln()) {
+            for (second, &target) in targets.iter().enumerate() {
+                let told = self.told(&self.cases, target);
+                for first in 0..second {
+                    let p = self.log_p(cost, &self.told(&told, targets[first]));
+                    if best.is_none_or(|(least, _, _)| p < least) {
+                        // The one that does more by itself is named first.
+                        let (one, other) =
+                            if singles[first] <= singles[second] { (first, second) } else { (second, first) };
+                        best = Some((p, targets[one], Some(targets[other])));
+                    }
+                }
+            }
+        }
+        best.map(|(_, target, with)| (target, with))
+    }
+
+    /// The same cases with one target as it truly is.
+    fn told(&self, cases: &[Case], target: Target) -> Vec<Case> {
+        let mut cases = cases.to_vec();
+        for aspect in target.aspects(self.kitchen) {
+            let truth = self.kitchen.true_value(self.state, aspect);
+            for case in &mut cases {
+                self.kitchen.set_value(&mut case.state, &mut case.recipes, aspect, truth);
+            }
+        }
+        cases
+    }
+}

@@ -1,0 +1,149 @@
+//! Error sequences and false belief episodes.
+//!
+//! An error sequence is made of belief related errors at most 3 correct presses apart, whatever they are about; slips and
+//! races between them are no correct presses. Its target is the most frequent one, its length the number of errors, its
+//! recovery time goes from the first error to the first correct press after the last. A false belief episode lasts from
+//! the moment an aspect became false (P(truth) < 0.5) to its correction, if it caused at least one error.
+
+use std::collections::BTreeMap;
+
+use super::JudgedPress;
+use super::attribution::{Cause, Target};
+use crate::base::time::SessionTime;
+use crate::kitchen::{AspectId, Kitchen, State};
+use crate::mind::belief::Belief;
+
+/// So many correct presses may lie between two errors of a sequence.
+pub const MAX_APART: u32 = 3;
+/// Below this probability of the truth an aspect is believed wrong.
+pub const FALSE_BELOW: f64 = 0.5;
+
+/// Belief related errors that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sequence {
+    /// What most of its errors are about; of equals, what the first one is about.
+    pub target: Target,
+    /// The number of errors.
+    pub length: u32,
+    pub began: SessionTime,
+    /// The first correct press after the last error; none before the end of the trial.
+    pub recovered: Option<SessionTime>,
+}
+
+/// The error sequences of a trial, whatever their errors are about.
+pub fn sequences(presses: &[JudgedPress]) -> Vec<Sequence> {
+    grouped(presses, |_| true)
+}
+
+/// The error sequences of a trial by single targets, in the order of their first errors: those of one target are counted
+/// as if there were no others.
+pub fn sequences_by_target(presses: &[JudgedPress]) -> Vec<Sequence> {
+    let targets: BTreeMap<Target, ()> = presses.iter().filter_map(|press| Some((target_of(press)?, ()))).collect();
+    let mut all: Vec<Sequence> = targets.into_keys().flat_map(|one| grouped(presses, |other| other == one)).collect();
+    all.sort_by_key(|sequence| sequence.began);
+    all
+}
+
+/// What a belief related error is about.
+fn target_of(press: &JudgedPress) -> Option<Target> {
+    match press.cause {
+        Some(Cause::Belief { target, .. }) => Some(target),
+        _ => None,
+    }
+}
+
+fn grouped(presses: &[JudgedPress], counts: impl Fn(Target) -> bool) -> Vec<Sequence> {
+    let mut done = Vec::new();
+    let mut open: Vec<(SessionTime, Target)> = Vec::new();
+    let (mut apart, mut recovered) = (0, None);
+    for press in presses {
+        if let Some(target) = target_of(press).filter(|&target| counts(target)) {
+            if apart > MAX_APART {
+                done.extend(closed(&open, recovered));
+                open.clear();
+            }
+            open.push((press.time, target));
+            (apart, recovered) = (0, None);
+        } else if !press.verdict.error && !press.verdict.race {
+            apart += 1;
+            recovered = recovered.or(Some(press.time));
+        }
+    }
+    done.extend(closed(&open, recovered));
+    done
+}
+
+fn closed(errors: &[(SessionTime, Target)], recovered: Option<SessionTime>) -> Option<Sequence> {
+    let (began, mut target) = *errors.first()?;
+    let frequency = |one: Target| errors.iter().filter(|(_, other)| *other == one).count();
+    for &(_, other) in errors {
+        if frequency(other) > frequency(target) {
+            target = other;
+        }
+    }
+    Some(Sequence { target, length: errors.len() as u32, began, recovered })
+}
+
+/// A belief that was false for a while, and led to errors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Episode {
+    pub aspect: AspectId,
+    pub began: SessionTime,
+    /// When it was seen to be right again; none before the end of the trial.
+    pub corrected: Option<SessionTime>,
+    /// The errors that are put down to it.
+    pub errors: u32,
+}
+
+/// Follows which aspects are believed wrong.
+#[derive(Clone, Debug, Default)]
+pub struct Episodes {
+    open: Vec<Option<Episode>>,
+    done: Vec<Episode>,
+    /// When the belief was last known.
+    last: SessionTime,
+}
+
+impl Episodes {
+    /// Takes note of what is believed now. `changed_at`: when each location last changed, which is when a belief in it
+    /// became false that was right when it was last known.
+    pub fn believed(
+        &mut self,
+        kitchen: &Kitchen,
+        now: SessionTime,
+        state: State,
+        belief: &Belief,
+        changed_at: &[SessionTime],
+    ) {
+        self.open.resize(kitchen.aspects.len(), None);
+        for (index, open) in self.open.iter_mut().enumerate() {
+            let aspect = AspectId(index as u8);
+            let is_false = belief.p_truth(kitchen, state, aspect) < FALSE_BELOW;
+            if is_false && open.is_none() {
+                let changed = if index < kitchen.locations.len() { changed_at.get(index).copied() } else { None };
+                let began = changed.filter(|&time| time > self.last).unwrap_or(now);
+                *open = Some(Episode { aspect, began, corrected: None, errors: 0 });
+            } else if !is_false && let Some(episode) = open.take() {
+                self.done.push(Episode { corrected: Some(now), ..episode });
+            }
+        }
+        self.last = now;
+    }
+
+    /// Takes note of an error: it counts for every false aspect of its targets.
+    pub fn erred(&mut self, kitchen: &Kitchen, cause: Cause) {
+        let Cause::Belief { target, with, .. } = cause else { return };
+        for target in [Some(target), with].into_iter().flatten() {
+            for aspect in target.aspects(kitchen) {
+                if let Some(Some(episode)) = self.open.get_mut(aspect.index()) {
+                    episode.errors += 1;
+                }
+            }
+        }
+    }
+
+    /// The episodes so far that caused at least one error, in the order of their corrections, open ones last.
+    pub fn harmful(&self) -> impl Iterator<Item = &Episode> {
+        self.done.iter().chain(self.open.iter().flatten()).filter(|episode| episode.errors > 0)
+    }
+}

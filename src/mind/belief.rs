@@ -1,0 +1,146 @@
+//! A belief about the kitchen: one categorical distribution per state aspect, the joint is their product.
+
+use rand::RngExt;
+
+use super::BeliefWitness;
+use crate::base::rng::Stream;
+use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, Recipes, State};
+
+/// Where a belief is summed over exactly, less likely values are left out.
+const NEGLIGIBLE: f64 = 0.002;
+
+/// A belief. Every distribution sums to 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Belief {
+    of: Vec<Vec<f64>>,
+}
+
+/// One way the kitchen may be, and how much it counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Case {
+    pub state: State,
+    pub recipes: Recipes,
+    /// Its share; those of all cases of a belief sum to 1.
+    pub weight: f64,
+}
+
+impl Belief {
+    /// Everything as it truly is.
+    pub fn of_truth(kitchen: &Kitchen, state: State) -> Belief {
+        let point = |index: usize| {
+            let mut values = vec![0.0; kitchen.aspects[index].values.len()];
+            values[kitchen.true_value(state, AspectId(index as u8))] = 1.0;
+            values
+        };
+        Belief { of: (0..kitchen.aspects.len()).map(point).collect() }
+    }
+
+    /// The belief that a witness tells of, before which the kitchen was in `state`: the values that it lists as they
+    /// are, what is left evenly over the others. `None` if it does not fit the kitchen or is no distribution.
+    pub fn of_witness(kitchen: &Kitchen, state: State, witness: &BeliefWitness) -> Option<Belief> {
+        let mut belief = Belief { of: Vec::with_capacity(kitchen.aspects.len()) };
+        for (index, aspect) in kitchen.aspects.iter().enumerate() {
+            let told = witness.aspects.get(index).filter(|told| told.aspect == aspect.name)?;
+            if !(0.0..=1.0).contains(&told.p_truth) {
+                return None;
+            }
+            let mut values: Vec<Option<f64>> = vec![None; aspect.values.len()];
+            values[kitchen.true_value(state, AspectId(index as u8))] = Some(told.p_truth);
+            for (label, &p) in &told.values {
+                let value = aspect.labels.iter().position(|other| other == label)?;
+                values[value] = Some(p);
+            }
+            belief.of.push(completed(&values)?);
+        }
+        Some(belief)
+    }
+
+    /// The distribution over the values of an aspect.
+    pub fn distribution(&self, aspect: AspectId) -> &[f64] {
+        &self.of[aspect.index()]
+    }
+
+    /// Believes in these weights of an aspect's values from now on.
+    pub fn set(&mut self, aspect: AspectId, weights: &[f64]) {
+        let total: f64 = weights.iter().sum();
+        self.of[aspect.index()] = weights.iter().map(|weight| weight / total).collect();
+    }
+
+    /// The probability that is given to the truth about an aspect.
+    pub fn p_truth(&self, kitchen: &Kitchen, state: State, aspect: AspectId) -> f64 {
+        self.distribution(aspect)[kitchen.true_value(state, aspect)]
+    }
+
+    /// The ways the kitchen may be: all of them, weighted, if there are at most `most`, else so many draws. In the draws
+    /// every aspect has each of its values as often as its share says, to a draw (a Latin hypercube; McKay et al. 1979).
+    pub fn cases(&self, kitchen: &Kitchen, most: usize, random: &mut Stream) -> Vec<Case> {
+        self.all_cases(kitchen, most).unwrap_or_else(|| self.drawn_cases(kitchen, most, random))
+    }
+
+    fn all_cases(&self, kitchen: &Kitchen, most: usize) -> Option<Vec<Case>> {
+        let mut cases = vec![Case { state: kitchen.empty_state(), recipes: kitchen.true_recipes(), weight: 1.0 }];
+        for (index, values) in self.of.iter().enumerate() {
+            let aspect = AspectId(index as u8);
+            if !self.matters(kitchen, aspect) {
+                continue;
+            }
+            let likely = || values.iter().enumerate().filter(|(_, p)| **p >= NEGLIGIBLE);
+            if cases.len() * likely().count() > most {
+                return None;
+            }
+            let total: f64 = likely().map(|(_, p)| p).sum();
+            let with = |case: &Case, (value, p): (usize, &f64)| {
+                let mut case = Case { weight: case.weight * p / total, ..*case };
+                kitchen.set_value(&mut case.state, &mut case.recipes, aspect, value);
+                case
+            };
+            cases = cases.iter().flat_map(|case| likely().map(move |one| with(case, one))).collect();
+        }
+        Some(cases)
+    }
+
+    fn drawn_cases(&self, kitchen: &Kitchen, count: usize, random: &mut Stream) -> Vec<Case> {
+        let weight = 1.0 / count as f64;
+        let mut cases = vec![Case { state: kitchen.empty_state(), recipes: kitchen.true_recipes(), weight }; count];
+        let mut strata: Vec<usize> = (0..count).collect();
+        for (index, values) in self.of.iter().enumerate() {
+            for last in (1..count).rev() {
+                strata.swap(last, random.random_range(0..=last));
+            }
+            for (case, &stratum) in cases.iter_mut().zip(&strata) {
+                let mut left = (stratum as f64 + random.random::<f64>()) * weight;
+                let reached = values.iter().position(|p| {
+                    left -= p;
+                    left < 0.0
+                });
+                let value = reached.unwrap_or(values.len() - 1);
+                kitchen.set_value(&mut case.state, &mut case.recipes, AspectId(index as u8), value);
+            }
+        }
+        cases
+    }
+
+    /// Whether decisions can depend on the aspect: not on recipes that no order is believed to want.
+    fn matters(&self, kitchen: &Kitchen, aspect: AspectId) -> bool {
+        let AspectKind::Recipe(dish) = kitchen.aspects[aspect.index()].kind else { return true };
+        let code = OrderContent::Dish(dish).code();
+        kitchen.orders.iter().any(|&order| {
+            let aspect = AspectId::of_location(order);
+            let value = kitchen.aspects[aspect.index()].index_of(code);
+            value.is_some_and(|value| self.distribution(aspect)[value] >= NEGLIGIBLE)
+        })
+    }
+}
+
+/// Fills in what was not told; `None` if that is no distribution.
+fn completed(told: &[Option<f64>]) -> Option<Vec<f64>> {
+    if told.iter().flatten().any(|p| !(0.0..=1.0).contains(p)) {
+        return None;
+    }
+    let sum: f64 = told.iter().flatten().sum();
+    let untold = told.iter().filter(|p| p.is_none()).count();
+    let left = (1.0 - sum).max(0.0) / untold.max(1) as f64;
+    let values: Vec<f64> = told.iter().map(|p| p.unwrap_or(left)).collect();
+    let total: f64 = values.iter().sum();
+    (total > 0.0).then(|| values.iter().map(|p| p / total).collect())
+}

@@ -1,0 +1,85 @@
+//! The decision part of the human model: a press is the likelier, the fewer presses are expected to be left after it.
+//!
+//! p(a | b) ~ exp(tau Q(b, a)) with Q(b, a) = -E_b[1 + C(s')] over the states and recipes of belief b, and
+//! -(E_b[C(s)] + 0.5) for waiting (paper, section "Human model"). A few presses slip: to the neighbouring button, to the
+//! look-alike symbol, or anywhere.
+
+use serde::{Deserialize, Serialize};
+
+use super::belief::{Belief, Case};
+use crate::base::rng::Stream;
+use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
+use crate::kitchen::{Agent, ButtonId, Kitchen};
+
+/// The parameters of a decision.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct DecisionModel {
+    /// How strictly fewer expected presses are preferred, per press.
+    pub tau: f64,
+    /// The share of presses that slip.
+    pub lapse: f64,
+    /// The share of the slips that go to any button; the others go to the neighbour and to the look-alike, evenly.
+    pub lapse_anywhere: f64,
+    /// What waiting costs, in presses.
+    pub wait_cost: f64,
+    /// So many states and recipes stand for a belief.
+    pub cases: usize,
+}
+
+impl Default for DecisionModel {
+    fn default() -> Self {
+        DecisionModel { tau: 4.0, lapse: 0.03, lapse_anywhere: 0.3, wait_cost: 0.5, cases: 32 }
+    }
+}
+
+/// What a human does next, and how likely.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chances {
+    /// Waits.
+    pub wait: f64,
+    /// Presses this button, by [`ButtonId`], given that it presses one.
+    pub press: Vec<f64>,
+}
+
+impl DecisionModel {
+    /// The ways the kitchen may be that stand for a belief in this model.
+    pub fn cases(&self, kitchen: &Kitchen, belief: &Belief, random: &mut Stream) -> Vec<Case> {
+        belief.cases(kitchen, self.cases.max(1), random)
+    }
+
+    /// What a human does who holds these cases for possible.
+    pub fn chances(&self, kitchen: &Kitchen, cost: &mut CostToGo, cases: &[Case]) -> Chances {
+        let count = kitchen.buttons[Agent::Human.index()].len();
+        let mut here = 0.0;
+        let mut after = [0.0; MAX_BUTTONS];
+        for case in cases {
+            let decision = cost.decision(case.state, &case.recipes, Agent::Human);
+            here += case.weight * f64::from(decision.here);
+            for (sum, &value) in after.iter_mut().zip(&decision.after[..count]) {
+                *sum += case.weight * f64::from(value);
+            }
+        }
+        let least = after[..count].iter().copied().fold(f64::INFINITY, f64::min);
+        let meant: Vec<f64> = after[..count].iter().map(|value| (-self.tau * (value - least)).exp()).collect();
+        let total: f64 = meant.iter().sum();
+        let waits = (-self.tau * (here + self.wait_cost - 1.0 - least)).min(f64::MAX.ln() / 2.0).exp();
+        let meant: Vec<f64> = meant.iter().map(|weight| weight / total).collect();
+        Chances { wait: waits / (waits + total), press: self.slipped(kitchen, &meant) }
+    }
+
+    /// What is pressed of what is meant.
+    fn slipped(&self, kitchen: &Kitchen, meant: &[f64]) -> Vec<f64> {
+        let anywhere = self.lapse * self.lapse_anywhere / meant.len() as f64;
+        let slips = self.lapse * (1.0 - self.lapse_anywhere);
+        let mut pressed: Vec<f64> = meant.iter().map(|p| (1.0 - self.lapse) * p + anywhere).collect();
+        for (index, p) in meant.iter().enumerate() {
+            let button = ButtonId(index as u8);
+            let next = kitchen.nearest_button(Agent::Human, button).unwrap_or(button);
+            let alike = kitchen.look_alike_button(Agent::Human, button).unwrap_or(next);
+            pressed[next.index()] += slips * p / 2.0;
+            pressed[alike.index()] += slips * p / 2.0;
+        }
+        pressed
+    }
+}

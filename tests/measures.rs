@@ -1,0 +1,357 @@
+//! Measures: why presses were errors, which errors belong together, and for how long a belief was false.
+
+use std::convert::Infallible;
+use std::path::Path;
+use std::sync::Arc;
+
+use tomcom::base::rng::stream;
+use tomcom::base::time::SessionTime;
+use tomcom::edge::files::read_kitchen;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::kitchen::{Agent, AspectId, DishId, Kitchen, LocationId, OrderContent, State};
+use tomcom::measures::JudgedPress;
+use tomcom::measures::attribution::{Attributor, Cause, Target};
+use tomcom::measures::errors::{Judge, Verdict};
+use tomcom::measures::sequences::{Episodes, Sequence, sequences, sequences_by_target};
+use tomcom::mind::BeliefWitness;
+use tomcom::mind::belief::Belief;
+use tomcom::mind::decision::DecisionModel;
+use tomcom::run::engine::Engine;
+use tomcom::run::figures::{BeliefFigures, TrialFigures};
+use tomcom::run::follower::Follower;
+use tomcom::run::headless;
+use tomcom::session::{Event, SessionSpec, Stamped};
+
+fn kitchen(name: &str) -> Arc<Kitchen> {
+    match read_kitchen(Path::new(&format!("layouts/{name}.toml"))) {
+        Ok(files) => Arc::new(files.kitchen),
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn settings(participant: &str) -> SessionSpec {
+    let text = format!("layout = \"\"\nseed = 5\n[trial]\ncondition = \"none\"\n[participant]\n{participant}\n");
+    toml::from_str(&text).expect("settings of a session")
+}
+
+fn at(seconds: f64) -> SessionTime {
+    SessionTime::from_secs_f64(seconds)
+}
+
+fn aspect(kitchen: &Kitchen, name: &str) -> AspectId {
+    let index = kitchen.aspects.iter().position(|aspect| aspect.name == name);
+    AspectId(index.unwrap_or_else(|| panic!("no aspect {name}")) as u8)
+}
+
+fn dish(kitchen: &Kitchen, name: &str) -> DishId {
+    DishId(kitchen.dishes.iter().position(|dish| dish.name == name).expect("a dish") as u8)
+}
+
+/// Places and orders given as "name: content".
+fn state(kitchen: &Kitchen, there: &[&str]) -> State {
+    let mut state = kitchen.empty_state();
+    for (name, content) in there.iter().filter_map(|one| one.split_once(": ")) {
+        let location = kitchen.location_named(name).expect("a location");
+        match kitchen.orders.contains(&location) {
+            true => state.set_order(location, OrderContent::Dish(dish(kitchen, content))),
+            false => state.set_content(location, kitchen.content_named(content).expect("a content")),
+        }
+    }
+    state
+}
+
+/// Everything as it is but what is given as "aspect: value", each believed to `sure`; what is left is spread evenly.
+fn belief(kitchen: &Kitchen, state: State, falsely: &[&str], sure: f64) -> Belief {
+    let mut belief = Belief::of_truth(kitchen, state);
+    for index in 0..kitchen.aspects.len() {
+        let (id, one) = (AspectId(index as u8), &kitchen.aspects[index]);
+        let held = falsely.iter().filter_map(|told| told.split_once(": ")).find(|(name, _)| *name == one.name);
+        let value = match held {
+            Some((name, label)) => {
+                let value = one.labels.iter().position(|other| other == label);
+                value.unwrap_or_else(|| panic!("{label} is no value of {name}: {:?}", one.labels))
+            }
+            None => kitchen.true_value(state, id),
+        };
+        let mut weights = vec![(1.0 - sure) / (one.labels.len() - 1) as f64; one.labels.len()];
+        weights[value] = sure;
+        belief.set(id, &weights);
+    }
+    belief
+}
+
+/// A press in a kitchen under a belief is an error, and for this reason: "slip", or the labels of its targets.
+fn check(layout: &str, there: &[&str], falsely: &[&str], pressed: &str, why: &[&str]) {
+    let kitchen = kitchen(layout);
+    let mut cost = CostToGo::new(kitchen.clone());
+    let state = state(&kitchen, there);
+    let button = kitchen.button_named(Agent::Human, pressed).expect("a button");
+    let after = kitchen.press(state, &kitchen.true_recipes(), Agent::Human, button).unwrap_or(state);
+    let verdict = Judge::new(kitchen.clone()).human_pressed(&mut cost, at(1.0), button, state, after);
+    assert!(verdict.error, "{pressed} is no error: {verdict:?}");
+    let attributor = Attributor::new(DecisionModel::default(), 1);
+    for (sure, index) in [(1.0, 0), (0.99, 1), (0.99, 2), (0.99, 3)] {
+        let belief = belief(&kitchen, state, falsely, sure);
+        let cause = attributor.cause(&kitchen, &mut cost, &belief, state, button, index);
+        let found: Vec<String> = match cause {
+            Cause::Slip => vec!["slip".to_string()],
+            Cause::Belief { target, with, .. } => {
+                [Some(target), with].into_iter().flatten().map(|target| target.label(&kitchen)).collect()
+            }
+        };
+        let mut sorted = found.clone();
+        sorted.sort();
+        assert_eq!(sorted, why, "{pressed} with {falsely:?} held to {sure}: {cause:?}");
+    }
+}
+
+#[test]
+fn a_confused_recipe_leads_to_the_wrong_ingredient() {
+    let falsely = ["recipe of shrimp nigiri: rice shaped + nori + crab cut"];
+    check("sushi", &["order_1: shrimp nigiri"], &falsely, "take crab", &["shrimp nigiri of order 1"]);
+    let falsely = ["recipe of garden burger: light bun + cheese + soy grilled + tomato sliced"];
+    check("burger", &["order: garden burger"], &falsely, "take tomato", &["garden burger of order"]);
+}
+
+#[test]
+fn an_order_that_was_misread_counts_as_one_target_with_its_recipe() {
+    check("sushi", &["order_1: crab maki"], &["order_1: shrimp nigiri"], "take shrimp", &["crab maki of order 1"]);
+    let falsely = ["order: classic burger"];
+    check("burger", &["order: garden burger"], &falsely, "take tomato", &["garden burger of order"]);
+}
+
+#[test]
+fn an_error_without_a_false_belief_is_a_slip() {
+    check("sushi", &["order_1: salmon maki", "human_hand: nori"], &[], "trash", &["slip"]);
+    check("burger", &["order: garden burger", "human_hand: soy raw"], &[], "trash", &["slip"]);
+    // A false belief that has nothing to do with it does not make it one.
+    let falsely = ["recipe of tuna maki: crab maki", "counter: rice cooked"];
+    check("sushi", &["order_1: salmon maki", "human_hand: nori"], &falsely, "trash", &["slip"]);
+}
+
+#[test]
+fn what_is_done_already_is_done_again_by_those_who_did_not_see_it() {
+    let there = ["order_1: tuna maki", "cooking_pot: rice cooked"];
+    check("sushi", &there, &["cooking_pot: rice raw"], "cook", &["cooking pot"]);
+    let there = ["order: garden burger", "grill_plate: soy grilled", "board: light bun + cheese"];
+    check("burger", &there, &["grill_plate: soy raw"], "grill", &["grill plate"]);
+}
+
+#[test]
+fn two_false_beliefs_that_each_suffice_are_named_together() {
+    let there = ["order_1: salmon nigiri", "order_2: salmon maki"];
+    let falsely = ["recipe of salmon nigiri: rice shaped + nori + crab cut", "recipe of salmon maki: crab maki"];
+    let why = ["salmon maki of order 2", "salmon nigiri of order 1"];
+    check("sushi", &there, &falsely, "take crab", &why);
+    // Mending one of them alone leaves a good reason to press.
+    check("sushi", &there, &falsely[..1], "take crab", &why[1..]);
+}
+
+/// Presses by letters, one a second: `.` correct, `s` slip, `r` race, other letters belief related errors about that
+/// location.
+fn presses(text: &str) -> Vec<JudgedPress> {
+    let press = |(index, letter): (usize, char)| {
+        let cause = match letter {
+            '.' | 'r' => None,
+            's' => Some(Cause::Slip),
+            letter => {
+                let target = Target::Place(LocationId(letter as u8 - b'A'));
+                Some(Cause::Belief { gain_nats: 2.0, target, with: None })
+            }
+        };
+        let (race, error) = (letter == 'r', cause.is_some());
+        let verdict = Verdict { regret: i32::from(error), excess: i32::from(error), race, error };
+        JudgedPress { seq: index as u64, time: at(index as f64), verdict, belief_known: true, cause }
+    };
+    text.chars().enumerate().map(press).collect()
+}
+
+/// Sequences as target, length, beginning and recovery in seconds (-1: none).
+fn told(sequences: &[Sequence]) -> Vec<(char, u32, i32, i32)> {
+    let tell = |one: &Sequence| {
+        let Target::Place(LocationId(place)) = one.target else { panic!("a place") };
+        let recovered = one.recovered.map_or(-1, |time| time.as_secs_f64() as i32);
+        (char::from(b'A' + place), one.length, one.began.as_secs_f64() as i32, recovered)
+    };
+    sequences.iter().map(tell).collect()
+}
+
+#[test]
+fn a_sequence_ends_where_more_than_three_presses_are_right() {
+    let check = |text: &str, expected: &[(char, u32, i32, i32)], by_target: &[(char, u32, i32, i32)]| {
+        assert_eq!(told(&sequences(&presses(text))), expected, "{text}");
+        assert_eq!(told(&sequences_by_target(&presses(text))), by_target, "{text} by target");
+    };
+    check("", &[], &[]);
+    check("..s.r.s", &[], &[]);
+    check(".A.", &[('A', 1, 1, 2)], &[('A', 1, 1, 2)]);
+    check("A...A", &[('A', 2, 0, -1)], &[('A', 2, 0, -1)]);
+    check("A....A.", &[('A', 1, 0, 1), ('A', 1, 5, 6)], &[('A', 1, 0, 1), ('A', 1, 5, 6)]);
+    // Slips and races are no correct presses, and are no part of a sequence.
+    check("A..sr.As.", &[('A', 2, 0, 8)], &[('A', 2, 0, 8)]);
+    // Whatever the errors are about; the most frequent target names the sequence, of equals the first.
+    check("AB.BA.B...", &[('B', 5, 0, 7)], &[('A', 2, 0, 5), ('B', 3, 1, 7)]);
+    check("BA.AB", &[('B', 4, 0, -1)], &[('B', 2, 0, -1), ('A', 2, 1, -1)]);
+    // By single targets they fragment: an error about something else is no correct press, but keeps nothing together.
+    check("A..B..A.", &[('A', 3, 0, 7)], &[('A', 1, 0, 1), ('B', 1, 3, 4), ('A', 1, 6, 7)]);
+}
+
+#[test]
+fn an_episode_lasts_from_the_change_that_was_missed_to_the_look_that_mends_it() {
+    let kitchen = kitchen("sushi");
+    let pot = kitchen.location_named("cooking_pot").expect("a pot");
+    let raw = state(&kitchen, &["order_1: tuna maki", "cooking_pot: rice raw"]);
+    let cooked = state(&kitchen, &["order_1: tuna maki", "cooking_pot: rice cooked"]);
+    let unseen = ["cooking_pot: rice raw"];
+    let confused = ["cooking_pot: rice raw", "recipe of crab maki: rice cooked + nori + shrimp cut"];
+    let mut changed_at = vec![SessionTime::ZERO; kitchen.locations.len()];
+    let mut episodes = Episodes::default();
+    let believe = |episodes: &mut Episodes, seconds, state, falsely: &[&str], changed_at: &[SessionTime]| {
+        episodes.believed(&kitchen, at(seconds), state, &belief(&kitchen, state, falsely, 0.9), changed_at);
+    };
+    let wrong = Cause::Belief { gain_nats: 3.0, target: Target::Place(pot), with: None };
+    believe(&mut episodes, 2.0, raw, &[], &changed_at);
+    changed_at[pot.index()] = at(3.0);
+    // A harmless false belief (the recipe) is no episode.
+    believe(&mut episodes, 4.0, cooked, &confused, &changed_at);
+    assert_eq!(episodes.harmful().count(), 0, "no error yet");
+    episodes.erred(&kitchen, Cause::Slip);
+    episodes.erred(&kitchen, wrong);
+    believe(&mut episodes, 6.0, cooked, &unseen, &changed_at);
+    episodes.erred(&kitchen, wrong);
+    let tell = |episodes: &Episodes| {
+        let tell = |one: &tomcom::measures::sequences::Episode| {
+            (one.began.as_secs_f64(), one.corrected.map(SessionTime::as_secs_f64), one.errors)
+        };
+        episodes.harmful().map(tell).collect::<Vec<_>>()
+    };
+    assert_eq!(tell(&episodes), [(3.0, None, 2)], "still open");
+    believe(&mut episodes, 8.0, cooked, &[], &changed_at);
+    assert_eq!(tell(&episodes), [(3.0, Some(8.0), 2)]);
+    // An error that is put down to it afterwards finds no false belief.
+    episodes.erred(&kitchen, wrong);
+    assert_eq!(tell(&episodes), [(3.0, Some(8.0), 2)]);
+}
+
+#[test]
+fn decisions_are_distributions_and_exact_sums_agree_with_many_draws() {
+    for (layout, there, falsely) in [
+        ("sushi", ["order_1: shrimp nigiri", "human_hand: nori"], ["cooking_pot: shrimp raw", "assembly_board: empty"]),
+        ("burger", ["order: leaf burger", "shelf: cheese"], ["grill_plate: soy raw", "shelf: empty"]),
+    ] {
+        let kitchen = kitchen(layout);
+        let mut cost = CostToGo::new(kitchen.clone());
+        let state = state(&kitchen, &there);
+        let mut held = Belief::of_truth(&kitchen, state);
+        for one in falsely {
+            let (name, label) = one.split_once(": ").expect("an aspect and a value");
+            let id = aspect(&kitchen, name);
+            let labels = &kitchen.aspects[id.index()].labels;
+            let mut weights = vec![0.0; labels.len()];
+            weights[kitchen.true_value(state, id)] += 0.4;
+            weights[labels.iter().position(|other| other == label).expect("a value")] += 0.6;
+            held.set(id, &weights);
+        }
+        let exact_model = DecisionModel::default();
+        let exact_cases = exact_model.cases(&kitchen, &held, &mut stream(1, "test", 0));
+        assert!(exact_cases.len() <= 4, "{layout}: {} cases", exact_cases.len());
+        let weight: f64 = exact_cases.iter().map(|case| case.weight).sum();
+        assert!((weight - 1.0).abs() < 1e-12);
+        let exact = exact_model.chances(&kitchen, &mut cost, &exact_cases);
+        // A trace of everything else keeps the sum from being exact, and leaves it where it was.
+        for index in 0..kitchen.aspects.len() {
+            let id = AspectId(index as u8);
+            let weights: Vec<f64> =
+                held.distribution(id).iter().map(|p| p + 3e-3 / kitchen.aspects.len() as f64).collect();
+            held.set(id, &weights);
+        }
+        for (index, count) in [1usize, 2, 32, 4096].into_iter().enumerate() {
+            let model = DecisionModel { cases: count, ..DecisionModel::default() };
+            let cases = model.cases(&kitchen, &held, &mut stream(1, "test", index as u64));
+            let drawn = model.chances(&kitchen, &mut cost, &cases);
+            let sum: f64 = drawn.press.iter().sum();
+            assert!((sum - 1.0).abs() < 1e-9 && (0.0..=1.0).contains(&drawn.wait), "{layout}: {drawn:?}");
+            assert!(drawn.press.iter().all(|&p| p > 1e-5), "no press is impossible");
+            let apart: f64 = drawn.press.iter().zip(&exact.press).map(|(a, b)| (a - b).abs()).sum::<f64>() / 2.0;
+            println!("{layout}: {count} cases, total variation {apart:.3} to the exact sum");
+            assert!(count < 4096 || apart < 0.1, "{layout}: {apart} off with {count} cases");
+        }
+    }
+}
+
+#[test]
+fn one_waits_where_only_the_robot_can_go_on() {
+    let kitchen = kitchen("sushi");
+    let mut cost = CostToGo::new(kitchen.clone());
+    let model = DecisionModel::default();
+    let mut waits = |there: &[&str]| {
+        let belief = Belief::of_truth(&kitchen, state(&kitchen, there));
+        let cases = model.cases(&kitchen, &belief, &mut stream(1, "test", 0));
+        let chances = model.chances(&kitchen, &mut cost, &cases);
+        // Compared with the likeliest press.
+        chances.wait / ((1.0 - chances.wait) * chances.press.iter().copied().fold(0.0, f64::max))
+    };
+    assert!(waits(&["order_1: salmon maki"]) < 0.2, "there is much to do");
+    assert!(waits(&["order_1: tuna maki", "assembly_board: rice cooked + nori", "robot_hand: tuna raw"]) > 5.0);
+    assert!(waits(&[]) > 5.0, "nothing is wanted");
+}
+
+#[test]
+fn a_belief_can_be_told_from_its_witness() {
+    for layout in ["sushi", "burger"] {
+        let kitchen = kitchen(layout);
+        let mut engine = Engine::new(kitchen.clone(), settings(""), 0, CostToGo::new(kitchen.clone()));
+        let mut witnesses: Vec<BeliefWitness> = Vec::new();
+        let mut told = Vec::new();
+        let mut replay = Follower::new(kitchen.clone(), settings(""), CostToGo::new(kitchen.clone()));
+        let mut keep = |stamped: &Stamped| {
+            replay.apply(stamped).expect("what was recorded can be replayed");
+            if let Event::ParticipantBelieves(witness) = &stamped.event {
+                let state = replay.session.state;
+                told.push((state, Belief::of_witness(&kitchen, state, witness).expect("a belief of this kitchen")));
+                witnesses.push(witness.clone());
+            }
+            Ok::<(), Infallible>(())
+        };
+        headless::run(&mut engine, &mut keep).unwrap_or_else(|never| match never {});
+        assert!(told.len() > 100);
+        for ((state, belief), witness) in told.iter().zip(&witnesses) {
+            for (index, held) in witness.aspects.iter().enumerate() {
+                let (id, labels) = (AspectId(index as u8), &kitchen.aspects[index].labels);
+                let values = belief.distribution(id);
+                assert!((values.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+                assert!((belief.p_truth(&kitchen, *state, id) - held.p_truth).abs() < 1e-3, "{held:?}");
+                let most = (0..values.len()).fold(0, |best, one| if values[one] > values[best] { one } else { best });
+                assert_eq!(labels[most], held.believes);
+            }
+        }
+        // What does not fit is no belief, and brings nothing down.
+        let (state, good) = (told[0].0, &witnesses[0]);
+        let spoilt = |change: fn(&mut BeliefWitness)| {
+            let mut witness = good.clone();
+            change(&mut witness);
+            Belief::of_witness(&kitchen, state, &witness)
+        };
+        assert_eq!(spoilt(|witness| witness.aspects.truncate(3)), None);
+        assert_eq!(spoilt(|witness| witness.aspects[0].p_truth = f64::NAN), None);
+        assert_eq!(spoilt(|witness| witness.aspects[0].p_truth = -0.5), None);
+        assert_eq!(spoilt(|witness| witness.aspects[1].values.extend([("a shoe".to_string(), 0.5)])), None);
+        // The session that ran and its replay say the same.
+        let (ran, replayed) = (engine.into_follower(), replay);
+        assert_eq!(TrialFigures::of(&ran), TrialFigures::of(&replayed));
+    }
+}
+
+#[test]
+fn what_nobody_knows_stays_unknown() {
+    let kitchen = kitchen("sushi");
+    let figures = |participant: &str| {
+        let follower = Follower::new(kitchen.clone(), settings(participant), CostToGo::new(kitchen.clone()));
+        BeliefFigures::of([&TrialFigures::of(&follower)])
+    };
+    let nobody = figures("kind = \"keyboard\"\ngaze = \"none\"");
+    assert_eq!(nobody, BeliefFigures::default(), "a person tells no beliefs");
+    let simulated = figures("");
+    assert_eq!((simulated.belief_related_errors, simulated.sequences), (Some(0), Some(0)));
+    assert_eq!(simulated.mean_sequence_length, None, "no mean of nothing");
+}

@@ -90,7 +90,7 @@ fn check(layout: &str, there: &[&str], falsely: &[&str], pressed: &str, why: &[&
     let verdict = Judge::new(kitchen.clone()).human_pressed(&mut cost, at(1.0), button, state, after);
     assert!(verdict.error, "{pressed} is no error: {verdict:?}");
     let attributor = Attributor::new(DecisionModel::default(), 1);
-    for (sure, index) in [(1.0, 0), (0.99, 1), (0.99, 2), (0.99, 3)] {
+    for (sure, index) in [(1.0, 0), (0.97, 1), (0.97, 2), (0.97, 3)] {
         let belief = belief(&kitchen, state, falsely, sure);
         let cause = attributor.cause(&kitchen, &mut cost, &belief, state, button, index);
         let found: Vec<String> = match cause {

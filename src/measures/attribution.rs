@@ -2,7 +2,7 @@
 //!
 //! An error is belief related if log p(a | b) - log p(a | truth) >= ln 3, with b from before the press and p of the human
 //! model. It is put down to the target whose replacement by the truth lowers p(a | b) most. A single target explains the
-//! error if that makes the press three times less likely, too; where none does, the best pair is named. Whatever is not
+//! error if the press would not be belief related any more; where none does, the best pair is named. Whatever is not
 //! belief related is a slip.
 
 use crate::base::rng::stream;
@@ -13,6 +13,8 @@ use crate::mind::decision::DecisionModel;
 
 /// So many times likelier under the belief than under the truth.
 pub const LIKELIER: f64 = 3.0;
+/// What is believed wrong at least so surely can be one of the two causes of an error.
+const DOUBTFUL: f64 = 0.1;
 
 /// What a human can be wrong about and be told: an order and the recipe of its dish count as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -116,7 +118,7 @@ impl Attributor {
         let informed = error.log_p(cost, &[Case { state, recipes: kitchen.true_recipes(), weight: 1.0 }]);
         let gain_nats = believed - informed;
         let is_related = gain_nats >= LIKELIER.ln();
-        match is_related.then(|| error.explain(cost, believed)).flatten() {
+        match is_related.then(|| error.explain(cost, informed)).flatten() {
             Some((target, with)) => Cause::Belief { gain_nats, target, with },
             None => Cause::Slip,
         }
@@ -130,35 +132,42 @@ impl Inquiry<'_> {
     }
 
     /// The target, or pair of targets, that makes the press unlikely when it is put right.
-    fn explain(&self, cost: &mut CostToGo, believed: f64) -> Option<(Target, Option<Target>)> {
-        let targets: Vec<Target> = Target::all(self.kitchen, self.state)
-            .into_iter()
-            .filter(|&target| self.told(&self.cases, target) != self.cases)
-            .collect();
-        let mut best: Option<(f64, Target, Option<Target>)> = None;
-        let mut singles = Vec::with_capacity(targets.len());
-        for &target in &targets {
-            let p = self.log_p(cost, &self.told(&self.cases, target));
-            singles.push(p);
-            if best.is_none_or(|(least, _, _)| p < least) {
-                best = Some((p, target, None));
-            }
+    fn explain(&self, cost: &mut CostToGo, informed: f64) -> Option<(Target, Option<Target>)> {
+        let mut targets = Target::all(self.kitchen, self.state);
+        targets.retain(|&target| self.doubt(target) > 0.0);
+        let mut singles: Vec<(f64, Target)> =
+            targets.into_iter().map(|target| (self.log_p(cost, &self.told(&self.cases, target)), target)).collect();
+        // The sort is stable: of equals the first location.
+        singles.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let &(least, target) = singles.first()?;
+        if least - informed < LIKELIER.ln() {
+            return Some((target, None));
         }
-        if best.is_none_or(|(least, _, _)| believed - least < LIKELIER.ln()) {
-            for (second, &target) in targets.iter().enumerate() {
-                let told = self.told(&self.cases, target);
-                for first in 0..second {
-                    let p = self.log_p(cost, &self.told(&told, targets[first]));
-                    if best.is_none_or(|(least, _, _)| p < least) {
-                        // The one that does more by itself is named first.
-                        let (one, other) =
-                            if singles[first] <= singles[second] { (first, second) } else { (second, first) };
-                        best = Some((p, targets[one], Some(targets[other])));
-                    }
+        singles.retain(|&(_, target)| self.doubt(target) >= DOUBTFUL);
+        Some(self.best_pair(cost, &singles, least).map_or((target, None), |(one, other)| (one, Some(other))))
+    }
+
+    /// The pair of these targets that makes the press least likely when it is put right, if it becomes less likely than
+    /// `least`; the one that does more by itself comes first.
+    fn best_pair(&self, cost: &mut CostToGo, targets: &[(f64, Target)], mut least: f64) -> Option<(Target, Target)> {
+        let mut best = None;
+        for (index, &(_, one)) in targets.iter().enumerate() {
+            let told = self.told(&self.cases, one);
+            for &(_, other) in &targets[index + 1..] {
+                let p = self.log_p(cost, &self.told(&told, other));
+                if p < least {
+                    (least, best) = (p, Some((one, other)));
                 }
             }
         }
-        best.map(|(_, target, with)| (target, with))
+        best
+    }
+
+    /// How likely it is, for the human, that the target is other than it truly is.
+    fn doubt(&self, target: Target) -> f64 {
+        let told = self.told(&self.cases, target);
+        let wrong = self.cases.iter().zip(&told).filter(|(held, true_one)| held != true_one);
+        wrong.map(|(held, _)| held.weight).sum()
     }
 
     /// The same cases with one target as it truly is.

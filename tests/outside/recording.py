@@ -62,6 +62,19 @@ def check_gaze(events):
     assert on_display > 0.9, f"{on_display} of the gaze is on the display"
 
 
+def check_beliefs(header, events):
+    """Before each of its presses the participant tells what it believes of every aspect."""
+    sizes = Kitchen(header["layout"]["text"], header["recipes"]["text"]).state_space()
+    told = events[events["kind"] == "participant_believes"]
+    assert len(told) == ((events["kind"] == "press") & (events["agent"] == "human")).sum()
+    for aspects in told["aspects"]:
+        assert [held["aspect"] for held in aspects] == list(sizes), aspects
+        for held in aspects:
+            values = held["values"]
+            assert 0.01 <= min(values.values()) and sum(values.values()) <= 1 + 1e-4, held
+            assert max(values, key=values.get) == held["believes"] or max(values.values()) == values[held["believes"]], held
+
+
 def count(header, events):
     """Presses and served orders, by rules that were written a second time."""
     trial = Trial(Kitchen(header["layout"]["text"], header["recipes"]["text"]))
@@ -133,6 +146,7 @@ def check_session(session, scratch):
         check_header(header, session)
         check_order(events)
         check_gaze(events)
+        check_beliefs(header, events)
     presses, orders = check_counts(recordings, figures)
     check_alone(recordings[0], scratch)
     tomcom("simulate", session, "--trials", "2", "--seed", "11", "--out", again)

@@ -89,6 +89,22 @@ fn simulate_records_what_replay_verifies() {
 }
 
 #[test]
+fn a_simulation_replaces_itself_and_no_other_recording() {
+    let out = folder("replaced");
+    let out = out.to_str().expect("a path in UTF-8");
+    let log = Path::new(out).join("seed7-S001/events.jsonl");
+    let simulate = |session: &'static str| ["simulate", session, "--seed", "7", "--out", out];
+    check(&simulate("sessions/default.toml"), 0);
+    let before = fs::read(&log).expect("a log");
+    check(&simulate("sessions/default.toml"), 0);
+    assert!(fs::read(&log).expect("a log") == before, "the same session is the same recording");
+    let refused = check(&simulate("sessions/burger.toml"), 1);
+    let told = String::from_utf8_lossy(&refused.stderr);
+    assert!(told.contains("seed7-S001") && told.contains("the recording of another session"), "{told}");
+    assert!(fs::read(&log).expect("a log") == before, "what was there is still there");
+}
+
+#[test]
 fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     let folder = folder("wrong");
     let session = |name: &str, text: &str| {

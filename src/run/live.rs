@@ -42,7 +42,7 @@ pub enum LiveError {
     #[error("the console cannot be opened: {0}")]
     #[diagnostic(help("run it in a terminal, not through a pipe"))]
     Terminal(io::Error),
-    #[error("{0}")]
+    #[error(transparent)]
     #[diagnostic(help("a letter for every signal and button in the layout, each once"))]
     Keys(#[from] crate::console::keys::Clash),
     #[error("nothing can listen on port {port} of localhost for gaze: {reason}")]
@@ -84,7 +84,7 @@ impl LiveEnd {
 pub fn operate(beginning: Beginning) -> Result<LiveEnd, LiveError> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(LiveError::Terminal)?;
     // Opened inside, since signals and sockets belong to the runtime.
-    runtime.block_on(async { Live::open(beginning)?.run().await })
+    runtime.block_on(async { Live::open(beginning).await?.run().await })
 }
 
 struct Live {
@@ -96,6 +96,8 @@ struct Live {
     /// The log cannot be written any more.
     failed: Option<WriteError>,
     screen: Screen,
+    /// Lines of the tracker's program, if the gaze comes from one.
+    gaze: Option<Receiver<GazeLine>>,
     clock: SessionClock,
     /// How many judged presses the model knows.
     judged: usize,
@@ -139,11 +141,18 @@ fn begin(beginning: Beginning) -> Result<Begun, LiveError> {
 }
 
 impl Live {
-    fn open(beginning: Beginning) -> Result<Live, LiveError> {
+    async fn open(beginning: Beginning) -> Result<Live, LiveError> {
         let Begun { engine, mut header, first, time, place } = begin(beginning)?;
         let (kitchen, spec) = (engine.session().kitchen.clone(), engine.session().spec.clone());
         let keys = Keys::live(&kitchen, &spec)?;
         outlive_file_limits().map_err(LiveError::Terminal)?;
+        // Before the recording is made: a session that cannot start leaves nothing behind.
+        let gaze = match (spec.participant.gaze, spec.participant.gaze_port) {
+            (GazeSource::Json, port) => {
+                Some(gaze_json::listen(port).await.map_err(|reason| LiveError::Gaze { port, reason })?)
+            }
+            _ => None,
+        };
         let wall = WallTime::now();
         header.started = Some(wall.rfc3339());
         let screen = Screen::take(spec.participant.gaze == GazeSource::Mouse).map_err(LiveError::Terminal)?;
@@ -156,21 +165,14 @@ impl Live {
         model.recording = Recording::On(log.folder().display().to_string());
         let clock = SessionClock::start(time);
         let mut live =
-            Live { engine, model, log, _before: before, failed: None, screen, clock, judged: 0, dirty: true };
+            Live { engine, model, log, _before: before, failed: None, screen, gaze, clock, judged: 0, dirty: true };
         live.record(&first);
         Ok(live)
     }
 
     async fn run(mut self) -> Result<LiveEnd, LiveError> {
-        let participant = self.engine.session().spec.participant.clone();
-        let mut gaze = match participant.gaze {
-            GazeSource::Json => {
-                let port = participant.gaze_port;
-                Some(gaze_json::listen(port).await.map_err(|reason| LiveError::Gaze { port, reason })?)
-            }
-            _ => None,
-        };
-        let with_pointer = participant.gaze == GazeSource::Mouse;
+        let mut gaze = self.gaze.take();
+        let with_pointer = self.engine.session().spec.participant.gaze == GazeSource::Mouse;
         let mut hands = Hands::default();
         let end = asked_to_end();
         tokio::pin!(end);

@@ -10,7 +10,7 @@ use super::figures::{SimulationFigures, TrialFigures};
 use super::follower::Follower;
 use super::{headless, kitchen};
 use crate::edge::files::SessionFiles;
-use crate::edge::log::{LogWriter, WriteError};
+use crate::edge::log::{LogWriter, WriteError, check_simulated};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::settings::{Condition, SessionSpec};
@@ -37,9 +37,14 @@ pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
 /// Simulates the trials on all processors. `done` is called after each trial.
 ///
 /// # Errors
-/// A recording that could not be written.
+/// A recording that could not be written, or another one where it would be.
 pub fn simulate(simulation: &Simulation, done: impl Fn() + Sync) -> Result<SimulationFigures, WriteError> {
     let began = Instant::now();
+    // Before the first trial, so that none is simulated in vain.
+    for trial in 0..simulation.trials {
+        let header = header_of_trial(simulation, trial);
+        check_simulated(&folder_of_trial(&simulation.out, &header.session), &header)?;
+    }
     let kitchen = Arc::new(simulation.files.kitchen.kitchen.clone());
     let mut cost = CostToGo::new(kitchen.clone());
     let plan_lengths = kitchen::plan_lengths(&kitchen, &mut cost);
@@ -84,18 +89,22 @@ fn folder_of_trial(out: &Path, spec: &SessionSpec) -> PathBuf {
     out.join(format!("seed{}-{}", spec.seed, spec.participant.code))
 }
 
+fn header_of_trial(simulation: &Simulation, trial: u64) -> Header {
+    let files = &simulation.files.kitchen;
+    let spec = settings_of_trial(&simulation.files.spec, trial);
+    Header::new(spec, trial, files.layout.clone(), files.recipes.clone())
+}
+
 fn simulate_trial(
     simulation: &Simulation,
     kitchen: &Arc<Kitchen>,
     trial: u64,
     cost: CostToGo,
 ) -> Result<(PathBuf, TrialFigures, CostToGo), WriteError> {
-    let spec = settings_of_trial(&simulation.files.spec, trial);
-    let files = &simulation.files.kitchen;
-    let header = Header::new(spec.clone(), trial, files.layout.clone(), files.recipes.clone());
-    let folder = folder_of_trial(&simulation.out, &spec);
+    let header = header_of_trial(simulation, trial);
+    let folder = folder_of_trial(&simulation.out, &header.session);
     let mut log = LogWriter::create_simulated(&folder, &header)?;
-    let mut engine = Engine::new(kitchen.clone(), spec, trial, cost);
+    let mut engine = Engine::new(kitchen.clone(), header.session, trial, cost);
     headless::run(&mut engine, |stamped: &Stamped| log.append(stamped))?;
     log.flush()?;
     let follower: Follower = engine.into_follower();

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use crate::session::Stamped;
 pub use lock::Lock;
 pub use reader::{LogLine, LogReader, at_line};
-pub use writer::{LogWriter, check_continued};
+pub use writer::{LogWriter, check_continued, check_simulated};
 
 /// The name of the log in its folder.
 pub const LOG_NAME: &str = "events.jsonl";
@@ -37,6 +37,9 @@ pub enum WriteError {
     #[error("{}: this recording was continued already", folder.display())]
     #[diagnostic(help("tomcom operate --continue {}", part.display()))]
     Continued { folder: PathBuf, part: PathBuf },
+    #[error("{}: {what} is there already", folder.display())]
+    #[diagnostic(help("another folder, or remove that one first: only the same session replaces its recording"))]
+    Taken { folder: PathBuf, what: &'static str },
 }
 
 impl WriteError {

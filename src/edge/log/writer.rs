@@ -55,14 +55,13 @@ impl LogWriter {
         LogWriter::begin(part, header, true)
     }
 
-    /// Starts a simulated recording in this folder. One that was simulated before is replaced; a live one never is.
+    /// Starts a simulated recording in this folder.
+    ///
+    /// # Errors
+    /// Those of [`check_simulated`], or the folder cannot be written to.
     pub fn create_simulated(folder: &Path, header: &Header) -> Result<LogWriter, WriteError> {
-        let failed = |reason| WriteError::unwritable(folder, reason);
-        fs::create_dir_all(folder).map_err(failed)?;
-        if folder.join(LOG_NAME).exists() && LogReader::open(folder).is_ok_and(|log| log.header.started.is_some()) {
-            let reason = "a live recording is there already";
-            return Err(failed(io::Error::new(io::ErrorKind::AlreadyExists, reason)));
-        }
+        check_simulated(folder, header)?;
+        fs::create_dir_all(folder).map_err(|reason| WriteError::unwritable(folder, reason))?;
         LogWriter::begin(folder.to_path_buf(), header, false)
     }
 
@@ -163,6 +162,24 @@ fn next_part(folder: &Path) -> PathBuf {
     let numbered = name.rsplit_once(PART).and_then(|(first, n)| Some((first, n.parse::<u64>().ok()?)));
     let (first, n) = numbered.unwrap_or((&name, 1));
     folder.with_file_name(format!("{first}{PART}{}", n.saturating_add(1)))
+}
+
+/// Whether a simulated recording may go into this folder: the same header gives the same recording, which may be
+/// replaced; any other one may not.
+///
+/// # Errors
+/// Another recording is there.
+pub fn check_simulated(folder: &Path, header: &Header) -> Result<(), WriteError> {
+    if !folder.join(LOG_NAME).exists() {
+        return Ok(());
+    }
+    let what = match LogReader::open(folder).map(|log| log.header) {
+        Ok(there) if there == *header => return Ok(()),
+        Ok(there) if there.started.is_some() => "a live recording",
+        Ok(_) => "the recording of another session",
+        Err(_) => "a recording that cannot be read",
+    };
+    Err(WriteError::Taken { folder: folder.to_path_buf(), what })
 }
 
 fn write_line(out: &mut impl Write, value: &impl serde::Serialize) -> io::Result<()> {

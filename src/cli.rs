@@ -298,6 +298,9 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     }
     let mut replay = Replay::open(&args.recording)?;
     let mut events = 0;
+    if args.format == Format::Text {
+        writeln!(std::io::stdout(), "{}", tell::HEADING)?;
+    }
     loop {
         while let Some(event) = replay.step()? {
             events += 1;

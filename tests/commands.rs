@@ -105,6 +105,28 @@ fn a_simulation_replaces_itself_and_no_other_recording() {
 }
 
 #[test]
+fn a_kitchen_takes_no_key_from_the_console() {
+    let folder = folder("keys");
+    let text = fs::read_to_string("layouts/sushi.toml").expect("the layout");
+    let recipes = fs::canonicalize("recipes/sushi.toml").expect("the recipes");
+    let text = text.replace("../recipes/sushi.toml", &recipes.display().to_string());
+    let cases = [
+        ("signal = \"w\"", "signal = \"1\"", "the key \"1\" for \"order_2\", which the console has for"),
+        ("signal = \"w\"", "signal = \"Q\"", "for \"order_2\", which \"order_1\" has already"),
+        ("key = \"x\"", "key = \"?\"", "the key \"?\" for \"trash\", which the console has for \"this help\""),
+    ];
+    for (from, to, says) in cases {
+        let path = folder.join("layout.toml");
+        let wrong = text.replacen(from, to, 1);
+        fs::write(&path, &wrong).expect("a file");
+        let line = wrong.lines().position(|line| line.contains(to)).expect("the line") + 1;
+        let told = complaint(&["kitchen", path.to_str().expect("a path in UTF-8")]);
+        assert!(told.contains(&format!("layout.toml:{line}: found ")), "line {line} is not named in\n{told}");
+        assert_eq!(told.matches(says).count(), 1, "{says:?} is once in\n{told}");
+    }
+}
+
+#[test]
 fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     let folder = folder("wrong");
     let session = |name: &str, text: &str| {
@@ -132,7 +154,10 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     assert!(complaint(&["simulate", &session("keyboard.toml", &keyboard)]).contains("simulated"));
     assert!(complaint(&["replay", "nowhere", "--verify"]).contains("nowhere"));
     assert!(complaint(&["replay", "Cargo.toml", "--verify"]).contains("Cargo.toml:1:"));
-    assert!(complaint(&["kitchen", "recipes/sushi.toml"]).contains("recipes/sushi.toml:"));
+    assert!(complaint(&["replay", "Cargo.toml"]).contains("no log of a session"));
+    assert!(complaint(&["kitchen", "recipes/sushi.toml"]).contains("recipes/sushi.toml:1: found a recipe file"));
+    assert!(complaint(&["kitchen", "sessions/default.toml"]).contains("found a session file"));
+    assert!(complaint(&["simulate", "layouts/sushi.toml"]).contains("found a layout file"));
     complaint(&["simulate", "sessions/default.toml", "--trials", "0"]);
     complaint(&["dance"]);
 }

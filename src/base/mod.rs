@@ -1,4 +1,5 @@
-//! What every room may use: time, random streams, identifiers of agents.
+//! What every room may use: time, random streams, words.
 
 pub mod rng;
 pub mod time;
+pub mod words;

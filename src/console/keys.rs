@@ -106,10 +106,13 @@ pub struct Binding {
 
 /// A key that would have two meanings.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the key \"{key}\" of \"{what}\" in the layout has another meaning already")]
+#[error("the key \"{key}\" for \"{what}\", which the console has for \"{by}\"")]
 pub struct Clash {
     pub key: char,
     pub what: String,
+    pub layer: Layer,
+    /// What the key means already.
+    pub by: String,
 }
 
 /// The table.
@@ -136,6 +139,18 @@ impl Keys {
     /// # Errors
     /// A letter of the layout that means two things.
     pub fn live(kitchen: &Kitchen, spec: &SessionSpec) -> Result<Keys, Clash> {
+        Keys::table(kitchen, spec.signals.own_hand, spec.participant.kind == ParticipantKind::Keyboard)
+    }
+
+    /// Whether the console can take every key of a kitchen, whatever the session's settings are.
+    ///
+    /// # Errors
+    /// A letter of the layout that means two things.
+    pub fn check(kitchen: &Kitchen) -> Result<(), Clash> {
+        Keys::table(kitchen, true, true).map(drop)
+    }
+
+    fn table(kitchen: &Kitchen, own_hand: bool, at_keyboard: bool) -> Result<Keys, Clash> {
         use KeyCode::{Backspace, Char, Tab};
         let mut keys = Keys { bindings: Vec::new() };
         keys.bindings.extend([
@@ -144,18 +159,18 @@ impl Keys {
             binding(Chord::plain(Char('.')), Action::Advance, TRIAL, "start, pause, resume", Some("start/pause")),
             binding(Chord::ctrl('e'), Action::EndTrial, TRIAL, "end the trial (asks first)", Some("end")),
         ]);
-        if spec.participant.kind == ParticipantKind::Keyboard {
+        if at_keyboard {
             let help = "switch between wizard and participant";
             keys.bindings.push(binding(Chord::plain(Tab), Action::SwitchLayer, CONSOLE, help, Some("switch")));
         }
-        keys.signals(kitchen, spec)?;
+        keys.signals(kitchen, own_hand)?;
         let take_back = "take the shown signal back";
         keys.wizards(binding(Chord::plain(Backspace), Action::TakeBack, SIGNALS, take_back, Some("take back")));
         for (index, note) in NOTES.iter().enumerate() {
             let key = Chord::plain(Char(char::from(b'1' + index as u8)));
             keys.wizards(binding(key, Action::Note(index), MARKERS, note, (index == 0).then_some("note")));
         }
-        if spec.participant.kind == ParticipantKind::Keyboard {
+        if at_keyboard {
             keys.buttons(kitchen)?;
         }
         keys.console();
@@ -197,8 +212,8 @@ impl Keys {
         self.bindings.push(Binding { layer: Some(Layer::Wizard), ..binding });
     }
 
-    fn signals(&mut self, kitchen: &Kitchen, spec: &SessionSpec) -> Result<(), Clash> {
-        for (id, signal) in communication::signals(kitchen, spec.signals.own_hand) {
+    fn signals(&mut self, kitchen: &Kitchen, own_hand: bool) -> Result<(), Clash> {
+        for (id, signal) in communication::signals(kitchen, own_hand) {
             let location = kitchen.location(id);
             let Some(key) = location.signal_key else { continue };
             let help = match signal {
@@ -225,10 +240,14 @@ impl Keys {
     /// The chord of a key from a layout, if it is free in its layer.
     fn letter(&self, key: char, what: &str, layer: Layer) -> Result<Chord, Clash> {
         let chord = Chord::plain(KeyCode::Char(key.to_lowercase().next().unwrap_or(key)));
-        let is_note = layer == Layer::Wizard && ('1'..='5').contains(&key);
-        match is_note || matches!(key, '.' | '?' | ' ') || self.find(layer, chord).is_some() {
-            true => Err(Clash { key, what: what.to_string() }),
-            false => Ok(chord),
+        let taken = match key {
+            '1'..='5' if layer == Layer::Wizard => Some(NOTES[usize::from(key as u8 - b'1')]),
+            '?' => Some("this help"),
+            _ => self.find(layer, chord).map(|line| line.help.as_str()),
+        };
+        match taken {
+            Some(by) => Err(Clash { key, what: what.to_string(), layer, by: by.to_string() }),
+            None => Ok(chord),
         }
     }
 

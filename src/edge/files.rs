@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use serde::de::DeserializeOwned;
+use toml::Spanned;
 
+use crate::console::keys::{Keys, Layer};
 use crate::kitchen::Kitchen;
 use crate::kitchen::compile::{SpecError, SpecFile};
 use crate::kitchen::layout::LayoutSpec;
@@ -126,7 +128,21 @@ pub fn read_kitchen(layout_path: &Path) -> FileResult<KitchenFiles> {
         let remedy = "the path of a recipe file, relative to the layout file".to_string();
         FileError::at(layout_path, &layout_text, Some(layout.recipes.span()), found, remedy)
     })?;
-    compile_kitchen((layout_path, layout_text), (&recipes_path, recipes_text))
+    let files = compile_kitchen((layout_path, layout_text), (&recipes_path, recipes_text))?;
+    check_keys(layout_path, &layout, &files)?;
+    Ok(files)
+}
+
+/// Whether the console can take the keys of a layout. Recordings need no such check: a replay takes none.
+fn check_keys(path: &Path, layout: &LayoutSpec, files: &KitchenFiles) -> FileResult<()> {
+    let Err(clash) = Keys::check(&files.kitchen) else { return Ok(()) };
+    let is_it = |key: &&Spanned<char>| *key.get_ref() == clash.key;
+    let key = match clash.layer {
+        Layer::Wizard => layout.signal_keys().map(|(_, key)| key).find(is_it),
+        Layer::Participant => layout.button_keys().find(is_it),
+    };
+    let remedy = "another key, a letter for instance".to_string();
+    Err(FileError::at(path, &files.layout.text, key.map(Spanned::span), clash.to_string(), remedy))
 }
 
 /// Compiles a kitchen from texts; the paths only serve error messages.
@@ -155,10 +171,69 @@ pub fn read_text(path: &Path) -> FileResult<String> {
         .map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))
 }
 
+/// The kinds of files that people write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Session,
+    Layout,
+    Recipes,
+}
+
+impl Kind {
+    /// What a text is by the tables in it, if it is any of them.
+    fn of(text: &str) -> Option<Kind> {
+        let table: toml::Table = text.parse().ok()?;
+        let has = |keys: &[&str]| keys.iter().any(|key| table.contains_key(*key));
+        match () {
+            () if has(&["recipes", "display", "storage", "place"]) => Some(Kind::Layout),
+            () if has(&["ingredient", "slot", "dish"]) => Some(Kind::Recipes),
+            () if has(&["layout"]) => Some(Kind::Session),
+            () => None,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Kind::Session => "a session file",
+            Kind::Layout => "a layout file",
+            Kind::Recipes => "a recipe file",
+        }
+    }
+
+    fn remedy(self) -> &'static str {
+        match self {
+            Kind::Session => "a session file, like sessions/default.toml",
+            Kind::Layout => "a layout file, like layouts/sushi.toml",
+            Kind::Recipes => "a recipe file, like recipes/sushi.toml",
+        }
+    }
+}
+
+/// What a file of one kind is parsed into.
+pub trait OfKind: DeserializeOwned {
+    /// The kind.
+    const KIND: Kind;
+}
+
+impl OfKind for SessionSpec {
+    const KIND: Kind = Kind::Session;
+}
+
+impl OfKind for LayoutSpec {
+    const KIND: Kind = Kind::Layout;
+}
+
+impl OfKind for RecipesSpec {
+    const KIND: Kind = Kind::Recipes;
+}
+
 /// Parses TOML into `T`.
-pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> FileResult<T> {
-    toml::from_str(text).map_err(|error| {
-        let remedy = "a file like those in layouts/, recipes/ and sessions/".to_string();
-        FileError::at(path, text, error.span(), error.message().to_string(), remedy)
+pub fn parse<T: OfKind>(path: &Path, text: &str) -> FileResult<T> {
+    toml::from_str(text).map_err(|error| match Kind::of(text).filter(|kind| *kind != T::KIND) {
+        Some(other) => FileError::at(path, text, None, other.name().to_string(), T::KIND.remedy().to_string()),
+        None => {
+            let remedy = "a file like those in layouts/, recipes/ and sessions/".to_string();
+            FileError::at(path, text, error.span(), error.message().to_string(), remedy)
+        }
     })
 }

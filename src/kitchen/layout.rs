@@ -107,6 +107,33 @@ pub struct LayoutSpec {
     pub storage: Vec<StorageSpec>,
 }
 
+impl LayoutSpec {
+    /// The locations with a signal, and the wizard's key for it.
+    pub fn signal_keys(&self) -> impl Iterator<Item = (&str, &Spanned<char>)> {
+        let orders = self.order.iter().map(|order| (&order.name, &order.signal));
+        let hands = self.hand.iter().map(|hand| (&hand.name, &hand.signal));
+        let places = self.place.iter().map(|place| (&place.name, &place.signal));
+        let all = orders.chain(hands).chain(places);
+        all.filter_map(|(name, key)| Some((name.get_ref().as_str(), key.as_ref()?)))
+    }
+
+    /// The human's keys for buttons.
+    pub fn button_keys(&self) -> impl Iterator<Item = &Spanned<char>> {
+        let orders = self.order.iter().map(|order| &order.serve);
+        let hands = self.hand.iter().map(|hand| &hand.trash);
+        let places = self.place.iter().map(|place| &place.button);
+        let processes = self.process.iter().map(|process| &process.button);
+        let storages = self.storage.iter().map(|storage| &storage.button);
+        let all = orders.chain(hands).chain(places).chain(processes).chain(storages);
+        all.filter_map(|button| button.key.as_ref())
+    }
+}
+
+/// Whether two characters are on the same key: capitals are on that of their small letters.
+pub fn is_same_key(a: char, b: char) -> bool {
+    a.to_lowercase().eq(b.to_lowercase())
+}
+
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DisplaySpec {

@@ -13,6 +13,7 @@ use super::figures::TrialFigures;
 use super::options::Beginning;
 use super::resume::{ResumeError, resume};
 use crate::base::time::SessionTime;
+use crate::base::words::count;
 use crate::console::model::{Level, Recording};
 use crate::console::{Command, Keys, Message, Model, update};
 use crate::edge::clock::{SessionClock, WallTime};
@@ -68,10 +69,11 @@ impl LiveEnd {
     /// What came of it, for people.
     pub fn describe(&self) -> String {
         let folder = self.folder.display();
-        let (presses, served) = (self.figures.human_actions + self.figures.robot_actions, self.figures.served.len());
-        let signals = self.figures.signals;
+        let presses = count(self.figures.human_actions + self.figures.robot_actions, "press", "presses");
+        let signals = count(self.figures.signals, "signal", "signals");
+        let served = count(self.figures.served.len() as u64, "order", "orders");
         format!(
-            "{presses} presses, {signals} signals, {served} orders served\nrecorded in {folder}\n\
+            "{presses}, {signals}, {served} served\nrecorded in {folder}\n\
              look at it again: tomcom replay {folder}"
         )
     }

@@ -9,6 +9,7 @@ use super::engine::Engine;
 use super::figures::{SimulationFigures, TrialFigures};
 use super::follower::Follower;
 use super::{headless, kitchen};
+use crate::base::words::count;
 use crate::edge::files::SessionFiles;
 use crate::edge::log::{LogWriter, WriteError, check_simulated};
 use crate::kitchen::Kitchen;
@@ -113,16 +114,19 @@ fn simulate_trial(
 
 /// The figures for people.
 pub fn describe(figures: &SimulationFigures) -> String {
-    let number = |value: Option<f64>| value.map_or("not known".to_string(), |value| format!("{value:.1}"));
+    let each = match (figures.presses_per_order, figures.optimal_presses_per_order) {
+        (Some(presses), Some(best)) => format!(", {presses:.1} presses each in the median (at best {best:.1})"),
+        _ => String::new(),
+    };
     let share = 100.0 * figures.errors as f64 / figures.human_actions.max(1) as f64;
     format!(
-        "{} trials of unassisted simulated participants, {:.0} s simulated in {:.1} s\n\
+        "{} of unassisted simulated participants, {:.0} s simulated in {:.1} s\n\
          presses: {} of the human, {} of the robot\n\
          errors: {} ({share:.1} % of the human's presses)\n\
          {}\n\
-         orders served: {}, {} presses each in the median (at best {})\n\
+         orders served: {}{each}\n\
          recordings:\n{}\n",
-        figures.trials,
+        count(figures.trials, "trial", "trials"),
         figures.simulated_s,
         figures.wall_s,
         figures.human_actions,
@@ -130,8 +134,6 @@ pub fn describe(figures: &SimulationFigures) -> String {
         figures.errors,
         figures.beliefs.describe(figures.errors),
         figures.orders_served,
-        number(figures.presses_per_order),
-        number(figures.optimal_presses_per_order),
         figures.recordings.iter().map(|path| format!("  {path}")).collect::<Vec<_>>().join("\n"),
     )
 }

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::figures::{BeliefFigures, TrialFigures};
 use super::follower::Follower;
+use crate::base::words::count;
 use crate::communication::Signal;
 use crate::kitchen::{Agent, Kitchen};
 use crate::measures::attribution::Cause;
@@ -51,21 +52,23 @@ impl RecordingFigures {
     pub fn describe(&self) -> String {
         let cut = if self.cut { "; it ends without its end event" } else { "" };
         format!(
-            "{} events, {:.0} s of trial{cut}\n{} presses of the human ({} errors), {} of the robot, {} signals, \
-             {} orders served\n{}\n",
-            self.events,
+            "{}, {:.0} s of trial{cut}\n{} of the human ({}), {} of the robot, {}, {} served\n{}\n",
+            count(self.events, "event", "events"),
             self.trial_s,
-            self.human_actions,
-            self.errors,
+            count(self.human_actions, "press", "presses"),
+            count(self.errors, "error", "errors"),
             self.robot_actions,
-            self.signals,
-            self.orders_served,
+            count(self.signals, "signal", "signals"),
+            count(self.orders_served, "order", "orders"),
             self.beliefs.describe(self.errors)
         )
     }
 }
 
-/// The line for an event that was just applied; none for gaze samples.
+/// What stands above the lines.
+pub const HEADING: &str = " trial time  what happened";
+
+/// The line for an event that was just applied, at the time of the trial's clock; none for gaze samples.
 pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
     let words = match &stamped.event {
         Event::Gaze(_) => return None,
@@ -96,7 +99,7 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::ParticipantBelieves(belief) => believes(belief),
         Event::SessionEnded => "session over".to_string(),
     };
-    Some(format!("{:>9.3} s  {words}", stamped.time.as_secs_f64()))
+    Some(format!("{:>9.3} s  {words}", follower.session.trial_clock(stamped.time).as_secs_f64()))
 }
 
 /// What the press of the human was worth, if it was just judged.
@@ -105,11 +108,8 @@ fn verdict(stamped: &Stamped, follower: &Follower) -> String {
     match (&stamped.event, judged) {
         (Event::Press { agent: Agent::Human, .. }, None) => " (does not count)".to_string(),
         (_, Some(press)) if press.verdict.error => {
-            format!(
-                " (error, costs {} presses{})",
-                press.verdict.excess,
-                because(press.cause, &follower.session.kitchen)
-            )
+            let costs = count(press.verdict.excess.unsigned_abs(), "press", "presses");
+            format!(" (error, costs {costs}{})", because(press.cause, &follower.session.kitchen))
         }
         (_, Some(press)) if press.verdict.race => " (race with the robot)".to_string(),
         _ => String::new(),

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::engine::Engine;
 use super::follower::Follower;
+use crate::base::words::count;
 use crate::edge::files::FileResult;
 use crate::edge::log::{LogLine, LogReader, at_line, event_line};
 use crate::kitchen::cost_to_go::CostToGo;
@@ -131,7 +132,11 @@ impl Again {
 pub fn describe(found: &Verification) -> String {
     let until = if found.cut { ", up to where it was cut" } else { "" };
     match &found.difference {
-        None if found.verified => format!("verified: {} events come out the same again{until}\n", found.events),
+        None if found.verified => {
+            let events = count(found.events, "event", "events");
+            let come = if found.events == 1 { "comes" } else { "come" };
+            format!("verified: {events} {come} out the same again{until}\n")
+        }
         None => "not verified: the re-run ends in another state than the recording\n".to_string(),
         Some(difference) => format!(
             "not verified: event {} ({}:{}) differs\n  recorded: {}\n  again:    {}\n",

@@ -196,9 +196,11 @@ fn json_message(error: &serde_json::Error) -> String {
 
 fn read_header(path: &Path, text: &str) -> FileResult<Header> {
     let wrong = |column: usize, found: String, remedy: String| at_line(path, 1, text, column, found, remedy);
-    let is_log = "a log written by tomcom: its first line is a header".to_string();
-    let value: serde_json::Value = serde_json::from_str(text)
-        .map_err(|error| wrong(error.column().saturating_sub(1), json_message(&error), is_log.clone()))?;
+    let is_log = "the folder of a recording, or the events.jsonl in it, as tomcom wrote it".to_string();
+    let value: serde_json::Value = serde_json::from_str(text).map_err(|error| match text.contains(FORMAT) {
+        true => wrong(error.column().saturating_sub(1), json_message(&error), is_log.clone()),
+        false => wrong(0, "a file that is no log of a session".to_string(), is_log.clone()),
+    })?;
     if value.get("format").and_then(|format| format.as_str()) != Some(FORMAT) {
         return Err(wrong(0, "no header of a tomcom log".to_string(), is_log));
     }

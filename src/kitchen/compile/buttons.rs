@@ -6,7 +6,7 @@ use super::contents::Items;
 use super::places::stored;
 use super::{Result, SpecFile, wrong, wrong_file};
 use crate::kitchen::action::{Action, Agent, Button};
-use crate::kitchen::layout::{ButtonSpec, LayoutSpec, Location, LocationId};
+use crate::kitchen::layout::{ButtonSpec, LayoutSpec, Location, LocationId, is_same_key};
 use crate::kitchen::recipe::{Process, RecipesSpec};
 
 /// The buttons of both agents: own storage, places, processes, own trash, orders.
@@ -74,8 +74,11 @@ fn button(agent: Agent, name: String, action: Action, spec: &ButtonSpec, others:
             return Err(wrong(SpecFile::Layout, spec.at_m.span(), found, "button = { at_m = [x, y], key = \"k\" }"));
         }
         (Agent::Human, Some(key)) => {
-            if key.get_ref().is_whitespace() || others.iter().any(|other| other.key == Some(*key.get_ref())) {
-                let found = format!("the key \"{}\" for \"{name}\"", key.get_ref());
+            let has_it = |other: &&Button| other.key.is_some_and(|other| is_same_key(other, *key.get_ref()));
+            let twin = others.iter().find(has_it);
+            if key.get_ref().is_whitespace() || twin.is_some() {
+                let whose = twin.map_or(String::new(), |other| format!(", which \"{}\" has already", other.name));
+                let found = format!("the key \"{}\" for \"{name}\"{whose}", key.get_ref());
                 return Err(wrong(SpecFile::Layout, key.span(), found, "a key of its own that is not the space bar"));
             }
             Some(*key.get_ref())

@@ -6,7 +6,9 @@ use super::contents::Items;
 use super::{MAX_ORDERS, MIN_GAP_M, Result, SpecFile, wrong, wrong_file};
 use crate::kitchen::action::Agent;
 use crate::kitchen::content::ContentId;
-use crate::kitchen::layout::{Area, LayoutSpec, Location, LocationId, LocationKind, PlaceSpec, Storage, StorageSpec};
+use crate::kitchen::layout::{
+    Area, LayoutSpec, Location, LocationId, LocationKind, PlaceSpec, Storage, StorageSpec, is_same_key,
+};
 use crate::kitchen::recipe::RecipesSpec;
 use crate::kitchen::state::MAX_LOCATIONS;
 
@@ -105,16 +107,15 @@ pub(super) fn check_gaps(layout: &LayoutSpec, locations: &[Location], display_m:
 
 /// Every signal key is there once.
 pub(super) fn check_signal_keys(layout: &LayoutSpec) -> Result<()> {
-    let orders = layout.order.iter().map(|order| &order.signal);
-    let hands = layout.hand.iter().map(|hand| &hand.signal);
-    let keys = orders.chain(hands).chain(layout.place.iter().map(|place| &place.signal)).flatten();
-    let mut seen: Vec<char> = Vec::new();
-    for key in keys {
-        if key.get_ref().is_whitespace() || seen.contains(key.get_ref()) {
-            let found = format!("signal = \"{}\"", key.get_ref());
+    let mut seen: Vec<(&str, char)> = Vec::new();
+    for (name, key) in layout.signal_keys() {
+        let twin = seen.iter().find(|(_, other)| is_same_key(*other, *key.get_ref()));
+        if key.get_ref().is_whitespace() || twin.is_some() {
+            let whose = twin.map_or(String::new(), |(other, _)| format!(", which \"{other}\" has already"));
+            let found = format!("signal = \"{}\" for \"{name}\"{whose}", key.get_ref());
             return Err(wrong(SpecFile::Layout, key.span(), found, "a key of its own that is not the space bar"));
         }
-        seen.push(*key.get_ref());
+        seen.push((name, *key.get_ref()));
     }
     Ok(())
 }

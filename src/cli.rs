@@ -6,11 +6,12 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use miette::MietteHandlerOpts;
 use serde::Serialize;
 
+use crate::edge::doctor;
 use crate::edge::files::{self, FileError};
 use crate::edge::log::WriteError;
 use crate::run::live::{self, LiveError};
@@ -47,6 +48,9 @@ enum Command {
     Replay(ReplayArgs),
     Simulate(SimulateArgs),
     Kitchen(KitchenArgs),
+    Doctor(DoctorArgs),
+    Completions(CompletionsArgs),
+    Man(ManArgs),
 }
 
 /// How figures are printed.
@@ -166,6 +170,35 @@ struct KitchenArgs {
     format: Format,
 }
 
+/// Checks terminal, place for recordings, and clocks; says how to mend what is not as it should be.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exit code 0: the program works here. 1: something is broken.\nExample: tomcom doctor --out recordings"
+)]
+struct DoctorArgs {
+    /// Where the recordings would go.
+    #[arg(long, default_value = "sessions")]
+    out: PathBuf,
+    /// How to print what was found.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+}
+
+/// Prints the completions of a shell.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom completions bash > ~/.local/share/bash-completion/completions/tomcom")]
+struct CompletionsArgs {
+    shell: clap_complete::Shell,
+}
+
+/// Prints the man page of the program or of one of its commands.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom man operate | man -l -")]
+struct ManArgs {
+    /// The command.
+    command: Option<String>,
+}
+
 /// Why a command did not do what was asked.
 #[derive(Debug)]
 enum Failure {
@@ -230,6 +263,9 @@ pub fn main() -> ExitCode {
         Command::Replay(args) => replay(&args),
         Command::Simulate(args) => simulate(&args),
         Command::Kitchen(args) => kitchen(&args),
+        Command::Doctor(args) => examine(&args),
+        Command::Completions(args) => completions(&args),
+        Command::Man(args) => man(&args),
     };
     let (code, report) = match done {
         Ok(()) | Err(Failure::Unread) => return ExitCode::SUCCESS,
@@ -341,6 +377,36 @@ fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
     let kitchen = Arc::new(files::read_kitchen(&args.layout)?.kitchen);
     let figures = kitchen::KitchenFigures::of(&kitchen);
     print(args.format, &figures, || kitchen::describe(&kitchen, &figures))
+}
+
+fn examine(args: &DoctorArgs) -> Result<(), Failure> {
+    let found = doctor::examine(&args.out);
+    print(args.format, &found, || doctor::describe(&found))?;
+    if found.healthy { Ok(()) } else { Err(Failure::No) }
+}
+
+fn completions(args: &CompletionsArgs) -> Result<(), Failure> {
+    let mut text = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), "tomcom", &mut text);
+    Ok(std::io::stdout().write_all(&text)?)
+}
+
+fn man(args: &ManArgs) -> Result<(), Failure> {
+    let mut root = Cli::command();
+    root.build();
+    let page = match &args.command {
+        None => root,
+        Some(name) => match root.find_subcommand(name) {
+            Some(command) => command.clone(),
+            None => {
+                let help = "one of those that tomcom --help lists";
+                return Err(Failure::Wrong(miette::miette!(help = help, "found {name}, which is no command")));
+            }
+        },
+    };
+    let mut text = Vec::new();
+    clap_mangen::Man::new(page).render(&mut text)?;
+    Ok(std::io::stdout().write_all(&text)?)
 }
 
 fn wrong_argument(path: &Path, found: String, remedy: &str) -> Failure {

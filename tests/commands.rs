@@ -161,3 +161,35 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     complaint(&["simulate", "sessions/default.toml", "--trials", "0"]);
     complaint(&["dance"]);
 }
+
+#[test]
+fn doctor_looks_at_the_machine_and_says_how_to_mend_it() {
+    let out = folder("doctor");
+    let found = figures(&["doctor", "--out", &out.join("new").display().to_string(), "--format", "json"], 1);
+    let checks = found["checks"].as_array().expect("checks");
+    let verdict = |name: &str| {
+        checks.iter().find(|check| check["name"] == name).map(|check| check["verdict"].as_str().unwrap_or_default())
+    };
+    // Through a pipe there is no terminal, which the console needs.
+    assert_eq!((&found["healthy"], verdict("terminal")), (&Value::Bool(false), Some("broken")));
+    assert_eq!((verdict("recordings"), verdict("wall clock")), (Some("fine"), Some("fine")));
+    assert!(fs::read_dir(&out).expect("the folder").next().is_none(), "it leaves nothing behind");
+    for check in checks {
+        assert_eq!(check["remedy"].is_string(), check["verdict"] != "fine", "{check}");
+    }
+    let told = check(&["doctor", "--out", "/proc/nowhere"], 1);
+    assert!(String::from_utf8_lossy(&told.stdout).contains("BROKEN  recordings"), "{told:?}");
+}
+
+#[test]
+fn completions_and_man_pages_know_every_command() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let text = String::from_utf8_lossy(&check(&["completions", shell], 0).stdout).into_owned();
+        assert!(text.contains("simulate") && text.contains("doctor"), "{shell}");
+    }
+    let page = String::from_utf8_lossy(&check(&["man"], 0).stdout).into_owned();
+    assert!(page.contains("tomcom\\-operate") || page.contains("tomcom-operate"), "{page}");
+    let page = String::from_utf8_lossy(&check(&["man", "operate"], 0).stdout).into_owned();
+    assert!(page.contains("RECORDING") && page.contains(".TH tomcom-operate"), "{page}");
+    complaint(&["man", "dance"]);
+}

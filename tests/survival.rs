@@ -160,7 +160,6 @@ fn a_recording_is_written_by_one_program_and_continued_once() {
 
 /// After the alarm: the robot is stopped, the session over, everything that the log had before is there, and verifies.
 fn is_over(terminal: &Terminal, before: &str, recording: &Path) {
-    terminal.see("resume robot");
     terminal.see("ROBOT STOPPED");
     terminal.see("CLOSED");
     let after = fs::read_to_string(recording.join(LOG_NAME)).expect("a log");
@@ -288,4 +287,13 @@ fn a_program_that_stood_still_goes_on_where_it_was_and_the_log_says_so() {
     assert!(widest < 1_500_000_000, "session time went on for {widest} ns");
     terminal.quit();
     terminal.verifies();
+}
+
+#[test]
+fn a_terminal_that_is_fine_is_found_fine() {
+    let Some(terminal) = Terminal::open("doctor") else { return };
+    terminal.run(&format!("{TOMCOM} doctor --out {}/recordings", terminal.folder.display()));
+    terminal.is_whole("0");
+    terminal.see("120x40");
+    terminal.see("can be written to");
 }

@@ -1,6 +1,7 @@
 //! Everything that touches the outside: files, terminal, network, clock.
 
 pub mod clock;
+pub mod doctor;
 pub mod files;
 pub mod gaze_json;
 pub mod log;

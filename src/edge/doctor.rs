@@ -1,0 +1,248 @@
+//! What the program needs of the machine that it runs on: terminal, a place for recordings, clocks. Every finding says
+//! how to mend it.
+
+use std::fs;
+use std::io::{self, IsTerminal, Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::channel;
+use std::time::{Duration, Instant};
+
+use crossterm::style::available_color_count;
+use crossterm::terminal::{disable_raw_mode, enable_raw_mode, size, supports_keyboard_enhancement};
+use serde::Serialize;
+
+use super::clock::WallTime;
+use super::log::Lock;
+use super::terminal::theme;
+
+/// The console breathes from here on, in columns and rows.
+const ROOMY: (u16, u16) = (120, 40);
+/// It works from here on.
+const WORKABLE: (u16, u16) = (80, 24);
+/// A session of a quarter of an hour takes about 10 MB: with less than the first there is room for some, with less than
+/// the second there may not be for one.
+const FREE_BYTES: (u64, u64) = (1 << 30, 50 << 20);
+/// A terminal answers within milliseconds, over a network within a second.
+const ANSWER: Duration = Duration::from_secs(1);
+/// The program is written after this date; a clock that shows an earlier one is not set.
+const WRITTEN: &str = "2025-01-01";
+
+/// How something was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    Fine,
+    /// The program works, but less well.
+    Weak,
+    /// The program does not work so.
+    Broken,
+}
+
+/// One thing that was looked at.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Check {
+    pub name: &'static str,
+    pub verdict: Verdict,
+    pub found: String,
+    /// How to mend it, unless it is fine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub remedy: Option<&'static str>,
+}
+
+/// What `tomcom doctor` found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Findings {
+    /// Nothing is broken.
+    pub healthy: bool,
+    pub checks: Vec<Check>,
+}
+
+impl Check {
+    fn new(name: &'static str, verdict: Verdict, found: impl Into<String>, remedy: &'static str) -> Check {
+        Check { name, verdict, found: found.into(), remedy: (verdict != Verdict::Fine).then_some(remedy) }
+    }
+}
+
+/// Looks at everything; `out` is where recordings would go.
+pub fn examine(out: &Path) -> Findings {
+    let mut checks = terminal();
+    checks.push(folder(out));
+    checks.push(space(out));
+    checks.extend([wall_clock(), timer()]);
+    let healthy = checks.iter().all(|check| check.verdict != Verdict::Broken);
+    Findings { healthy, checks }
+}
+
+/// The findings for people.
+pub fn describe(findings: &Findings) -> String {
+    let line = |check: &Check| {
+        let mark = match check.verdict {
+            Verdict::Fine => "ok    ",
+            Verdict::Weak => "weak  ",
+            Verdict::Broken => "BROKEN",
+        };
+        let remedy = check.remedy.map_or(String::new(), |remedy| format!("{:26}mend: {remedy}\n", ""));
+        format!("{mark}  {:<16}  {}\n{remedy}", check.name, check.found)
+    };
+    findings.checks.iter().map(line).collect()
+}
+
+fn terminal() -> Vec<Check> {
+    if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
+        let remedy = "run it in a terminal, not through a pipe";
+        return vec![Check::new("terminal", Verdict::Broken, "input or output is no terminal", remedy)];
+    }
+    let mut checks = vec![screen_size(), colours()];
+    let keys = match supports_keyboard_enhancement() {
+        Ok(true) => (Verdict::Fine, "the terminal reports them: a held key is told from a second press"),
+        _ => (Verdict::Weak, "the terminal does not report them: a held key is told from a second press by time"),
+    };
+    let remedy = "a terminal with the kitty keyboard protocol (kitty, foot, WezTerm, Ghostty), without a multiplexer";
+    checks.push(Check::new("key releases", keys.0, keys.1, remedy));
+    let mouse = match mouse_mode() {
+        Some(true) => (Verdict::Fine, "the terminal knows mouse reports (SGR)"),
+        Some(false) => (Verdict::Weak, "the terminal does not know mouse reports (SGR)"),
+        None => (Verdict::Weak, "the terminal does not say whether it knows mouse reports"),
+    };
+    checks.push(Check::new(
+        "mouse",
+        mouse.0,
+        mouse.1,
+        "matters for --gaze mouse only: try it, or take another terminal",
+    ));
+    checks
+}
+
+fn screen_size() -> Check {
+    let (columns, rows) = size().unwrap_or_default();
+    let fits = |least: (u16, u16)| columns >= least.0 && rows >= least.1;
+    let verdict = match (fits(ROOMY), fits(WORKABLE)) {
+        (true, _) => Verdict::Fine,
+        (_, true) => Verdict::Weak,
+        _ => Verdict::Broken,
+    };
+    Check::new(
+        "terminal size",
+        verdict,
+        format!("{columns}x{rows}"),
+        "a larger window or a smaller font: 120x40, at least 80x24",
+    )
+}
+
+fn colours() -> Check {
+    let (theme, count) = (theme(false), available_color_count());
+    let signs = if theme.unicode { "Unicode signs" } else { "ASCII signs" };
+    let remedy =
+        "TERM=xterm-256color, no NO_COLOR, and a UTF-8 locale such as LC_ALL=C.UTF-8, if the terminal has them";
+    let found = match theme.colour {
+        true => format!("{} colours, {signs}", if count > 256 { "16 million".to_string() } else { count.to_string() }),
+        false => format!("no colours (NO_COLOR is set), {signs}"),
+    };
+    let verdict = if theme.colour && theme.unicode && count >= 8 { Verdict::Fine } else { Verdict::Weak };
+    Check::new("colours", verdict, found, remedy)
+}
+
+/// Whether the terminal knows mouse reports, if it answers that (DECRQM); the second question is one that all answer.
+fn mouse_mode() -> Option<bool> {
+    enable_raw_mode().ok()?;
+    let answer = ask("\x1b[?1006$p\x1b[c");
+    let _ = disable_raw_mode();
+    let answer = answer?;
+    let state = answer.split("\x1b[?1006;").nth(1)?.chars().next()?;
+    Some(state != '0')
+}
+
+/// Writes to the terminal and reads what it answers, to the end of a device attributes report.
+fn ask(question: &str) -> Option<String> {
+    let mut terminal = fs::OpenOptions::new().read(true).write(true).open("/dev/tty").ok()?;
+    terminal.write_all(question.as_bytes()).ok()?;
+    let (sender, receiver) = channel();
+    // It may wait for ever, and ends with the program.
+    std::thread::spawn(move || {
+        let mut answer = Vec::new();
+        let mut byte = [0];
+        while terminal.read(&mut byte).is_ok_and(|count| count == 1) {
+            answer.push(byte[0]);
+            if byte[0] == b'c' {
+                break;
+            }
+        }
+        sender.send(String::from_utf8_lossy(&answer).into_owned())
+    });
+    receiver.recv_timeout(ANSWER).ok()
+}
+
+/// The nearest folder above that is there.
+fn existing(out: &Path) -> PathBuf {
+    let there = out.ancestors().find(|folder| folder.is_dir());
+    there.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_path_buf()
+}
+
+/// Writes where recordings would be written, and takes it away again.
+fn folder(out: &Path) -> Check {
+    let probe = existing(out).join(format!(".tomcom-doctor-{}", std::process::id()));
+    let tried = fs::create_dir(&probe).map_err(|reason| reason.to_string()).and_then(|()| {
+        let _lock = Lock::take(&probe).map_err(|error| error.to_string())?;
+        let began = Instant::now();
+        let mut file = fs::File::create(probe.join("probe")).map_err(|reason| reason.to_string())?;
+        let written = file.write_all(&[b'x'; 1 << 16]).and_then(|()| file.sync_all());
+        written.map(|()| began.elapsed()).map_err(|reason| reason.to_string())
+    });
+    let _ = fs::remove_dir_all(&probe);
+    let remedy = "a folder that can be written to, with --out";
+    match tried {
+        Ok(took) => {
+            let found = format!("{} can be written to (64 KiB on the disk in {} ms)", out.display(), took.as_millis());
+            Check::new("recordings", Verdict::Fine, found, remedy)
+        }
+        Err(reason) => Check::new("recordings", Verdict::Broken, format!("{}: {reason}", out.display()), remedy),
+    }
+}
+
+fn space(out: &Path) -> Check {
+    let remedy = "free space on this disk, or another one with --out";
+    let Ok(free) = free_bytes(&existing(out)) else {
+        return Check::new("free space", Verdict::Weak, "the system does not say how much there is", remedy);
+    };
+    let verdict = match free {
+        free if free >= FREE_BYTES.0 => Verdict::Fine,
+        free if free >= FREE_BYTES.1 => Verdict::Weak,
+        _ => Verdict::Broken,
+    };
+    Check::new("free space", verdict, format!("{} MB for {}", free / 1_000_000, out.display()), remedy)
+}
+
+#[cfg(unix)]
+fn free_bytes(folder: &Path) -> io::Result<u64> {
+    let found = rustix::fs::statvfs(folder)?;
+    Ok(found.f_bavail.saturating_mul(found.f_frsize))
+}
+
+#[cfg(not(unix))]
+fn free_bytes(_: &Path) -> io::Result<u64> {
+    Err(io::ErrorKind::Unsupported.into())
+}
+
+fn wall_clock() -> Check {
+    let now = WallTime::now();
+    let verdict = if now.date().as_str() >= WRITTEN { Verdict::Fine } else { Verdict::Broken };
+    let remedy = "set the clock: recordings are named by date (session time does not depend on it)";
+    Check::new("wall clock", verdict, now.rfc3339(), remedy)
+}
+
+/// Whether the machine wakes a program in time: presses and gaze are stamped when it is awake.
+fn timer() -> Check {
+    let late = (0..20).map(|_| {
+        let began = Instant::now();
+        std::thread::sleep(Duration::from_millis(5));
+        began.elapsed().saturating_sub(Duration::from_millis(5))
+    });
+    let late_ms = late.max().unwrap_or_default().as_secs_f64() * 1000.0;
+    let verdict = if late_ms < 20.0 { Verdict::Fine } else { Verdict::Weak };
+    Check::new(
+        "timer",
+        verdict,
+        format!("wakes at most {late_ms:.1} ms late"),
+        "end what else keeps the processor busy",
+    )
+}

@@ -225,7 +225,7 @@ impl Assignment {
         }
         if self.assembles && unused(ground.board) {
             in_the_way += 1;
-            kept |= self.needs & 3 != 3;
+            kept = true;
         }
         for (index, &station) in ground.journeys.stations.iter().enumerate() {
             let needs = self.station_needs[index];

@@ -186,7 +186,8 @@ impl CostToGo {
         }
         self.counts.searches += 1;
         let best = Search::run(self, slot, goal, state, rating.lower, upper, search::NEAR);
-        match best < rating.lower + 2 {
+        // One press above the bound is common with two targets, and then mostly exact.
+        match best < rating.lower + goal.targets.len() as u32 {
             true => best,
             false => Search::run(self, slot, goal, state, rating.lower, best, search::FAR),
         }

@@ -22,7 +22,7 @@ pub struct Reach {
 }
 
 /// Enough for 99 % of the states met in sessions and 95 % of those after random presses.
-pub const NEAR: Reach = Reach { expansions: 32, takes: false };
+pub const NEAR: Reach = Reach { expansions: 48, takes: false };
 /// For what is left two presses or more above the bound.
 pub const FAR: Reach = Reach { expansions: 24, takes: true };
 

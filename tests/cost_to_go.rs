@@ -1,0 +1,183 @@
+//! Cost to go against exact search, on states met in sessions and on states full of obstacles.
+//!
+//! Exact search takes up to seconds a state, so its results are kept in `tests/oracle/`: a line a state, with the least
+//! presses for the first order and for all orders. Some of them are searched again in every run; all of them by
+//! `cargo test --release --test cost_to_go -- --ignored`.
+
+mod oracle;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use oracle::Oracle;
+use rand::RngExt;
+use tomcom::base::rng::stream;
+use tomcom::base::time::SessionTime;
+use tomcom::edge::files::read_kitchen;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
+use tomcom::run::engine::Engine;
+use tomcom::run::options::session_or_default;
+use tomcom::session::{Event, Phase};
+
+/// States a sample.
+const STATES: usize = 1000;
+/// How many of them are searched again in every run.
+const SEARCHED_AGAIN: usize = 4;
+
+fn kitchen(name: &str) -> Arc<Kitchen> {
+    Arc::new(read_kitchen(Path::new(&format!("layouts/{name}.toml"))).expect("the kitchen loads").kitchen)
+}
+
+/// States after 60 random presses of both agents, with random orders: full of obstacles.
+fn scrambled(kitchen: &Arc<Kitchen>) -> Vec<State> {
+    let one = |index| {
+        let mut random = stream(1, "scrambled", index as u64);
+        let mut state = kitchen.empty_state();
+        for &order in &kitchen.orders {
+            state.set_order(order, OrderContent::Dish(DishId(random.random_range(0..kitchen.dishes.len()) as u8)));
+        }
+        for _ in 0..60 {
+            let agent = Agent::BOTH[random.random_range(0..2)];
+            let button = ButtonId(random.random_range(0..kitchen.buttons[agent.index()].len()) as u8);
+            state = kitchen.press(state, &kitchen.true_recipes(), agent, button).unwrap_or(state);
+        }
+        state
+    };
+    (0..STATES).map(one).collect()
+}
+
+/// Different states that simulated sessions went through, a few from every trial.
+fn met(kitchen: &Arc<Kitchen>) -> Vec<State> {
+    let mut spec = session_or_default(None).expect("the default session").spec;
+    spec.seed = 3;
+    let mut states: Vec<State> = Vec::new();
+    for trial in 0.. {
+        let mut engine = Engine::new(kitchen.clone(), spec.clone(), trial, CostToGo::new(kitchen.clone()));
+        let _ = engine.input(SessionTime::ZERO, Event::TrialStarted);
+        let mut of_trial = Vec::new();
+        while engine.session().phase == Phase::Running {
+            engine.fire();
+            let state = engine.session().state;
+            if of_trial.last() != Some(&state) && kitchen.wanted(state).next().is_some() {
+                of_trial.push(state);
+            }
+        }
+        for state in of_trial.into_iter().step_by(4) {
+            if !states.contains(&state) {
+                states.push(state);
+            }
+            if states.len() == STATES {
+                return states;
+            }
+        }
+    }
+    states
+}
+
+fn file(kitchen: &str, sample: &str) -> PathBuf {
+    PathBuf::from(format!("tests/oracle/{kitchen}_{sample}.txt"))
+}
+
+/// States with their exact costs: of the first order, and of all.
+fn read(path: &Path) -> Vec<(State, u32, u32)> {
+    let text = std::fs::read_to_string(path).expect("the exact costs are there");
+    let line = |line: &str| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let bits = u128::from_str_radix(words[0], 16).expect("a state").to_le_bytes();
+        let mut state = State::default();
+        for (index, &code) in bits.iter().enumerate() {
+            state.set_code(LocationId(index as u8), code);
+        }
+        (state, words[1].parse().expect("presses"), words[2].parse().expect("presses"))
+    };
+    text.lines().filter(|line| !line.starts_with('#')).map(line).collect()
+}
+
+/// At least `least_exact` of the states have exactly the cost of the exact search, and none is more than `most_off` off.
+fn check(kitchen_name: &str, sample: &str, least_exact: f64, most_off: u32) {
+    let kitchen = kitchen(kitchen_name);
+    let recipes = kitchen.true_recipes();
+    let known = read(&file(kitchen_name, sample));
+    let mut oracle = Oracle::new(&kitchen);
+    for (state, first, all) in known.iter().step_by(known.len() / SEARCHED_AGAIN) {
+        assert_eq!(oracle.cost(*state, &recipes, &kitchen.orders[..1]), Some(*first));
+        assert_eq!(oracle.cost(*state, &recipes, &kitchen.orders), Some(*all));
+    }
+    let mut cost = CostToGo::new(kitchen.clone());
+    let judge = |what: &str, off: Vec<u32>| {
+        let exact = off.iter().filter(|&&off| off == 0).count() as f64 / off.len() as f64;
+        let most = off.iter().max().copied().unwrap_or(0);
+        println!("{kitchen_name}, states {sample}, {what}: {} states, exact {exact:.4}, at most {most} off", off.len());
+        assert!(known.len() == STATES && exact >= least_exact && most <= most_off);
+    };
+    let first =
+        |(state, first, _): &(State, u32, u32)| cost.order(*state, &recipes, kitchen.orders[0]).abs_diff(*first);
+    judge("one order", known.iter().map(first).collect());
+    let all = |(state, _, all): &(State, u32, u32)| cost.all_orders(*state, &recipes).abs_diff(*all);
+    judge("all orders", known.iter().map(all).collect());
+}
+
+#[test]
+fn sushi_states_met_in_sessions() {
+    check("sushi", "met", 0.99, 1);
+}
+
+#[test]
+fn sushi_states_after_random_presses() {
+    check("sushi", "scrambled", 0.95, 2);
+}
+
+#[test]
+fn burger_states_met_in_sessions() {
+    check("burger", "met", 0.99, 1);
+}
+
+#[test]
+fn burger_states_after_random_presses() {
+    check("burger", "scrambled", 0.95, 2);
+}
+
+#[test]
+fn a_decision_is_what_its_single_values_are() {
+    for name in ["sushi", "burger"] {
+        let kitchen = kitchen(name);
+        let recipes = kitchen.true_recipes();
+        let (mut together, mut single) = (CostToGo::new(kitchen.clone()), CostToGo::new(kitchen.clone()));
+        for (state, agent) in scrambled(&kitchen).into_iter().zip(Agent::BOTH.into_iter().cycle()).take(200) {
+            let here = single.all_orders(state, &recipes);
+            for button in 0..kitchen.buttons[agent.index()].len() {
+                let next = kitchen.press(state, &recipes, agent, ButtonId(button as u8));
+                let after = next.map_or(here, |next| single.all_orders(next, &recipes));
+                assert_eq!(u32::from(together.decision(state, &recipes, agent).after[button]), after);
+            }
+            assert_eq!(u32::from(together.decision(state, &recipes, agent).here), here);
+        }
+    }
+}
+
+#[test]
+#[ignore = "searches all states again: minutes in release"]
+fn write_exact_costs() {
+    for (name, sample) in [("burger", "met"), ("burger", "scrambled"), ("sushi", "met"), ("sushi", "scrambled")] {
+        let kitchen = kitchen(name);
+        let recipes = kitchen.true_recipes();
+        let states = if sample == "met" { met(&kitchen) } else { scrambled(&kitchen) };
+        let search = |states: &[State]| -> String {
+            let mut oracle = Oracle::new(&kitchen);
+            let line = |state: &State| {
+                let mut exact = |orders| oracle.cost(*state, &recipes, orders).expect("within the oracle's limit");
+                format!("{:x} {} {}\n", state.bits(), exact(&kitchen.orders[..1]), exact(&kitchen.orders))
+            };
+            states.iter().map(line).collect()
+        };
+        let halves = states.split_at(states.len() / 2);
+        let lines = std::thread::scope(|scope| {
+            let first = scope.spawn(|| search(halves.0));
+            let second = search(halves.1);
+            first.join().expect("the other half is searched") + &second
+        });
+        let text = format!("# state, least presses for the first order, for all orders\n{lines}");
+        std::fs::write(file(name, sample), text).expect("the file can be written");
+    }
+}

@@ -332,3 +332,16 @@ fn check_bad(case: &Path, bad: &Bad) -> String {
         None => panic!("{}: no error", case.display()),
     }
 }
+
+#[test]
+fn a_kitchen_that_is_too_large_is_refused() {
+    let path = Path::new("layouts/sushi.toml");
+    let mut layout = std::fs::read_to_string(path).expect("the layout is there");
+    for accepts in ["[\"bases\"]", "[\"ingredients\"]", "[\"ingredients\", \"dishes\"]"] {
+        layout = layout.replace(&format!("accepts = {accepts}"), "accepts = [\"anything\"]");
+    }
+    let recipes = std::fs::read_to_string("recipes/sushi.toml").expect("the recipes are there");
+    let refused = compile_kitchen((path, layout), (Path::new("recipes/sushi.toml"), recipes));
+    let message = refused.expect_err("37^8 is too many").to_string();
+    assert!(message.contains("3512479453921 ways to fill the locations"), "{message}");
+}

@@ -10,8 +10,10 @@ use std::ops::Range;
 use toml::Spanned;
 
 use super::Kitchen;
+use super::action::Button;
 use super::aspect::{Aspect, AspectKind};
 use super::content::{Content, ContentId};
+use super::cost_to_go::MAX_BUTTONS;
 use super::layout::{LayoutSpec, Location, LocationId, LocationKind};
 use super::recipe::{Dish, DishId, Process, RecipesSpec};
 use super::rules::Tables;
@@ -20,6 +22,10 @@ use contents::Items;
 
 /// At most so many orders at a time; the cost to go is exact for one and for two.
 pub const MAX_ORDERS: usize = 2;
+/// At most so many ways to fill the locations other than orders: the keys of the cost to go have so many numbers.
+const MAX_STATES: u128 = 1 << 40;
+/// At most so many places where something is processed.
+const MAX_STATIONS: usize = 8;
 /// Locations on the display keep at least this distance, so that gaze can tell them apart.
 pub const MIN_GAP_M: f64 = 0.15;
 
@@ -74,6 +80,7 @@ impl Kitchen {
         let display_m = [*layout.display.width_m.get_ref(), *layout.display.height_m.get_ref()];
         places::check_gaps(layout, &locations, display_m)?;
         places::check_signal_keys(layout)?;
+        check_size(&locations, &tables, &buttons, &processes)?;
         dishes::check_obtainable(recipes, layout, &items, &processes)?;
         Ok(Kitchen {
             name: layout.name.clone(),
@@ -96,6 +103,36 @@ impl Kitchen {
             tables,
         })
     }
+}
+
+/// What the cost to go can number: its keys and its lines have a fixed size.
+fn check_size(
+    locations: &[Location],
+    tables: &Tables,
+    buttons: &[Vec<Button>; 2],
+    processes: &[Process],
+) -> Result<()> {
+    let too_large = |found: String, most: String| Err(wrong_file(SpecFile::Layout, found, most));
+    let accepted = tables.accepts.chunks(tables.width).zip(locations);
+    let physical = accepted.filter(|(_, location)| location.kind != LocationKind::Order);
+    let contents = physical.map(|(row, _)| 1 + row.iter().filter(|accepted| **accepted).count() as u128);
+    let states = contents.fold(1u128, u128::saturating_mul);
+    if states > MAX_STATES {
+        return too_large(
+            format!("{states} ways to fill the locations"),
+            format!("at most {MAX_STATES}: fewer locations, or places that accept less"),
+        );
+    }
+    if let Some(list) = buttons.iter().find(|list| list.len() > MAX_BUTTONS) {
+        return too_large(format!("{} buttons of one agent", list.len()), format!("at most {MAX_BUTTONS}"));
+    }
+    let mut stations: Vec<LocationId> = processes.iter().filter_map(|process| process.place).collect();
+    stations.sort_unstable();
+    stations.dedup();
+    if stations.len() > MAX_STATIONS {
+        return too_large(format!("{} places of a process", stations.len()), format!("at most {MAX_STATIONS}"));
+    }
+    Ok(())
 }
 
 fn positive(value: &Spanned<f64>, name: &str) -> Result<()> {

@@ -12,13 +12,14 @@ use tomcom::edge::files::{SessionFiles, read_session};
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::gaze::GazeSample;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, Kitchen};
+use tomcom::kitchen::{Agent, Kitchen, LocationId};
 use tomcom::run::engine::Engine;
 use tomcom::run::replay::Replay;
 use tomcom::run::review::Film;
 use tomcom::run::simulate::{Simulation, simulate};
 use tomcom::run::verify::verify;
 use tomcom::session::event::{EndReason, SignalEnd};
+use tomcom::session::header::VERSION;
 use tomcom::session::settings::{GazeSource, ParticipantKind};
 use tomcom::session::{Event, Header, Phase};
 
@@ -246,6 +247,40 @@ fn what_is_broken_is_named_with_its_line_and_what_would_be_right() {
     refused(&log, 3, &["order_hidden"], line(3, "order_shown", "order_hidden"));
     refused(&log, 3, &["after 500000000", "never decrease"], line(3, "\"t_ns\":500000000", "\"t_ns\":4"));
     refused(&log, 3, &["the trial was started already"], line(3, "order_shown", "trial_started"));
+}
+
+/// What a replay came to, in lines.
+fn summary(replay: &Replay) -> String {
+    let (session, kitchen) = (replay.session(), &replay.log().kitchen);
+    let mut lines = vec![
+        format!("{:?} at {:.3} s", session.phase, session.time.as_secs_f64()),
+        format!("presses {:?}, errors {}", session.presses, replay.follower.errors()),
+        format!("served {}, on the timeline {}", session.served.len(), session.timeline.len()),
+        format!("gaze {}, unusable {}", session.gaze.samples, session.gaze.unusable),
+    ];
+    let places = kitchen.locations.iter().enumerate();
+    lines.extend(places.map(|(index, location)| {
+        format!("{}: {}", location.name, kitchen.content_label(session.state, LocationId(index as u8)))
+    }));
+    lines.join("\n")
+}
+
+#[test]
+fn recordings_of_every_format_replay_to_what_they_replayed_to() {
+    let entries = fs::read_dir("tests/golden").expect("the golden recordings");
+    let mut logs: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    logs.sort();
+    for version in 1..=VERSION {
+        let format = format!("format-{version}-");
+        let is_there = logs.iter().any(|log| log.display().to_string().contains(&format));
+        assert!(is_there, "a golden recording of format version {version}");
+    }
+    for log in logs {
+        let mut replay = Replay::open(&log).expect("a golden recording");
+        replay.run().unwrap_or_else(|error| panic!("{error}"));
+        let name = log.file_stem().expect("a name").to_string_lossy().into_owned();
+        insta::assert_snapshot!(name, summary(&replay));
+    }
 }
 
 #[test]

@@ -14,11 +14,11 @@ use serde::Serialize;
 use crate::edge::doctor;
 use crate::edge::files::{self, FileError};
 use crate::edge::log::WriteError;
-use crate::run::live::{self, LiveError};
+use crate::run::live::LiveError;
 use crate::run::options::{self, Beginning, Overrides};
 use crate::run::replay::Replay;
 use crate::run::review::{self, ReviewError};
-use crate::run::{kitchen, simulate, tell, verify};
+use crate::run::{kitchen, series, simulate, tell, verify};
 use crate::session::settings::{Condition, GazeSource, ParticipantKind};
 
 /// Exit code: something failed.
@@ -292,9 +292,8 @@ fn operate(args: &OperateArgs) -> Result<(), Failure> {
         Some(recording) => Beginning::Continued(recording.clone()),
         None => new_session(args)?,
     };
-    let end = live::operate(beginning)?;
-    writeln!(std::io::stdout(), "{}", end.describe())?;
-    Ok(())
+    let done = series::operate(beginning)?;
+    Ok(write!(std::io::stdout(), "{}", series::describe(&done))?)
 }
 
 fn new_session(args: &OperateArgs) -> Result<Beginning, Failure> {

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use tokio::sync::mpsc::Receiver;
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
+use super::desk::{Arrival, Desk};
 use super::engine::Engine;
 use super::figures::TrialFigures;
 use super::options::Beginning;
@@ -17,13 +17,13 @@ use crate::base::words::count;
 use crate::console::model::{Level, Recording};
 use crate::console::{Command, Keys, Message, Model, update};
 use crate::edge::clock::{SessionClock, WallTime};
-use crate::edge::gaze_json::{self, GazeLine};
+use crate::edge::gaze_json::GazeLine;
 use crate::edge::log::{Lock, LogWriter, WriteError};
-use crate::edge::terminal::{Hands, Screen, asked_to_end, outlive_file_limits, theme};
+use crate::edge::terminal::{Screen, theme};
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::settings::GazeSource;
-use crate::session::{Event, Header, Stamped};
+use crate::session::{Event, Header, SessionSpec, Stamped};
 
 /// At most 30 frames a second.
 const FRAME: Duration = Duration::from_millis(33);
@@ -79,16 +79,7 @@ impl LiveEnd {
     }
 }
 
-/// Runs a session at the console until the wizard quits.
-///
-/// # Errors
-/// There is no terminal, the session cannot be recorded, or the gaze input cannot be opened.
-pub fn operate(beginning: Beginning) -> Result<LiveEnd, LiveError> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(LiveError::Terminal)?;
-    // Opened inside, since signals and sockets belong to the runtime.
-    runtime.block_on(async { Live::open(beginning).await?.run().await })
-}
-
+/// A recording that is run at the desk.
 struct Live {
     engine: Engine,
     model: Model,
@@ -97,9 +88,6 @@ struct Live {
     _before: Option<Lock>,
     /// The log cannot be written any more.
     failed: Option<WriteError>,
-    screen: Screen,
-    /// Lines of the tracker's program, if the gaze comes from one.
-    gaze: Option<Receiver<GazeLine>>,
     clock: SessionClock,
     /// How many judged presses the model knows.
     judged: usize,
@@ -108,7 +96,7 @@ struct Live {
 }
 
 /// A session that is about to be run and recorded.
-struct Begun {
+pub(super) struct Begun {
     engine: Engine,
     header: Header,
     /// What belongs at the beginning of the recording.
@@ -125,39 +113,49 @@ enum Place {
     After(PathBuf, Lock),
 }
 
-fn begin(beginning: Beginning) -> Result<Begun, LiveError> {
-    match beginning {
-        Beginning::New { files, out } => {
-            let kitchen = Arc::new(files.kitchen.kitchen);
-            let header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
-            let engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
-            Ok(Begun { engine, header, first: Vec::new(), time: SessionTime::ZERO, place: Place::In(out) })
+impl Begun {
+    /// Gets a session ready; nothing is recorded yet.
+    ///
+    /// # Errors
+    /// The recording that is to go on cannot.
+    pub fn new(beginning: Beginning) -> Result<Begun, LiveError> {
+        match beginning {
+            Beginning::New { files, out } => {
+                let kitchen = Arc::new(files.kitchen.kitchen);
+                let header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+                let engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+                Ok(Begun { engine, header, first: Vec::new(), time: SessionTime::ZERO, place: Place::In(out) })
+            }
+            Beginning::Continued(recording) => {
+                let resumed = resume(&recording)?;
+                let place = Place::After(resumed.folder, resumed.lock);
+                let (header, first, time) = (resumed.header, resumed.first, resumed.time);
+                Ok(Begun { engine: resumed.engine, header, first, time, place })
+            }
         }
-        Beginning::Continued(recording) => {
-            let resumed = resume(&recording)?;
-            let place = Place::After(resumed.folder, resumed.lock);
-            let (header, first, time) = (resumed.header, resumed.first, resumed.time);
-            Ok(Begun { engine: resumed.engine, header, first, time, place })
-        }
+    }
+
+    /// Its settings.
+    pub fn spec(&self) -> &SessionSpec {
+        &self.engine.session().spec
     }
 }
 
+/// Runs a session at the desk until the wizard leaves it; everything that happens is recorded.
+///
+/// # Errors
+/// The session cannot be recorded, or the terminal is gone.
+pub(super) async fn run(begun: Begun, desk: &mut Desk) -> Result<LiveEnd, LiveError> {
+    Live::open(begun)?.run(desk).await
+}
+
 impl Live {
-    async fn open(beginning: Beginning) -> Result<Live, LiveError> {
-        let Begun { engine, mut header, first, time, place } = begin(beginning)?;
+    fn open(begun: Begun) -> Result<Live, LiveError> {
+        let Begun { engine, mut header, first, time, place } = begun;
         let (kitchen, spec) = (engine.session().kitchen.clone(), engine.session().spec.clone());
         let keys = Keys::live(&kitchen, &spec)?;
-        outlive_file_limits().map_err(LiveError::Terminal)?;
-        // Before the recording is made: a session that cannot start leaves nothing behind.
-        let gaze = match (spec.participant.gaze, spec.participant.gaze_port) {
-            (GazeSource::Json, port) => {
-                Some(gaze_json::listen(port).await.map_err(|reason| LiveError::Gaze { port, reason })?)
-            }
-            _ => None,
-        };
         let wall = WallTime::now();
         header.started = Some(wall.rfc3339());
-        let screen = Screen::take(spec.participant.gaze == GazeSource::Mouse).map_err(LiveError::Terminal)?;
         let (log, before) = match place {
             Place::In(root) => (LogWriter::create_live(&root, &wall.date(), &header)?, None),
             Place::After(folder, lock) => (LogWriter::create_part(&folder, &header)?, Some(lock)),
@@ -166,39 +164,33 @@ impl Live {
         let mut model = Model::new(keys, theme(spec.console.ascii), size);
         model.recording = Recording::On(log.folder().display().to_string());
         let clock = SessionClock::start(time);
-        let mut live =
-            Live { engine, model, log, _before: before, failed: None, screen, gaze, clock, judged: 0, dirty: true };
+        let mut live = Live { engine, model, log, _before: before, failed: None, clock, judged: 0, dirty: true };
         live.record(&first);
         Ok(live)
     }
 
-    async fn run(mut self) -> Result<LiveEnd, LiveError> {
-        let mut gaze = self.gaze.take();
+    async fn run(mut self, desk: &mut Desk) -> Result<LiveEnd, LiveError> {
         let with_pointer = self.engine.session().spec.participant.gaze == GazeSource::Mouse;
-        let mut hands = Hands::default();
-        let end = asked_to_end();
-        tokio::pin!(end);
         let mut pointer = interval(POINTER);
         pointer.set_missed_tick_behavior(MissedTickBehavior::Skip);
         let mut flush = interval(FLUSH);
         let mut watch = interval(WATCH);
         let mut next_frame = Instant::now();
         let mut next_move = Instant::now();
-        while !self.screen.is_lost() {
+        while !desk.screen.is_lost() {
             self.tick();
             let due = self.engine.next_due().map(|due| Instant::from_std(self.clock.instant_of(due)));
             tokio::select! {
                 biased;
-                _ = &mut end => break,
-                message = hands.next() => match message {
-                    Some(message) => if self.take(message) { break },
+                arrival = desk.next() => match arrival {
+                    Some(Arrival::Message(message)) => if self.take(message) { break },
+                    Some(Arrival::Gaze(line)) => self.gaze(line),
                     None => break,
                 },
                 () = sleep_until(due.unwrap_or_else(Instant::now)), if due.is_some() => {
                     let events = self.engine.fire();
                     self.record(&events);
                 }
-                Some(line) = receive(&mut gaze) => self.gaze(line),
                 _ = pointer.tick(), if with_pointer => self.look(),
                 _ = flush.tick() => self.flush(),
                 _ = watch.tick() => self.watch(),
@@ -206,7 +198,7 @@ impl Live {
                 () = sleep_until(next_frame), if self.dirty => {
                     next_frame = Instant::now() + FRAME;
                     next_move = Instant::now() + if self.engine.session().is_running() { RUNNING } else { RESTING };
-                    self.draw().map_err(LiveError::Terminal)?;
+                    self.draw(&mut desk.screen).map_err(LiveError::Terminal)?;
                 }
             }
         }
@@ -312,11 +304,11 @@ impl Live {
         }
     }
 
-    fn draw(&mut self) -> io::Result<()> {
+    fn draw(&mut self, screen: &mut Screen) -> io::Result<()> {
         self.tick();
         // A terminal that is still busy with the last frame gets this one later.
-        self.dirty = !self.screen.is_ready();
-        self.screen.draw(self.engine.session(), &self.model)
+        self.dirty = !screen.is_ready();
+        screen.draw(self.engine.session(), &self.model)
     }
 
     fn close(mut self) -> Result<LiveEnd, LiveError> {
@@ -325,18 +317,9 @@ impl Live {
             self.flush();
         }
         let folder = self.log.folder().to_path_buf();
-        drop(self.screen);
         match self.failed {
             Some(error) => Err(error.into()),
             None => Ok(LiveEnd { folder, figures: TrialFigures::of(&self.engine.into_follower()) }),
         }
-    }
-}
-
-/// The next line of the gaze input; never, if there is none.
-async fn receive(gaze: &mut Option<Receiver<GazeLine>>) -> Option<GazeLine> {
-    match gaze {
-        Some(lines) => lines.recv().await,
-        None => std::future::pending().await,
     }
 }

@@ -1,5 +1,6 @@
 //! The composers: they bring session, robot, participant, files and clock together. Nothing else does.
 
+mod desk;
 pub mod engine;
 pub mod figures;
 pub mod follower;
@@ -10,6 +11,7 @@ pub mod options;
 pub mod replay;
 pub mod resume;
 pub mod review;
+pub mod series;
 pub mod simulate;
 pub mod tell;
 pub mod verify;

@@ -13,6 +13,7 @@ use crate::kitchen::Kitchen;
 use crate::kitchen::compile::{SpecError, SpecFile};
 use crate::kitchen::layout::LayoutSpec;
 use crate::kitchen::recipe::RecipesSpec;
+use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
 use crate::session::header::FileText;
 
@@ -69,10 +70,19 @@ pub struct SessionFiles {
 /// Reads a session file, the layout that it names, and the recipes that the layout names.
 pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     let text = read_text(path)?;
-    let spec: SessionSpec = parse(path, &text)?;
+    let mut spec: SessionSpec = parse(path, &text)?;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    if let Some(file) = &spec.human_model {
+        if spec.human != HumanModel::default() {
+            let found = "human_model, beside parameters of the human model in the session file".to_string();
+            let remedy = "one of the two".to_string();
+            return Err(FileError::at(path, &text, line_of(&text, "human_model"), found, remedy));
+        }
+        spec.human = read_human_model(&folder.join(file))?;
+    }
     spec.check()
         .map_err(|error| FileError::at(path, &text, line_of(&text, error.key), error.found, error.remedy.into()))?;
-    let layout_path = path.parent().unwrap_or(Path::new(".")).join(&spec.layout);
+    let layout_path = folder.join(&spec.layout);
     if let Err(reason) = std::fs::metadata(&layout_path) {
         let found = format!("layout = \"{}\", which cannot be read: {reason}", spec.layout);
         let remedy = "the path of a layout file, relative to the session file".to_string();
@@ -81,6 +91,19 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     let mut kitchen = read_kitchen(&layout_path)?;
     kitchen.layout.path.clone_from(&spec.layout);
     Ok(SessionFiles { spec, kitchen })
+}
+
+/// Reads a file with parameters of the human model; those that it does not name have their defaults.
+///
+/// # Errors
+/// It cannot be read, or a parameter cannot be.
+pub fn read_human_model(path: &Path) -> FileResult<HumanModel> {
+    let text = read_text(path)?;
+    let model: HumanModel = parse(path, &text)?;
+    match model.fault() {
+        Some((key, found, remedy)) => Err(FileError::at(path, &text, line_of(&text, key), found, remedy.to_string())),
+        None => Ok(model),
+    }
 }
 
 /// The default session with its kitchen, which the program carries with it, so that it runs without any file.
@@ -177,6 +200,7 @@ pub enum Kind {
     Session,
     Layout,
     Recipes,
+    HumanModel,
 }
 
 impl Kind {
@@ -188,6 +212,7 @@ impl Kind {
             () if has(&["recipes", "display", "storage", "place"]) => Some(Kind::Layout),
             () if has(&["ingredient", "slot", "dish"]) => Some(Kind::Recipes),
             () if has(&["layout"]) => Some(Kind::Session),
+            () if has(&["prior", "perception", "transition", "decision"]) => Some(Kind::HumanModel),
             () => None,
         }
     }
@@ -197,6 +222,7 @@ impl Kind {
             Kind::Session => "a session file",
             Kind::Layout => "a layout file",
             Kind::Recipes => "a recipe file",
+            Kind::HumanModel => "a file with parameters of the human model",
         }
     }
 
@@ -205,6 +231,7 @@ impl Kind {
             Kind::Session => "a session file, like sessions/default.toml",
             Kind::Layout => "a layout file, like layouts/sushi.toml",
             Kind::Recipes => "a recipe file, like recipes/sushi.toml",
+            Kind::HumanModel => "parameters of the human model, like those in the header of a recording",
         }
     }
 }
@@ -225,6 +252,10 @@ impl OfKind for LayoutSpec {
 
 impl OfKind for RecipesSpec {
     const KIND: Kind = Kind::Recipes;
+}
+
+impl OfKind for HumanModel {
+    const KIND: Kind = Kind::HumanModel;
 }
 
 /// Parses TOML into `T`.

@@ -2,6 +2,9 @@
 
 pub mod belief;
 pub mod decision;
+pub mod dirichlet;
+pub mod model;
+pub mod observation;
 
 use std::collections::BTreeMap;
 

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::mind::model::HumanModel;
+
 /// A session file: who takes part, under which condition, and for how long.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -21,6 +23,12 @@ pub struct SessionSpec {
     pub signals: SignalSpec,
     #[serde(default)]
     pub console: ConsoleSpec,
+    /// The file with the parameters of the human model, relative to the session file; none: those in [`Self::human`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub human_model: Option<String>,
+    /// The parameters of the human model; in a recording those that were in force.
+    #[serde(default)]
+    pub human: HumanModel,
 }
 
 fn default_seed() -> u64 {
@@ -75,7 +83,10 @@ impl SessionSpec {
             let remedy = "gaze = \"mouse\", \"json\" or \"none\"";
             return Err(SettingError { key: "gaze", found, remedy });
         }
-        Ok(())
+        match self.human.fault() {
+            Some((key, found, remedy)) => Err(SettingError { key, found, remedy }),
+            None => Ok(()),
+        }
     }
 }
 

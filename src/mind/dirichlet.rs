@@ -1,0 +1,159 @@
+//! The estimate of a belief: a Dirichlet distribution over the values of every state aspect, the joint is their product.
+//!
+//! Each Dirichlet is kept by its mean and its precision (the sum of the alphas). Moment matching (Minka 2000) goes by the
+//! mean and the pooled second moment S = sum_k E[b_k^2]: the precision is (1 - S) / (S - sum_k m_k^2).
+
+use super::model::PriorModel;
+use crate::kitchen::{AspectId, AspectKind, ContentId, Kitchen, State};
+
+/// The least expected probability of a value: nothing is ever impossible.
+pub const LEAST_MEAN: f64 = 1e-7;
+/// Precisions stay between these.
+pub const PRECISIONS: [f64; 2] = [1e-3, 1e4];
+
+/// A Dirichlet distribution over the values of one aspect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dirichlet {
+    mean: Vec<f64>,
+    precision: f64,
+}
+
+impl Dirichlet {
+    /// The Dirichlet with this mean (weights above or equal to 0, in any scale) and this precision, both within bounds.
+    pub fn new(mean: Vec<f64>, precision: f64) -> Dirichlet {
+        let mut made = Dirichlet { mean, precision: 1.0 };
+        made.put_right(precision);
+        made
+    }
+
+    /// The Dirichlet with this mean and pooled second moment.
+    pub fn of_moments(mean: Vec<f64>, second: f64) -> Dirichlet {
+        let mut made = Dirichlet { mean, precision: 1.0 };
+        made.set_second(second);
+        made
+    }
+
+    /// Expected probabilities, by value.
+    pub fn mean(&self) -> &[f64] {
+        &self.mean
+    }
+
+    /// The sum of the alphas.
+    pub fn precision(&self) -> f64 {
+        self.precision
+    }
+
+    /// The parameter of a value.
+    pub fn alpha(&self, value: usize) -> f64 {
+        self.precision * self.mean[value]
+    }
+
+    /// S = sum_k E[b_k^2].
+    pub fn second(&self) -> f64 {
+        (self.precision * self.square() + 1.0) / (self.precision + 1.0)
+    }
+
+    /// The index of the value that is expected most; the first of equals.
+    pub fn most_likely(&self) -> usize {
+        (1..self.mean.len()).fold(0, |best, value| if self.mean[value] > self.mean[best] { value } else { best })
+    }
+
+    /// Sum of the squared means.
+    fn square(&self) -> f64 {
+        self.mean.iter().map(|m| m * m).sum()
+    }
+
+    /// With probability `share` the belief becomes one certain value, drawn from `values` (which sum to 1), else it stays:
+    /// m' = (1 - q) m + q c, S' = (1 - q) S + q.
+    pub fn learn(&mut self, share: f64, values: impl IntoIterator<Item = f64>) {
+        let second = (1.0 - share) * self.second() + share;
+        for (mean, value) in self.mean.iter_mut().zip(values) {
+            *mean = (1.0 - share) * *mean + share * value;
+        }
+        self.set_second(second);
+    }
+
+    /// Mixes with another Dirichlet over the same values, by mean and second moment.
+    pub fn mix(&mut self, share: f64, other: &Dirichlet) {
+        let second = (1.0 - share) * self.second() + share * other.second();
+        for (mean, &value) in self.mean.iter_mut().zip(&other.mean) {
+            *mean = (1.0 - share) * *mean + share * value;
+        }
+        self.set_second(second);
+    }
+
+    /// Takes the precision that fits this second moment and the present mean.
+    fn set_second(&mut self, second: f64) {
+        let spread = second - self.square();
+        let precision = if spread > 0.0 { (1.0 - second) / spread } else { PRECISIONS[1] };
+        self.put_right(precision);
+    }
+
+    /// Makes a proper distribution of whatever is there.
+    fn put_right(&mut self, precision: f64) {
+        let mut total = 0.0;
+        for mean in &mut self.mean {
+            // Not a number fails the comparison, too.
+            if !(*mean >= LEAST_MEAN) {
+                *mean = LEAST_MEAN;
+            }
+            total += *mean;
+        }
+        let even = 1.0 / self.mean.len() as f64;
+        for mean in &mut self.mean {
+            *mean = if total.is_finite() { *mean / total } else { even };
+        }
+        self.precision = if precision >= PRECISIONS[0] { precision.min(PRECISIONS[1]) } else { PRECISIONS[0] };
+    }
+}
+
+/// The estimate of what the human believes: one Dirichlet per aspect, in the order of the kitchen's aspects.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DirichletBelief {
+    pub aspects: Vec<Dirichlet>,
+}
+
+impl DirichletBelief {
+    /// The belief at the start, when the kitchen is in `state`.
+    pub fn prior(kitchen: &Kitchen, prior: &PriorModel, state: State) -> DirichletBelief {
+        let of = |index: usize| match kitchen.aspects[index].kind {
+            AspectKind::Location(_) => {
+                let aspect = AspectId(index as u8);
+                let values = kitchen.aspects[index].values.len();
+                let others = (1.0 - prior.location_truth) / (values - 1).max(1) as f64;
+                let mut mean = vec![others; values];
+                mean[kitchen.true_value(state, aspect)] = prior.location_truth;
+                Dirichlet::new(mean, prior.location_precision)
+            }
+            AspectKind::Recipe(dish) => {
+                let stack = kitchen.dish(dish).stack();
+                let variants = &kitchen.aspects[index].values;
+                let is_alike = |code: &u8| kitchen.content(stack).look_alikes.contains(&ContentId(*code));
+                let alike = variants[1..].iter().filter(|code| is_alike(code)).count();
+                let others = variants.len() - 1 - alike;
+                let (to_alike, to_others) = match (alike, others) {
+                    (0, _) => (0.0, 1.0),
+                    (_, 0) => (1.0, 0.0),
+                    _ => (prior.recipe_look_alike, 1.0 - prior.recipe_look_alike),
+                };
+                let left = 1.0 - prior.recipe_truth;
+                let mean = variants.iter().enumerate().map(|(value, code)| match (value, is_alike(code)) {
+                    (0, _) => prior.recipe_truth,
+                    (_, true) => left * to_alike / alike as f64,
+                    (_, false) => left * to_others / others as f64,
+                });
+                Dirichlet::new(mean.collect(), prior.recipe_precision)
+            }
+        };
+        DirichletBelief { aspects: (0..kitchen.aspects.len()).map(of).collect() }
+    }
+
+    pub fn of(&self, aspect: AspectId) -> &Dirichlet {
+        &self.aspects[aspect.index()]
+    }
+
+    /// The expected probability that the human gives to the truth about an aspect.
+    pub fn p_truth(&self, kitchen: &Kitchen, state: State, aspect: AspectId) -> f64 {
+        self.of(aspect).mean()[kitchen.true_value(state, aspect)]
+    }
+}

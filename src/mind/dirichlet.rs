@@ -93,10 +93,8 @@ impl Dirichlet {
     fn put_right(&mut self, precision: f64) {
         let mut total = 0.0;
         for mean in &mut self.mean {
-            // Not a number fails the comparison, too.
-            if !(*mean >= LEAST_MEAN) {
-                *mean = LEAST_MEAN;
-            }
+            // What is not a number becomes one, too.
+            *mean = mean.max(LEAST_MEAN);
             total += *mean;
         }
         let even = 1.0 / self.mean.len() as f64;

@@ -11,6 +11,7 @@ use tomcom::communication::{Sender, Signal};
 use tomcom::console::arrange::{Plan, Thing};
 use tomcom::console::keys::Layer;
 use tomcom::console::model::{Dialog, Recording};
+use tomcom::console::picker::{Picker, Question};
 use tomcom::console::playback::Playback;
 use tomcom::console::view::regions::Regions;
 use tomcom::console::view::theme::Theme;
@@ -363,9 +364,10 @@ fn the_keys_of_a_replay_and_the_served_orders_fit_the_smallest_console() {
 #[test]
 fn the_space_bar_stops_the_robot_in_every_view() {
     let mut stage = Stage::sushi(ParticipantKind::Keyboard);
-    for dialog in [None, Some(Dialog::Help), Some(Dialog::Quit), Some(Dialog::EndTrial)] {
+    let list = Some(Dialog::Pick(Picker::new(Question::Place)));
+    for dialog in [None, Some(Dialog::Help), Some(Dialog::Quit), Some(Dialog::EndTrial), list] {
         for layer in [Layer::Wizard, Layer::Participant] {
-            stage.model.dialog = dialog;
+            stage.model.dialog = dialog.clone();
             stage.model.layer = layer;
             assert_eq!(input(stage.key(KeyCode::Char(' '))), Some(Event::RobotStopped));
         }
@@ -439,4 +441,75 @@ fn a_layout_cannot_take_a_key_twice() {
     kitchen.locations[0].signal_key = Some('3');
     let clash = Keys::live(&kitchen, &spec).expect_err("3 is a marker");
     assert_eq!(clash.key, '3');
+}
+
+/// Types a word into an open list.
+fn type_in(stage: &mut Stage, word: &str) {
+    for letter in word.chars() {
+        stage.wait(0.05);
+        assert_eq!(stage.key(KeyCode::Char(letter)), None);
+    }
+}
+
+#[test]
+fn the_kitchen_is_corrected_from_two_lists() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('k');
+    for size in SIZES {
+        insta::assert_snapshot!(format!("correct_{}x{}", size.0, size.1), stage.screen(size));
+    }
+    type_in(&mut stage, "pot");
+    stage.wait(0.05);
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    insta::assert_snapshot!("correct_content_80x24", stage.screen((80, 24)));
+    for _ in 0..20 {
+        stage.wait(0.03);
+        assert_eq!(stage.key(KeyCode::Enter), None, "a held enter answers one question");
+    }
+    type_in(&mut stage, "riceco");
+    stage.wait(0.05);
+    let corrected = Event::KitchenCorrected { location: "cooking_pot".to_string(), content: "rice cooked".to_string() };
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(corrected.clone()), "{}", stage.notice());
+    assert_eq!(stage.model.dialog, None);
+    stage.at(23.0, corrected);
+    assert!(stage.screen((120, 40)).contains("rice cooked"));
+    // Esc goes back a step, then leaves; what nothing is called leads nowhere.
+    stage.wait(1.0);
+    stage.control('k');
+    type_in(&mut stage, "zzz");
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    for left in [3, 2, 1] {
+        assert!(matches!(&stage.model.dialog, Some(Dialog::Pick(list)) if list.filter.len() == left));
+        stage.key(KeyCode::Backspace);
+    }
+    stage.key(KeyCode::Down);
+    stage.wait(1.0);
+    stage.key(KeyCode::Enter);
+    stage.key(KeyCode::Esc);
+    assert_eq!(stage.model.dialog, Some(Dialog::Pick(Picker::new(Question::Place))));
+    stage.key(KeyCode::Esc);
+    assert_eq!(stage.model.dialog, None);
+}
+
+#[test]
+fn the_robot_is_held_skipped_and_driven_by_keys() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let by = Sender::Wizard;
+    assert_eq!(input(stage.control('p')), Some(Event::RobotHeld { by }));
+    stage.at(22.7, Event::RobotHeld { by });
+    insta::assert_snapshot!("held_80x24", stage.screen((80, 24)));
+    let screen = stage.screen((120, 40));
+    assert!(screen.contains("HELD") && screen.contains("^p releases it"), "{screen}");
+    stage.wait(1.0);
+    assert_eq!(input(stage.control('s')), Some(Event::RobotSkipped { by }));
+    assert_eq!(stage.control('d'), None);
+    insta::assert_snapshot!("drive_120x40", stage.screen((120, 40)));
+    type_in(&mut stage, "counter");
+    let driven = Event::RobotDriven { by, button: "counter".to_string() };
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(driven));
+    stage.wait(1.0);
+    assert_eq!(input(stage.control('p')), Some(Event::RobotReleased { by }));
+    stage.at(30.0, Event::TrialEnded { reason: EndReason::Wizard });
+    assert_eq!(stage.control('d'), None);
+    assert!(stage.notice().contains("while the trial runs"), "{}", stage.notice());
 }

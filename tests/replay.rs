@@ -58,11 +58,26 @@ fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
         4 | 5 => Event::RobotResumed,
         6 => Event::Marker { note: "note 1".to_string() },
         7 => Event::SignalEnded { reason: SignalEnd::TakenBack },
-        8..12 => {
+        8 => {
+            let button = &kitchen.buttons[Agent::Robot.index()];
+            let button = button[random.random_range(0..button.len())].name.clone();
+            Event::RobotDriven { by: Sender::Wizard, button }
+        }
+        9 => match random.random_range(0..3) {
+            0 => Event::RobotHeld { by: Sender::Wizard },
+            1 => Event::RobotReleased { by: Sender::Wizard },
+            _ => Event::RobotSkipped { by: Sender::Wizard },
+        },
+        10 => {
+            let location = &kitchen.locations[random.random_range(0..kitchen.locations.len())];
+            let content = &kitchen.contents[random.random_range(0..kitchen.contents.len())];
+            Event::KitchenCorrected { location: location.name.clone(), content: content.name.clone() }
+        }
+        11..14 => {
             let (_, signal) = &signals[random.random_range(0..signals.len())];
             Event::SignalShown { by: Sender::Wizard, signal: signal.clone() }
         }
-        12..24 => {
+        14..24 => {
             let [x, y, confidence] = [1.2, 1.2, 1.0].map(|scale| scale * random.random::<f64>());
             Event::Gaze(GazeSample { x, y, confidence, device_ns: None })
         }

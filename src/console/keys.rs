@@ -7,6 +7,7 @@ use std::fmt;
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
+use super::hands::Hand;
 use super::playback::Move;
 use crate::communication::{self, Signal};
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId};
@@ -85,6 +86,7 @@ pub enum Action {
     StopRobot,
     ResumeRobot,
     SwitchLayer,
+    Hand(Hand),
     Move(Move),
     Help,
     Quit,
@@ -133,6 +135,11 @@ fn binding(chord: Chord, action: Action, group: &'static str, help: &str, footer
     Binding { chord, action, group, help: help.to_string(), footer, layer: None }
 }
 
+/// A key of the experimenter's hands; the footer shows it when it matters.
+fn hand(key: char, hand: Hand, group: &'static str, help: &str) -> Binding {
+    binding(Chord::ctrl(key), Action::Hand(hand), group, help, None)
+}
+
 impl Keys {
     /// The table of a live session.
     ///
@@ -156,8 +163,12 @@ impl Keys {
         keys.bindings.extend([
             binding(Chord::plain(Char(' ')), Action::StopRobot, ROBOT, "stop the robot, at once", Some("STOP ROBOT")),
             binding(Chord::ctrl('r'), Action::ResumeRobot, ROBOT, "resume it after a stop", Some("resume robot")),
+            hand('p', Hand::HoldRobot, ROBOT, "hold it before its next press, release it"),
+            hand('s', Hand::SkipPress, ROBOT, "skip its press: it decides anew"),
+            hand('d', Hand::DriveRobot, ROBOT, "drive it: choose its next press"),
             binding(Chord::plain(Char('.')), Action::Advance, TRIAL, "start, pause, resume", Some("start/pause")),
             binding(Chord::ctrl('e'), Action::EndTrial, TRIAL, "end the trial (asks first)", Some("end")),
+            hand('k', Hand::Correct, TRIAL, "correct the kitchen: what is where"),
         ]);
         if at_keyboard {
             let help = "switch between wizard and participant";

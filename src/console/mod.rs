@@ -2,9 +2,11 @@
 //! [`view`] that only reads. What affects participant, robot or analysis leaves as an event; the rest stays in the [`Model`].
 
 pub mod arrange;
+pub mod hands;
 pub mod keys;
 pub mod message;
 pub mod model;
+pub mod picker;
 pub mod playback;
 pub mod update;
 pub mod view;

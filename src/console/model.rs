@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use crossterm::event::KeyCode;
 
 use super::keys::{Keys, Layer};
+use super::picker::Picker;
 use super::playback::Playback;
 use super::view::theme::Theme;
 use crate::base::time::SessionTime;
@@ -17,13 +18,15 @@ use crate::session::{Entry, Happening};
 const TRAIL: usize = 240;
 
 /// What is open above the panels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Dialog {
     Help,
     /// Asks whether to end the session and leave.
     Quit,
     /// Asks whether to end the trial.
     EndTrial,
+    /// A list to choose from.
+    Pick(Picker),
 }
 
 /// How much a notice matters.

@@ -3,6 +3,7 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
 use super::arrange::Plan;
+use super::hands;
 use super::keys::{Action, Chord, Layer, NOTES};
 use super::message::{Command, Message};
 use super::model::{Dialog, Level, Model};
@@ -62,6 +63,12 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
     match action {
         Some(Action::StopRobot) => stop_robot(model, session),
         Some(Action::Move(to)) if model.dialog.is_none() => Some(Command::Move(to)),
+        _ if let Some(Dialog::Pick(picker)) = &model.dialog => {
+            let picker = picker.clone();
+            // A list takes quick typing and held arrows; the key that opened it, and a held enter, answer nothing.
+            let counts = !chord.ctrl && (chord.code != KeyCode::Enter || touch == Touch::Press);
+            if counts { hands::pick(model, session, picker, chord.code) } else { None }
+        }
         _ if touch == Touch::Held => {
             if model.dialog.is_none() {
                 model.say(Level::Refused, format!("\"{chord}\" is held down: it counts once"));
@@ -116,11 +123,11 @@ fn stop_robot(model: &mut Model, session: &Session) -> Option<Command> {
 }
 
 fn answer(model: &mut Model, chord: Chord, action: Option<Action>, touch: Touch) -> Option<Command> {
-    let dialog = model.dialog?;
+    let dialog = model.dialog.clone()?;
     let again = match dialog {
         Dialog::Quit => Some(Action::Quit),
         Dialog::EndTrial => Some(Action::EndTrial),
-        Dialog::Help => None,
+        Dialog::Help | Dialog::Pick(_) => None,
     };
     if touch == Touch::Again && again.is_some() && action == again {
         return None;
@@ -169,6 +176,7 @@ fn act(model: &mut Model, session: &Session, action: Action) -> Option<Command> 
                 None
             }
         },
+        Action::Hand(hand) => hands::act(model, session, hand),
         Action::SwitchLayer => {
             model.layer = if model.layer == Layer::Wizard { Layer::Participant } else { Layer::Wizard };
             None
@@ -200,7 +208,7 @@ fn advance(model: &mut Model, session: &Session) -> Option<Command> {
 }
 
 /// Sends an input if the session takes it now; else says why not.
-fn send(model: &mut Model, session: &Session, event: Event, level: Level, words: &str) -> Option<Command> {
+pub(super) fn send(model: &mut Model, session: &Session, event: Event, level: Level, words: &str) -> Option<Command> {
     if let Err(reason) = admit(session, &event) {
         model.say(Level::Refused, reason);
         return None;

@@ -77,6 +77,11 @@ pub fn happening(kitchen: &Kitchen, what: &Happening) -> (&'static str, String) 
         Happening::Marker(note) => ("note", note.clone()),
         Happening::RobotStopped => ("wizard", "stopped the robot".to_string()),
         Happening::RobotResumed => ("wizard", "let the robot go on".to_string()),
+        Happening::RobotHeld => ("wizard", "held the robot".to_string()),
+        Happening::RobotReleased => ("wizard", "released the robot".to_string()),
+        Happening::RobotSkipped(id) => ("wizard", format!("skipped {}", button(kitchen, Agent::Robot, *id))),
+        Happening::RobotDriven(id) => ("wizard", format!("drives the robot to {}", button(kitchen, Agent::Robot, *id))),
+        Happening::Corrected { location } => ("wizard", format!("corrected {}", kitchen.location(*location).label())),
         Happening::Trial(phase) => ("trial", trial(*phase).to_string()),
     }
 }

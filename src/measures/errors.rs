@@ -13,7 +13,7 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Action, Agent, ButtonId, Kitchen, LocationId, State};
 
-/// A press so soon after a change by the robot at the same place cannot have taken the change into account.
+/// A press so soon after a change by the robot, or by nobody, at the same place cannot have taken the change into account.
 pub const RACE_S: f64 = 0.3;
 /// Up to this excess, a press that brings an active order nearer counts as preparation.
 pub const PREPARATION_EXCESS: i32 = 2;
@@ -25,29 +25,29 @@ pub struct Verdict {
     pub regret: i32,
     /// By how much the regret exceeds that of the human's best press.
     pub excess: i32,
-    /// The robot had changed the same place within [`RACE_S`]: not counted.
+    /// Somebody else had changed the same place within [`RACE_S`]: not counted.
     pub race: bool,
     pub error: bool,
 }
 
-/// Judges presses; it remembers when the robot last changed what.
+/// Judges presses; it remembers when something else than the human last changed what.
 #[derive(Clone, Debug)]
 pub struct Judge {
     kitchen: Arc<Kitchen>,
-    robot_changed: [Option<SessionTime>; MAX_LOCATIONS],
+    others_changed_at: [Option<SessionTime>; MAX_LOCATIONS],
 }
 
 impl Judge {
     pub fn new(kitchen: Arc<Kitchen>) -> Judge {
-        Judge { kitchen, robot_changed: [None; MAX_LOCATIONS] }
+        Judge { kitchen, others_changed_at: [None; MAX_LOCATIONS] }
     }
 
-    /// Takes note of what a press of the robot changed.
-    pub fn robot_pressed(&mut self, now: SessionTime, before: State, after: State) {
+    /// Takes note of what a press of the robot, or a correction by hand, changed.
+    pub fn others_changed(&mut self, now: SessionTime, before: State, after: State) {
         for index in 0..self.kitchen.locations.len() {
             let location = LocationId(index as u8);
             if before.code(location) != after.code(location) {
-                self.robot_changed[index] = Some(now);
+                self.others_changed_at[index] = Some(now);
             }
         }
     }
@@ -88,7 +88,7 @@ impl Judge {
         Verdict { regret, excess, race, error }
     }
 
-    /// Whether the robot changed a place of this button of the human a moment ago.
+    /// Whether somebody else changed a place of this button of the human a moment ago.
     fn is_race(&self, now: SessionTime, button: ButtonId) -> bool {
         let kitchen = &self.kitchen;
         let hand = kitchen.hands[Agent::Human.index()];
@@ -99,6 +99,6 @@ impl Judge {
             Action::Take(_) | Action::Trash => [hand, hand],
         };
         let recent = |time: SessionTime| now.secs_since(time) <= RACE_S;
-        places.iter().any(|place| self.robot_changed[place.index()].is_some_and(recent))
+        places.iter().any(|place| self.others_changed_at[place.index()].is_some_and(recent))
     }
 }

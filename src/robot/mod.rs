@@ -13,6 +13,10 @@ pub enum AbortReason {
     NoLongerUseful,
     /// The wizard stopped the robot.
     Stopped,
+    /// The wizard skipped this press.
+    Skipped,
+    /// The wizard chose another press.
+    Driven,
 }
 
 /// Why the robot does nothing.
@@ -23,4 +27,6 @@ pub enum IdleReason {
     NoOrder,
     /// Only the human can go on.
     HumanTurn,
+    /// The wizard skipped the only press that would help, a moment ago.
+    Skipped,
 }

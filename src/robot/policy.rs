@@ -41,11 +41,22 @@ fn for_the_nearer_order(kitchen: &Kitchen, cost: &mut CostToGo, state: State, pr
 }
 
 /// Decides for the state as it truly is: of several best presses one at random, idle if none brings the goal nearer.
-pub fn decide(kitchen: &Kitchen, cost: &mut CostToGo, state: State, random: &mut Stream) -> Decision {
+/// `skipped` is left out.
+pub fn decide(
+    kitchen: &Kitchen,
+    cost: &mut CostToGo,
+    state: State,
+    skipped: Option<ButtonId>,
+    random: &mut Stream,
+) -> Decision {
     if kitchen.wanted(state).next().is_none() {
         return Decision::Idle(IdleReason::NoOrder);
     }
-    let best = best_presses(kitchen, cost, state);
+    let all = best_presses(kitchen, cost, state);
+    let best: Vec<ButtonId> = all.iter().copied().filter(|&button| Some(button) != skipped).collect();
+    if best.len() < all.len() && best.is_empty() {
+        return Decision::Idle(IdleReason::Skipped);
+    }
     let best = for_the_nearer_order(kitchen, cost, state, best);
     // What serves no order is thrown away: put down somewhere, it would soon be in the way again.
     let trash = best.iter().copied().find(|&button| kitchen.button(Agent::Robot, button).action == Action::Trash);

@@ -111,7 +111,8 @@ impl Engine {
         let participant = self.participant.as_ref().and_then(SimulatedParticipant::next_due);
         let sources = [
             (self.timers.next_due(), Source::Timer),
-            (self.robot.next_due(), Source::Robot),
+            // An arm that was held is due since a while, and nothing happens before what has happened.
+            (self.robot.next_due().map(|due| due.max(self.session().time)), Source::Robot),
             (participant, Source::Participant),
         ];
         sources.into_iter().filter_map(|(due, source)| Some((due?, source))).min()
@@ -211,19 +212,33 @@ impl Engine {
         self.next_seq += 1;
         effects.into_iter().for_each(|effect| self.perform(effect));
         self.tell_participant(&stamped, before);
-        let given_up = match &stamped.event {
-            Event::RobotStopped => self.robot.stop(),
-            Event::RobotResumed => {
-                self.robot.resume();
-                None
-            }
-            _ => None,
-        };
+        let given_up = self.tell_robot(&stamped);
         self.out.push(stamped);
         if let Some(deed) = given_up {
             self.record_deed(now, deed);
         }
         Ok(())
+    }
+
+    /// What the wizard does to the robot by an event that was just applied; the press that it gives up because of it.
+    fn tell_robot(&mut self, stamped: &Stamped) -> Option<RobotDeed> {
+        let kitchen = self.session().kitchen.clone();
+        match &stamped.event {
+            Event::RobotStopped => return self.robot.stop(),
+            Event::RobotResumed => self.robot.resume(),
+            Event::RobotHeld { .. } => self.robot.hold(true),
+            Event::RobotReleased { .. } => self.robot.hold(false),
+            Event::RobotSkipped { .. } => return self.robot.skip(stamped.time),
+            Event::RobotDriven { button, .. } => {
+                return kitchen.button_named(Agent::Robot, button).and_then(|button| self.robot.drive(button));
+            }
+            Event::KitchenCorrected { .. } => {
+                let state = self.session().state;
+                return self.robot.reconsider(&kitchen, &mut self.follower.cost, state);
+            }
+            _ => {}
+        }
+        None
     }
 
     fn perform(&mut self, effect: Effect) {

@@ -55,8 +55,9 @@ impl Follower {
                 }
             }
             Event::Press { agent: Agent::Robot, .. } if counts => {
-                self.judge.robot_pressed(stamped.time, before, self.session.state);
+                self.judge.others_changed(stamped.time, before, self.session.state);
             }
+            Event::KitchenCorrected { .. } => self.judge.others_changed(stamped.time, before, self.session.state),
             Event::Press { agent: Agent::Human, button } if counts => {
                 if let Some(button) = self.session.kitchen.button_named(Agent::Human, button) {
                     self.human_pressed(stamped, button, before);

@@ -88,6 +88,16 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::RobotAborts { button, reason: AbortReason::Stopped } => format!("robot gives up {button}: stopped"),
         Event::RobotIdles { reason: IdleReason::NoOrder } => "robot idles: no order".to_string(),
         Event::RobotIdles { reason: IdleReason::HumanTurn } => "robot idles: only the human can go on".to_string(),
+        Event::RobotAborts { button, reason: AbortReason::Skipped } => format!("robot gives up {button}: skipped"),
+        Event::RobotAborts { button, reason: AbortReason::Driven } => {
+            format!("robot gives up {button}: the wizard chose another press")
+        }
+        Event::RobotIdles { reason: IdleReason::Skipped } => "robot idles: its only press was skipped".to_string(),
+        Event::RobotHeld { .. } => "robot held by the wizard before its next press".to_string(),
+        Event::RobotReleased { .. } => "robot released by the wizard".to_string(),
+        Event::RobotSkipped { .. } => "the wizard skips the robot's press".to_string(),
+        Event::RobotDriven { button, .. } => format!("the wizard drives the robot to {button}"),
+        Event::KitchenCorrected { location, content } => format!("corrected by hand: {location} holds {content}"),
         Event::RobotStopped => "robot stopped by the wizard".to_string(),
         Event::RobotResumed => "robot goes on".to_string(),
         Event::SignalShown { signal: Signal::ShowRecipe(order), .. } => format!("signal: recipe of {order}"),

@@ -3,7 +3,7 @@
 
 use super::event::{EndReason, Event, SignalEnd};
 use super::settings::{Condition, ParticipantKind};
-use super::{Phase, Session};
+use super::{Phase, Session, hands};
 use crate::communication::{self, Sender, Signal};
 use crate::kitchen::{Agent, LocationKind};
 
@@ -30,7 +30,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         Event::RobotResumed => refuse_if(!session.robot.stopped, "the robot is not stopped"),
         Event::SignalShown { by, signal } => admit_signal(session, *by, signal),
         Event::SignalEnded { .. } => refuse_if(session.shown.is_none(), "no signal is shown"),
-        _ => Ok(()),
+        other => hands::admit(session, other),
     }
 }
 
@@ -60,6 +60,11 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::TrialResumed
         | Event::RobotStopped
         | Event::RobotResumed
+        | Event::RobotHeld { .. }
+        | Event::RobotReleased { .. }
+        | Event::RobotSkipped { .. }
+        | Event::RobotDriven { .. }
+        | Event::KitchenCorrected { .. }
         | Event::Marker { .. }
         | Event::ClockJumped { .. }
         | Event::SessionEnded => true,

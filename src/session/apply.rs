@@ -2,11 +2,12 @@
 
 use super::admit::admit;
 use super::event::{EndReason, Event, SignalEnd, Stamped};
-use super::{Entry, Happening, Phase, Served, Session, ShownSignal};
+use super::{Entry, Happening, Phase, RobotStatus, Served, Session, ShownSignal};
 use crate::base::time::SessionTime;
 use crate::communication::{Sender, Signal};
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
-use crate::kitchen::{Action, Agent, ButtonId, DishId, LocationId, OrderContent, State};
+use crate::kitchen::{Action, Agent, ButtonId, ContentId, DishId, LocationId, OrderContent, State};
+use crate::robot::AbortReason;
 
 /// After so many seconds without a gaze sample its rate is measured anew.
 const GAP_S: f64 = 0.5;
@@ -86,13 +87,32 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
             session.robot.intention = Some((button, now, *until_ns));
             session.robot.idle = None;
         }
-        Event::RobotAborts { button, .. } => {
+        Event::RobotAborts { button, reason } => {
             named.button(Agent::Robot, button)?;
             session.robot.intention = None;
+            // What the wizard drives it to is still to come.
+            session.robot.driven &= *reason == AbortReason::Driven;
         }
         Event::RobotIdles { reason } => session.robot.idle = Some(*reason),
         Event::RobotStopped => stop_robot(session, now, true),
         Event::RobotResumed => stop_robot(session, now, false),
+        Event::RobotHeld { .. } => hold_robot(session, now, true),
+        Event::RobotReleased { .. } => hold_robot(session, now, false),
+        Event::RobotSkipped { .. } => {
+            if let Some((button, ..)) = session.robot.intention {
+                note(session, now, Happening::RobotSkipped(button));
+            }
+        }
+        Event::RobotDriven { button, .. } => {
+            let button = named.button(Agent::Robot, button)?;
+            session.robot.driven = true;
+            note(session, now, Happening::RobotDriven(button));
+        }
+        Event::KitchenCorrected { location, content } => {
+            let (location, content) = (named.location(location)?, named.content(content)?);
+            change(session, now, |state| state.set_content(location, content));
+            note(session, now, Happening::Corrected { location });
+        }
         Event::SignalShown { by, signal } => {
             named.location(signal.target())?;
             show(session, now, *by, signal, &mut effects);
@@ -150,6 +170,11 @@ impl Named<'_> {
             true => Ok(order),
             false => Err(self.error(format!("the order \"{name}\""), "an order of the layout")),
         }
+    }
+
+    fn content(&self, name: &str) -> Result<ContentId, ApplyError> {
+        let content = self.session.kitchen.content_named(name);
+        content.ok_or_else(|| self.error(format!("the content \"{name}\""), "a content of the kitchen"))
     }
 
     fn dish(&self, name: &str) -> Result<DishId, ApplyError> {
@@ -229,8 +254,7 @@ fn resume(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
 fn end_trial(session: &mut Session, now: SessionTime, reason: EndReason, effects: &mut Vec<Effect>) {
     stop_clock(session, now);
     session.phase = Phase::Over(reason);
-    session.robot.intention = None;
-    session.robot.idle = None;
+    session.robot = RobotStatus { stopped: session.robot.stopped, held: session.robot.held, ..RobotStatus::default() };
     session.shown = None;
     effects.push(Effect::CancelAll);
     note(session, now, Happening::Trial(session.phase));
@@ -249,6 +273,12 @@ fn stop_robot(session: &mut Session, now: SessionTime, stopped: bool) {
     session.robot.stopped = stopped;
     session.robot.idle = None;
     note(session, now, if stopped { Happening::RobotStopped } else { Happening::RobotResumed });
+}
+
+fn hold_robot(session: &mut Session, now: SessionTime, held: bool) {
+    session.robot.held = held;
+    session.robot.idle = None;
+    note(session, now, if held { Happening::RobotHeld } else { Happening::RobotReleased });
 }
 
 fn show(session: &mut Session, now: SessionTime, by: Sender, signal: &Signal, effects: &mut Vec<Effect>) {
@@ -270,6 +300,7 @@ fn end_signal(session: &mut Session, now: SessionTime, reason: SignalEnd, effect
 fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId, effects: &mut Vec<Effect>) {
     if agent == Agent::Robot {
         session.robot.intention = None;
+        session.robot.driven = false;
     }
     if !session.is_running() {
         return;

@@ -69,6 +69,27 @@ pub enum Event {
     /// The wizard stopped the robot; it stays so until it is resumed.
     RobotStopped,
     RobotResumed,
+    /// The robot sets out for nothing new and waits before the button that it is on its way to, until it is released.
+    RobotHeld {
+        by: Sender,
+    },
+    RobotReleased {
+        by: Sender,
+    },
+    /// The robot gives up the press that it is on its way to, and decides anew.
+    RobotSkipped {
+        by: Sender,
+    },
+    /// The robot's next press is this one, useful or not.
+    RobotDriven {
+        by: Sender,
+        button: String,
+    },
+    /// The wizard found something else at a location than the program thought: a change by nobody.
+    KitchenCorrected {
+        location: String,
+        content: String,
+    },
     /// A signal appears to the participant; an earlier one vanishes.
     SignalShown {
         by: Sender,
@@ -110,6 +131,11 @@ impl Event {
             Event::RobotIdles { .. } => "robot_idles",
             Event::RobotStopped => "robot_stopped",
             Event::RobotResumed => "robot_resumed",
+            Event::RobotHeld { .. } => "robot_held",
+            Event::RobotReleased { .. } => "robot_released",
+            Event::RobotSkipped { .. } => "robot_skipped",
+            Event::RobotDriven { .. } => "robot_driven",
+            Event::KitchenCorrected { .. } => "kitchen_corrected",
             Event::SignalShown { .. } => "signal_shown",
             Event::SignalEnded { .. } => "signal_ended",
             Event::Marker { .. } => "marker",

@@ -4,6 +4,7 @@
 pub mod admit;
 pub mod apply;
 pub mod event;
+mod hands;
 pub mod header;
 pub mod orders;
 pub mod settings;
@@ -83,6 +84,10 @@ pub struct RobotStatus {
     pub intention: Option<(ButtonId, SessionTime, SessionTime)>,
     /// Stopped by the wizard.
     pub stopped: bool,
+    /// Held by the wizard before its next press.
+    pub held: bool,
+    /// The wizard chose the press that it is on its way to.
+    pub driven: bool,
     /// Why it does nothing, if it does nothing.
     pub idle: Option<crate::robot::IdleReason>,
 }
@@ -131,6 +136,11 @@ pub enum Happening {
     Marker(String),
     RobotStopped,
     RobotResumed,
+    RobotHeld,
+    RobotReleased,
+    RobotSkipped(ButtonId),
+    RobotDriven(ButtonId),
+    Corrected { location: LocationId },
     Trial(Phase),
 }
 

@@ -3,6 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::paint::{Brush, width};
+use super::picker;
 use super::theme::Role;
 use crate::console::keys::{Binding, Layer};
 use crate::console::model::{Dialog, Model};
@@ -10,8 +11,9 @@ use crate::session::{Phase, Session};
 
 /// Draws the open dialog, if there is one.
 pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
-    match model.dialog {
+    match &model.dialog {
         None => {}
+        Some(Dialog::Pick(list)) => picker::draw(brush, screen, session, list),
         Some(Dialog::Help) => help(brush, screen, model),
         Some(Dialog::EndTrial) => ask(brush, screen, "End the trial?", &["It cannot be resumed after that."]),
         Some(Dialog::Quit) => {
@@ -27,7 +29,7 @@ pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
 }
 
 /// Clears the middle of the screen and frames it.
-fn open(brush: &mut Brush, screen: Rect, size: (u16, u16), title: &str, remark: &str) -> Rect {
+pub(super) fn open(brush: &mut Brush, screen: Rect, size: (u16, u16), title: &str, remark: &str) -> Rect {
     let (columns, rows) = (size.0.min(screen.width), size.1.min(screen.height));
     let area = Rect {
         x: screen.x + (screen.width - columns) / 2,

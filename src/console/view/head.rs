@@ -96,8 +96,12 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
     if room > Room::Small || model.playback.is_none() {
         healths.push(gaze(session, model));
     }
-    let robot = if session.robot.stopped { ("ROBOT STOPPED", Role::Alarm) } else { ("robot ok", Role::Text) };
-    if (room > Room::Small && model.playback.is_none()) || session.robot.stopped {
+    let robot = match (session.robot.stopped, session.robot.held) {
+        (true, _) => ("ROBOT STOPPED", Role::Alarm),
+        (false, true) => ("ROBOT HELD", Role::FalseBelief),
+        (false, false) => ("robot ok", Role::Text),
+    };
+    if (room > Room::Small && model.playback.is_none()) || robot.1 != Role::Text {
         healths.push((robot.0.to_string(), robot.1));
     }
     healths

@@ -8,6 +8,7 @@ pub mod gaze;
 pub mod head;
 pub mod kitchen;
 pub mod paint;
+pub mod picker;
 pub mod recommendation;
 pub mod regions;
 pub mod robot;
@@ -53,10 +54,11 @@ fn too_small(brush: &mut Brush, session: &Session, model: &Model) {
     brush.text(0, 0, area.width, &need, text);
     let stop = if session.robot.stopped { "ROBOT STOPPED" } else { "the space bar stops the robot" };
     brush.text(0, 1, area.width, stop, alarm);
-    let question = match model.dialog {
+    let question = match &model.dialog {
         Some(Dialog::Quit) => "Quit tomcom? y yes, any other key no",
         Some(Dialog::EndTrial) => "End the trial? y yes, any other key no",
         Some(Dialog::Help) => "The help needs more room; any key closes it",
+        Some(Dialog::Pick(_)) => "The list needs more room; esc leaves it",
         None => return,
     };
     let strong = brush.style(Role::Strong);

@@ -122,7 +122,11 @@ fn mark(brush: &Brush, session: &Session, model: &Model, entry: &Entry) -> Optio
             }
         }
         Happening::RobotStopped => (2, signs.stopped.to_string(), Role::Alarm),
-        Happening::RobotResumed => (2, signs.to.to_string(), Role::Robot),
+        Happening::RobotResumed | Happening::RobotReleased => (2, signs.to.to_string(), Role::Robot),
+        Happening::RobotHeld => (2, signs.pause.to_string(), Role::Robot),
+        Happening::RobotSkipped(_) => (2, signs.taken_back.to_string(), Role::Robot),
+        Happening::RobotDriven(_) => (2, signs.by_hand.to_string(), Role::Signal),
+        Happening::Corrected { .. } => (4, signs.by_hand.to_string(), Role::Signal),
         Happening::Signal { signal, .. } => (3, signal_sign(session, model, signal), Role::Signal),
         Happening::SignalEnded(SignalEnd::TakenBack) => (3, signs.taken_back.to_string(), Role::Signal),
         Happening::SignalEnded(SignalEnd::Elapsed) => return None,

@@ -1,0 +1,87 @@
+//! The experimenter's hands at the console: keys that correct the kitchen and the robot, and the lists that they open.
+
+use super::message::Command;
+use super::model::{Dialog, Level, Model};
+use super::picker::{Answer, Picked, Picker, Question};
+use super::update::send;
+use super::words;
+use crate::communication::Sender;
+use crate::kitchen::Agent;
+use crate::session::{Event, Phase, Session};
+use crossterm::event::KeyCode;
+
+/// What a key of the hands does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hand {
+    /// Say what really lies at a location.
+    Correct,
+    /// Hold the robot before its next press, or release it.
+    HoldRobot,
+    /// The robot gives up its press and decides anew.
+    SkipPress,
+    /// Choose the robot's next press.
+    DriveRobot,
+}
+
+/// Does what a key of the hands says, or asks.
+pub(super) fn act(model: &mut Model, session: &Session, hand: Hand) -> Option<Command> {
+    let by = Sender::Wizard;
+    match hand {
+        Hand::Correct if !matches!(session.phase, Phase::Running | Phase::Paused) => {
+            refuse(model, "the kitchen is corrected during a trial")
+        }
+        Hand::Correct => ask(model, Question::Place),
+        Hand::HoldRobot if session.robot.held => {
+            send(model, session, Event::RobotReleased { by }, Level::Done, "the robot goes on by itself")
+        }
+        Hand::HoldRobot => send(model, session, Event::RobotHeld { by }, Level::Done, "the robot is held"),
+        Hand::SkipPress => send(model, session, Event::RobotSkipped { by }, Level::Done, "skipped"),
+        Hand::DriveRobot if !session.is_running() => refuse(model, "the robot is driven while the trial runs"),
+        Hand::DriveRobot if session.robot.stopped => refuse(model, "the robot is stopped: let it go on first"),
+        Hand::DriveRobot => ask(model, Question::Button),
+    }
+}
+
+fn refuse(model: &mut Model, reason: &str) -> Option<Command> {
+    model.say(Level::Refused, reason);
+    None
+}
+
+fn ask(model: &mut Model, question: Question) -> Option<Command> {
+    model.dialog = Some(Dialog::Pick(Picker::new(question)));
+    None
+}
+
+/// A key in an open list.
+pub(super) fn pick(model: &mut Model, session: &Session, mut picker: Picker, code: KeyCode) -> Option<Command> {
+    let answer = match picker.key(session, code) {
+        Picked::Nothing => {
+            model.dialog = Some(Dialog::Pick(picker));
+            return None;
+        }
+        Picked::Left => {
+            // From the second question back to the first.
+            let back = matches!(picker.question, Question::Content(_)).then(|| Picker::new(Question::Place));
+            model.dialog = back.map(Dialog::Pick);
+            return None;
+        }
+        Picked::This(answer) => answer,
+    };
+    model.dialog = None;
+    let kitchen = &session.kitchen;
+    match (picker.question, answer) {
+        (_, Answer::Place(place)) => ask(model, Question::Content(place)),
+        (Question::Content(place), Answer::Content(content)) => {
+            let (location, content) = (kitchen.location(place), kitchen.content(content).name.clone());
+            let words = format!("corrected: {} holds {content}", location.label());
+            let event = Event::KitchenCorrected { location: location.name.clone(), content };
+            send(model, session, event, Level::Done, &words)
+        }
+        (_, Answer::Button(button)) => {
+            let words = format!("the robot sets out for {}", words::button(kitchen, Agent::Robot, button));
+            let button = kitchen.button(Agent::Robot, button).name.clone();
+            send(model, session, Event::RobotDriven { by: Sender::Wizard, button }, Level::Done, &words)
+        }
+        (_, Answer::Content(_)) => None,
+    }
+}

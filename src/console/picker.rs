@@ -1,0 +1,155 @@
+//! A list to choose from: arrows or typing find the line, enter takes it, esc leaves. The space bar is the robot stop here,
+//! too, so what is typed has no spaces, and lines are searched without theirs.
+
+use crossterm::event::KeyCode;
+
+use super::words;
+use crate::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind};
+use crate::session::Session;
+
+/// How far a page key goes.
+const PAGE: usize = 10;
+
+/// What is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Question {
+    /// Which location holds something else than the program thinks?
+    Place,
+    /// What does this location hold?
+    Content(LocationId),
+    /// Which button shall the robot press next?
+    Button,
+}
+
+/// What can be answered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Answer {
+    Place(LocationId),
+    Content(ContentId),
+    Button(ButtonId),
+}
+
+/// A line of the list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Choice {
+    pub answer: Answer,
+    pub label: String,
+    /// What else there is to know, at the right.
+    pub remark: String,
+}
+
+/// An open list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picker {
+    pub question: Question,
+    /// What was typed.
+    pub filter: String,
+    /// The line under the cursor, of those that are left.
+    pub at: usize,
+}
+
+/// What came of a key.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Picked {
+    /// The list stays open.
+    Nothing,
+    /// It was left without an answer.
+    Left,
+    This(Answer),
+}
+
+impl Picker {
+    pub fn new(question: Question) -> Picker {
+        Picker { question, filter: String::new(), at: 0 }
+    }
+
+    /// The question in words.
+    pub fn title(&self, session: &Session) -> String {
+        match self.question {
+            Question::Place => "Correct the kitchen: which place?".to_string(),
+            Question::Content(place) => format!("What is at {}?", session.kitchen.location(place).label()),
+            Question::Button => "The robot's next press".to_string(),
+        }
+    }
+
+    /// The lines that are left of the list.
+    pub fn choices(&self, session: &Session) -> Vec<Choice> {
+        let squeezed = |text: &str| text.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
+        let wanted = squeezed(&self.filter);
+        let mut choices = self.all(session);
+        choices.retain(|choice| squeezed(&choice.label).contains(&wanted));
+        choices
+    }
+
+    fn all(&self, session: &Session) -> Vec<Choice> {
+        match self.question {
+            Question::Place => places(session),
+            Question::Content(place) => contents(session, place),
+            Question::Button => buttons(session),
+        }
+    }
+
+    /// Takes a key.
+    pub fn key(&mut self, session: &Session, code: KeyCode) -> Picked {
+        let last = self.choices(session).len().saturating_sub(1);
+        self.at = match code {
+            KeyCode::Up => self.at.saturating_sub(1),
+            KeyCode::Down => self.at + 1,
+            KeyCode::PageUp => self.at.saturating_sub(PAGE),
+            KeyCode::PageDown => self.at + PAGE,
+            KeyCode::Home => 0,
+            KeyCode::End => last,
+            _ => self.at,
+        }
+        .min(last);
+        match code {
+            KeyCode::Char(letter) => {
+                self.filter.push(letter);
+                self.at = 0;
+            }
+            KeyCode::Backspace if self.filter.pop().is_some() => self.at = 0,
+            KeyCode::Backspace | KeyCode::Esc => return Picked::Left,
+            KeyCode::Enter => {
+                let choice = self.choices(session).into_iter().nth(self.at);
+                return choice.map_or(Picked::Nothing, |choice| Picked::This(choice.answer));
+            }
+            _ => {}
+        }
+        Picked::Nothing
+    }
+}
+
+fn places(session: &Session) -> Vec<Choice> {
+    let kitchen = &session.kitchen;
+    let places = kitchen.locations.iter().enumerate().filter(|(_, location)| location.kind != LocationKind::Order);
+    let choice = |(index, location): (usize, &crate::kitchen::Location)| {
+        let id = LocationId(index as u8);
+        let remark = kitchen.content_label(session.state, id).to_string();
+        Choice { answer: Answer::Place(id), label: location.label().to_string(), remark }
+    };
+    places.map(choice).collect()
+}
+
+/// What the place can hold, but for what the program thinks it holds.
+fn contents(session: &Session, place: LocationId) -> Vec<Choice> {
+    let kitchen = &session.kitchen;
+    let can_be = |id: ContentId| id.is_empty() || kitchen.accepts(place, id);
+    let ids = (0..kitchen.contents.len()).map(|index| ContentId(index as u8));
+    let left = ids.filter(|&id| can_be(id) && id != session.state.content(place));
+    let choice = |id: ContentId| {
+        let label = kitchen.content(id).name.clone();
+        Choice { answer: Answer::Content(id), label, remark: String::new() }
+    };
+    left.map(choice).collect()
+}
+
+fn buttons(session: &Session) -> Vec<Choice> {
+    let (kitchen, recipes) = (&session.kitchen, session.kitchen.true_recipes());
+    let ids = (0..kitchen.buttons[Agent::Robot.index()].len()).map(|index| ButtonId(index as u8));
+    let choice = |id: ButtonId| {
+        let does = kitchen.press(session.state, &recipes, Agent::Robot, id).is_some();
+        let remark = if does { "" } else { "no effect now" }.to_string();
+        Choice { answer: Answer::Button(id), label: words::button(kitchen, Agent::Robot, id), remark }
+    };
+    ids.map(choice).collect()
+}

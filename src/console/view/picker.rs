@@ -1,0 +1,58 @@
+//! A list to choose from, above the panels.
+
+use ratatui::layout::Rect;
+
+use super::dialog::open;
+use super::paint::{Brush, width};
+use super::theme::Role;
+use crate::console::picker::{Choice, Picker};
+use crate::session::Session;
+
+/// No list is wider, or higher.
+const MOST: (u16, u16) = (64, 26);
+/// Frame, search line, a line between, and the keys.
+const AROUND: u16 = 6;
+
+/// Draws an open list.
+pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, picker: &Picker) {
+    let choices = picker.choices(session);
+    // The height does not change while somebody types.
+    let all = Picker::new(picker.question).choices(session).len() as u16;
+    let size = (MOST.0.min(screen.width), (all + AROUND).min(MOST.1).min(screen.height));
+    let inside = open(brush, screen, size, &picker.title(session), "space stops the robot");
+    let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+    let cursor = brush.theme.signs().to;
+    let typed = format!("{}_", picker.filter);
+    let found = format!("{} of {all}", choices.len());
+    brush.parts(x, inside.y, columns, &[("search ", Role::Quiet), (&typed, Role::Strong)]);
+    let quiet = brush.style(Role::Quiet);
+    brush.text_right(x + columns, inside.y, 12, &found, quiet);
+    let list = Rect { x, y: inside.y + 2, width: columns, height: inside.height.saturating_sub(4) };
+    let rows = usize::from(list.height).max(1);
+    let first = picker.at.saturating_sub(rows / 2).min(choices.len().saturating_sub(rows));
+    for (row, choice) in choices.iter().skip(first).take(rows).enumerate() {
+        line(brush, list, row as u16, choice, (first + row == picker.at).then_some(cursor));
+    }
+    if choices.is_empty() {
+        brush.text(list.x, list.y, list.width, "nothing is called so: bksp deletes", quiet);
+    }
+    let keys = [
+        ("up/down", Role::Strong),
+        (" or type  ", Role::Quiet),
+        ("enter", Role::Strong),
+        (" takes it  ", Role::Quiet),
+        ("esc", Role::Strong),
+        (" leaves", Role::Quiet),
+    ];
+    brush.parts(x, inside.bottom().saturating_sub(1), columns, &keys);
+}
+
+fn line(brush: &mut Brush, list: Rect, row: u16, choice: &Choice, cursor: Option<&str>) {
+    let y = list.y + row;
+    let role = if cursor.is_some() { Role::Strong } else { Role::Text };
+    let remark = width(&choice.remark).min(list.width / 2);
+    let label = list.width.saturating_sub(remark + 3);
+    brush.parts(list.x, y, label + 2, &[(cursor.unwrap_or(" "), Role::Signal), (" ", role), (&choice.label, role)]);
+    let quiet = brush.style(Role::Quiet);
+    brush.text_right(list.x + list.width, y, remark, &choice.remark, quiet);
+}

@@ -1,0 +1,53 @@
+//! The experimenter's hands: the kitchen corrected, the robot held, skipped and driven, trials aborted and excluded. What
+//! can be when, and what it changes.
+
+use super::event::Event;
+use super::{Phase, Session};
+use crate::communication::Sender;
+use crate::kitchen::{ContentId, LocationKind};
+
+/// Whether the hands can do this now.
+///
+/// # Errors
+/// The reason why they cannot, in words for the wizard.
+pub(super) fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
+    let refuse_if = |refused: bool, reason: &'static str| if refused { Err(reason) } else { Ok(()) };
+    let (phase, robot) = (session.phase, &session.robot);
+    match event {
+        Event::KitchenCorrected { location, content } => admit_correction(session, location, content),
+        Event::RobotHeld { by } => by_the_wizard(*by).and(refuse_if(robot.held, "the robot is held already")),
+        Event::RobotReleased { by } => by_the_wizard(*by).and(refuse_if(!robot.held, "the robot is not held")),
+        Event::RobotSkipped { by } => {
+            by_the_wizard(*by)?;
+            refuse_if(phase != Phase::Running, "presses are skipped while the trial runs")?;
+            refuse_if(robot.intention.is_none(), "the robot is on its way to no press")
+        }
+        Event::RobotDriven { by, .. } => {
+            by_the_wizard(*by)?;
+            refuse_if(phase != Phase::Running, "the robot is driven while the trial runs")?;
+            refuse_if(robot.stopped, "the robot is stopped: let it go on first")
+        }
+        _ => Ok(()),
+    }
+}
+
+fn by_the_wizard(by: Sender) -> Result<(), &'static str> {
+    if by == Sender::Wizard { Ok(()) } else { Err("only the wizard has hands on the robot") }
+}
+
+fn admit_correction(session: &Session, location: &str, content: &str) -> Result<(), &'static str> {
+    if !matches!(session.phase, Phase::Running | Phase::Paused) {
+        return Err("the kitchen is corrected during a trial");
+    }
+    let kitchen = &session.kitchen;
+    let place = kitchen.location_named(location).ok_or("there is no such location")?;
+    let what = kitchen.content_named(content).ok_or("there is no such content")?;
+    match () {
+        () if kitchen.location(place).kind == LocationKind::Order => {
+            Err("orders are shown by the program, and cannot be corrected")
+        }
+        () if session.state.content(place) == what => Err("that is what the program thinks"),
+        () if what != ContentId::EMPTY && !kitchen.accepts(place, what) => Err("it cannot be there"),
+        () => Ok(()),
+    }
+}

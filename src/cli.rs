@@ -1,16 +1,20 @@
 //! The command line. A command is listed when it works.
 
+mod args;
+
 use std::io::{IsTerminal, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 
-use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use clap::{CommandFactory, Parser};
 use indicatif::{ProgressBar, ProgressStyle};
 use miette::MietteHandlerOpts;
 use serde::Serialize;
 
+use self::args::*;
+use crate::console;
 use crate::edge::doctor;
 use crate::edge::files::{self, FileError};
 use crate::edge::log::WriteError;
@@ -28,176 +32,6 @@ const WRONG: u8 = 2;
 
 /// How often a running session is looked at for new events.
 const FOLLOW_INTERVAL: Duration = Duration::from_millis(50);
-
-/// A console for Wizard-of-Oz experiments in human-robot cooperation.
-#[derive(Debug, Parser)]
-#[command(name = "tomcom", version, args_conflicts_with_subcommands = true)]
-#[command(
-    after_help = "Without a command: operate the default session.\nExample: tomcom --participant keyboard --gaze mouse"
-)]
-struct Cli {
-    #[command(subcommand)]
-    command: Option<Command>,
-    #[command(flatten)]
-    operate: OperateFlags,
-}
-
-#[derive(Debug, Subcommand)]
-enum Command {
-    Operate(OperateArgs),
-    Replay(ReplayArgs),
-    Simulate(SimulateArgs),
-    Kitchen(KitchenArgs),
-    Doctor(DoctorArgs),
-    Completions(CompletionsArgs),
-    Man(ManArgs),
-}
-
-/// How figures are printed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// For people.
-    Text,
-    /// One JSON object.
-    Json,
-}
-
-/// Opens the wizard's console and runs a session; everything that happens is recorded.
-#[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom operate sessions/default.toml --participant keyboard --gaze mouse")]
-struct OperateArgs {
-    /// The session file; by default sessions/default.toml, or the one that the program carries.
-    session: Option<PathBuf>,
-    /// Take up this recording, which was cut, in a new part beside it; its session is the same, a running trial is paused.
-    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "participant", "gaze", "condition", "seed", "out"])]
-    recording: Option<PathBuf>,
-    #[command(flatten)]
-    flags: OperateFlags,
-}
-
-#[derive(Debug, Args)]
-struct OperateFlags {
-    /// Who plays the human's part, instead of the session file's.
-    #[arg(long, value_enum)]
-    participant: Option<Participant>,
-    /// Where gaze samples come from, instead of the session file's.
-    #[arg(long, value_enum)]
-    gaze: Option<Gaze>,
-    /// Who sends signals, instead of the session file's.
-    #[arg(long, value_enum)]
-    condition: Option<ConditionArg>,
-    /// Everything random follows from it; by default the session file's.
-    #[arg(long)]
-    seed: Option<u64>,
-    /// Where the recording's folder is made.
-    #[arg(long, default_value = "sessions")]
-    out: PathBuf,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Participant {
-    /// A simulated person.
-    Simulated,
-    /// Somebody at this keyboard: tab switches between the wizard's and the participant's keys.
-    Keyboard,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Gaze {
-    /// The simulated person's.
-    Simulated,
-    /// The mouse pointer over the kitchen.
-    Mouse,
-    /// Lines of JSON over TCP on localhost.
-    Json,
-    /// No gaze at all.
-    None,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum ConditionArg {
-    /// Nobody.
-    None,
-    /// The wizard.
-    Wizard,
-}
-
-/// Opens the console over a recording. Through a pipe: what happened, line by line. Or checks that it comes out the same.
-#[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify")]
-struct ReplayArgs {
-    /// The folder of a recording, or its events.jsonl.
-    recording: PathBuf,
-    /// Run the session again from the recording's header and its inputs; every line must come out the same.
-    #[arg(long, conflicts_with = "follow")]
-    verify: bool,
-    /// Watch a session that is still running, until it ends.
-    #[arg(long)]
-    follow: bool,
-    /// How to print the result.
-    #[arg(long, value_enum, default_value = "text")]
-    format: Format,
-}
-
-/// Simulates whole trials, faster than real time. Participants are simulated and unassisted: nobody is there to signal.
-#[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom simulate sessions/default.toml --trials 20 --seed 7 --out recordings")]
-struct SimulateArgs {
-    /// The session file.
-    session: PathBuf,
-    /// How many trials; each has orders and a participant of its own and does not depend on how many there are.
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=100_000))]
-    trials: u64,
-    /// Everything random follows from it; by default the session file's.
-    #[arg(long)]
-    seed: Option<u64>,
-    /// Where the recordings go, one folder a trial.
-    #[arg(long, default_value = "sessions/simulated")]
-    out: PathBuf,
-    /// How to print the figures.
-    #[arg(long, value_enum, default_value = "text")]
-    format: Format,
-}
-
-/// Checks a kitchen and prints it: locations, buttons, recipes, optimal plans, size of the state space.
-#[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom kitchen layouts/sushi.toml --format json")]
-struct KitchenArgs {
-    /// The layout file.
-    layout: PathBuf,
-    /// How to print it.
-    #[arg(long, value_enum, default_value = "text")]
-    format: Format,
-}
-
-/// Checks terminal, place for recordings, and clocks; says how to mend what is not as it should be.
-#[derive(Debug, Args)]
-#[command(
-    after_help = "Exit code 0: the program works here. 1: something is broken.\nExample: tomcom doctor --out recordings"
-)]
-struct DoctorArgs {
-    /// Where the recordings would go.
-    #[arg(long, default_value = "sessions")]
-    out: PathBuf,
-    /// How to print what was found.
-    #[arg(long, value_enum, default_value = "text")]
-    format: Format,
-}
-
-/// Prints the completions of a shell.
-#[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom completions bash > ~/.local/share/bash-completion/completions/tomcom")]
-struct CompletionsArgs {
-    shell: clap_complete::Shell,
-}
-
-/// Prints the man page of the program or of one of its commands.
-#[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom man operate | man -l -")]
-struct ManArgs {
-    /// The command.
-    command: Option<String>,
-}
 
 /// Why a command did not do what was asked.
 #[derive(Debug)]
@@ -228,6 +62,7 @@ impl From<LiveError> for Failure {
     fn from(error: LiveError) -> Failure {
         match error {
             LiveError::Resume(error) => Failure::Wrong(miette::Report::new(error)),
+            LiveError::File(error) => Failure::from(*error),
             error => Failure::Failed(miette::Report::new(error)),
         }
     }
@@ -263,6 +98,7 @@ pub fn main() -> ExitCode {
         Command::Replay(args) => replay(&args),
         Command::Simulate(args) => simulate(&args),
         Command::Kitchen(args) => kitchen(&args),
+        Command::Keys(args) => keys(&args),
         Command::Doctor(args) => examine(&args),
         Command::Completions(args) => completions(&args),
         Command::Man(args) => man(&args),
@@ -382,6 +218,14 @@ fn examine(args: &DoctorArgs) -> Result<(), Failure> {
     let found = doctor::examine(&args.out);
     print(args.format, &found, || doctor::describe(&found))?;
     if found.healthy { Ok(()) } else { Err(Failure::No) }
+}
+
+fn keys(args: &KeysArgs) -> Result<(), Failure> {
+    let files = options::session_or_default(args.session.as_deref())?;
+    let map = files::key_map(files.keys.as_ref())?;
+    let lines = console::keys::lines(&files.kitchen.kitchen, &map)
+        .map_err(|error| Failure::Wrong(miette::miette!(help = error.remedy, "{}", error.found)))?;
+    Ok(std::io::stdout().write_all(console::keymap::write(&lines).as_bytes())?)
 }
 
 fn completions(args: &CompletionsArgs) -> Result<(), Failure> {

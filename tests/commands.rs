@@ -162,6 +162,89 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     complaint(&["dance"]);
 }
 
+/// A session of the sushi kitchen with this key file, in a folder of its own; the path of the session file.
+fn session_with_keys(name: &str, keys: &str) -> String {
+    let folder = folder(name);
+    let sushi = fs::canonicalize("layouts/sushi.toml").expect("the layout");
+    fs::write(folder.join("keys.toml"), keys).expect("a file");
+    let session = folder.join("session.toml");
+    fs::write(&session, format!("layout = \"{}\"\n[console]\nkeys = \"keys.toml\"\n", sushi.display()))
+        .expect("a file");
+    session.to_str().expect("a path in UTF-8").to_string()
+}
+
+#[test]
+fn the_printed_keys_are_a_key_file_that_changes_nothing_until_it_is_changed() {
+    let keys = |session: &str| String::from_utf8_lossy(&check(&["keys", session], 0).stdout).into_owned();
+    let printed = keys("sessions/default.toml");
+    assert_eq!(keys(&session_with_keys("same-keys", &printed)), printed);
+    let changes = [
+        ("stop_robot = \"space\"", "stop_robot = [\"space\", \"f12\"]"),
+        ("start_pause = \".\"", "start_pause = \"enter\""),
+        ("note_5 = \"5\"", "note_5 = []"),
+        ("assembly_board = \"a\"  # highlight", "assembly_board = \"5\"  # highlight"),
+        ("trash = \"x\"", "trash = \"f9\""),
+    ];
+    let changed = changes.iter().fold(printed, |text, (from, to)| {
+        assert!(text.contains(from), "{from} is not in\n{text}");
+        text.replacen(from, to, 1)
+    });
+    let again = keys(&session_with_keys("other-keys", &changed));
+    for (_, to) in changes {
+        let (name, keys) = to.split_once(" = ").expect("a line");
+        let keys = keys.split("  #").next().unwrap_or(keys);
+        let is_it = |line: &str| line.split_once(" = ").is_some_and(|(n, k)| n == name && k.starts_with(keys));
+        assert!(again.lines().any(is_it), "{to} is not in\n{again}");
+    }
+}
+
+#[test]
+fn each_wrong_key_file_is_told_with_its_line_and_what_would_be_right() {
+    let cases = [
+        ("[console]\nstop = \"f1\"\n", 2, "\"stop\", which nothing in [console] is called", "one of stop_robot"),
+        ("[signals]\npot = \"p\"\n", 2, "nothing in [signals] is called", "cooking_pot"),
+        ("[buttons]\n\n\"take tuna\" = \"t\"\n", 3, "nothing in [buttons] is called", "take salmon"),
+        ("[console]\nhelp = \"hyper+x\"\n", 2, "help = \"hyper+x\", which is no key", "f1 to f12"),
+        ("[console]\nhelp = \"f13\"\n", 2, "help = \"f13\", which is no key", "f1 to f12"),
+        ("[console]\nhelp = \"K\"\n", 2, "a capital counts as its small letter", "a character such as"),
+        ("[console]\nhelp = \"ctrl+i\"\n", 2, "which most terminals send as tab", "ctrl+k"),
+        ("[console]\nhelp = \"ctrl+1\"\n", 2, "ctrl goes with a letter", "ctrl+k"),
+        ("[console]\nhelp = \"\"\n", 2, "help = \"\", which is no key", "a character such as"),
+        ("[console]\nhelp = [\"f1\", \"f1\"]\n", 2, "help = \"f1\" twice", "each key once"),
+        ("[console]\nhelp = 1\n", 2, "integer `1`", "a key file, as tomcom keys prints it"),
+        ("[console]\nquit = \"space\"\n", 2, "which is the robot stop, always", "another key"),
+        ("[signals]\norder_1 = \"space\"\n", 2, "which is the robot stop, always", "another key"),
+        ("[console]\nstop_robot = \"f1\"\n", 2, "without the space bar", "a list with \"space\""),
+        ("[console]\nstop_robot = []\n", 2, "without the space bar", "a list with \"space\""),
+        ("[console]\nquit = []\n", 2, "quit = []", "without one nobody gets out"),
+        (
+            "[console]\nhelp = \"f1\"\nquit = \"f1\"\n",
+            3,
+            "the key \"f1\" for quit, which is taken by help",
+            "another key",
+        ),
+        ("[console]\nhelp = \"q\"\n", 2, "for help, which is taken by order_1", "order_1 has its own in [signals]"),
+        ("[buttons]\ntrash = \"c\"\n", 2, "for trash, which is taken by cut", "cut has its own in [buttons]"),
+        ("[replay]\nfaster = \"-\"\n", 2, "for faster, which is taken by slower", "another key"),
+        ("[keys]\nhelp = \"f1\"\n", 1, "unknown field `keys`", "as tomcom keys prints it"),
+        ("[console]\nhelp = \"f1\"\nhelp = \"f2\"\n", 3, "duplicate key", "as tomcom keys prints it"),
+        ("[console\n", 1, "found", "as tomcom keys prints it"),
+        ("layout = \"x\"\n", 1, "found a session file", "a key file, as tomcom keys prints it"),
+    ];
+    let mut told_before: Vec<String> = Vec::new();
+    for (index, (text, line, found, remedy)) in cases.into_iter().enumerate() {
+        let told = complaint(&["keys", &session_with_keys("wrong-keys", text)]);
+        assert!(told.contains(&format!("keys.toml:{line}: found ")), "{index}: line {line} is not named in\n{told}");
+        assert!(told.contains(found) && told.contains(remedy), "{index}: {found:?} or {remedy:?} is not in\n{told}");
+        assert!(!told_before.contains(&told), "{index}: said before:\n{told}");
+        told_before.push(told);
+    }
+    let session = session_with_keys("no-keys", "");
+    fs::remove_file(Path::new(&session).with_file_name("keys.toml")).expect("a file");
+    let told = complaint(&["keys", &session]);
+    assert!(told.contains("session.toml:3: found keys = \"keys.toml\", which cannot be read"), "{told}");
+}
+
 #[test]
 fn doctor_looks_at_the_machine_and_says_how_to_mend_it() {
     let out = folder("doctor");

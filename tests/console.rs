@@ -9,13 +9,13 @@ use ratatui::backend::TestBackend;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::{Sender, Signal};
 use tomcom::console::arrange::{Plan, Thing};
-use tomcom::console::keys::Layer;
+use tomcom::console::keys::{KeyPlace, Layer};
 use tomcom::console::model::{Dialog, Recording};
 use tomcom::console::picker::{Picker, Question};
 use tomcom::console::playback::Playback;
 use tomcom::console::view::regions::Regions;
 use tomcom::console::view::theme::Theme;
-use tomcom::console::{Command, Keys, Message, Model, update, view};
+use tomcom::console::{Command, KeyMap, Keys, Message, Model, update, view};
 use tomcom::edge::files::read_kitchen;
 use tomcom::gaze::GazeSample;
 use tomcom::kitchen::{Agent, Kitchen, LocationKind};
@@ -44,7 +44,7 @@ impl Stage {
             spec.participant.gaze = GazeSource::Mouse;
         }
         let kitchen = kitchen(kitchen_name);
-        let keys = Keys::live(&kitchen, &spec).expect("the layout's keys are free");
+        let keys = Keys::live(&kitchen, &spec, &KeyMap::default()).expect("the layout's keys are free");
         let theme = Theme { colour: true, unicode: true };
         let mut model = Model::new(keys, theme, (120, 40));
         model.recording = Recording::On("sessions/2026-03-14-P01-1".to_string());
@@ -349,7 +349,7 @@ fn the_timeline_loses_no_signal_no_note_and_no_error() {
 #[test]
 fn the_keys_of_a_replay_and_the_served_orders_fit_the_smallest_console() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.keys = Keys::replay();
+    stage.model.keys = Keys::replay(&stage.session.kitchen, &KeyMap::default()).expect("the keys are free");
     let mut playback = Playback::new("2026-03-14-P01-1".to_string());
     (playback.playing, playback.event, playback.events) = (true, 43210, 59289);
     stage.model.playback = Some(playback);
@@ -439,8 +439,8 @@ fn a_layout_cannot_take_a_key_twice() {
     let mut kitchen = Kitchen::clone(&kitchen("sushi"));
     let spec: SessionSpec = toml::from_str("layout = \"\"").expect("the settings have defaults");
     kitchen.locations[0].signal_key = Some('3');
-    let clash = Keys::live(&kitchen, &spec).expect_err("3 is a marker");
-    assert_eq!(clash.key, '3');
+    let clash = Keys::live(&kitchen, &spec, &KeyMap::default()).expect_err("3 is a marker");
+    assert_eq!(clash.place, KeyPlace::Layout(Layer::Wizard, '3'));
 }
 
 /// Types a word into an open list.

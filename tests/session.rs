@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use tomcom::base::time::SessionTime;
 use tomcom::communication::{Sender, Signal};
-use tomcom::console::Keys;
+use tomcom::console::{KeyMap, Keys};
 use tomcom::edge::files::{parse, read_session};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen, OrderContent, State};
@@ -38,7 +38,8 @@ fn every_session_file_loads_and_its_keys_are_unambiguous() {
         }
         let mut files = read_session(&path).unwrap_or_else(|error| panic!("{error}"));
         files.spec.participant.kind = ParticipantKind::Keyboard;
-        Keys::live(&files.kitchen.kitchen, &files.spec).unwrap_or_else(|clash| panic!("{}: {clash}", path.display()));
+        Keys::live(&files.kitchen.kitchen, &files.spec, &KeyMap::default())
+            .unwrap_or_else(|clash| panic!("{}: {clash}", path.display()));
     }
 }
 

@@ -1,16 +1,18 @@
 //! The one table of keys: it makes the bindings, the footer, the help and the badges at the things in the kitchen.
 //!
-//! Letters belong to the kitchen (its layout says which), everything else to the console. So no layout takes a key away
-//! from the console, and the space bar is the robot stop in every view and layer.
+//! Letters of signals and buttons stand in the layout, all other keys in [`super::table`]; a key file
+//! ([`super::keymap`]) may change both. The space bar is the robot stop in every view and layer, whatever a file says.
 
 use std::fmt;
+use std::ops::Range;
 
-use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
-
+use super::chord::Chord;
 use super::hands::Hand;
+use super::keymap::KeyMap;
 use super::playback::Move;
-use crate::communication::{self, Signal};
-use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId};
+use super::table;
+use crate::communication::Signal;
+use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, LocationKind};
 use crate::session::settings::{ParticipantKind, SessionSpec};
 
 /// The notes of the markers 1 to 5: short, so that no text has to be typed while the trial runs.
@@ -22,54 +24,6 @@ pub const NOTES: [&str; 5] =
 pub enum Layer {
     Wizard,
     Participant,
-}
-
-/// A key, with or without control.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Chord {
-    pub code: KeyCode,
-    pub ctrl: bool,
-}
-
-impl Chord {
-    const fn plain(code: KeyCode) -> Chord {
-        Chord { code, ctrl: false }
-    }
-
-    const fn ctrl(key: char) -> Chord {
-        Chord { code: KeyCode::Char(key), ctrl: true }
-    }
-
-    /// The chord of a key event. Capitals count as their small letters, so that caps lock does no harm.
-    pub fn of(key: &KeyEvent) -> Chord {
-        let code = match key.code {
-            KeyCode::Char(letter) => KeyCode::Char(letter.to_lowercase().next().unwrap_or(letter)),
-            other => other,
-        };
-        Chord { code, ctrl: key.modifiers.contains(KeyModifiers::CONTROL) }
-    }
-}
-
-impl fmt::Display for Chord {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.ctrl {
-            f.write_str("^")?;
-        }
-        match self.code {
-            KeyCode::Char(' ') => f.write_str("space"),
-            KeyCode::Char(key) => write!(f, "{key}"),
-            KeyCode::Tab => f.write_str("tab"),
-            KeyCode::Backspace => f.write_str("bksp"),
-            KeyCode::Esc => f.write_str("esc"),
-            KeyCode::Left => f.write_str("left"),
-            KeyCode::Right => f.write_str("right"),
-            KeyCode::PageUp => f.write_str("pgup"),
-            KeyCode::PageDown => f.write_str("pgdn"),
-            KeyCode::Home => f.write_str("home"),
-            KeyCode::End => f.write_str("end"),
-            other => write!(f, "{other}"),
-        }
-    }
 }
 
 /// What a key does.
@@ -92,10 +46,39 @@ pub enum Action {
     Quit,
 }
 
+/// The tables of a key file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Section {
+    /// What the console of a live session does.
+    Console,
+    /// What the console over a recording does.
+    Replay,
+    /// The signals, by location.
+    Signals,
+    /// The participant's buttons, by name.
+    Buttons,
+}
+
+/// The name of the table.
+impl fmt::Display for Section {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Section::Console => "console",
+            Section::Replay => "replay",
+            Section::Signals => "signals",
+            Section::Buttons => "buttons",
+        })
+    }
+}
+
 /// One line of the table.
 #[derive(Clone, Debug)]
 pub struct Binding {
-    pub chord: Chord,
+    /// Where it stands in a key file, and its name there.
+    pub section: Section,
+    pub name: String,
+    /// Its keys; the first is the one that is shown.
+    pub chords: Vec<Chord>,
     pub action: Action,
     /// The heading that it stands under in the help.
     pub group: &'static str,
@@ -106,180 +89,155 @@ pub struct Binding {
     pub layer: Option<Layer>,
 }
 
-/// A key that would have two meanings.
+impl Binding {
+    /// Whether two lines can act at the same time, so that they need different keys.
+    fn meets(&self, other: &Binding) -> bool {
+        self.layer.is_none() || other.layer.is_none() || self.layer == other.layer
+    }
+
+    fn letter(&self) -> Option<char> {
+        match self.chords.first()?.code {
+            crossterm::event::KeyCode::Char(letter) => Some(letter),
+            _ => None,
+        }
+    }
+}
+
+/// Where a wrong key stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum KeyPlace {
+    /// In the key file, at these bytes.
+    File(Range<usize>),
+    /// In the layout, as the key of a signal (the wizard's) or of a button (the participant's).
+    Layout(Layer, char),
+}
+
+/// A key that cannot be.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the key \"{key}\" for \"{what}\", which the console has for \"{by}\"")]
-pub struct Clash {
-    pub key: char,
-    pub what: String,
-    pub layer: Layer,
-    /// What the key means already.
-    pub by: String,
+#[error("{found}")]
+pub struct KeyError {
+    pub place: KeyPlace,
+    pub found: String,
+    pub remedy: String,
 }
 
 /// The table.
 #[derive(Clone, Debug)]
 pub struct Keys {
     pub bindings: Vec<Binding>,
-}
-
-const SIGNALS: &str = "Signals to the participant";
-const TRIAL: &str = "Trial";
-const MARKERS: &str = "Markers";
-const REPLAY: &str = "Recording";
-const ROBOT: &str = "Robot";
-const BUTTONS: &str = "The participant's buttons";
-const CONSOLE: &str = "Console";
-
-fn binding(chord: Chord, action: Action, group: &'static str, help: &str, footer: Option<&'static str>) -> Binding {
-    Binding { chord, action, group, help: help.to_string(), footer, layer: None }
-}
-
-/// A key of the experimenter's hands; the footer shows it when it matters.
-fn hand(key: char, hand: Hand, group: &'static str, help: &str) -> Binding {
-    binding(Chord::ctrl(key), Action::Hand(hand), group, help, None)
+    /// How the signal about each location is written in the timeline: its key.
+    marks: Vec<Option<Chord>>,
 }
 
 impl Keys {
     /// The table of a live session.
     ///
     /// # Errors
-    /// A letter of the layout that means two things.
-    pub fn live(kitchen: &Kitchen, spec: &SessionSpec) -> Result<Keys, Clash> {
-        Keys::table(kitchen, spec.signals.own_hand, spec.participant.kind == ParticipantKind::Keyboard)
-    }
-
-    /// Whether the console can take every key of a kitchen, whatever the session's settings are.
-    ///
-    /// # Errors
-    /// A letter of the layout that means two things.
-    pub fn check(kitchen: &Kitchen) -> Result<(), Clash> {
-        Keys::table(kitchen, true, true).map(drop)
-    }
-
-    fn table(kitchen: &Kitchen, own_hand: bool, at_keyboard: bool) -> Result<Keys, Clash> {
-        use KeyCode::{Backspace, Char, Tab};
-        let mut keys = Keys { bindings: Vec::new() };
-        keys.bindings.extend([
-            binding(Chord::plain(Char(' ')), Action::StopRobot, ROBOT, "stop the robot, at once", Some("STOP ROBOT")),
-            binding(Chord::ctrl('r'), Action::ResumeRobot, ROBOT, "resume it after a stop", Some("resume robot")),
-            hand('p', Hand::HoldRobot, ROBOT, "hold it before its next press, release it"),
-            hand('s', Hand::SkipPress, ROBOT, "skip its press: it decides anew"),
-            hand('d', Hand::DriveRobot, ROBOT, "drive it: choose its next press"),
-            binding(Chord::plain(Char('.')), Action::Advance, TRIAL, "start, pause, resume", Some("start/pause")),
-            binding(Chord::ctrl('e'), Action::EndTrial, TRIAL, "end the trial (asks first)", Some("end")),
-            hand('k', Hand::Correct, TRIAL, "correct the kitchen: what is where"),
-        ]);
-        if at_keyboard {
-            let help = "switch between wizard and participant";
-            keys.bindings.push(binding(Chord::plain(Tab), Action::SwitchLayer, CONSOLE, help, Some("switch")));
-        }
-        keys.signals(kitchen, own_hand)?;
-        let take_back = "take the shown signal back";
-        keys.wizards(binding(Chord::plain(Backspace), Action::TakeBack, SIGNALS, take_back, Some("take back")));
-        for (index, note) in NOTES.iter().enumerate() {
-            let key = Chord::plain(Char(char::from(b'1' + index as u8)));
-            keys.wizards(binding(key, Action::Note(index), MARKERS, note, (index == 0).then_some("note")));
-        }
-        if at_keyboard {
-            keys.buttons(kitchen)?;
-        }
-        keys.console();
-        Ok(keys)
+    /// A key with two meanings, or a line of the key file that cannot be.
+    pub fn live(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyMap) -> Result<Keys, KeyError> {
+        let mut bindings = lines(kitchen, map)?;
+        let marks = marks(kitchen, &bindings);
+        let at_keyboard = spec.participant.kind == ParticipantKind::Keyboard;
+        bindings.retain(|line| match &line.action {
+            Action::Signal(id, _) => {
+                spec.signals.own_hand || kitchen.location(*id).kind != LocationKind::Hand(Agent::Human)
+            }
+            Action::Press(_) | Action::SwitchLayer => at_keyboard,
+            Action::Move(_) => false,
+            _ => line.section != Section::Replay,
+        });
+        bindings.retain(|line| !line.chords.is_empty());
+        Ok(Keys { bindings, marks })
     }
 
     /// The table of a replay.
-    pub fn replay() -> Keys {
-        use KeyCode::{Char, End, Home, Left, PageDown, PageUp, Right};
-        let moves = [
-            (Right, Move::StepForward, "to the next event", Some("step")),
-            (Left, Move::StepBack, "to the last event", None),
-            (PageDown, Move::SeekForward, "ten seconds on", Some("10 s")),
-            (PageUp, Move::SeekBack, "ten seconds back", None),
-            (Char('+'), Move::Faster, "faster", Some("speed")),
-            (Char('-'), Move::Slower, "slower", None),
-            (Home, Move::ToStart, "to the beginning", None),
-            (End, Move::ToEnd, "to the end; stays there if the recording grows", Some("ends")),
-        ];
-        let line = |(code, to, help, footer)| binding(Chord::plain(code), Action::Move(to), REPLAY, help, footer);
-        let mut keys = Keys { bindings: vec![line((Char('.'), Move::PlayPause, "play, pause", Some("play/pause")))] };
-        keys.bindings.extend([
-            binding(Chord::plain(Char('q')), Action::Quit, CONSOLE, "quit", Some("quit")),
-            binding(Chord::plain(Char('?')), Action::Help, CONSOLE, "this help", Some("help")),
-            binding(Chord::ctrl('c'), Action::Quit, CONSOLE, "quit", None),
-        ]);
-        keys.bindings.extend(moves.into_iter().map(line));
-        keys
-    }
-
-    fn console(&mut self) {
-        self.bindings.extend([
-            binding(Chord::plain(KeyCode::Char('?')), Action::Help, CONSOLE, "this help", Some("help")),
-            binding(Chord::ctrl('c'), Action::Quit, CONSOLE, "quit (asks first)", Some("quit")),
-        ]);
-    }
-
-    fn wizards(&mut self, binding: Binding) {
-        self.bindings.push(Binding { layer: Some(Layer::Wizard), ..binding });
-    }
-
-    fn signals(&mut self, kitchen: &Kitchen, own_hand: bool) -> Result<(), Clash> {
-        for (id, signal) in communication::signals(kitchen, own_hand) {
-            let location = kitchen.location(id);
-            let Some(key) = location.signal_key else { continue };
-            let help = match signal {
-                Signal::ShowRecipe(_) => format!("show the recipe of {}", location.label()),
-                Signal::Highlight(_) => format!("highlight {}", location.label()),
-            };
-            let chord = self.letter(key, &location.name, Layer::Wizard)?;
-            self.wizards(binding(chord, Action::Signal(id, signal), SIGNALS, &help, None));
-        }
-        Ok(())
-    }
-
-    fn buttons(&mut self, kitchen: &Kitchen) -> Result<(), Clash> {
-        for (index, button) in kitchen.buttons[Agent::Human.index()].iter().enumerate() {
-            let Some(key) = button.key else { continue };
-            let chord = self.letter(key, &button.name, Layer::Participant)?;
-            let help = button.name.replace('_', " ");
-            let line = binding(chord, Action::Press(ButtonId(index as u8)), BUTTONS, &help, None);
-            self.bindings.push(Binding { layer: Some(Layer::Participant), ..line });
-        }
-        Ok(())
-    }
-
-    /// The chord of a key from a layout, if it is free in its layer.
-    fn letter(&self, key: char, what: &str, layer: Layer) -> Result<Chord, Clash> {
-        let chord = Chord::plain(KeyCode::Char(key.to_lowercase().next().unwrap_or(key)));
-        let taken = match key {
-            '1'..='5' if layer == Layer::Wizard => Some(NOTES[usize::from(key as u8 - b'1')]),
-            '?' => Some("this help"),
-            _ => self.find(layer, chord).map(|line| line.help.as_str()),
-        };
-        match taken {
-            Some(by) => Err(Clash { key, what: what.to_string(), layer, by: by.to_string() }),
-            None => Ok(chord),
-        }
+    ///
+    /// # Errors
+    /// As of [`Keys::live`].
+    pub fn replay(kitchen: &Kitchen, map: &KeyMap) -> Result<Keys, KeyError> {
+        let mut bindings = lines(kitchen, map)?;
+        let marks = marks(kitchen, &bindings);
+        bindings.retain(|line| line.section == Section::Replay && !line.chords.is_empty());
+        Ok(Keys { bindings, marks })
     }
 
     /// What a key means in a layer.
     pub fn find(&self, layer: Layer, chord: Chord) -> Option<&Binding> {
-        self.bindings.iter().find(|line| line.chord == chord && line.layer.is_none_or(|only| only == layer))
+        let acts = |line: &&Binding| line.chords.contains(&chord) && line.layer.is_none_or(|only| only == layer);
+        self.bindings.iter().find(acts)
     }
 
     /// The key of the signal about a location.
     pub fn of_signal(&self, location: LocationId) -> Option<Chord> {
         let is_it = |line: &&Binding| matches!(line.action, Action::Signal(about, _) if about == location);
-        self.bindings.iter().find(is_it).map(|line| line.chord)
+        self.bindings.iter().find(is_it).and_then(|line| line.chords.first().copied())
+    }
+
+    /// How the signal about a location is written in the timeline, also in a replay, where no key sends it.
+    pub fn mark(&self, location: LocationId) -> Option<Chord> {
+        self.marks.get(location.index()).copied().flatten()
     }
 
     /// The participant's key of a button.
     pub fn of_button(&self, button: ButtonId) -> Option<Chord> {
-        self.bindings.iter().find(|line| line.action == Action::Press(button)).map(|line| line.chord)
+        self.of(&Action::Press(button))
     }
 
     /// The key of an action of the console.
     pub fn of(&self, action: &Action) -> Option<Chord> {
-        self.bindings.iter().find(|line| line.action == *action).map(|line| line.chord)
+        self.bindings.iter().find(|line| line.action == *action).and_then(|line| line.chords.first().copied())
     }
+}
+
+/// Every line of both consoles for a kitchen, with the keys of a key file; no key has two meanings, whatever the
+/// session's settings are.
+///
+/// # Errors
+/// A key with two meanings, or a line of the key file that cannot be.
+pub fn lines(kitchen: &Kitchen, map: &KeyMap) -> Result<Vec<Binding>, KeyError> {
+    let mut live = table::live(kitchen);
+    let mut replay = table::replay();
+    map.apply(&mut live, &mut replay)?;
+    for lines in [&live, &replay] {
+        // The keys of the layout are checked last, so that they are what a message is about.
+        let (ours, letters): (Vec<&Binding>, Vec<&Binding>) =
+            lines.iter().partition(|line| matches!(line.section, Section::Console | Section::Replay));
+        let ordered: Vec<&Binding> = ours.into_iter().chain(letters).collect();
+        for (index, line) in ordered.iter().enumerate() {
+            for earlier in ordered[..index].iter().filter(|earlier| earlier.meets(line)) {
+                if let Some(chord) = line.chords.iter().find(|chord| earlier.chords.contains(chord)) {
+                    return Err(clash(map, earlier, line, *chord));
+                }
+            }
+        }
+    }
+    live.extend(replay);
+    Ok(live)
+}
+
+/// The message about a key with two meanings, at the line of the key file that is to blame, or else of the layout.
+fn clash(map: &KeyMap, earlier: &Binding, line: &Binding, chord: Chord) -> KeyError {
+    let (name, layer) = (chord.name(), line.layer.unwrap_or(Layer::Wizard));
+    let in_file = map.place(line).map(|place| (place, line, earlier));
+    let in_file = in_file.or_else(|| map.place(earlier).map(|place| (place, earlier, line)));
+    match in_file {
+        Some((span, line, other)) => KeyError {
+            place: KeyPlace::File(span),
+            found: format!("the key \"{name}\" for {}, which is taken by {} ({})", line.name, other.name, other.help),
+            remedy: format!("another key for one of them; {} has its own in [{}]", other.name, other.section),
+        },
+        None => KeyError {
+            place: KeyPlace::Layout(layer, line.letter().unwrap_or(' ')),
+            found: format!("the key \"{name}\" for \"{}\", which the console has for \"{}\"", line.name, earlier.help),
+            remedy: "another key, a letter for instance".to_string(),
+        },
+    }
+}
+
+fn marks(kitchen: &Kitchen, lines: &[Binding]) -> Vec<Option<Chord>> {
+    let key = |index: usize| {
+        let is_it = |line: &&Binding| matches!(line.action, Action::Signal(about, _) if about.index() == index);
+        lines.iter().find(is_it).and_then(|line| line.chords.first().copied())
+    };
+    (0..kitchen.locations.len()).map(key).collect()
 }

@@ -2,16 +2,20 @@
 //! [`view`] that only reads. What affects participant, robot or analysis leaves as an event; the rest stays in the [`Model`].
 
 pub mod arrange;
+pub mod chord;
 pub mod hands;
+pub mod keymap;
 pub mod keys;
 pub mod message;
 pub mod model;
 pub mod picker;
 pub mod playback;
+mod table;
 pub mod update;
 pub mod view;
 pub mod words;
 
+pub use keymap::KeyMap;
 pub use keys::Keys;
 pub use message::{Command, Message};
 pub use model::Model;

@@ -3,8 +3,9 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
 use super::arrange::Plan;
+use super::chord::Chord;
 use super::hands;
-use super::keys::{Action, Chord, Layer, NOTES};
+use super::keys::{Action, Layer, NOTES};
 use super::message::{Command, Message};
 use super::model::{Dialog, Level, Model};
 use super::view::regions::Regions;

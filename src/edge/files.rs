@@ -8,10 +8,11 @@ use miette::{Diagnostic, NamedSource, SourceSpan};
 use serde::de::DeserializeOwned;
 use toml::Spanned;
 
-use crate::console::keys::{Keys, Layer};
+use crate::console::KeyMap;
+use crate::console::keys::{self, KeyError, KeyPlace, Layer};
 use crate::kitchen::Kitchen;
 use crate::kitchen::compile::{SpecError, SpecFile};
-use crate::kitchen::layout::LayoutSpec;
+use crate::kitchen::layout::{LayoutSpec, is_same_key};
 use crate::kitchen::recipe::RecipesSpec;
 use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
@@ -60,14 +61,15 @@ impl FileError {
     }
 }
 
-/// A session file with its kitchen.
+/// A session file with its kitchen and its key file.
 #[derive(Clone, Debug)]
 pub struct SessionFiles {
     pub spec: SessionSpec,
     pub kitchen: KitchenFiles,
+    pub keys: Option<FileText>,
 }
 
-/// Reads a session file, the layout that it names, and the recipes that the layout names.
+/// Reads a session file, the layout and the key file that it names, and the recipes that the layout names.
 pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     let text = read_text(path)?;
     let mut spec: SessionSpec = parse(path, &text)?;
@@ -88,9 +90,21 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
         let remedy = "the path of a layout file, relative to the session file".to_string();
         return Err(FileError::at(path, &text, line_of(&text, "layout"), found, remedy));
     }
-    let mut kitchen = read_kitchen(&layout_path)?;
+    let keys = match &spec.console.keys {
+        Some(name) => {
+            let keys_path = path.parent().unwrap_or(Path::new(".")).join(name);
+            let text = std::fs::read_to_string(&keys_path).map_err(|reason| {
+                let found = format!("keys = \"{name}\", which cannot be read: {reason}");
+                let remedy = "the path of a key file, relative to the session file; tomcom keys prints one";
+                FileError::at(path, &text, line_of(&text, "keys"), found, remedy.to_string())
+            })?;
+            Some(FileText { path: keys_path.display().to_string(), text })
+        }
+        None => None,
+    };
+    let mut kitchen = read_kitchen_with(&layout_path, keys.as_ref())?;
     kitchen.layout.path.clone_from(&spec.layout);
-    Ok(SessionFiles { spec, kitchen })
+    Ok(SessionFiles { spec, kitchen, keys })
 }
 
 /// Reads a file with parameters of the human model; those that it does not name have their defaults.
@@ -115,7 +129,7 @@ pub fn built_in_session() -> FileResult<SessionFiles> {
     let layout = (Path::new(&spec.layout), include_str!("../../layouts/sushi.toml").to_string());
     let recipes = (Path::new("../recipes/sushi.toml"), include_str!("../../recipes/sushi.toml").to_string());
     let kitchen = compile_kitchen(layout, recipes)?;
-    Ok(SessionFiles { spec, kitchen })
+    Ok(SessionFiles { spec, kitchen, keys: None })
 }
 
 /// Where the line with `key = …` is in a TOML text.
@@ -140,8 +154,12 @@ pub struct KitchenFiles {
     pub recipes: FileText,
 }
 
-/// Reads a layout and the recipe file that it names.
+/// Reads a layout and the recipe file that it names, for the keys that the console has without a key file.
 pub fn read_kitchen(layout_path: &Path) -> FileResult<KitchenFiles> {
+    read_kitchen_with(layout_path, None)
+}
+
+fn read_kitchen_with(layout_path: &Path, keys: Option<&FileText>) -> FileResult<KitchenFiles> {
     let layout_text = read_text(layout_path)?;
     let layout: LayoutSpec = parse(layout_path, &layout_text)?;
     let folder = layout_path.parent().unwrap_or(Path::new("."));
@@ -152,20 +170,36 @@ pub fn read_kitchen(layout_path: &Path) -> FileResult<KitchenFiles> {
         FileError::at(layout_path, &layout_text, Some(layout.recipes.span()), found, remedy)
     })?;
     let files = compile_kitchen((layout_path, layout_text), (&recipes_path, recipes_text))?;
-    check_keys(layout_path, &layout, &files)?;
+    check_keys(layout_path, &layout, &files, keys)?;
     Ok(files)
 }
 
-/// Whether the console can take the keys of a layout. Recordings need no such check: a replay takes none.
-fn check_keys(path: &Path, layout: &LayoutSpec, files: &KitchenFiles) -> FileResult<()> {
-    let Err(clash) = Keys::check(&files.kitchen) else { return Ok(()) };
-    let is_it = |key: &&Spanned<char>| *key.get_ref() == clash.key;
-    let key = match clash.layer {
-        Layer::Wizard => layout.signal_keys().map(|(_, key)| key).find(is_it),
-        Layer::Participant => layout.button_keys().find(is_it),
-    };
-    let remedy = "another key, a letter for instance".to_string();
-    Err(FileError::at(path, &files.layout.text, key.map(Spanned::span), clash.to_string(), remedy))
+/// Whether the console can take the keys of a layout, changed by a key file.
+fn check_keys(path: &Path, layout: &LayoutSpec, files: &KitchenFiles, keys: Option<&FileText>) -> FileResult<()> {
+    let map = key_map(keys)?;
+    let Err(KeyError { place, found, remedy }) = keys::lines(&files.kitchen, &map) else { return Ok(()) };
+    match (place, keys) {
+        (KeyPlace::File(span), Some(keys)) => {
+            Err(FileError::at(Path::new(&keys.path), &keys.text, Some(span), found, remedy))
+        }
+        (KeyPlace::Layout(layer, letter), _) => {
+            let is_it = |key: &&Spanned<char>| is_same_key(*key.get_ref(), letter);
+            let key = match layer {
+                Layer::Wizard => layout.signal_keys().map(|(_, key)| key).find(is_it),
+                Layer::Participant => layout.button_keys().find(is_it),
+            };
+            Err(FileError::at(path, &files.layout.text, key.map(Spanned::span), found, remedy))
+        }
+        (KeyPlace::File(_), None) => Ok(()),
+    }
+}
+
+/// What a key file says; nothing, if there is none.
+///
+/// # Errors
+/// It is no key file.
+pub fn key_map(keys: Option<&FileText>) -> FileResult<KeyMap> {
+    keys.map_or(Ok(KeyMap::default()), |keys| parse(Path::new(&keys.path), &keys.text))
 }
 
 /// Compiles a kitchen from texts; the paths only serve error messages.
@@ -201,6 +235,7 @@ pub enum Kind {
     Layout,
     Recipes,
     HumanModel,
+    Keys,
 }
 
 impl Kind {
@@ -213,6 +248,7 @@ impl Kind {
             () if has(&["ingredient", "slot", "dish"]) => Some(Kind::Recipes),
             () if has(&["layout"]) => Some(Kind::Session),
             () if has(&["prior", "perception", "transition", "decision"]) => Some(Kind::HumanModel),
+            () if has(&["console", "replay", "signals", "buttons"]) => Some(Kind::Keys),
             () => None,
         }
     }
@@ -223,6 +259,7 @@ impl Kind {
             Kind::Layout => "a layout file",
             Kind::Recipes => "a recipe file",
             Kind::HumanModel => "a file with parameters of the human model",
+            Kind::Keys => "a key file",
         }
     }
 
@@ -232,6 +269,7 @@ impl Kind {
             Kind::Layout => "a layout file, like layouts/sushi.toml",
             Kind::Recipes => "a recipe file, like recipes/sushi.toml",
             Kind::HumanModel => "parameters of the human model, like those in the header of a recording",
+            Kind::Keys => "a key file, as tomcom keys prints it",
         }
     }
 }
@@ -258,13 +296,20 @@ impl OfKind for HumanModel {
     const KIND: Kind = Kind::HumanModel;
 }
 
+impl OfKind for KeyMap {
+    const KIND: Kind = Kind::Keys;
+}
+
 /// Parses TOML into `T`.
 pub fn parse<T: OfKind>(path: &Path, text: &str) -> FileResult<T> {
     toml::from_str(text).map_err(|error| match Kind::of(text).filter(|kind| *kind != T::KIND) {
         Some(other) => FileError::at(path, text, None, other.name().to_string(), T::KIND.remedy().to_string()),
         None => {
-            let remedy = "a file like those in layouts/, recipes/ and sessions/".to_string();
-            FileError::at(path, text, error.span(), error.message().to_string(), remedy)
+            let remedy = match T::KIND {
+                Kind::Keys => T::KIND.remedy(),
+                _ => "a file like those in layouts/, recipes/ and sessions/",
+            };
+            FileError::at(path, text, error.span(), error.message().to_string(), remedy.to_string())
         }
     })
 }

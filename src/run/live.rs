@@ -14,9 +14,11 @@ use super::options::Beginning;
 use super::resume::{ResumeError, resume};
 use crate::base::time::SessionTime;
 use crate::base::words::count;
+use crate::console::keys::KeyError;
 use crate::console::model::{Level, Recording};
 use crate::console::{Command, Keys, Message, Model, update};
 use crate::edge::clock::{SessionClock, WallTime};
+use crate::edge::files::{FileError, key_map};
 use crate::edge::gaze_json::GazeLine;
 use crate::edge::log::{Lock, LogWriter, WriteError};
 use crate::edge::terminal::{Screen, theme};
@@ -44,8 +46,11 @@ pub enum LiveError {
     #[diagnostic(help("run it in a terminal, not through a pipe"))]
     Terminal(io::Error),
     #[error(transparent)]
-    #[diagnostic(help("a letter for every signal and button in the layout, each once"))]
-    Keys(#[from] crate::console::keys::Clash),
+    #[diagnostic(help("{}", .0.remedy))]
+    Keys(#[from] KeyError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    File(#[from] Box<FileError>),
     #[error("nothing can listen on port {port} of localhost for gaze: {reason}")]
     #[diagnostic(help("another port as gaze_port in the session file"))]
     Gaze { port: u16, reason: io::Error },
@@ -55,6 +60,12 @@ pub enum LiveError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Resume(#[from] ResumeError),
+}
+
+impl From<FileError> for LiveError {
+    fn from(error: FileError) -> LiveError {
+        LiveError::File(Box::new(error))
+    }
 }
 
 /// What came of a live session.
@@ -122,7 +133,8 @@ impl Begun {
         match beginning {
             Beginning::New { files, out } => {
                 let kitchen = Arc::new(files.kitchen.kitchen);
-                let header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+                let mut header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+                header.keys = files.keys;
                 let engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
                 Ok(Begun { engine, header, first: Vec::new(), time: SessionTime::ZERO, place: Place::In(out) })
             }
@@ -153,7 +165,7 @@ impl Live {
     fn open(begun: Begun) -> Result<Live, LiveError> {
         let Begun { engine, mut header, first, time, place } = begun;
         let (kitchen, spec) = (engine.session().kitchen.clone(), engine.session().spec.clone());
-        let keys = Keys::live(&kitchen, &spec)?;
+        let keys = Keys::live(&kitchen, &spec, &key_map(header.keys.as_ref())?)?;
         let wall = WallTime::now();
         header.started = Some(wall.rfc3339());
         let (log, before) = match place {

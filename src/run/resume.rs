@@ -83,5 +83,6 @@ pub fn resume(recording: &Path) -> Result<Resumed, ResumeError> {
     let old = log.header;
     let mut header = Header::new(old.session, old.trial, old.layout, old.recipes);
     header.continues = Some(continues);
+    header.keys = old.keys;
     Ok(Resumed { engine: again.engine, first, header, time, folder, lock })
 }

@@ -11,9 +11,10 @@ use tokio::time::{Instant, sleep_until};
 
 use super::replay::Replay;
 use crate::base::time::SessionTime;
+use crate::console::keys::KeyError;
 use crate::console::playback::{Move, Playback, SPEEDS};
 use crate::console::{Command, Keys, Message, Model, update};
-use crate::edge::files::{FileError, FileResult};
+use crate::edge::files::{FileError, FileResult, key_map};
 use crate::edge::terminal::{Hands, Screen, asked_to_end, theme};
 use crate::session::{Event, Session, Stamped, apply};
 
@@ -37,6 +38,9 @@ pub enum ReviewError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
+    #[error("the header of the recording: {0}")]
+    #[diagnostic(help("{}", .0.remedy))]
+    Keys(#[from] KeyError),
 }
 
 impl From<FileError> for ReviewError {
@@ -177,7 +181,9 @@ impl Review {
     fn open(film: Film, recording: &Path, follow: bool) -> Result<Review, ReviewError> {
         let screen = Screen::take(false).map_err(ReviewError::Terminal)?;
         let size = Screen::size().map_err(ReviewError::Terminal)?;
-        let mut model = Model::new(Keys::replay(), theme(film.session.spec.console.ascii), size);
+        let keys = film.replay.log().header.keys.as_ref();
+        let keys = Keys::replay(&film.session.kitchen, &key_map(keys)?)?;
+        let mut model = Model::new(keys, theme(film.session.spec.console.ascii), size);
         let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
         model.playback = Some(Playback::new(name));
         let now = Instant::now();

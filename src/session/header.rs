@@ -33,6 +33,9 @@ pub struct Header {
     pub session: SessionSpec,
     pub layout: FileText,
     pub recipes: FileText,
+    /// The key file, if the session had one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub keys: Option<FileText>,
 }
 
 /// The part before: the session goes on from where that was cut.
@@ -61,6 +64,6 @@ impl Header {
     pub fn new(session: SessionSpec, trial: u64, layout: FileText, recipes: FileText) -> Header {
         let program = env!("CARGO_PKG_VERSION").to_string();
         let (format, version) = (FORMAT.to_string(), VERSION);
-        Header { format, version, program, trial, started: None, continues: None, session, layout, recipes }
+        Header { format, version, program, trial, started: None, continues: None, session, layout, recipes, keys: None }
     }
 }

@@ -203,11 +203,14 @@ pub struct ConsoleSpec {
     pub visibility: Visibility,
     /// Draw with ASCII signs only, for terminals and fonts without the others.
     pub ascii: bool,
+    /// The key file, relative to the session file; without one the keys are those of program and layout.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub keys: Option<String>,
 }
 
 impl Default for ConsoleSpec {
     fn default() -> Self {
-        ConsoleSpec { visibility: Visibility::Recommendation, ascii: false }
+        ConsoleSpec { visibility: Visibility::Recommendation, ascii: false, keys: None }
     }
 }
 

@@ -5,6 +5,7 @@ use ratatui::layout::Rect;
 use super::paint::{Brush, width};
 use super::picker;
 use super::theme::Role;
+use crate::console::chord::Chord;
 use crate::console::keys::{Binding, Layer};
 use crate::console::model::{Dialog, Model};
 use crate::session::{Phase, Session};
@@ -101,7 +102,7 @@ fn help_line(brush: &mut Brush, x: u16, y: u16, columns: u16, line: &Line) {
             brush.text(x, y, columns, text, style);
         }
         Line::Key(binding) => {
-            let key = binding.chord.to_string();
+            let key = binding.chords.first().map(Chord::to_string).unwrap_or_default();
             let role = match binding.layer {
                 Some(Layer::Wizard) => Role::Signal,
                 Some(Layer::Participant) => Role::Human,

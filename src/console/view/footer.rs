@@ -36,6 +36,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let (late, first): (Vec<&Binding>, Vec<&Binding>) = model.keys.bindings.iter().partition(is_late);
     for binding in first.into_iter().chain(late) {
         let Some(label) = label(binding, session, model) else { continue };
+        let Some(chord) = binding.chords.first() else { continue };
         let key = match binding.action {
             Action::Note(_) => format!("1-{}", NOTES.len()),
             // One label for the keys of both directions.
@@ -43,7 +44,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
             Action::Move(Move::SeekForward) => "pgup/pgdn".to_string(),
             Action::Move(Move::Faster) => "+/-".to_string(),
             Action::Move(Move::ToEnd) => "home/end".to_string(),
-            _ => binding.chord.to_string(),
+            _ => chord.to_string(),
         };
         if x + width(&key) + width(label) + 3 > end {
             continue;

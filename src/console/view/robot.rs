@@ -3,6 +3,7 @@
 use super::paint::Brush;
 use super::regions::{Regions, Room};
 use super::theme::Role;
+use crate::base::words::count;
 use crate::console::hands::Hand;
 use crate::console::keys::Action;
 use crate::console::model::Model;
@@ -29,7 +30,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
     let held = session.kitchen.content_label(session.state, session.kitchen.hands[Agent::Robot.index()]);
-    let presses = format!("{} presses", session.presses[Agent::Robot.index()]);
+    let presses = count(u64::from(session.presses[Agent::Robot.index()]), "press", "presses");
     brush.parts(x, inside.y + 1, columns, &[("holds ", Role::Quiet), (held, Role::Text)]);
     let quiet = brush.style(Role::Quiet);
     brush.text_right(x + columns, inside.y + 1, columns / 2, &presses, quiet);

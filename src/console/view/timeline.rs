@@ -144,7 +144,5 @@ fn mark(brush: &Brush, session: &Session, model: &Model, entry: &Entry) -> Optio
 /// The key of the signal, as it stands in the kitchen.
 fn signal_sign(session: &Session, model: &Model, signal: &Signal) -> String {
     let location = session.kitchen.location_named(signal.target());
-    let from_layout = location.and_then(|id| session.kitchen.location(id).signal_key).map(|key| key.to_string());
-    let bound = location.and_then(|id| model.keys.of_signal(id)).map(|chord| chord.to_string());
-    bound.or(from_layout).unwrap_or("!".to_string())
+    location.and_then(|id| model.keys.mark(id)).map_or("!".to_string(), |chord| chord.to_string())
 }

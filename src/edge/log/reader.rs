@@ -167,8 +167,8 @@ fn open_before(path: &Path, text: &str, header: &Header, before: &Continues, par
     }
     let first = LogReader::open_part(&folder, parts - 1)?;
     let same = |other: &Header| {
-        (&other.session, &other.layout, &other.recipes, other.trial)
-            == (&header.session, &header.layout, &header.recipes, header.trial)
+        (&other.session, &other.layout, &other.recipes, &other.keys, other.trial)
+            == (&header.session, &header.layout, &header.recipes, &header.keys, header.trial)
     };
     match same(&first.header) {
         true => Ok(first),

@@ -1,0 +1,184 @@
+//! What can be typed: commands and their arguments.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// A console for Wizard-of-Oz experiments in human-robot cooperation.
+#[derive(Debug, Parser)]
+#[command(name = "tomcom", version, args_conflicts_with_subcommands = true)]
+#[command(
+    after_help = "Without a command: operate the default session.\nExample: tomcom --participant keyboard --gaze mouse"
+)]
+pub(super) struct Cli {
+    #[command(subcommand)]
+    pub(super) command: Option<Command>,
+    #[command(flatten)]
+    pub(super) operate: OperateFlags,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    Operate(OperateArgs),
+    Replay(ReplayArgs),
+    Simulate(SimulateArgs),
+    Kitchen(KitchenArgs),
+    Keys(KeysArgs),
+    Doctor(DoctorArgs),
+    Completions(CompletionsArgs),
+    Man(ManArgs),
+}
+
+/// How figures are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    /// For people.
+    Text,
+    /// One JSON object.
+    Json,
+}
+
+/// Opens the wizard's console and runs a session; everything that happens is recorded.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom operate sessions/default.toml --participant keyboard --gaze mouse")]
+pub(super) struct OperateArgs {
+    /// The session file; by default sessions/default.toml, or the one that the program carries.
+    pub(super) session: Option<PathBuf>,
+    /// Take up this recording, which was cut, in a new part beside it; its session is the same, a running trial is paused.
+    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "participant", "gaze", "condition", "seed", "out"])]
+    pub(super) recording: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) flags: OperateFlags,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct OperateFlags {
+    /// Who plays the human's part, instead of the session file's.
+    #[arg(long, value_enum)]
+    pub(super) participant: Option<Participant>,
+    /// Where gaze samples come from, instead of the session file's.
+    #[arg(long, value_enum)]
+    pub(super) gaze: Option<Gaze>,
+    /// Who sends signals, instead of the session file's.
+    #[arg(long, value_enum)]
+    pub(super) condition: Option<ConditionArg>,
+    /// Everything random follows from it; by default the session file's.
+    #[arg(long)]
+    pub(super) seed: Option<u64>,
+    /// Where the recording's folder is made.
+    #[arg(long, default_value = "sessions")]
+    pub(super) out: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Participant {
+    /// A simulated person.
+    Simulated,
+    /// Somebody at this keyboard: tab switches between the wizard's and the participant's keys.
+    Keyboard,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Gaze {
+    /// The simulated person's.
+    Simulated,
+    /// The mouse pointer over the kitchen.
+    Mouse,
+    /// Lines of JSON over TCP on localhost.
+    Json,
+    /// No gaze at all.
+    None,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum ConditionArg {
+    /// Nobody.
+    None,
+    /// The wizard.
+    Wizard,
+}
+
+/// Opens the console over a recording. Through a pipe: what happened, line by line. Or checks that it comes out the same.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify")]
+pub(super) struct ReplayArgs {
+    /// The folder of a recording, or its events.jsonl.
+    pub(super) recording: PathBuf,
+    /// Run the session again from the recording's header and its inputs; every line must come out the same.
+    #[arg(long, conflicts_with = "follow")]
+    pub(super) verify: bool,
+    /// Watch a session that is still running, until it ends.
+    #[arg(long)]
+    pub(super) follow: bool,
+    /// How to print the result.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(super) format: Format,
+}
+
+/// Simulates whole trials, faster than real time. Participants are simulated and unassisted: nobody is there to signal.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom simulate sessions/default.toml --trials 20 --seed 7 --out recordings")]
+pub(super) struct SimulateArgs {
+    /// The session file.
+    pub(super) session: PathBuf,
+    /// How many trials; each has orders and a participant of its own and does not depend on how many there are.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub(super) trials: u64,
+    /// Everything random follows from it; by default the session file's.
+    #[arg(long)]
+    pub(super) seed: Option<u64>,
+    /// Where the recordings go, one folder a trial.
+    #[arg(long, default_value = "sessions/simulated")]
+    pub(super) out: PathBuf,
+    /// How to print the figures.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(super) format: Format,
+}
+
+/// Checks a kitchen and prints it: locations, buttons, recipes, optimal plans, size of the state space.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom kitchen layouts/sushi.toml --format json")]
+pub(super) struct KitchenArgs {
+    /// The layout file.
+    pub(super) layout: PathBuf,
+    /// How to print it.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(super) format: Format,
+}
+
+/// Prints the keys of the console as a key file, with comments, ready to be changed.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom keys sessions/default.toml > sessions/keys.toml")]
+pub(super) struct KeysArgs {
+    /// The session file whose kitchen and key file it is about; by default the one of tomcom operate.
+    pub(super) session: Option<PathBuf>,
+}
+
+/// Checks terminal, place for recordings, and clocks; says how to mend what is not as it should be.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exit code 0: the program works here. 1: something is broken.\nExample: tomcom doctor --out recordings"
+)]
+pub(super) struct DoctorArgs {
+    /// Where the recordings would go.
+    #[arg(long, default_value = "sessions")]
+    pub(super) out: PathBuf,
+    /// How to print what was found.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(super) format: Format,
+}
+
+/// Prints the completions of a shell.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom completions bash > ~/.local/share/bash-completion/completions/tomcom")]
+pub(super) struct CompletionsArgs {
+    pub(super) shell: clap_complete::Shell,
+}
+
+/// Prints the man page of the program or of one of its commands.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom man operate | man -l -")]
+pub(super) struct ManArgs {
+    /// The command.
+    pub(super) command: Option<String>,
+}

@@ -1,0 +1,139 @@
+//! A key, its name in key files, and its short name on the screen.
+
+use std::fmt;
+
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+
+/// Keys with a name of their own: the name in key files, and the one on the screen.
+const NAMED: [(&str, &str, KeyCode); 16] = [
+    ("space", "space", KeyCode::Char(' ')),
+    ("tab", "tab", KeyCode::Tab),
+    ("backtab", "shift-tab", KeyCode::BackTab),
+    ("enter", "enter", KeyCode::Enter),
+    ("backspace", "bksp", KeyCode::Backspace),
+    ("esc", "esc", KeyCode::Esc),
+    ("insert", "ins", KeyCode::Insert),
+    ("delete", "del", KeyCode::Delete),
+    ("left", "left", KeyCode::Left),
+    ("right", "right", KeyCode::Right),
+    ("up", "up", KeyCode::Up),
+    ("down", "down", KeyCode::Down),
+    ("pgup", "pgup", KeyCode::PageUp),
+    ("pgdn", "pgdn", KeyCode::PageDown),
+    ("home", "home", KeyCode::Home),
+    ("end", "end", KeyCode::End),
+];
+
+/// With ctrl these letters are other keys in most terminals.
+const SENT_AS: [(char, &str); 4] = [('h', "backspace"), ('i', "tab"), ('j', "enter"), ('m', "enter")];
+
+/// What a key file may name.
+const REMEDY: &str = "a character such as \"k\", a letter with ctrl such as \"ctrl+k\", f1 to f12, or one of space, \
+                          tab, backtab, enter, backspace, esc, insert, delete, left, right, up, down, pgup, pgdn, home, end";
+
+/// A key, with or without control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Chord {
+    pub code: KeyCode,
+    pub ctrl: bool,
+}
+
+impl Chord {
+    pub const SPACE: Chord = Chord::plain(KeyCode::Char(' '));
+
+    pub const fn plain(code: KeyCode) -> Chord {
+        Chord { code, ctrl: false }
+    }
+
+    pub const fn char(key: char) -> Chord {
+        Chord::plain(KeyCode::Char(key))
+    }
+
+    pub const fn ctrl(key: char) -> Chord {
+        Chord { code: KeyCode::Char(key), ctrl: true }
+    }
+
+    /// The chord of a key event. Capitals count as their small letters, so that caps lock does no harm.
+    pub fn of(key: &KeyEvent) -> Chord {
+        let code = match key.code {
+            KeyCode::Char(letter) => KeyCode::Char(small(letter)),
+            other => other,
+        };
+        Chord { code, ctrl: key.modifiers.contains(KeyModifiers::CONTROL) }
+    }
+
+    /// The key of a letter in a layout.
+    pub fn of_letter(letter: char) -> Chord {
+        Chord::char(small(letter))
+    }
+
+    /// Reads a name as key files have it.
+    ///
+    /// # Errors
+    /// What was found and what would be right.
+    pub fn parse(name: &str) -> Result<Chord, (String, String)> {
+        let wrong = |found: String| Err((found, REMEDY.to_string()));
+        if let Some(rest) = name.strip_prefix("ctrl+") {
+            let letter = single(rest).map(small).filter(char::is_ascii_lowercase);
+            let Some(letter) = letter else {
+                return wrong(format!("\"{name}\": ctrl goes with a letter from a to z"));
+            };
+            return match SENT_AS.iter().find(|(other, _)| *other == letter) {
+                Some((_, other)) => wrong(format!("\"{name}\", which most terminals send as {other}")),
+                None => Ok(Chord::ctrl(letter)),
+            };
+        }
+        if let Some((_, _, code)) = NAMED.iter().find(|(known, _, _)| *known == name) {
+            return Ok(Chord::plain(*code));
+        }
+        let function = name.strip_prefix('f').and_then(|number| number.parse::<u8>().ok());
+        if let Some(number @ 1..=12) = function.filter(|number| name == format!("f{number}")) {
+            return Ok(Chord::plain(KeyCode::F(number)));
+        }
+        match single(name) {
+            Some(' ') => wrong("\" \"".to_string()),
+            Some(letter) if small(letter) != letter => {
+                wrong(format!("\"{name}\": a capital counts as its small letter, for the sake of caps lock"))
+            }
+            Some(letter) if !letter.is_control() => Ok(Chord::char(letter)),
+            _ => wrong(format!("\"{name}\", which is no key")),
+        }
+    }
+
+    /// The name in key files: "ctrl+r", "backspace".
+    pub fn name(&self) -> String {
+        let plain = match (self.code, self.named()) {
+            (_, Some((name, _))) => name.to_string(),
+            (KeyCode::Char(key), _) => key.to_string(),
+            (other, _) => other.to_string().to_lowercase(),
+        };
+        if self.ctrl { format!("ctrl+{plain}") } else { plain }
+    }
+
+    fn named(&self) -> Option<(&'static str, &'static str)> {
+        NAMED.iter().find(|(_, _, code)| *code == self.code).map(|(name, short, _)| (*name, *short))
+    }
+}
+
+/// The name on the screen: "^r", "bksp".
+impl fmt::Display for Chord {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.ctrl {
+            f.write_str("^")?;
+        }
+        match (self.code, self.named()) {
+            (_, Some((_, short))) => f.write_str(short),
+            (KeyCode::Char(key), _) => write!(f, "{key}"),
+            (other, _) => write!(f, "{other}"),
+        }
+    }
+}
+
+fn small(letter: char) -> char {
+    letter.to_lowercase().next().unwrap_or(letter)
+}
+
+fn single(text: &str) -> Option<char> {
+    let mut letters = text.chars();
+    letters.next().filter(|_| letters.next().is_none())
+}

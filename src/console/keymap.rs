@@ -1,0 +1,168 @@
+//! The key file: what it may say, what it changes in the table, and how the whole table looks as such a file.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Write};
+use std::ops::Range;
+
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, SeqAccess, Visitor};
+use toml::Spanned;
+
+use super::chord::Chord;
+use super::keys::{Action, Binding, KeyError, KeyPlace, Section};
+
+/// A key file as it is written: for each table, names with their keys. What is not there stays as it is.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct KeyMap {
+    console: Table,
+    replay: Table,
+    signals: Table,
+    buttons: Table,
+}
+
+type Table = BTreeMap<Spanned<String>, Spanned<Names>>;
+
+/// The keys of one line: `"q"`, `["q", "ctrl+c"]`, or none: `[]`.
+#[derive(Clone, Debug, Default)]
+struct Names(Vec<String>);
+
+impl<'de> Deserialize<'de> for Names {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Names, D::Error> {
+        struct OneOrMore;
+        impl<'de> Visitor<'de> for OneOrMore {
+            type Value = Names;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a key such as \"f5\", or a list of keys such as [\"f5\", \"ctrl+k\"]")
+            }
+
+            fn visit_str<E: Error>(self, name: &str) -> Result<Names, E> {
+                Ok(Names(vec![name.to_string()]))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut names: A) -> Result<Names, A::Error> {
+                let mut keys = Vec::new();
+                while let Some(name) = names.next_element()? {
+                    keys.push(name);
+                }
+                Ok(Names(keys))
+            }
+        }
+        deserializer.deserialize_any(OneOrMore)
+    }
+}
+
+impl KeyMap {
+    fn table(&self, section: Section) -> &Table {
+        match section {
+            Section::Console => &self.console,
+            Section::Replay => &self.replay,
+            Section::Signals => &self.signals,
+            Section::Buttons => &self.buttons,
+        }
+    }
+
+    fn entry(&self, line: &Binding) -> Option<(&Spanned<String>, &Spanned<Names>)> {
+        self.table(line.section).iter().find(|(name, _)| *name.get_ref() == line.name)
+    }
+
+    /// Where the file says something about this line.
+    pub(super) fn place(&self, line: &Binding) -> Option<Range<usize>> {
+        self.entry(line).map(|(name, keys)| name.span().start..keys.span().end)
+    }
+
+    /// Gives the lines of the live console and of the replay the keys of this file.
+    pub(super) fn apply(&self, live: &mut [Binding], replay: &mut [Binding]) -> Result<(), KeyError> {
+        for section in [Section::Console, Section::Replay, Section::Signals, Section::Buttons] {
+            let known = || live.iter().chain(replay.iter()).filter(move |line| line.section == section);
+            for name in self.table(section).keys() {
+                if !known().any(|line| line.name == *name.get_ref()) {
+                    let names: Vec<&str> = known().map(|line| line.name.as_str()).collect();
+                    return Err(KeyError {
+                        place: KeyPlace::File(name.span()),
+                        found: format!("\"{}\", which nothing in [{section}] is called", name.get_ref()),
+                        remedy: format!("one of {}", names.join(", ")),
+                    });
+                }
+            }
+        }
+        for line in live.iter_mut().chain(replay) {
+            if let Some((_, names)) = self.entry(line) {
+                line.chords = chords(line, names)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The keys that the file gives a line.
+fn chords(line: &Binding, names: &Spanned<Names>) -> Result<Vec<Chord>, KeyError> {
+    let wrong = |found: String, remedy: &str| {
+        let place = KeyPlace::File(names.span());
+        Err(KeyError { place, found: format!("{} = {found}", line.name), remedy: remedy.to_string() })
+    };
+    let mut chords = Vec::new();
+    for name in &names.get_ref().0 {
+        match Chord::parse(name) {
+            Ok(chord) if chord == Chord::SPACE && line.action != Action::StopRobot => {
+                return wrong(
+                    "\"space\", which is the robot stop, always".to_string(),
+                    "another key: nothing may stand between the space bar and the robot stop",
+                );
+            }
+            Ok(chord) if chords.contains(&chord) => {
+                return wrong(format!("\"{name}\" twice"), "each key once");
+            }
+            Ok(chord) => chords.push(chord),
+            Err((found, remedy)) => return wrong(found, &remedy),
+        }
+    }
+    match line.action {
+        Action::StopRobot if !chords.contains(&Chord::SPACE) => wrong(
+            format!("{:?}, without the space bar", names.get_ref().0),
+            "\"space\", or a list with \"space\" and other keys: the space bar is the robot stop, always",
+        ),
+        Action::Quit if chords.is_empty() => wrong("[]".to_string(), "a key: without one nobody gets out"),
+        _ => Ok(chords),
+    }
+}
+
+/// The whole table as a key file, with a comment for each line: what it reads back to is the table again.
+pub fn write(lines: &[Binding]) -> String {
+    let mut text = String::from(
+        "# The keys of tomcom's console, ready to be changed. A session file names this file (relative to itself):\n\
+         #\n#     [console]\n#     keys = \"keys.toml\"\n#\n\
+         # A key is a character such as \"k\", a letter with ctrl such as \"ctrl+k\", f1 to f12, or one of space, tab,\n\
+         # backtab, enter, backspace, esc, insert, delete, left, right, up, down, pgup, pgdn, home, end.\n\
+         # Several keys for one thing: [\"f1\", \"?\"]; none: []. What is left out stays as it is.\n",
+    );
+    let tables = [
+        (Section::Console, "the console of a live session; \"space\" belongs to stop_robot alone"),
+        (Section::Replay, "the console over a recording"),
+        (Section::Signals, "the wizard's signals, by location; what is left out is as the layout says"),
+        (Section::Buttons, "the participant's buttons, for a person at the keyboard; else as the layout says"),
+    ];
+    for (section, about) in tables {
+        let own: Vec<&Binding> = lines.iter().filter(|line| line.section == section).collect();
+        let entries: Vec<String> = own.iter().map(|line| entry(line)).collect();
+        let widest = entries.iter().map(|entry| entry.chars().count()).max().unwrap_or(0);
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "\n[{section}]  # {about}");
+        for (line, entry) in own.iter().zip(&entries) {
+            let _ = writeln!(text, "{entry:widest$}  # {}", line.help);
+        }
+    }
+    text
+}
+
+fn entry(line: &Binding) -> String {
+    let quoted = |text: &str| toml::Value::from(text).to_string();
+    let is_bare = line.name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-');
+    let name = if is_bare { line.name.clone() } else { quoted(&line.name) };
+    let keys: Vec<String> = line.chords.iter().map(|chord| quoted(&chord.name())).collect();
+    match keys.as_slice() {
+        [key] => format!("{name} = {key}"),
+        keys => format!("{name} = [{}]", keys.join(", ")),
+    }
+}

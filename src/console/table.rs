@@ -1,0 +1,130 @@
+//! The lines of the table of keys, as they are before a key file changes them.
+
+use crossterm::event::KeyCode::{self, Backspace, End, Home, Left, PageDown, PageUp, Right, Tab};
+
+use super::chord::Chord;
+use super::hands::Hand;
+use super::keys::{Action, Binding, Layer, NOTES, Section};
+use super::playback::Move;
+use crate::communication::{self, Signal};
+use crate::kitchen::{Agent, ButtonId, Kitchen};
+
+const SIGNALS: &str = "Signals to the participant";
+const TRIAL: &str = "Trial";
+const MARKERS: &str = "Markers";
+const REPLAY: &str = "Recording";
+const ROBOT: &str = "Robot";
+const BUTTONS: &str = "The participant's buttons";
+const CONSOLE: &str = "Console";
+
+/// A line of the console: name in key files, keys, what it does, heading, help, and what the footer says.
+fn line(
+    name: &str,
+    keys: &[Chord],
+    action: Action,
+    group: &'static str,
+    help: &str,
+    footer: Option<&'static str>,
+) -> Binding {
+    let (name, help) = (name.to_string(), help.to_string());
+    Binding { section: Section::Console, name, chords: keys.to_vec(), action, group, help, footer, layer: None }
+}
+
+/// A line of the experimenter's hands; the footer shows it when it matters.
+fn hand(name: &str, key: char, hand: Hand, group: &'static str, help: &str) -> Binding {
+    line(name, &[Chord::ctrl(key)], Action::Hand(hand), group, help, None)
+}
+
+fn plain(code: KeyCode) -> [Chord; 1] {
+    [Chord::plain(code)]
+}
+
+/// Everything that a live session can bind, in the order of help and footer; the letters are the layout's.
+pub fn live(kitchen: &Kitchen) -> Vec<Binding> {
+    let wizards = |line: Binding| Binding { layer: Some(Layer::Wizard), ..line };
+    let mut lines = vec![
+        line("stop_robot", &[Chord::SPACE], Action::StopRobot, ROBOT, "stop the robot, at once", Some("STOP ROBOT")),
+        line(
+            "resume_robot",
+            &[Chord::ctrl('r')],
+            Action::ResumeRobot,
+            ROBOT,
+            "resume it after a stop",
+            Some("resume robot"),
+        ),
+        hand("hold_robot", 'p', Hand::HoldRobot, ROBOT, "hold it before its next press, release it"),
+        hand("skip_press", 's', Hand::SkipPress, ROBOT, "skip its press: it decides anew"),
+        hand("drive_robot", 'd', Hand::DriveRobot, ROBOT, "drive it: choose its next press"),
+        line("start_pause", &[Chord::char('.')], Action::Advance, TRIAL, "start, pause, resume", Some("start/pause")),
+        line("end_trial", &[Chord::ctrl('e')], Action::EndTrial, TRIAL, "end the trial (asks first)", Some("end")),
+        hand("correct", 'k', Hand::Correct, TRIAL, "correct the kitchen: what is where"),
+        line(
+            "switch_keys",
+            &plain(Tab),
+            Action::SwitchLayer,
+            CONSOLE,
+            "switch between wizard and participant",
+            Some("switch"),
+        ),
+    ];
+    lines.extend(signals(kitchen));
+    let take_back = "take the shown signal back";
+    lines.push(wizards(line("take_back", &plain(Backspace), Action::TakeBack, SIGNALS, take_back, Some("take back"))));
+    for (index, note) in NOTES.iter().enumerate() {
+        let digit = char::from(b'1' + index as u8);
+        let footer = (index == 0).then_some("note");
+        let name = format!("note_{digit}");
+        lines.push(wizards(line(&name, &[Chord::char(digit)], Action::Note(index), MARKERS, note, footer)));
+    }
+    lines.extend(buttons(kitchen));
+    lines.extend([
+        line("help", &[Chord::char('?')], Action::Help, CONSOLE, "this help", Some("help")),
+        line("quit", &[Chord::ctrl('c')], Action::Quit, CONSOLE, "quit (asks first)", Some("quit")),
+    ]);
+    lines
+}
+
+/// Everything that the console over a recording can bind.
+pub fn replay() -> Vec<Binding> {
+    let moves = [
+        ("step_forward", plain(Right), Move::StepForward, "to the next event", Some("step")),
+        ("step_back", plain(Left), Move::StepBack, "to the last event", None),
+        ("seek_forward", plain(PageDown), Move::SeekForward, "ten seconds on", Some("10 s")),
+        ("seek_back", plain(PageUp), Move::SeekBack, "ten seconds back", None),
+        ("faster", [Chord::char('+')], Move::Faster, "faster", Some("speed")),
+        ("slower", [Chord::char('-')], Move::Slower, "slower", None),
+        ("to_start", plain(Home), Move::ToStart, "to the beginning", None),
+        ("to_end", plain(End), Move::ToEnd, "to the end; stays there if the recording grows", Some("ends")),
+    ];
+    let of_move = |name, keys: &[Chord], to, help, footer| line(name, keys, Action::Move(to), REPLAY, help, footer);
+    let quit = [Chord::char('q'), Chord::ctrl('c')];
+    let mut lines = vec![
+        of_move("play_pause", &[Chord::char('.')], Move::PlayPause, "play, pause", Some("play/pause")),
+        line("quit", &quit, Action::Quit, CONSOLE, "quit", Some("quit")),
+        line("help", &[Chord::char('?')], Action::Help, CONSOLE, "this help", Some("help")),
+    ];
+    lines.extend(moves.map(|(name, keys, to, help, footer)| of_move(name, &keys, to, help, footer)));
+    lines.into_iter().map(|line| Binding { section: Section::Replay, ..line }).collect()
+}
+
+fn signals(kitchen: &Kitchen) -> impl Iterator<Item = Binding> {
+    communication::signals(kitchen, true).into_iter().map(|(id, signal)| {
+        let location = kitchen.location(id);
+        let help = match signal {
+            Signal::ShowRecipe(_) => format!("show the recipe of {}", location.label()),
+            Signal::Highlight(_) => format!("highlight {}", location.label()),
+        };
+        let keys: Vec<Chord> = location.signal_key.map(Chord::of_letter).into_iter().collect();
+        let bound = line(&location.name, &keys, Action::Signal(id, signal), SIGNALS, &help, None);
+        Binding { section: Section::Signals, layer: Some(Layer::Wizard), ..bound }
+    })
+}
+
+fn buttons(kitchen: &Kitchen) -> impl Iterator<Item = Binding> {
+    kitchen.buttons[Agent::Human.index()].iter().enumerate().map(|(index, button)| {
+        let keys: Vec<Chord> = button.key.map(Chord::of_letter).into_iter().collect();
+        let help = button.name.replace('_', " ");
+        let bound = line(&button.name, &keys, Action::Press(ButtonId(index as u8)), BUTTONS, &help, None);
+        Binding { section: Section::Buttons, layer: Some(Layer::Participant), ..bound }
+    })
+}

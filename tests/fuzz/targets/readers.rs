@@ -1,0 +1,57 @@
+//! Everything that reads text which people or other programs wrote: session, layout and recipe files, and logs. Whatever
+//! the text, the answer is a value or an error that can be shown; never a panic, a hang or memory without bound.
+#![no_main]
+
+use std::path::{Path, PathBuf};
+
+use libfuzzer_sys::fuzz_target;
+use tomcom::edge::files::{FileResult, compile_kitchen, parse};
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::run::replay::Replay;
+use tomcom::session::SessionSpec;
+
+const LAYOUT: &str = include_str!("../../../layouts/sushi.toml");
+const RECIPES: &str = include_str!("../../../recipes/sushi.toml");
+const RECORDING: &str = include_str!("../../golden/format-1-hand.jsonl");
+
+fuzz_target!(|data: &[u8]| {
+    let Some((kind, rest)) = data.split_first() else { return };
+    let text = || String::from_utf8_lossy(rest).into_owned();
+    match kind % 5 {
+        0 => shown(compile_kitchen((Path::new("layout"), text()), (Path::new("recipes"), RECIPES.to_string())).map(
+            |files| {
+                // A kitchen that is accepted can be worked in.
+                CostToGo::new(files.kitchen.into());
+            },
+        )),
+        1 => {
+            shown(compile_kitchen((Path::new("layout"), LAYOUT.to_string()), (Path::new("recipes"), text())).map(drop))
+        }
+        2 => shown(parse::<SessionSpec>(Path::new("session"), &text()).map(|spec| spec.check().is_ok())),
+        3 => replay(rest),
+        // Broken events after a header that is right.
+        _ => {
+            let header = RECORDING.split_inclusive('\n').next().unwrap_or_default();
+            replay(&[header.as_bytes(), rest].concat());
+        }
+    }
+});
+
+/// Errors are told, with their place in the text.
+fn shown<T>(result: FileResult<T>) {
+    if let Err(error) = result {
+        let _ = format!("{:?}", miette::Report::new(error));
+    }
+}
+
+/// Replays a log; the reader wants a file.
+fn replay(log: &[u8]) {
+    let path = path();
+    std::fs::write(&path, log).expect("the temporary folder can be written");
+    shown(Replay::open(&path).and_then(|mut replay| replay.run()));
+}
+
+/// A file of this process.
+fn path() -> PathBuf {
+    std::env::temp_dir().join(format!("tomcom-fuzz-{}.jsonl", std::process::id()))
+}

@@ -22,7 +22,7 @@ use crate::run::live::LiveError;
 use crate::run::options::{self, Beginning, Overrides};
 use crate::run::replay::Replay;
 use crate::run::review::{self, ReviewError};
-use crate::run::{kitchen, series, simulate, tell, verify};
+use crate::run::{check_beliefs, kitchen, series, simulate, tell, verify};
 use crate::session::settings::{Condition, GazeSource, ParticipantKind};
 
 /// Exit code: something failed.
@@ -159,15 +159,22 @@ fn new_session(args: &OperateArgs) -> Result<Beginning, Failure> {
 }
 
 fn replay(args: &ReplayArgs) -> Result<(), Failure> {
+    if args.check_beliefs {
+        return check_beliefs(args);
+    }
+    let [recording] = &args.recordings[..] else {
+        let help = "one recording, or --check-beliefs";
+        return Err(Failure::Wrong(miette::miette!(help = help, "found {} recordings", args.recordings.len())));
+    };
     if args.verify {
-        let found = verify::verify(&args.recording)?;
+        let found = verify::verify(recording)?;
         print(args.format, &found, || verify::describe(&found))?;
         return if found.verified { Ok(()) } else { Err(Failure::No) };
     }
     if args.format == Format::Text && std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
-        return Ok(review::review(&args.recording, args.follow)?);
+        return Ok(review::review(recording, args.follow)?);
     }
-    let mut replay = Replay::open(&args.recording)?;
+    let mut replay = Replay::open(recording)?;
     let mut events = 0;
     if args.format == Format::Text {
         writeln!(std::io::stdout(), "{}", tell::HEADING)?;
@@ -188,6 +195,24 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     print(args.format, &figures, || figures.describe())
 }
 
+fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
+    let bar = progress(args.recordings.len() as u64, "recordings");
+    let found = check_beliefs::check(&args.recordings, None, || bar.inc(1))?;
+    bar.finish_and_clear();
+    print(args.format, &found, || check_beliefs::describe(&found))
+}
+
+/// A bar on stderr that counts so many of something; nothing to be seen where that is no terminal.
+fn progress(of: u64, what: &str) -> ProgressBar {
+    let bar = ProgressBar::new(of);
+    if std::io::stderr().is_terminal()
+        && let Ok(style) = ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {what}, {{eta}} left"))
+    {
+        bar.set_style(style);
+    }
+    bar
+}
+
 fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let mut files = files::read_session(&args.session)?;
     if files.spec.participant.kind != ParticipantKind::Simulated || files.spec.participant.gaze != GazeSource::Simulated
@@ -197,12 +222,7 @@ fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     }
     files.spec.seed = args.seed.unwrap_or(files.spec.seed);
     let simulation = simulate::Simulation { files, trials: args.trials, out: args.out.clone() };
-    let bar = ProgressBar::new(args.trials);
-    if std::io::stderr().is_terminal()
-        && let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} trials, {eta} left")
-    {
-        bar.set_style(style);
-    }
+    let bar = progress(args.trials, "trials");
     let figures = simulate::simulate(&simulation, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &figures, || simulate::describe(&figures))

@@ -80,6 +80,12 @@ fn simulate_records_what_replay_verifies() {
         assert_eq!((header.get("started"), &header["session"]["trial"]["condition"]), (None, &Value::from("none")));
     }
     assert_eq!(found["belief_related_errors"].as_u64(), Some(related), "replays find the causes that simulate found");
+    let paths: Vec<&str> = recordings.iter().filter_map(Value::as_str).collect();
+    let checked = figures(&[&["replay"], &paths[..], &["--check-beliefs", "--format", "json"]].concat(), 0);
+    assert_eq!((&checked["recordings"], &checked["human_actions"]), (&Value::from(2), &found["human_actions"]));
+    assert!(checked["auc_baseline"].as_f64().is_some_and(|area| area > 0.5), "{checked}");
+    assert!(checked["log_likelihood"]["informed"].as_f64() > checked["log_likelihood"]["uniform"].as_f64());
+    check(&[&["replay"], &paths[..]].concat(), 2);
     // What was changed does not verify, which is an answer and no wrong argument.
     let log = Path::new(recordings[0].as_str().expect("a path")).join("events.jsonl");
     let text = fs::read_to_string(&log).expect("a log").replacen("take nori", "take rice", 1);

@@ -102,11 +102,15 @@ pub(super) enum ConditionArg {
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify")]
 pub(super) struct ReplayArgs {
-    /// The folder of a recording, or its events.jsonl.
-    pub(super) recording: PathBuf,
+    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs.
+    #[arg(required = true, value_name = "RECORDING")]
+    pub(super) recordings: Vec<PathBuf>,
     /// Run the session again from the recording's header and its inputs; every line must come out the same.
     #[arg(long, conflicts_with = "follow")]
     pub(super) verify: bool,
+    /// Hold what was estimated before each press against what simulated participants believed, and what they pressed.
+    #[arg(long, conflicts_with_all = ["verify", "follow"])]
+    pub(super) check_beliefs: bool,
     /// Watch a session that is still running, until it ends.
     #[arg(long)]
     pub(super) follow: bool,

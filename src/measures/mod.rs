@@ -1,7 +1,11 @@
 //! Measures of what the human does, used live and in the analysis.
 
 pub mod attribution;
+pub mod beliefs;
+pub mod detection;
 pub mod errors;
+pub mod flags;
+pub mod likelihood;
 pub mod sequences;
 
 use crate::base::time::SessionTime;

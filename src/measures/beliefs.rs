@@ -1,0 +1,140 @@
+//! How well an estimate of beliefs knows what is believed wrong, held against beliefs that are known: those that simulated
+//! participants tell before each press.
+//!
+//! The unit is a press of the human, and what was estimated right before it. An aspect is believed wrong if the
+//! participant's own P(truth) is below 0.5. The area under the ROC of a group (locations, recipes) is that of all its pairs
+//! of a press and an aspect in one pot: the score has to tell an aspect that is believed wrong now both from the others and
+//! from itself at other times. The macro-average is the mean of the two groups, so that the many pairs of one do not hide
+//! the other. The mean over single aspects is given beside it; it depends much on aspects that are hardly ever wrong.
+
+use serde::Serialize;
+
+use super::detection::{Calibration, auc};
+use super::flags::{Flags, Thresholds};
+use super::sequences::FALSE_BELOW;
+use crate::kitchen::{AspectId, AspectKind, ButtonId, Kitchen, State};
+
+/// Predictions outside of this range are not asked for their calibration: most aspects are plainly right most of the time.
+pub const CALIBRATED: [f64; 2] = [0.05, 0.95];
+/// Bins of predictions.
+pub const CALIBRATION_BINS: usize = 10;
+
+/// What was known right before a press of the human.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PressView {
+    /// The state that the press met, and the button.
+    pub state: State,
+    pub button: ButtonId,
+    /// The participant's own P(truth) of each aspect; `None` where nobody knows, as with people.
+    pub held: Option<Vec<f64>>,
+    /// The estimate before the press; `None` where nothing estimates.
+    pub estimate: Option<EstimateView>,
+    /// For each location whether somebody else changed it since the human last looked at it: all that the baseline knows.
+    pub unseen_change: Vec<bool>,
+    /// The false aspects that this press, if it was an error, is put down to.
+    pub errs_about: Vec<AspectId>,
+}
+
+/// What an estimate says before a press.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EstimateView {
+    /// For each aspect the probability that the participant's own P(truth) is below 0.5.
+    pub p_wrong: Vec<f64>,
+    /// The log of the probability of the press, given that one is made, in nats.
+    pub log_p: f64,
+}
+
+/// The presses of one trial, in their order.
+pub type TrialView = Vec<PressView>;
+
+impl PressView {
+    /// Whether an aspect is believed wrong; `None` where nobody knows.
+    pub fn is_wrong(&self, aspect: usize) -> Option<bool> {
+        self.held.as_ref().map(|held| held[aspect] < FALSE_BELOW)
+    }
+}
+
+/// The area under the ROC of one aspect.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AspectAuc {
+    pub aspect: String,
+    /// Null if it was never, or always, believed wrong.
+    pub auc: Option<f64>,
+    /// The share of the presses before which it was believed wrong.
+    pub wrong: f64,
+}
+
+/// How well the estimate knows what is believed wrong; null where nothing estimates, or where nobody knows what was
+/// believed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Detection {
+    /// The mean of locations and recipes.
+    pub auc: Option<f64>,
+    pub auc_locations: Option<f64>,
+    pub auc_recipes: Option<f64>,
+    /// What one reaches on the locations who knows only whether somebody else changed something there since the human last
+    /// looked at it.
+    pub auc_baseline: Option<f64>,
+    /// The mean over the aspects, each with an area of its own.
+    pub auc_mean_of_aspects: Option<f64>,
+    #[serde(flatten)]
+    pub flags: Flags,
+    /// The expected calibration error of the predictions within [`CALIBRATED`].
+    pub ece: Option<f64>,
+    pub calibration: Calibration,
+    pub aspects: Vec<AspectAuc>,
+}
+
+impl Detection {
+    /// Holds estimates against beliefs. `thresholds`: the probabilities from which an aspect is flagged; `None` lets them
+    /// be chosen on these trials (see [`Flags`]).
+    pub fn of(kitchen: &Kitchen, trials: &[TrialView], thresholds: Option<Thresholds>) -> Detection {
+        let estimated = |press: &PressView, aspect| press.estimate.as_ref().map(|one| one.p_wrong[aspect]);
+        let changed = |press: &PressView, aspect| press.unseen_change.get(aspect).map(|&one| f64::from(u8::from(one)));
+        let locations: Vec<usize> = aspects(kitchen, false);
+        let recipes: Vec<usize> = aspects(kitchen, true);
+        let both: Vec<usize> = (0..kitchen.aspects.len()).collect();
+        let pool = |of: &[usize], score: Score| auc(&scored(trials, of, score));
+        let of_groups = [pool(&locations, &estimated), pool(&recipes, &estimated)];
+        let predictions = scored(trials, &both, &estimated);
+        let calibration = Calibration::of(predictions, CALIBRATED, CALIBRATION_BINS);
+        let aspect = |&index: &usize| {
+            let known: Vec<bool> = trials.iter().flatten().filter_map(|press| press.is_wrong(index)).collect();
+            let wrong = known.iter().filter(|&&wrong| wrong).count() as f64 / known.len().max(1) as f64;
+            AspectAuc { aspect: kitchen.aspects[index].name.clone(), auc: pool(&[index], &estimated), wrong }
+        };
+        Detection {
+            auc: mean(of_groups.into_iter().flatten()),
+            auc_locations: of_groups[0],
+            auc_recipes: of_groups[1],
+            auc_baseline: pool(&locations, &changed),
+            auc_mean_of_aspects: mean(both.iter().filter_map(|&one| pool(&[one], &estimated))),
+            flags: Flags::of(trials, &[locations.clone(), recipes.clone()], thresholds),
+            ece: calibration.ece,
+            calibration,
+            aspects: both.iter().map(aspect).collect(),
+        }
+    }
+}
+
+/// A score of one aspect before a press.
+type Score<'a> = &'a dyn Fn(&PressView, usize) -> Option<f64>;
+
+/// The scores of these aspects before every press, and whether they were believed wrong; only where both are known.
+fn scored(trials: &[TrialView], aspects: &[usize], score: Score) -> Vec<(f64, bool)> {
+    let one = |press: &PressView, aspect: usize| Some((score(press, aspect)?, press.is_wrong(aspect)?));
+    let presses = trials.iter().flatten();
+    presses.flat_map(|press| aspects.iter().filter_map(move |&aspect| one(press, aspect))).collect()
+}
+
+/// The indices of the aspects that are recipes, or that are not.
+fn aspects(kitchen: &Kitchen, recipes: bool) -> Vec<usize> {
+    let is_recipe = |index: &usize| matches!(kitchen.aspects[*index].kind, AspectKind::Recipe(_));
+    (0..kitchen.aspects.len()).filter(|index| is_recipe(index) == recipes).collect()
+}
+
+/// The mean; none of nothing.
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
+    (count > 0).then(|| sum / f64::from(count))
+}

@@ -1,0 +1,233 @@
+//! `tomcom replay RECORDING... --check-beliefs`: holds what was estimated before each press against what the participant
+//! believed, and against what it pressed.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+
+use serde::Serialize;
+
+use super::replay::Replay;
+use crate::base::time::SessionTime;
+use crate::base::words::count;
+use crate::edge::files::{FileError, FileResult};
+use crate::gaze::MIN_CONFIDENCE;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::state::MAX_LOCATIONS;
+use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
+use crate::measures::JudgedPress;
+use crate::measures::attribution::Cause;
+use crate::measures::beliefs::{Detection, PressView, TrialView};
+use crate::measures::flags::Thresholds;
+use crate::measures::likelihood::LogLikelihood;
+use crate::mind::belief::Belief;
+use crate::mind::decision::DecisionModel;
+use crate::session::{Event, Session};
+
+/// The seed of the bootstrap: the same recordings give the same interval.
+const SEED: u64 = 1;
+
+/// The baseline takes what was looked at for so long for seen, in seconds.
+const LOOK_S: f64 = 0.1;
+
+/// What `--check-beliefs` prints.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BeliefCheck {
+    pub recordings: u64,
+    /// Presses of the human in the trials.
+    pub human_actions: u64,
+    #[serde(flatten)]
+    pub detection: Detection,
+    /// Per press, in nats.
+    pub log_likelihood: LogLikelihood,
+}
+
+/// Checks recordings of one kitchen, all together. `done` is called after each is read.
+///
+/// # Errors
+/// A recording that cannot be read or applied, or one of another kitchen.
+pub fn check(
+    recordings: &[PathBuf],
+    thresholds: Option<Thresholds>,
+    done: impl Fn() + Sync,
+) -> FileResult<BeliefCheck> {
+    let Views { kitchen, trials } = views(recordings, done)?;
+    let mut cost = CostToGo::new(kitchen.clone());
+    Ok(BeliefCheck {
+        recordings: trials.len() as u64,
+        human_actions: trials.iter().map(Vec::len).sum::<usize>() as u64,
+        detection: Detection::of(&kitchen, &trials, thresholds),
+        log_likelihood: LogLikelihood::of(&kitchen, &mut cost, &DecisionModel::default(), &trials, SEED),
+    })
+}
+
+/// Recorded trials of one kitchen.
+#[derive(Clone, Debug)]
+pub struct Views {
+    pub kitchen: Arc<Kitchen>,
+    /// In the order of the recordings.
+    pub trials: Vec<TrialView>,
+}
+
+/// Replays recordings on all processors and looks at each of their presses. `done` is called after each.
+///
+/// # Errors
+/// Those of [`check`].
+pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Views> {
+    let left = Mutex::new(recordings.iter().enumerate());
+    let results = Mutex::new(Vec::new());
+    let work = || {
+        loop {
+            let one = left.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).next();
+            let Some((index, recording)) = one else { return };
+            let result = view(recording);
+            results.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push((index, result));
+            done();
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, |count| count.get()).min(recordings.len());
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(work);
+        }
+    });
+    let mut results = results.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
+    results.sort_by_key(|(index, _)| *index);
+    let mut first: Option<(&Path, Arc<Kitchen>)> = None;
+    let mut trials = Vec::new();
+    for ((_, result), recording) in results.into_iter().zip(recordings) {
+        let (kitchen, trial) = result?;
+        let (path, of_first) = first.get_or_insert_with(|| (recording, kitchen.clone()));
+        if of_first.aspects != kitchen.aspects || of_first.buttons != kitchen.buttons {
+            let found = format!("a recording of the kitchen {}, beside {}", kitchen.name, path.display());
+            let remedy = format!("recordings of one kitchen, here of {}", of_first.name);
+            return Err(FileError::at(recording, "", None, found, remedy));
+        }
+        trials.push(trial);
+    }
+    match first {
+        Some((_, kitchen)) => Ok(Views { kitchen, trials }),
+        None => Err(FileError::at(Path::new("."), "", None, "no recording".into(), "at least one recording".into())),
+    }
+}
+
+/// The presses of one recording.
+fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView)> {
+    let mut replay = Replay::open(recording)?;
+    let mut trial = TrialView::new();
+    let mut held = None;
+    let mut before = Before::default();
+    loop {
+        before.state = replay.session().state;
+        let Some(line) = replay.step()? else { break };
+        let kitchen = &replay.session().kitchen;
+        match &line.stamped.event {
+            Event::ParticipantBelieves(witness) => {
+                let fits = Belief::of_witness(kitchen, before.state, witness).is_some();
+                held = fits.then(|| witness.aspects.iter().map(|aspect| aspect.p_truth).collect());
+            }
+            Event::Press { agent: Agent::Human, button } => {
+                let counted = replay.follower.judged.last().filter(|press| press.seq == line.stamped.seq);
+                if let (Some(judged), Some(button)) = (counted, kitchen.button_named(Agent::Human, button)) {
+                    trial.push(before.press(kitchen, button, judged, held.take()));
+                }
+            }
+            _ => {}
+        }
+        before.notice(replay.session(), &line.stamped.event);
+    }
+    Ok((replay.session().kitchen.clone(), trial))
+}
+
+/// What is known of a session before its next event.
+#[derive(Default)]
+struct Before {
+    state: State,
+    /// For each location, whether somebody else changed it since the human last looked at it or changed it itself.
+    unseen_change: [bool; MAX_LOCATIONS],
+    /// Since when the gaze is in each location's area, and nothing changed there.
+    looks_since: [Option<SessionTime>; MAX_LOCATIONS],
+}
+
+impl Before {
+    /// Takes note of what an event changed that was just applied, and of where the human looks.
+    fn notice(&mut self, session: &Session, event: &Event) {
+        let is_own = matches!(event, Event::Press { agent: Agent::Human, .. });
+        let is_look = matches!(event, Event::Gaze(sample) if sample.confidence >= MIN_CONFIDENCE);
+        for index in 0..session.kitchen.locations.len() {
+            let location = LocationId(index as u8);
+            if self.state.code(location) != session.state.code(location) {
+                self.unseen_change[index] = !is_own;
+                self.looks_since[index] = None;
+            }
+            if is_look {
+                let is_there = session.gaze.looked_at[index] == Some(session.time);
+                self.looks_since[index] = is_there.then(|| self.looks_since[index].unwrap_or(session.time));
+                let is_seen = |since: SessionTime| session.time.secs_since(since) >= LOOK_S;
+                self.unseen_change[index] &= !self.looks_since[index].is_some_and(is_seen);
+            }
+        }
+    }
+
+    /// The view of a press that came next.
+    fn press(&self, kitchen: &Kitchen, button: ButtonId, judged: &JudgedPress, held: Option<Vec<f64>>) -> PressView {
+        let mut press = PressView {
+            state: self.state,
+            button,
+            held,
+            estimate: None,
+            unseen_change: self.unseen_change[..kitchen.locations.len()].to_vec(),
+            errs_about: Vec::new(),
+        };
+        if let Some(Cause::Belief { target, with, .. }) = judged.cause {
+            let targets = [Some(target), with].into_iter().flatten();
+            let about = targets.flat_map(|target| target.aspects(kitchen));
+            press.errs_about = about.filter(|aspect| press.is_wrong(aspect.index()) == Some(true)).collect();
+        }
+        press
+    }
+}
+
+/// The figures for people.
+pub fn describe(check: &BeliefCheck) -> String {
+    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.3}"));
+    let (found, flags, likely) = (&check.detection, &check.detection.flags, &check.log_likelihood);
+    let thresholds = flags.thresholds.map_or(String::new(), |at| {
+        format!(" (thresholds {:.3} for locations, {:.3} for recipes)", at.locations, at.recipes)
+    });
+    let interval = likely.gain_interval.map_or(String::new(), |[from, to]| format!(" ({from:.3} to {to:.3})"));
+    let informed = match (likely.informed_tau, likely.informed_lapse) {
+        (Some(tau), Some(lapse)) => format!(" (tau {tau:.2}, lapse {lapse:.3})"),
+        _ => String::new(),
+    };
+    let mut text = format!(
+        "{}, {} of the human\n\
+         what is believed wrong, area under the ROC: {} (locations {}, recipes {}; knowing only what changed unseen: {})\n\
+         false belief episodes of two or more errors flagged before the third: {} of {}, {} false flags per 20 presses, \
+         wrongly flagged {} of the time{thresholds}\n\
+         expected calibration error between 0.05 and 0.95: {}\n\
+         log likelihood per press: {} (informed human {}{informed}, uniform {}); gain {}{interval} nats\n\
+         \n{:<32}{:>8}{:>8}\n",
+        count(check.recordings, "recording", "recordings"),
+        count(check.human_actions, "press", "presses"),
+        number(found.auc),
+        number(found.auc_locations),
+        number(found.auc_recipes),
+        number(found.auc_baseline),
+        number(flags.flagged_before_third_error),
+        flags.episodes.map_or("-".to_string(), |episodes| episodes.to_string()),
+        number(flags.false_flags_per_20_actions),
+        number(flags.wrongly_flagged),
+        number(found.ece),
+        number(likely.model),
+        number(likely.informed),
+        number(likely.uniform),
+        number(likely.gain),
+        "aspect",
+        "ROC",
+        "wrong",
+    );
+    for aspect in &found.aspects {
+        text.push_str(&format!("{:<32}{:>8}{:>8.3}\n", aspect.aspect, number(aspect.auc), aspect.wrong));
+    }
+    text
+}

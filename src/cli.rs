@@ -17,11 +17,13 @@ use self::args::*;
 use crate::console;
 use crate::edge::doctor;
 use crate::edge::files::{self, FileError};
-use crate::edge::log::WriteError;
+use crate::edge::log::{self, RulingError, WriteError};
 use crate::run::live::LiveError;
 use crate::run::options::{self, Beginning, Overrides};
 use crate::run::replay::Replay;
 use crate::run::review::{self, ReviewError};
+use crate::run::simulate::SimulateError;
+use crate::run::standing::Standing;
 use crate::run::{check_beliefs, kitchen, series, simulate, tell, verify};
 use crate::session::settings::{Condition, GazeSource, ParticipantKind};
 
@@ -55,6 +57,24 @@ impl From<FileError> for Failure {
 impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Failure {
         Failure::Failed(miette::Report::new(error))
+    }
+}
+
+impl From<RulingError> for Failure {
+    fn from(error: RulingError) -> Failure {
+        match error {
+            RulingError::Recording(error) => Failure::from(error),
+            error => Failure::Wrong(miette::Report::new(error)),
+        }
+    }
+}
+
+impl From<SimulateError> for Failure {
+    fn from(error: SimulateError) -> Failure {
+        match error {
+            SimulateError::File(error) => Failure::from(*error),
+            SimulateError::Recording(error) => Failure::from(error),
+        }
     }
 }
 
@@ -99,6 +119,7 @@ pub fn main() -> ExitCode {
         Command::Simulate(args) => simulate(&args),
         Command::Kitchen(args) => kitchen(&args),
         Command::Keys(args) => keys(&args),
+        Command::Exclude(args) => exclude(&args),
         Command::Doctor(args) => examine(&args),
         Command::Completions(args) => completions(&args),
         Command::Man(args) => man(&args),
@@ -191,7 +212,8 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         }
         std::thread::sleep(FOLLOW_INTERVAL);
     }
-    let figures = tell::RecordingFigures::of(&replay.follower, events, replay.log().is_cut());
+    let standing = Standing::of(replay.session(), replay.log())?;
+    let figures = tell::RecordingFigures::of(&replay.follower, events, replay.log().is_cut(), standing);
     print(args.format, &figures, || figures.describe())
 }
 
@@ -232,6 +254,12 @@ fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
     let kitchen = Arc::new(files::read_kitchen(&args.layout)?.kitchen);
     let figures = kitchen::KitchenFigures::of(&kitchen);
     print(args.format, &figures, || kitchen::describe(&kitchen, &figures))
+}
+
+fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
+    let ruling = log::rule(&args.recording, !args.back, args.reason.as_deref().unwrap_or_default())?;
+    let words = if ruling.excluded { "is left out of the analysis" } else { "counts again" };
+    print(args.format, &ruling, || format!("{} {words}\n", args.recording.display()))
 }
 
 fn examine(args: &DoctorArgs) -> Result<(), Failure> {

@@ -282,3 +282,32 @@ fn completions_and_man_pages_know_every_command() {
     assert!(page.contains("RECORDING") && page.contains(".TH tomcom-operate"), "{page}");
     complaint(&["man", "dance"]);
 }
+
+#[test]
+fn a_closed_recording_is_excluded_and_taken_back_and_the_figures_say_so() {
+    let out = folder("exclude");
+    let out = out.to_str().expect("a path in UTF-8");
+    let simulate = ["simulate", "sessions/default.toml", "--trials", "2", "--seed", "7", "--out", out];
+    let before = figures(&[&simulate[..], &["--format", "json"]].concat(), 0);
+    let recording = format!("{out}/seed7-S001");
+    let log = fs::read(format!("{recording}/events.jsonl")).expect("a log");
+    let standing = || figures(&["replay", &recording, "--format", "json"], 0)["excluded"].clone();
+    assert_eq!(standing(), Value::Null);
+    check(&["exclude", &recording, "--reason", "the tracker slipped"], 0);
+    assert_eq!(standing(), "the tracker slipped");
+    let after = figures(&[&simulate[..], &["--format", "json"]].concat(), 0);
+    assert_eq!((&after["excluded"], &after["trials"], &before["excluded"]), (&1.into(), &1.into(), &0.into()));
+    assert_eq!(fs::read(format!("{recording}/events.jsonl")).expect("a log"), log, "the log stays as it is");
+    let told = check(&["replay", &recording], 0);
+    let told = String::from_utf8_lossy(&told.stdout).into_owned();
+    assert!(told.contains("left out of the analysis: excluded: the tracker slipped"), "{told}");
+    check(&["exclude", &recording, "--back"], 0);
+    assert_eq!(standing(), Value::Null);
+    let rulings = fs::read_to_string(format!("{recording}/exclusion.toml")).expect("what was said");
+    assert_eq!(rulings.matches("[[ruling]]").count(), 2, "nothing is forgotten:\n{rulings}");
+    assert!(complaint(&["exclude", &recording, "--reason", ""]).contains("a reason of 1 to 200 characters"));
+    assert!(complaint(&["exclude", out, "--reason", "x"]).contains("cannot be read"));
+    fs::write(format!("{recording}/exclusion.toml"), "[[ruling]]\nexcluded = 1\n").expect("written");
+    let told = complaint(&["replay", &recording, "--format", "json"]);
+    assert!(told.contains("exclusion.toml:2") && told.contains("[[ruling]]"), "{told}");
+}

@@ -513,3 +513,81 @@ fn the_robot_is_held_skipped_and_driven_by_keys() {
     assert_eq!(stage.control('d'), None);
     assert!(stage.notice().contains("while the trial runs"), "{}", stage.notice());
 }
+
+#[test]
+fn a_held_key_that_toggles_counts_once_also_where_no_release_is_reported() {
+    for (key, control, event) in
+        [('.', false, Event::TrialStarted), ('p', true, Event::RobotHeld { by: Sender::Wizard })]
+    {
+        let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+        let press = |stage: &mut Stage| input(if control { stage.control(key) } else { stage.key(KeyCode::Char(key)) });
+        assert_eq!(press(&mut stage), Some(event.clone()));
+        stage.at(0.01, event);
+        // The delay of key repeat, then the repeats themselves.
+        for gap_s in [0.5, 0.03, 0.03, 0.03] {
+            stage.wait(gap_s);
+            assert_eq!(press(&mut stage), None);
+            assert!(stage.notice().contains("held down"), "{}", stage.notice());
+        }
+        stage.wait(0.8);
+        assert!(press(&mut stage).is_some(), "{}", stage.notice());
+    }
+}
+
+#[test]
+fn a_trial_is_aborted_with_a_reason_and_done_again() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    assert_eq!(stage.control('n'), None);
+    assert!(stage.notice().contains("abort the trial first"), "{}", stage.notice());
+    assert_eq!(stage.control('x'), None);
+    insta::assert_snapshot!("abort_80x24", stage.screen((80, 24)));
+    stage.key(KeyCode::Down);
+    let aborted = Event::TrialAborted { reason: "technical failure".to_string() };
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(aborted.clone()));
+    stage.at(30.0, aborted);
+    for size in SIZES {
+        let screen = stage.screen(size);
+        assert!(screen.contains("ABORTED") && screen.contains("^n do it again"), "{screen}");
+    }
+    assert_eq!(stage.control('n'), Some(Command::Redo));
+}
+
+#[test]
+fn a_trial_is_excluded_and_included_by_one_key() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('l');
+    type_in(&mut stage, "inter");
+    let excluded = Event::TrialExcluded { reason: "interrupted".to_string() };
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(excluded.clone()));
+    stage.at(23.0, excluded);
+    assert!(stage.screen((120, 40)).contains("EXCLUDED"));
+    stage.wait(1.0);
+    assert_eq!(input(stage.control('l')), Some(Event::TrialIncluded));
+}
+
+#[test]
+fn a_lost_keyboard_is_an_alarm_and_an_event() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let mut focus = |focused| input(update(&mut stage.model, &stage.session, Message::Focus(focused)));
+    assert_eq!(focus(true), None, "it has it already");
+    assert_eq!(focus(false), Some(Event::FocusLost));
+    assert_eq!(focus(false), None);
+    for size in SIZES {
+        let screen = stage.screen(size);
+        assert!(screen.contains("NO KEYBOARD") && screen.contains("THE KEYBOARD IS ELSEWHERE"), "{screen}");
+    }
+    assert_eq!(input(update(&mut stage.model, &stage.session, Message::Focus(true))), Some(Event::FocusRegained));
+}
+
+#[test]
+fn the_notes_are_those_of_the_session() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.session.spec.console.notes = vec!["asked for help".to_string()];
+    stage.model.keys = Keys::live(&stage.session.kitchen, &stage.session.spec, &KeyMap::default()).expect("free keys");
+    assert_eq!(input(stage.key(KeyCode::Char('1'))), Some(Event::Marker { note: "asked for help".to_string() }));
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('2')), None);
+    stage.key(KeyCode::Char('?'));
+    let screen = stage.screen((120, 40));
+    assert!(screen.contains("asked for help") && !screen.contains("wrong recipe"), "{screen}");
+}

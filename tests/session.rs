@@ -365,3 +365,53 @@ fn a_robot_whose_press_became_useless_by_a_correction_decides_anew() {
     let kinds = check(&mut engine, &[(0.5, corrected("robot_hand", "nori"))]);
     assert_eq!(kinds, [("kitchen_corrected", 0.5), ("robot_aborts", 0.5), ("robot_intends", 0.5)]);
 }
+
+#[test]
+fn an_aborted_trial_is_over_says_why_and_can_be_excluded_and_included() {
+    let aborted = || Event::TrialAborted { reason: "technical failure".to_string() };
+    let excluded = || Event::TrialExcluded { reason: "interrupted".to_string() };
+    let mut engine = engine(|_| ());
+    assert!(refused(&mut engine, 0.0, aborted()).contains("no trial to abort"));
+    assert!(refused(&mut engine, 0.0, excluded()).contains("no trial to exclude"));
+    check(&mut engine, &[(0.0, Event::TrialStarted), (1.0, excluded()), (2.0, Event::TrialIncluded)]);
+    let unexplained = Event::TrialEnded { reason: EndReason::Aborted };
+    assert!(refused(&mut engine, 2.5, unexplained).contains("needs a reason"));
+    check(&mut engine, &[(3.0, Event::TrialPaused), (4.0, aborted())]);
+    assert_eq!(engine.session().phase, Phase::Over(EndReason::Aborted));
+    assert_eq!(engine.session().aborted.as_deref(), Some("technical failure"));
+    assert_eq!(engine.next_due(), None);
+    check(&mut engine, &[(5.0, excluded())]);
+    assert!(refused(&mut engine, 6.0, excluded()).contains("excluded already"));
+    assert_eq!(engine.session().excluded.as_deref(), Some("interrupted"));
+    check(&mut engine, &[(7.0, Event::TrialIncluded)]);
+    assert!(refused(&mut engine, 8.0, Event::TrialIncluded).contains("not excluded"));
+}
+
+#[test]
+fn signals_of_the_wizard_keep_apart_and_a_new_one_replaces_the_shown_one() {
+    let mut engine = engine(|spec| spec.signals.cool_down_s = 0.8);
+    check(&mut engine, &[(0.0, Event::TrialStarted), (1.0, highlight("counter"))]);
+    assert!(refused(&mut engine, 1.5, highlight("plate")).contains("too soon"));
+    assert!(refused(&mut engine, 2.0, highlight("counter")).contains("shown already"));
+    check(&mut engine, &[(2.1, highlight("plate"))]);
+    let shown = engine.session().shown.as_ref().map(|shown| shown.signal.target().to_string());
+    assert_eq!(shown.as_deref(), Some("plate"));
+    // Taken back, it may be sent again; so may the one that was replaced.
+    check(&mut engine, &[(2.2, Event::SignalEnded { reason: SignalEnd::TakenBack })]);
+    assert!(refused(&mut engine, 2.3, highlight("plate")).contains("too soon"));
+    check(&mut engine, &[(3.0, highlight("plate")), (4.0, highlight("counter"))]);
+}
+
+#[test]
+fn presets_of_the_session_file_are_checked() {
+    let wrong = |change: fn(&mut SessionSpec)| {
+        let mut spec = read_session(Path::new("sessions/default.toml")).expect("the default session").spec;
+        change(&mut spec);
+        spec.check().expect_err("a wrong setting").key
+    };
+    assert_eq!(wrong(|spec| spec.console.notes.clear()), "notes");
+    assert_eq!(wrong(|spec| spec.console.notes.push("a sixth".to_string())), "notes");
+    assert_eq!(wrong(|spec| spec.console.notes[0] = "two\nlines".to_string()), "notes");
+    assert_eq!(wrong(|spec| spec.console.reasons[0] = "x".repeat(41)), "reasons");
+    assert_eq!(wrong(|spec| spec.signals.cool_down_s = -1.0), "cool_down_s");
+}

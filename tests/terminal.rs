@@ -250,3 +250,45 @@ fn gaze_comes_from_any_program_that_writes_lines() {
     terminal.quit();
     terminal.verifies();
 }
+
+#[test]
+fn an_aborted_trial_is_done_again_in_a_recording_of_its_own() {
+    let Some(terminal) = Terminal::open("again") else { return };
+    terminal.operate("default.toml", "");
+    let first = terminal.recording();
+    terminal.key_logs(".", "trial_started");
+    terminal.key_logs("C-p", "robot_held");
+    terminal.see("HELD");
+    terminal.key("C-k");
+    terminal.see("Correct the kitchen");
+    terminal.key("Enter");
+    terminal.see("What is at human hand?");
+    terminal.key("Escape");
+    terminal.see("Correct the kitchen");
+    terminal.key_logs("Space", "robot_stopped");
+    terminal.key("Escape");
+    std::thread::sleep(Duration::from_millis(800));
+    terminal.key("C-x");
+    terminal.see("Abort the trial: why?");
+    terminal.key_logs("Enter", "\"trial_aborted\",\"reason\":\"participant stopped\"");
+    terminal.see("^n do it again");
+    terminal.key("C-n");
+    terminal.see("READY");
+    let name = first.file_name().expect("a name").to_string_lossy().into_owned();
+    let second = first.with_file_name(format!("{}-2", name.trim_end_matches("-1")));
+    let log = |folder: &Path| fs::read_to_string(folder.join("events.jsonl")).expect("a log");
+    assert!(log(&second).contains(&format!("\"redoes\":\"{name}\"")));
+    assert!(log(&first).ends_with("\"session_ended\"}\n"), "the aborted recording is closed");
+    terminal.key(".");
+    terminal.see("RUNNING");
+    terminal.quit();
+    let orders = |log: &str| -> Vec<String> {
+        let shown = log.lines().filter(|line| line.contains("order_shown")).take(2);
+        shown.filter_map(|line| Some(line.split_once("\"kind\"")?.1.to_string())).collect()
+    };
+    assert_eq!(orders(&log(&first)), orders(&log(&second)), "it is the same trial");
+    for recording in [&first, &second] {
+        let output = tmux::tomcom(&["replay", &recording.display().to_string(), "--verify"]);
+        assert!(output.status.success(), "{output:?}");
+    }
+}

@@ -24,6 +24,7 @@ pub(super) enum Command {
     Simulate(SimulateArgs),
     Kitchen(KitchenArgs),
     Keys(KeysArgs),
+    Exclude(ExcludeArgs),
     Doctor(DoctorArgs),
     Completions(CompletionsArgs),
     Man(ManArgs),
@@ -156,6 +157,25 @@ pub(super) struct KitchenArgs {
 pub(super) struct KeysArgs {
     /// The session file whose kitchen and key file it is about; by default the one of tomcom operate.
     pub(super) session: Option<PathBuf>,
+}
+
+/// Leaves a closed recording out of the analysis, or takes that back. Its log stays as it is.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "While the session is open, its console does it.\nExample: tomcom exclude sessions/2026-03-14-P07-1 --reason \"the tracker slipped\""
+)]
+pub(super) struct ExcludeArgs {
+    /// The folder of a recording.
+    pub(super) recording: PathBuf,
+    /// Why.
+    #[arg(long, required_unless_present = "back")]
+    pub(super) reason: Option<String>,
+    /// It counts again.
+    #[arg(long)]
+    pub(super) back: bool,
+    /// How to print what holds now.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(super) format: Format,
 }
 
 /// Checks terminal, place for recordings, and clocks; says how to mend what is not as it should be.

@@ -21,6 +21,12 @@ pub enum Hand {
     SkipPress,
     /// Choose the robot's next press.
     DriveRobot,
+    /// Abort the trial, for a reason.
+    Abort,
+    /// Do a trial again that was aborted or excluded.
+    Redo,
+    /// Leave the trial out of the analysis, for a reason; or take that back.
+    Exclude,
 }
 
 /// Does what a key of the hands says, or asks.
@@ -39,6 +45,26 @@ pub(super) fn act(model: &mut Model, session: &Session, hand: Hand) -> Option<Co
         Hand::DriveRobot if !session.is_running() => refuse(model, "the robot is driven while the trial runs"),
         Hand::DriveRobot if session.robot.stopped => refuse(model, "the robot is stopped: let it go on first"),
         Hand::DriveRobot => ask(model, Question::Button),
+        Hand::Abort if !matches!(session.phase, Phase::Running | Phase::Paused) => {
+            refuse(model, "there is no trial to abort")
+        }
+        Hand::Abort => ask(model, Question::Abort),
+        Hand::Redo => redo(model, session),
+        Hand::Exclude if session.excluded.is_some() => {
+            send(model, session, Event::TrialIncluded, Level::Done, "the trial is no longer excluded")
+        }
+        Hand::Exclude if matches!(session.phase, Phase::Ready | Phase::Closed) => {
+            refuse(model, "there is no trial to exclude")
+        }
+        Hand::Exclude => ask(model, Question::Exclude),
+    }
+}
+
+fn redo(model: &mut Model, session: &Session) -> Option<Command> {
+    match session.phase {
+        Phase::Over(_) if session.aborted.is_some() || session.excluded.is_some() => Some(Command::Redo),
+        Phase::Over(_) => refuse(model, "only a trial that was aborted or excluded is done again"),
+        _ => refuse(model, "abort the trial first"),
     }
 }
 
@@ -81,6 +107,13 @@ pub(super) fn pick(model: &mut Model, session: &Session, mut picker: Picker, cod
             let words = format!("the robot sets out for {}", words::button(kitchen, Agent::Robot, button));
             let button = kitchen.button(Agent::Robot, button).name.clone();
             send(model, session, Event::RobotDriven { by: Sender::Wizard, button }, Level::Done, &words)
+        }
+        (Question::Abort, Answer::Reason(reason)) => {
+            send(model, session, Event::TrialAborted { reason }, Level::Done, "aborted")
+        }
+        (_, Answer::Reason(reason)) => {
+            let words = format!("excluded: {reason}");
+            send(model, session, Event::TrialExcluded { reason }, Level::Done, &words)
         }
         (_, Answer::Content(_)) => None,
     }

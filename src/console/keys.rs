@@ -15,10 +15,6 @@ use crate::communication::Signal;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, LocationKind};
 use crate::session::settings::{ParticipantKind, SessionSpec};
 
-/// The notes of the markers 1 to 5: short, so that no text has to be typed while the trial runs.
-pub const NOTES: [&str; 5] =
-    ["wrong recipe", "overlooked a change", "slip", "waits for the robot", "look at this later"];
-
 /// Which hand plays: the wizard's keys, or the buttons of a person who plays the participant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
@@ -32,7 +28,7 @@ pub enum Action {
     Signal(LocationId, Signal),
     Press(ButtonId),
     TakeBack,
-    /// A marker with this note of [`NOTES`].
+    /// A marker with this note of the session's.
     Note(usize),
     /// Start, pause or resume the trial.
     Advance,
@@ -144,9 +140,15 @@ impl Keys {
             }
             Action::Press(_) | Action::SwitchLayer => at_keyboard,
             Action::Move(_) => false,
+            Action::Note(index) => *index < spec.console.notes.len(),
             _ => line.section != Section::Replay,
         });
         bindings.retain(|line| !line.chords.is_empty());
+        for line in &mut bindings {
+            if let Action::Note(index) = line.action {
+                line.help.clone_from(&spec.console.notes[index]);
+            }
+        }
         Ok(Keys { bindings, marks })
     }
 

@@ -26,6 +26,8 @@ pub enum Command {
     Input(Event),
     /// Another place in a recording.
     Move(Move),
+    /// Close this recording and do its trial again in another one.
+    Redo,
     /// Close the console; in a live run the session ends.
     Quit,
 }

@@ -19,6 +19,10 @@ pub enum Question {
     Content(LocationId),
     /// Which button shall the robot press next?
     Button,
+    /// Why is the trial aborted?
+    Abort,
+    /// Why is it left out of the analysis?
+    Exclude,
 }
 
 /// What can be answered.
@@ -27,6 +31,7 @@ pub enum Answer {
     Place(LocationId),
     Content(ContentId),
     Button(ButtonId),
+    Reason(String),
 }
 
 /// A line of the list.
@@ -69,6 +74,8 @@ impl Picker {
             Question::Place => "Correct the kitchen: which place?".to_string(),
             Question::Content(place) => format!("What is at {}?", session.kitchen.location(place).label()),
             Question::Button => "The robot's next press".to_string(),
+            Question::Abort => "Abort the trial: why?".to_string(),
+            Question::Exclude => "Leave the trial out: why?".to_string(),
         }
     }
 
@@ -86,6 +93,7 @@ impl Picker {
             Question::Place => places(session),
             Question::Content(place) => contents(session, place),
             Question::Button => buttons(session),
+            Question::Abort | Question::Exclude => reasons(session),
         }
     }
 
@@ -152,4 +160,13 @@ fn buttons(session: &Session) -> Vec<Choice> {
         Choice { answer: Answer::Button(id), label: words::button(kitchen, Agent::Robot, id), remark }
     };
     ids.map(choice).collect()
+}
+
+fn reasons(session: &Session) -> Vec<Choice> {
+    let choice = |reason: &String| Choice {
+        answer: Answer::Reason(reason.clone()),
+        label: reason.clone(),
+        remark: String::new(),
+    };
+    session.spec.console.reasons.iter().map(choice).collect()
 }

@@ -39,6 +39,8 @@ pub struct Playback {
     pub follows: bool,
     /// The recording ends without its end event.
     pub cut: bool,
+    /// It was left out of the analysis after it was closed.
+    pub excluded: bool,
 }
 
 impl Playback {
@@ -53,6 +55,7 @@ impl Playback {
             events: 0,
             follows: false,
             cut: false,
+            excluded: false,
         }
     }
 

@@ -4,10 +4,11 @@ use crossterm::event::KeyCode::{self, Backspace, End, Home, Left, PageDown, Page
 
 use super::chord::Chord;
 use super::hands::Hand;
-use super::keys::{Action, Binding, Layer, NOTES, Section};
+use super::keys::{Action, Binding, Layer, Section};
 use super::playback::Move;
 use crate::communication::{self, Signal};
 use crate::kitchen::{Agent, ButtonId, Kitchen};
+use crate::session::settings::MAX_NOTES;
 
 const SIGNALS: &str = "Signals to the participant";
 const TRIAL: &str = "Trial";
@@ -58,6 +59,9 @@ pub fn live(kitchen: &Kitchen) -> Vec<Binding> {
         line("start_pause", &[Chord::char('.')], Action::Advance, TRIAL, "start, pause, resume", Some("start/pause")),
         line("end_trial", &[Chord::ctrl('e')], Action::EndTrial, TRIAL, "end the trial (asks first)", Some("end")),
         hand("correct", 'k', Hand::Correct, TRIAL, "correct the kitchen: what is where"),
+        hand("abort_trial", 'x', Hand::Abort, TRIAL, "abort the trial (asks why)"),
+        hand("redo_trial", 'n', Hand::Redo, TRIAL, "do an aborted trial again"),
+        hand("exclude_trial", 'l', Hand::Exclude, TRIAL, "leave the trial out (asks why), or not"),
         line(
             "switch_keys",
             &plain(Tab),
@@ -70,11 +74,12 @@ pub fn live(kitchen: &Kitchen) -> Vec<Binding> {
     lines.extend(signals(kitchen));
     let take_back = "take the shown signal back";
     lines.push(wizards(line("take_back", &plain(Backspace), Action::TakeBack, SIGNALS, take_back, Some("take back"))));
-    for (index, note) in NOTES.iter().enumerate() {
+    for index in 0..MAX_NOTES {
         let digit = char::from(b'1' + index as u8);
         let footer = (index == 0).then_some("note");
         let name = format!("note_{digit}");
-        lines.push(wizards(line(&name, &[Chord::char(digit)], Action::Note(index), MARKERS, note, footer)));
+        let help = format!("note {digit} of the session");
+        lines.push(wizards(line(&name, &[Chord::char(digit)], Action::Note(index), MARKERS, &help, footer)));
     }
     lines.extend(buttons(kitchen));
     lines.extend([

@@ -4,15 +4,15 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
 use super::arrange::Plan;
 use super::chord::Chord;
-use super::hands;
-use super::keys::{Action, Layer, NOTES};
+use super::hands::{self, Hand};
+use super::keys::{Action, Layer};
 use super::message::{Command, Message};
 use super::model::{Dialog, Level, Model};
 use super::view::regions::Regions;
 use super::words;
 use crate::communication::Sender;
 use crate::kitchen::Agent;
-use crate::session::admit::admit;
+use crate::session::admit::{admit, hygiene};
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::settings::ParticipantKind;
 use crate::session::{Event, Phase, Session};
@@ -43,9 +43,10 @@ pub fn update(model: &mut Model, session: &Session, message: Message) -> Option<
             None
         }
         Message::Focus(focused) => {
-            model.focused = focused;
+            let changed = std::mem::replace(&mut model.focused, focused) != focused;
             model.pressed = None;
-            None
+            let event = if focused { Event::FocusRegained } else { Event::FocusLost };
+            (changed && session.phase != Phase::Closed).then_some(Command::Input(event))
         }
         Message::Refused(reason) => {
             model.say(Level::Refused, reason);
@@ -74,6 +75,10 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
             if model.dialog.is_none() {
                 model.say(Level::Refused, format!("\"{chord}\" is held down: it counts once"));
             }
+            None
+        }
+        Some(action) if touch == Touch::Again && model.dialog.is_none() && !may_follow_at_once(&action) => {
+            model.say(Level::Refused, format!("\"{chord}\" may be held down: press it again in a moment"));
             None
         }
         action if model.dialog.is_some() => answer(model, chord, action, touch),
@@ -115,6 +120,13 @@ fn touch(model: &mut Model, key: &KeyEvent) -> Touch {
     }
 }
 
+/// Whether a second press within the delay of key repeat counts where the terminal does not tell it from a held key. What
+/// does the opposite the second time does not, nor does what is written down each time.
+fn may_follow_at_once(action: &Action) -> bool {
+    let once = [Hand::HoldRobot, Hand::SkipPress, Hand::Exclude].map(Action::Hand);
+    !matches!(action, Action::Advance | Action::SwitchLayer | Action::Note(_)) && !once.contains(action)
+}
+
 /// The space bar: works in every view, and does nothing twice.
 fn stop_robot(model: &mut Model, session: &Session) -> Option<Command> {
     if session.robot.stopped {
@@ -145,11 +157,6 @@ fn answer(model: &mut Model, chord: Chord, action: Option<Action>, touch: Touch)
 fn act(model: &mut Model, session: &Session, action: Action) -> Option<Command> {
     match action {
         Action::Signal(_, signal) => {
-            let shown = session.shown.as_ref();
-            if shown.is_some_and(|shown| shown.by == Sender::Wizard && shown.signal == signal) {
-                model.say(Level::Refused, format!("{} is shown already", words::signal(&signal)));
-                return None;
-            }
             let words = format!("shown: {}", words::signal(&signal));
             send(model, session, Event::SignalShown { by: Sender::Wizard, signal }, Level::Done, &words)
         }
@@ -161,7 +168,7 @@ fn act(model: &mut Model, session: &Session, action: Action) -> Option<Command> 
             send(model, session, Event::SignalEnded { reason: SignalEnd::TakenBack }, Level::Done, "taken back")
         }
         Action::Note(index) => {
-            let note = NOTES.get(index)?.to_string();
+            let note = session.spec.console.notes.get(index)?.clone();
             let words = format!("marked: {note}");
             send(model, session, Event::Marker { note }, Level::Done, &words)
         }
@@ -210,7 +217,8 @@ fn advance(model: &mut Model, session: &Session) -> Option<Command> {
 
 /// Sends an input if the session takes it now; else says why not.
 pub(super) fn send(model: &mut Model, session: &Session, event: Event, level: Level, words: &str) -> Option<Command> {
-    if let Err(reason) = admit(session, &event) {
+    let refused = admit(session, &event).map_err(str::to_string).and_then(|()| hygiene(session, model.now, &event));
+    if let Err(reason) = refused {
         model.say(Level::Refused, reason);
         return None;
     }

@@ -57,6 +57,7 @@ pub fn phase(phase: Phase) -> &'static str {
         Phase::Ready => "READY",
         Phase::Running => "RUNNING",
         Phase::Paused => "PAUSED",
+        Phase::Over(EndReason::Aborted) => "ABORTED",
         Phase::Over(_) => "TRIAL OVER",
         Phase::Closed => "CLOSED",
     }
@@ -82,6 +83,10 @@ pub fn happening(kitchen: &Kitchen, what: &Happening) -> (&'static str, String) 
         Happening::RobotSkipped(id) => ("wizard", format!("skipped {}", button(kitchen, Agent::Robot, *id))),
         Happening::RobotDriven(id) => ("wizard", format!("drives the robot to {}", button(kitchen, Agent::Robot, *id))),
         Happening::Corrected { location } => ("wizard", format!("corrected {}", kitchen.location(*location).label())),
+        Happening::Excluded(reason) => ("trial", format!("excluded: {reason}")),
+        Happening::Included => ("trial", "no longer excluded".to_string()),
+        Happening::Focus(false) => ("console", "lost the keyboard".to_string()),
+        Happening::Focus(true) => ("console", "has the keyboard again".to_string()),
         Happening::Trial(phase) => ("trial", trial(*phase).to_string()),
     }
 }
@@ -94,6 +99,7 @@ fn trial(phase: Phase) -> &'static str {
         Phase::Over(EndReason::Presses) => "over: all presses made",
         Phase::Over(EndReason::Time) => "over: time is up",
         Phase::Over(EndReason::Wizard) => "ended by the wizard",
+        Phase::Over(EndReason::Aborted) => "aborted by the wizard",
         Phase::Closed => "closed",
     }
 }

@@ -13,7 +13,7 @@ use crate::kitchen::{Agent, ButtonId, Kitchen, State};
 use crate::measures::JudgedPress;
 use crate::participant::{Deed, SimulatedParticipant};
 use crate::robot::timed::{RobotDeed, TimedRobot};
-use crate::session::admit::admit;
+use crate::session::admit::{admit, hygiene};
 use crate::session::apply::ApplyError;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::orders::OrderList;
@@ -94,6 +94,7 @@ impl Engine {
         }
         let now = time.max(self.session().time);
         let admitted = admit(self.session(), &event).map_err(str::to_string);
+        let admitted = admitted.and_then(|()| hygiene(self.session(), now, &event));
         let taken = admitted.and_then(|()| self.record(now, event).map_err(|error| error.to_string()));
         self.settle(now);
         Outcome { events: std::mem::take(&mut self.out), refused: taken.err() }

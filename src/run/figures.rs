@@ -157,6 +157,8 @@ pub struct SimulationFigures {
     pub optimal_presses_per_order: Option<f64>,
     pub simulated_s: f64,
     pub wall_s: f64,
+    /// Recordings that are excluded: they are left out of the figures.
+    pub excluded: u64,
     pub recordings: Vec<String>,
 }
 
@@ -180,6 +182,7 @@ impl SimulationFigures {
             ),
             simulated_s: trials.iter().map(|trial| trial.seconds).sum(),
             wall_s: 0.0,
+            excluded: 0,
             recordings: Vec::new(),
         }
     }

@@ -12,6 +12,7 @@ use super::engine::Engine;
 use super::figures::TrialFigures;
 use super::options::Beginning;
 use super::resume::{ResumeError, resume};
+use super::standing::Standing;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::console::keys::KeyError;
@@ -74,6 +75,9 @@ pub struct LiveEnd {
     /// The folder of the recording.
     pub folder: PathBuf,
     pub figures: TrialFigures,
+    pub standing: Standing,
+    /// What its trial is done again with, if that was asked for.
+    pub again: Option<Beginning>,
 }
 
 impl LiveEnd {
@@ -83,8 +87,13 @@ impl LiveEnd {
         let presses = count(self.figures.human_actions + self.figures.robot_actions, "press", "presses");
         let signals = count(self.figures.signals, "signal", "signals");
         let served = count(self.figures.served.len() as u64, "order", "orders");
+        let standing = if self.standing.counts() {
+            String::new()
+        } else {
+            format!("left out of the analysis: {}\n", self.standing.describe())
+        };
         format!(
-            "{presses}, {signals}, {served} served\nrecorded in {folder}\n\
+            "{presses}, {signals}, {served} served\n{standing}recorded in {folder}\n\
              look at it again: tomcom replay {folder}"
         )
     }
@@ -94,7 +103,11 @@ impl LiveEnd {
 struct Live {
     engine: Engine,
     model: Model,
+    /// Of this recording.
+    header: Header,
     log: LogWriter,
+    /// The trial is to be done again.
+    again: bool,
     /// The part that is continued is not to be written by anybody else.
     _before: Option<Lock>,
     /// The log cannot be written any more.
@@ -138,6 +151,11 @@ impl Begun {
                 let engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
                 Ok(Begun { engine, header, first: Vec::new(), time: SessionTime::ZERO, place: Place::In(out) })
             }
+            Beginning::Again { header, kitchen, out } => {
+                let engine = Engine::new(kitchen.clone(), header.session.clone(), header.trial, CostToGo::new(kitchen));
+                let (header, place) = (*header, Place::In(out));
+                Ok(Begun { engine, header, first: Vec::new(), time: SessionTime::ZERO, place })
+            }
             Beginning::Continued(recording) => {
                 let resumed = resume(&recording)?;
                 let place = Place::After(resumed.folder, resumed.lock);
@@ -176,7 +194,18 @@ impl Live {
         let mut model = Model::new(keys, theme(spec.console.ascii), size);
         model.recording = Recording::On(log.folder().display().to_string());
         let clock = SessionClock::start(time);
-        let mut live = Live { engine, model, log, _before: before, failed: None, clock, judged: 0, dirty: true };
+        let mut live = Live {
+            engine,
+            model,
+            header,
+            log,
+            again: false,
+            _before: before,
+            failed: None,
+            clock,
+            judged: 0,
+            dirty: true,
+        };
         live.record(&first);
         Ok(live)
     }
@@ -230,9 +259,22 @@ impl Live {
         match update(&mut self.model, self.engine.session(), message) {
             Some(Command::Input(event)) => self.input(event),
             Some(Command::Quit) => return true,
+            Some(Command::Redo) => {
+                self.again = true;
+                return true;
+            }
             Some(Command::Move(_)) | None => {}
         }
         false
+    }
+
+    /// The same trial in another recording beside this one.
+    fn beginning_again(&self) -> Beginning {
+        let folder = self.log.folder();
+        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let out = folder.parent().unwrap_or(std::path::Path::new(".")).to_path_buf();
+        let header = Header { redoes: Some(name), started: None, continues: None, ..self.header.clone() };
+        Beginning::Again { header: Box::new(header), kitchen: self.engine.session().kitchen.clone(), out }
     }
 
     fn input(&mut self, event: Event) {
@@ -331,7 +373,11 @@ impl Live {
         let folder = self.log.folder().to_path_buf();
         match self.failed {
             Some(error) => Err(error.into()),
-            None => Ok(LiveEnd { folder, figures: TrialFigures::of(&self.engine.into_follower()) }),
+            None => {
+                let again = self.again.then(|| self.beginning_again());
+                let standing = Standing::at_console(self.engine.session());
+                Ok(LiveEnd { folder, figures: TrialFigures::of(&self.engine.into_follower()), standing, again })
+            }
         }
     }
 }

@@ -14,5 +14,6 @@ pub mod resume;
 pub mod review;
 pub mod series;
 pub mod simulate;
+pub mod standing;
 pub mod tell;
 pub mod verify;

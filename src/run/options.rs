@@ -1,8 +1,11 @@
 //! What `tomcom operate` is asked for, and what the command line changes in a session file.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::edge::files::{self, FileResult, SessionFiles};
+use crate::kitchen::Kitchen;
+use crate::session::Header;
 use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
 
 /// What `tomcom operate` is asked for.
@@ -10,6 +13,8 @@ use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingEr
 pub enum Beginning {
     /// A new session with these settings, recorded in a folder in `out`.
     New { files: Box<SessionFiles>, out: PathBuf },
+    /// A trial that is done again, in another recording in `out`: the header of that, and the kitchen that it describes.
+    Again { header: Box<Header>, kitchen: Arc<Kitchen>, out: PathBuf },
     /// The session of this recording, which was cut.
     Continued(PathBuf),
 }

@@ -10,6 +10,7 @@ use std::time::Duration;
 use tokio::time::{Instant, sleep_until};
 
 use super::replay::Replay;
+use super::standing::Standing;
 use crate::base::time::SessionTime;
 use crate::console::keys::KeyError;
 use crate::console::playback::{Move, Playback, SPEEDS};
@@ -109,6 +110,14 @@ impl Film {
         self.replay.log().is_cut()
     }
 
+    /// Whether it counts.
+    ///
+    /// # Errors
+    /// Those of [`Standing::of`].
+    pub fn standing(&self) -> FileResult<Standing> {
+        Standing::of(self.replay.session(), self.replay.log())
+    }
+
     /// The time of the last event, and the number of events.
     pub fn length(&self) -> (SessionTime, usize) {
         (self.events.last().map_or(SessionTime::ZERO, |stamped| stamped.time), self.events.len())
@@ -185,7 +194,8 @@ impl Review {
         let keys = Keys::replay(&film.session.kitchen, &key_map(keys)?)?;
         let mut model = Model::new(keys, theme(film.session.spec.console.ascii), size);
         let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
-        model.playback = Some(Playback::new(name));
+        let excluded = film.standing()?.excluded.is_some();
+        model.playback = Some(Playback { excluded, ..Playback::new(name) });
         let now = Instant::now();
         let mut review = Review {
             film,
@@ -240,7 +250,7 @@ impl Review {
         match update(&mut self.model, &self.film.session, message) {
             Some(Command::Move(to)) => self.go(to),
             Some(Command::Quit) => return true,
-            Some(Command::Input(_)) | None => {}
+            Some(Command::Input(_) | Command::Redo) | None => {}
         }
         false
     }

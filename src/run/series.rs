@@ -26,7 +26,9 @@ async fn run(beginning: Beginning) -> Result<Vec<LiveEnd>, LiveError> {
             Some(desk) => desk,
             none => none.insert(Desk::take(&begun.spec().participant).await?),
         };
-        done.push(live::run(begun, desk).await?);
+        let mut end = live::run(begun, desk).await?;
+        next = end.again.take();
+        done.push(end);
     }
     Ok(done)
 }

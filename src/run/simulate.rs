@@ -10,12 +10,23 @@ use super::figures::{SimulationFigures, TrialFigures};
 use super::follower::Follower;
 use super::{headless, kitchen};
 use crate::base::words::count;
-use crate::edge::files::SessionFiles;
-use crate::edge::log::{LogWriter, WriteError, check_simulated};
+use crate::edge::files::{FileError, SessionFiles};
+use crate::edge::log::{LogWriter, WriteError, check_simulated, ruling};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::settings::{Condition, SessionSpec};
 use crate::session::{Header, Stamped};
+
+/// Why trials could not be simulated.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum SimulateError {
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    File(#[from] Box<FileError>),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Recording(#[from] WriteError),
+}
 
 /// What to simulate.
 #[derive(Clone, Debug)]
@@ -38,8 +49,8 @@ pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
 /// Simulates the trials on all processors. `done` is called after each trial.
 ///
 /// # Errors
-/// A recording that could not be written, or another one where it would be.
-pub fn simulate(simulation: &Simulation, done: impl Fn() + Sync) -> Result<SimulationFigures, WriteError> {
+/// A recording that could not be written, another one where it would be, or one with a broken file about its exclusion.
+pub fn simulate(simulation: &Simulation, done: impl Fn() + Sync) -> Result<SimulationFigures, SimulateError> {
     let began = Instant::now();
     // Before the first trial, so that none is simulated in vain.
     for trial in 0..simulation.trials {
@@ -77,9 +88,17 @@ pub fn simulate(simulation: &Simulation, done: impl Fn() + Sync) -> Result<Simul
     let mut results = results.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
     results.sort_by_key(|(trial, _)| *trial);
     let results: Vec<(PathBuf, TrialFigures)> =
-        results.into_iter().map(|(_, result)| result).collect::<Result<_, _>>()?;
-    let (folders, trials): (Vec<_>, Vec<_>) = results.into_iter().unzip();
+        results.into_iter().map(|(_, result)| result).collect::<Result<_, WriteError>>()?;
+    let folders: Vec<PathBuf> = results.iter().map(|(folder, _)| folder.clone()).collect();
+    // The same recording may have been made and excluded before.
+    let mut trials = Vec::new();
+    for (folder, trial) in results {
+        if ruling(&folder).map_err(Box::new)?.is_none_or(|ruling| !ruling.excluded) {
+            trials.push(trial);
+        }
+    }
     let mut figures = SimulationFigures::of(&trials, &plan_lengths);
+    figures.excluded = (folders.len() - trials.len()) as u64;
     figures.recordings = folders.iter().map(|folder| folder.display().to_string()).collect();
     figures.wall_s = began.elapsed().as_secs_f64();
     Ok(figures)
@@ -118,6 +137,10 @@ pub fn describe(figures: &SimulationFigures) -> String {
         (Some(presses), Some(best)) => format!(", {presses:.1} presses each in the median (at best {best:.1})"),
         _ => String::new(),
     };
+    let excluded = match figures.excluded {
+        0 => String::new(),
+        some => format!("{} excluded, and left out of these figures\n", count(some, "recording is", "recordings are")),
+    };
     let share = 100.0 * figures.errors as f64 / figures.human_actions.max(1) as f64;
     format!(
         "{} of unassisted simulated participants, {:.0} s simulated in {:.1} s\n\
@@ -125,6 +148,7 @@ pub fn describe(figures: &SimulationFigures) -> String {
          errors: {} ({share:.1} % of the human's presses)\n\
          {}\n\
          orders served: {}{each}\n\
+         {excluded}\
          recordings:\n{}\n",
         count(figures.trials, "trial", "trials"),
         figures.simulated_s,

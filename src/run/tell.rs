@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::figures::{BeliefFigures, TrialFigures};
 use super::follower::Follower;
+use super::standing::Standing;
 use crate::base::words::count;
 use crate::communication::Signal;
 use crate::kitchen::{Agent, Kitchen};
@@ -19,6 +20,8 @@ pub struct RecordingFigures {
     pub events: u64,
     /// The recording ends without its end event.
     pub cut: bool,
+    #[serde(flatten)]
+    pub standing: Standing,
     pub human_actions: u64,
     pub robot_actions: u64,
     pub errors: u64,
@@ -32,11 +35,12 @@ pub struct RecordingFigures {
 }
 
 impl RecordingFigures {
-    pub fn of(follower: &Follower, events: u64, cut: bool) -> RecordingFigures {
+    pub fn of(follower: &Follower, events: u64, cut: bool, standing: Standing) -> RecordingFigures {
         let trial = TrialFigures::of(follower);
         RecordingFigures {
             events,
             cut,
+            standing,
             human_actions: trial.human_actions,
             robot_actions: trial.robot_actions,
             errors: trial.errors,
@@ -51,8 +55,12 @@ impl RecordingFigures {
     /// The figures for people.
     pub fn describe(&self) -> String {
         let cut = if self.cut { "; it ends without its end event" } else { "" };
+        let standing = match self.standing.counts() {
+            true => String::new(),
+            false => format!("left out of the analysis: {}\n", self.standing.describe()),
+        };
         format!(
-            "{}, {:.0} s of trial{cut}\n{} of the human ({}), {} of the robot, {}, {} served\n{}\n",
+            "{standing}{}, {:.0} s of trial{cut}\n{} of the human ({}), {} of the robot, {}, {} served\n{}\n",
             count(self.events, "event", "events"),
             self.trial_s,
             count(self.human_actions, "press", "presses"),
@@ -78,6 +86,12 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::TrialEnded { reason: EndReason::Presses } => "trial over: number of presses".to_string(),
         Event::TrialEnded { reason: EndReason::Time } => "trial over: time".to_string(),
         Event::TrialEnded { reason: EndReason::Wizard } => "trial ended by the wizard".to_string(),
+        Event::TrialEnded { reason: EndReason::Aborted } => "trial aborted".to_string(),
+        Event::TrialAborted { reason } => format!("trial aborted: {reason}"),
+        Event::TrialExcluded { reason } => format!("trial excluded: {reason}"),
+        Event::TrialIncluded => "trial no longer excluded".to_string(),
+        Event::FocusLost => "the terminal lost the keyboard".to_string(),
+        Event::FocusRegained => "the terminal has the keyboard again".to_string(),
         Event::Press { agent, button } => format!("{} presses {button}{}", agent.name(), verdict(stamped, follower)),
         Event::OrderShown { order, dish } => format!("{order} wants {dish}"),
         Event::OrderCleared { order } => format!("{order} is cleared"),

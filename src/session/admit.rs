@@ -4,6 +4,7 @@
 use super::event::{EndReason, Event, SignalEnd};
 use super::settings::{Condition, ParticipantKind};
 use super::{Phase, Session, hands};
+use crate::base::time::SessionTime;
 use crate::communication::{self, Sender, Signal};
 use crate::kitchen::{Agent, LocationKind};
 
@@ -19,6 +20,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         Event::TrialStarted => refuse_if(phase != Phase::Ready, "the trial was started already"),
         Event::TrialPaused => refuse_if(phase != Phase::Running, "no trial runs"),
         Event::TrialResumed => refuse_if(phase != Phase::Paused, "the trial is not paused"),
+        Event::TrialEnded { reason: EndReason::Aborted } => Err("an aborted trial needs a reason: trial_aborted"),
         Event::TrialEnded { .. } => {
             refuse_if(!matches!(phase, Phase::Running | Phase::Paused), "there is no trial to end")
         }
@@ -51,6 +53,22 @@ fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'
     }
 }
 
+/// Whether the wizard's hand may do this again already: rules for keys, that bind no recording.
+///
+/// # Errors
+/// The reason why not, in words for the wizard.
+pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(), String> {
+    let Event::SignalShown { by: Sender::Wizard, signal } = event else { return Ok(()) };
+    if session.shown.as_ref().is_some_and(|shown| shown.by == Sender::Wizard && shown.signal == *signal) {
+        return Err("that signal is shown already".to_string());
+    }
+    let (cool_down_s, since) = (session.spec.signals.cool_down_s, session.signalled_at);
+    match since.map(|since| now.secs_since(since)).filter(|&age_s| age_s < cool_down_s) {
+        Some(age_s) => Err(format!("too soon: {age_s:.1} s after the last signal, it takes {cool_down_s} s")),
+        None => Ok(()),
+    }
+}
+
 /// Whether an event comes from outside (wizard, participant, tracker) and not from the running session itself.
 pub fn is_external(session: &Session, event: &Event) -> bool {
     let participant = &session.spec.participant;
@@ -65,6 +83,11 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::RobotSkipped { .. }
         | Event::RobotDriven { .. }
         | Event::KitchenCorrected { .. }
+        | Event::TrialAborted { .. }
+        | Event::TrialExcluded { .. }
+        | Event::TrialIncluded
+        | Event::FocusLost
+        | Event::FocusRegained
         | Event::Marker { .. }
         | Event::ClockJumped { .. }
         | Event::SessionEnded => true,

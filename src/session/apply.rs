@@ -68,6 +68,20 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
         Event::TrialPaused => pause(session, now),
         Event::TrialResumed => resume(session, now, &mut effects),
         Event::TrialEnded { reason } => end_trial(session, now, *reason, &mut effects),
+        Event::TrialAborted { reason } => {
+            session.aborted = Some(reason.clone());
+            end_trial(session, now, EndReason::Aborted, &mut effects);
+        }
+        Event::TrialExcluded { reason } => {
+            session.excluded = Some(reason.clone());
+            note(session, now, Happening::Excluded(reason.clone()));
+        }
+        Event::TrialIncluded => {
+            session.excluded = None;
+            note(session, now, Happening::Included);
+        }
+        Event::FocusLost => note(session, now, Happening::Focus(false)),
+        Event::FocusRegained => note(session, now, Happening::Focus(true)),
         Event::Gaze(sample) => gaze(session, now, *sample),
         Event::Press { agent, button } => {
             let button = named.button(*agent, button)?;
@@ -284,6 +298,9 @@ fn hold_robot(session: &mut Session, now: SessionTime, held: bool) {
 fn show(session: &mut Session, now: SessionTime, by: Sender, signal: &Signal, effects: &mut Vec<Effect>) {
     let until = now + SessionTime::from_secs_f64(session.spec.signals.shown_s);
     session.shown = Some(ShownSignal { signal: signal.clone(), by, since: now, until });
+    if by == Sender::Wizard {
+        session.signalled_at = Some(now);
+    }
     effects.push(Effect::Cancel(Timer::EndSignal));
     effects.push(Effect::At { time: until, timer: Timer::EndSignal });
     note(session, now, Happening::Signal { by, signal: signal.clone() });

@@ -36,6 +36,16 @@ pub enum Event {
     TrialEnded {
         reason: EndReason,
     },
+    /// The trial is over and does not count; it may be done again, in another recording.
+    TrialAborted {
+        reason: String,
+    },
+    /// The trial is to be left out of the analysis.
+    TrialExcluded {
+        reason: String,
+    },
+    /// It is not to be left out after all.
+    TrialIncluded,
     /// A gaze sample of the participant.
     Gaze(GazeSample),
     /// An agent pressed a physical button.
@@ -108,6 +118,9 @@ pub enum Event {
     ClockJumped {
         by_ms: i64,
     },
+    /// Witness: the terminal lost the keyboard: keys went elsewhere, the robot stop among them.
+    FocusLost,
+    FocusRegained,
     /// Witness: what a simulated participant believes, written before each of its presses.
     ParticipantBelieves(BeliefWitness),
     /// The session is over; a log without it was cut.
@@ -122,6 +135,9 @@ impl Event {
             Event::TrialPaused => "trial_paused",
             Event::TrialResumed => "trial_resumed",
             Event::TrialEnded { .. } => "trial_ended",
+            Event::TrialAborted { .. } => "trial_aborted",
+            Event::TrialExcluded { .. } => "trial_excluded",
+            Event::TrialIncluded => "trial_included",
             Event::Gaze(_) => "gaze",
             Event::Press { .. } => "press",
             Event::OrderShown { .. } => "order_shown",
@@ -140,6 +156,8 @@ impl Event {
             Event::SignalEnded { .. } => "signal_ended",
             Event::Marker { .. } => "marker",
             Event::ClockJumped { .. } => "clock_jumped",
+            Event::FocusLost => "focus_lost",
+            Event::FocusRegained => "focus_regained",
             Event::ParticipantBelieves(_) => "participant_believes",
             Event::SessionEnded => "session_ended",
         }
@@ -156,6 +174,8 @@ pub enum EndReason {
     Time,
     /// The wizard ended it.
     Wizard,
+    /// The wizard aborted it: `trial_aborted` says why, and `trial_ended` never says this.
+    Aborted,
 }
 
 /// How a signal ended.

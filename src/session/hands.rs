@@ -27,6 +27,14 @@ pub(super) fn admit(session: &Session, event: &Event) -> Result<(), &'static str
             refuse_if(phase != Phase::Running, "the robot is driven while the trial runs")?;
             refuse_if(robot.stopped, "the robot is stopped: let it go on first")
         }
+        Event::TrialAborted { .. } => {
+            refuse_if(!matches!(phase, Phase::Running | Phase::Paused), "there is no trial to abort")
+        }
+        Event::TrialExcluded { .. } => {
+            refuse_if(phase == Phase::Ready, "there is no trial to exclude")?;
+            refuse_if(session.excluded.is_some(), "the trial is excluded already")
+        }
+        Event::TrialIncluded => refuse_if(session.excluded.is_none(), "the trial is not excluded"),
         _ => Ok(()),
     }
 }

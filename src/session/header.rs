@@ -29,6 +29,9 @@ pub struct Header {
     /// What this recording is a later part of.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub continues: Option<Continues>,
+    /// The recording, beside this one, whose trial is done again here.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub redoes: Option<String>,
     /// The settings, the seed among them, as they were in force.
     pub session: SessionSpec,
     pub layout: FileText,
@@ -64,6 +67,18 @@ impl Header {
     pub fn new(session: SessionSpec, trial: u64, layout: FileText, recipes: FileText) -> Header {
         let program = env!("CARGO_PKG_VERSION").to_string();
         let (format, version) = (FORMAT.to_string(), VERSION);
-        Header { format, version, program, trial, started: None, continues: None, session, layout, recipes, keys: None }
+        Header {
+            format,
+            version,
+            program,
+            trial,
+            started: None,
+            continues: None,
+            redoes: None,
+            session,
+            layout,
+            recipes,
+            keys: None,
+        }
     }
 }

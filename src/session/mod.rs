@@ -63,6 +63,12 @@ pub struct Session {
     pub robot: RobotStatus,
     /// The signal that the participant sees now.
     pub shown: Option<ShownSignal>,
+    /// When the wizard last sent a signal.
+    pub signalled_at: Option<SessionTime>,
+    /// Why the trial was aborted, if it was.
+    pub aborted: Option<String>,
+    /// Why the trial is to be left out of the analysis, if it is.
+    pub excluded: Option<String>,
     pub gaze: GazeStatus,
     /// What happened, without the gaze: the timeline of the console.
     pub timeline: Vec<Entry>,
@@ -128,11 +134,22 @@ pub struct Entry {
 /// What an entry of the timeline is about.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Happening {
-    Press { agent: Agent, button: ButtonId, effective: bool },
-    Signal { by: Sender, signal: Signal },
+    Press {
+        agent: Agent,
+        button: ButtonId,
+        effective: bool,
+    },
+    Signal {
+        by: Sender,
+        signal: Signal,
+    },
     SignalEnded(event::SignalEnd),
-    Served { order: LocationId },
-    OrderShown { order: LocationId },
+    Served {
+        order: LocationId,
+    },
+    OrderShown {
+        order: LocationId,
+    },
     Marker(String),
     RobotStopped,
     RobotResumed,
@@ -140,8 +157,14 @@ pub enum Happening {
     RobotReleased,
     RobotSkipped(ButtonId),
     RobotDriven(ButtonId),
-    Corrected { location: LocationId },
+    Corrected {
+        location: LocationId,
+    },
     Trial(Phase),
+    Excluded(String),
+    Included,
+    /// The terminal has the keyboard, or not.
+    Focus(bool),
 }
 
 impl Session {
@@ -163,6 +186,9 @@ impl Session {
             served: Vec::new(),
             robot: RobotStatus::default(),
             shown: None,
+            signalled_at: None,
+            aborted: None,
+            excluded: None,
             gaze: GazeStatus::default(),
             timeline: Vec::new(),
         }

@@ -83,6 +83,11 @@ impl SessionSpec {
             let remedy = "gaze = \"mouse\", \"json\" or \"none\"";
             return Err(SettingError { key: "gaze", found, remedy });
         }
+        if !(0.0..=60.0).contains(&self.signals.cool_down_s) {
+            let found = format!("cool_down_s = {}", self.signals.cool_down_s);
+            return Err(SettingError { key: "cool_down_s", found, remedy: "seconds from 0 (none) to 60" });
+        }
+        self.console.check()?;
         match self.human.fault() {
             Some((key, found, remedy)) => Err(SettingError { key, found, remedy }),
             None => Ok(()),
@@ -188,11 +193,13 @@ pub struct SignalSpec {
     pub shown_s: f64,
     /// Whether the human's own hand may be highlighted.
     pub own_hand: bool,
+    /// From one signal of the wizard to the next there are at least so many seconds.
+    pub cool_down_s: f64,
 }
 
 impl Default for SignalSpec {
     fn default() -> Self {
-        SignalSpec { shown_s: 4.0, own_hand: false }
+        SignalSpec { shown_s: 4.0, own_hand: false, cool_down_s: 0.5 }
     }
 }
 
@@ -206,11 +213,52 @@ pub struct ConsoleSpec {
     /// The key file, relative to the session file; without one the keys are those of program and layout.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub keys: Option<String>,
+    /// The notes of the markers, so that no text has to be typed while the trial runs: key 1 is the first.
+    pub notes: Vec<String>,
+    /// Why a trial is aborted or excluded: what the console offers.
+    pub reasons: Vec<String>,
 }
+
+/// The console has so many keys for notes.
+pub const MAX_NOTES: usize = 5;
+/// No list of reasons is longer.
+const MAX_REASONS: usize = 20;
+/// No preset text is longer, in characters.
+const MAX_PRESET: usize = 40;
 
 impl Default for ConsoleSpec {
     fn default() -> Self {
-        ConsoleSpec { visibility: Visibility::Recommendation, ascii: false, keys: None }
+        let texts = |texts: [&str; 5]| texts.map(str::to_string).to_vec();
+        ConsoleSpec {
+            visibility: Visibility::Recommendation,
+            ascii: false,
+            keys: None,
+            notes: texts(["wrong recipe", "overlooked a change", "slip", "waits for the robot", "look at this later"]),
+            reasons: texts([
+                "participant stopped",
+                "technical failure",
+                "wizard's mistake",
+                "instructions not understood",
+                "interrupted",
+            ]),
+        }
+    }
+}
+
+impl ConsoleSpec {
+    fn check(&self) -> Result<(), SettingError> {
+        let wrong = |key, texts: &[String], most: usize, remedy| {
+            let is_text = |text: &String| {
+                let length = text.chars().count();
+                (1..=MAX_PRESET).contains(&length) && text.trim() == text && !text.chars().any(char::is_control)
+            };
+            let is_wrong = texts.is_empty() || texts.len() > most || !texts.iter().all(is_text);
+            is_wrong.then(|| SettingError { key, found: format!("{key} = {texts:?}"), remedy })
+        };
+        let notes = "1 to 5 texts of 1 to 40 characters, each on one line";
+        let reasons = "1 to 20 texts of 1 to 40 characters, each on one line";
+        let found = wrong("notes", &self.notes, MAX_NOTES, notes);
+        found.or_else(|| wrong("reasons", &self.reasons, MAX_REASONS, reasons)).map_or(Ok(()), Err)
     }
 }
 

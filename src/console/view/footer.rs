@@ -3,7 +3,8 @@
 use super::paint::{Brush, width};
 use super::regions::Regions;
 use super::theme::Role;
-use crate::console::keys::{Action, Binding, Layer, NOTES};
+use crate::console::hands::Hand;
+use crate::console::keys::{Action, Binding, Layer};
 use crate::console::model::{Level, Model};
 use crate::console::playback::Move;
 use crate::session::settings::ParticipantKind;
@@ -15,6 +16,12 @@ const NOTICE_S: f64 = 4.0;
 /// Draws the key line.
 pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
     let area = regions.footer;
+    if !model.focused && model.playback.is_none() {
+        let alarm = brush.theme.badge(Role::Alarm);
+        let words = " THE KEYBOARD IS ELSEWHERE: no key works here, the robot stop neither: click into this window ";
+        brush.text(area.x, area.y, area.width, &format!("{words:<width$}", width = usize::from(area.width)), alarm);
+        return;
+    }
     let mut x = area.x;
     if session.spec.participant.kind == ParticipantKind::Keyboard && model.playback.is_none() {
         let (label, role) = match model.layer {
@@ -30,7 +37,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     // The end of the trial is rare, and gives its room to the others; after it only leaving is left to do.
     let is_over = is_over(session, model);
     let is_late = |binding: &&Binding| match is_over {
-        true => binding.action != Action::Quit,
+        true => !matches!(binding.action, Action::Quit | Action::Hand(Hand::Redo)),
         false => binding.action == Action::EndTrial,
     };
     let (late, first): (Vec<&Binding>, Vec<&Binding>) = model.keys.bindings.iter().partition(is_late);
@@ -38,7 +45,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         let Some(label) = label(binding, session, model) else { continue };
         let Some(chord) = binding.chords.first() else { continue };
         let key = match binding.action {
-            Action::Note(_) => format!("1-{}", NOTES.len()),
+            Action::Note(_) => format!("1-{}", session.spec.console.notes.len()),
             // One label for the keys of both directions.
             Action::Move(Move::StepForward) => "left/right".to_string(),
             Action::Move(Move::SeekForward) => "pgup/pgdn".to_string(),
@@ -69,6 +76,10 @@ fn is_over(session: &Session, model: &Model) -> bool {
 
 /// What the footer says of a key, if it does something now.
 fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&'a str> {
+    let can_redo = session.aborted.is_some() || session.excluded.is_some();
+    if binding.action == Action::Hand(Hand::Redo) && matches!(session.phase, Phase::Over(_)) && can_redo {
+        return Some("do it again");
+    }
     let label = binding.footer?;
     if binding.layer.is_some_and(|layer| layer != model.layer) {
         return None;

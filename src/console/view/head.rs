@@ -75,6 +75,10 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
     if !model.focused && model.playback.is_none() {
         healths.push((" NO KEYBOARD ".to_string(), Role::Alarm));
     }
+    let excluded = model.playback.as_ref().is_some_and(|playback| playback.excluded) || session.excluded.is_some();
+    if excluded {
+        healths.push((" EXCLUDED ".to_string(), Role::FalseBelief));
+    }
     match &model.playback {
         Some(playback) => {
             let state = if playback.playing { "play" } else { "paused" };

@@ -7,7 +7,6 @@ use super::regions::{Regions, Room};
 use super::theme::Role;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
-use crate::console::keys::NOTES;
 use crate::console::model::Model;
 use crate::kitchen::Agent;
 use crate::session::event::SignalEnd;
@@ -132,8 +131,13 @@ fn mark(brush: &Brush, session: &Session, model: &Model, entry: &Entry) -> Optio
         Happening::SignalEnded(SignalEnd::Elapsed) => return None,
         Happening::Served { .. } => (4, signs.served.to_string(), Role::Strong),
         Happening::OrderShown { .. } => (4, "+".to_string(), Role::Quiet),
+        Happening::Excluded(_) => (5, signs.error.to_string(), Role::Signal),
+        Happening::Included => (5, signs.served.to_string(), Role::Signal),
+        Happening::Focus(false) => (5, "!".to_string(), Role::Alarm),
+        Happening::Focus(true) => return None,
         Happening::Marker(note) => {
-            let number = NOTES.iter().position(|known| known == note).map(|index| (index + 1).to_string());
+            let number =
+                session.spec.console.notes.iter().position(|known| known == note).map(|index| (index + 1).to_string());
             (5, number.unwrap_or("*".to_string()), Role::Strong)
         }
         Happening::Trial(Phase::Paused) => (5, signs.pause.to_string(), Role::Strong),

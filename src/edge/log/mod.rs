@@ -2,6 +2,7 @@
 //! log: a header line, then one event a line; the only source of truth). A recording that was cut is continued by a part
 //! in a folder beside it, whose header names the one before.
 
+mod exclusion;
 mod lock;
 mod reader;
 mod writer;
@@ -10,6 +11,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::session::Stamped;
+pub use exclusion::{EXCLUSION_NAME, Ruling, RulingError, rule, ruling};
 pub use lock::Lock;
 pub use reader::{LogLine, LogReader, at_line};
 pub use writer::{LogWriter, check_continued, check_simulated};
@@ -35,7 +37,7 @@ pub enum WriteError {
     #[diagnostic(help("end the other one first, or watch it: tomcom replay RECORDING --follow"))]
     InUse { folder: PathBuf, pid: Option<u32> },
     #[error("{}: this recording was continued already", folder.display())]
-    #[diagnostic(help("tomcom operate --continue {}", part.display()))]
+    #[diagnostic(help("its next part: tomcom operate --continue {}, if that was cut", part.display()))]
     Continued { folder: PathBuf, part: PathBuf },
     #[error("{}: {what} is there already", folder.display())]
     #[diagnostic(help("another folder, or remove that one first: only the same session replaces its recording"))]

@@ -133,6 +133,11 @@ impl LogReader {
         self.before.as_ref().map_or(&self.path, |before| before.path())
     }
 
+    /// The folder of the recording that was opened, of several parts the last one's.
+    pub fn folder(&self) -> &Path {
+        self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    }
+
     fn wrong(&self, text: &str, column: usize, found: &str) -> FileError {
         let remedy = "one event of a tomcom log, numbered without gaps";
         at_line(&self.path, self.number.max(1), text, column, found.to_string(), remedy.to_string())

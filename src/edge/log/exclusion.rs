@@ -1,0 +1,102 @@
+//! `exclusion.toml`, beside a closed log: that its trial is to be left out of the analysis, and why, or that it is not after
+//! all. The log of a closed recording stays as it is; what was said at the console is an event in it. Every entry is kept,
+//! and the last one holds.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Lock, LogReader, WriteError, check_continued};
+use crate::edge::clock::WallTime;
+use crate::edge::files::{FileError, FileResult};
+
+/// The name of the file in the folder of a recording.
+pub const EXCLUSION_NAME: &str = "exclusion.toml";
+
+/// What was said about a closed recording.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ruling {
+    pub excluded: bool,
+    /// Why; of those that take an exclusion back it may be empty.
+    #[serde(default)]
+    pub reason: String,
+    /// When it was said (UTC, RFC 3339).
+    pub at: String,
+}
+
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Rulings {
+    #[serde(default)]
+    ruling: Vec<Ruling>,
+}
+
+/// Why nothing can be said about a recording.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum RulingError {
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    File(#[from] Box<FileError>),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Recording(#[from] WriteError),
+    #[error("found a reason of {0} characters")]
+    #[diagnostic(help("a reason of 1 to 200 characters, on one line"))]
+    Reason(usize),
+}
+
+impl From<FileError> for RulingError {
+    fn from(error: FileError) -> RulingError {
+        RulingError::File(Box::new(error))
+    }
+}
+
+/// The last ruling on the recording in this folder, if there is any.
+///
+/// # Errors
+/// The file is there but cannot be read, or says something else.
+pub fn ruling(folder: &Path) -> FileResult<Option<Ruling>> {
+    Ok(rulings(folder)?.ruling.pop())
+}
+
+fn rulings(folder: &Path) -> FileResult<Rulings> {
+    let path = folder.join(EXCLUSION_NAME);
+    let text = match fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            return Ok(Rulings::default());
+        }
+        Err(reason) => return Err(FileError::unreadable(&path, reason, "a readable text file (UTF-8)")),
+    };
+    toml::from_str(&text).map_err(|error| {
+        let remedy = "[[ruling]] with excluded, reason and at, as tomcom exclude writes it".to_string();
+        FileError::at(&path, &text, error.span(), error.message().to_string(), remedy)
+    })
+}
+
+/// Adds a ruling on a closed recording; the one that holds from now on.
+///
+/// # Errors
+/// It is no recording, it is being written, a later part continues it, or its folder cannot be written to.
+pub fn rule(recording: &Path, excluded: bool, reason: &str) -> Result<Ruling, RulingError> {
+    let length = reason.chars().count();
+    if length > 200 || (excluded && reason.trim().is_empty()) || reason.chars().any(char::is_control) {
+        return Err(RulingError::Reason(length));
+    }
+    let log = LogReader::open(recording)?;
+    let folder = log.folder();
+    let _lock = Lock::take(folder)?;
+    check_continued(folder)?;
+    let mut all = rulings(folder)?;
+    let ruling = Ruling { excluded, reason: reason.to_string(), at: WallTime::now().rfc3339() };
+    all.ruling.push(ruling.clone());
+    let path = folder.join(EXCLUSION_NAME);
+    let failed = |reason| WriteError::unwritable(&path, reason);
+    let text = toml::to_string(&all).map_err(|error| failed(std::io::Error::other(error)))?;
+    let new = folder.join(format!("{EXCLUSION_NAME}.new"));
+    fs::write(&new, text).and_then(|()| fs::rename(&new, &path)).map_err(failed)?;
+    Ok(ruling)
+}

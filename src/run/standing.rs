@@ -1,0 +1,47 @@
+//! Whether a recording counts: aborted at the console, excluded there or later from the command line, or neither.
+
+use serde::Serialize;
+
+use crate::edge::files::FileResult;
+use crate::edge::log::{LogReader, Ruling, ruling};
+use crate::session::Session;
+
+/// What was said about a trial. An analysis leaves out what does not count.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Standing {
+    /// Why it was aborted; null: it was not.
+    pub aborted: Option<String>,
+    /// Why it is excluded; null: it is not.
+    pub excluded: Option<String>,
+}
+
+impl Standing {
+    /// That of a recording that was read to its end. What was said later, beside the log, holds before what is in it.
+    ///
+    /// # Errors
+    /// The file beside the log is broken.
+    pub fn of(session: &Session, log: &LogReader) -> FileResult<Standing> {
+        let at_console = Standing::at_console(session);
+        Ok(match ruling(log.folder())? {
+            Some(Ruling { excluded, reason, .. }) => Standing { excluded: excluded.then_some(reason), ..at_console },
+            None => at_console,
+        })
+    }
+
+    /// As it was said at the console.
+    pub fn at_console(session: &Session) -> Standing {
+        Standing { aborted: session.aborted.clone(), excluded: session.excluded.clone() }
+    }
+
+    /// Whether the analysis takes it.
+    pub fn counts(&self) -> bool {
+        self.aborted.is_none() && self.excluded.is_none()
+    }
+
+    /// For people; empty for what counts.
+    pub fn describe(&self) -> String {
+        let said = |word: &str, reason: &Option<String>| reason.as_ref().map(|reason| format!("{word}: {reason}"));
+        let both = [said("aborted", &self.aborted), said("excluded", &self.excluded)];
+        both.into_iter().flatten().collect::<Vec<_>>().join("; ")
+    }
+}

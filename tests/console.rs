@@ -14,7 +14,7 @@ use tomcom::console::model::{Dialog, Recording};
 use tomcom::console::picker::{Picker, Question};
 use tomcom::console::playback::Playback;
 use tomcom::console::view::regions::Regions;
-use tomcom::console::view::theme::Theme;
+use tomcom::console::view::theme::{Ground, Role, Theme};
 use tomcom::console::{Command, KeyMap, Keys, Message, Model, update, view};
 use tomcom::edge::files::read_kitchen;
 use tomcom::gaze::GazeSample;
@@ -45,7 +45,7 @@ impl Stage {
         }
         let kitchen = kitchen(kitchen_name);
         let keys = Keys::live(&kitchen, &spec, &KeyMap::default()).expect("the layout's keys are free");
-        let theme = Theme { colour: true, unicode: true };
+        let theme = Theme { colour: true, unicode: true, ground: Ground::Dark };
         let mut model = Model::new(keys, theme, (120, 40));
         model.recording = Recording::On("sessions/2026-03-14-P01-1".to_string());
         Stage { session: Session::new(kitchen, spec), model, seq: 0 }
@@ -187,7 +187,7 @@ fn help_and_questions_and_the_ascii_fallback() {
     stage.control('c');
     insta::assert_snapshot!("quit_80x24", stage.screen((80, 24)));
     stage.model.dialog = None;
-    stage.model.theme = Theme { colour: false, unicode: false };
+    stage.model.theme = Theme { colour: false, unicode: false, ground: Ground::Dark };
     let screen = stage.screen((120, 40));
     assert!(screen.is_ascii(), "only ASCII");
     insta::assert_snapshot!("ascii_120x40", screen);
@@ -590,4 +590,53 @@ fn the_notes_are_those_of_the_session() {
     stage.key(KeyCode::Char('?'));
     let screen = stage.screen((120, 40));
     assert!(screen.contains("asked for help") && !screen.contains("wrong recipe"), "{screen}");
+}
+
+/// The relative luminance of a colour (WCAG 2.1).
+fn luminance(rgb: [u8; 3]) -> f64 {
+    let linear = rgb.map(|value| match f64::from(value) / 255.0 {
+        low if low <= 0.04045 => low / 12.92,
+        high => ((high + 0.055) / 1.055).powf(2.4),
+    });
+    0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+}
+
+/// The contrast ratio of two colours, 1 to 21 (WCAG 2.1).
+fn contrast(a: [u8; 3], b: [u8; 3]) -> f64 {
+    let (a, b) = (luminance(a), luminance(b));
+    (a.max(b) + 0.05) / (a.min(b) + 0.05)
+}
+
+/// A colour of the cube or the greys of xterm's 256, which are the same in every terminal.
+fn xterm(index: u8) -> [u8; 3] {
+    match index {
+        0..=15 => panic!("{index} is one of the colours that everybody sets otherwise"),
+        16..=231 => [36, 6, 1].map(|step| [0, 95, 135, 175, 215, 255][usize::from((index - 16) / step % 6)]),
+        grey => [8 + 10 * (grey - 232); 3],
+    }
+}
+
+#[test]
+fn colours_keep_their_contrast_on_dark_and_light_terminals() {
+    use Role::{Alarm, FalseBelief, Gaze, Human, Quiet, Robot, Signal};
+    // Black, and the backgrounds of VS Code, One Dark and Solarized; white, and those of Solarized and GitHub's code.
+    let dark = [[0, 0, 0], [0x1e, 0x1e, 0x1e], [0x28, 0x2c, 0x34], [0x00, 0x2b, 0x36]];
+    let light = [[255, 255, 255], [0xfd, 0xf6, 0xe3], [0xf6, 0xf8, 0xfa]];
+    for (ground, backgrounds) in [(Ground::Dark, &dark[..]), (Ground::Light, &light[..])] {
+        let colour = |role| xterm(Theme::colour(ground, role).expect("a colour of its own"));
+        for background in backgrounds {
+            for role in [Quiet, Human, Robot, Signal, Gaze, Alarm, FalseBelief] {
+                let ratio = contrast(colour(role), *background);
+                assert!(ratio >= 4.5, "{role:?} on {background:02x?}: {ratio:.2}");
+            }
+            let ratio = contrast(colour(Role::Frame), *background);
+            assert!(
+                (1.5..4.5).contains(&ratio),
+                "lines are there, and quieter than text, on {background:02x?}: {ratio:.2}"
+            );
+        }
+        for other in [Quiet, Human, Robot, Signal, Gaze, Alarm] {
+            assert_ne!(colour(other), colour(FalseBelief), "one colour is that of false beliefs alone");
+        }
+    }
 }

@@ -2,18 +2,20 @@
 //! how to mend it.
 
 use std::fs;
-use std::io::{self, IsTerminal, Read, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
 use crossterm::style::available_color_count;
 use crossterm::terminal::{disable_raw_mode, enable_raw_mode, size, supports_keyboard_enhancement};
 use serde::Serialize;
 
+use super::ask::ask;
 use super::clock::WallTime;
 use super::log::Lock;
 use super::terminal::theme;
+use crate::console::view::theme::Ground;
+use crate::session::settings::ConsoleSpec;
 
 /// The console breathes from here on, in columns and rows.
 const ROOMY: (u16, u16) = (120, 40);
@@ -22,8 +24,6 @@ const WORKABLE: (u16, u16) = (80, 24);
 /// A session of a quarter of an hour takes about 10 MB: with less than the first there is room for some, with less than
 /// the second there may not be for one.
 const FREE_BYTES: (u64, u64) = (1 << 30, 50 << 20);
-/// A terminal answers within milliseconds, over a network within a second.
-const ANSWER: Duration = Duration::from_secs(1);
 /// The program is written after this date; a clock that shows an earlier one is not set.
 const WRITTEN: &str = "2025-01-01";
 
@@ -130,7 +130,7 @@ fn screen_size() -> Check {
 }
 
 fn colours() -> Check {
-    let (theme, count) = (theme(false), available_color_count());
+    let (theme, count) = (theme(&ConsoleSpec::default(), Ground::Dark), available_color_count());
     let signs = if theme.unicode { "Unicode signs" } else { "ASCII signs" };
     let remedy =
         "TERM=xterm-256color, no NO_COLOR, and a UTF-8 locale such as LC_ALL=C.UTF-8, if the terminal has them";
@@ -142,34 +142,14 @@ fn colours() -> Check {
     Check::new("colours", verdict, found, remedy)
 }
 
-/// Whether the terminal knows mouse reports, if it answers that (DECRQM); the second question is one that all answer.
+/// Whether the terminal knows mouse reports (DECRQM), if it answers that.
 fn mouse_mode() -> Option<bool> {
     enable_raw_mode().ok()?;
-    let answer = ask("\x1b[?1006$p\x1b[c");
+    let answer = ask("\x1b[?1006$p");
     let _ = disable_raw_mode();
     let answer = answer?;
     let state = answer.split("\x1b[?1006;").nth(1)?.chars().next()?;
     Some(state != '0')
-}
-
-/// Writes to the terminal and reads what it answers, to the end of a device attributes report.
-fn ask(question: &str) -> Option<String> {
-    let mut terminal = fs::OpenOptions::new().read(true).write(true).open("/dev/tty").ok()?;
-    terminal.write_all(question.as_bytes()).ok()?;
-    let (sender, receiver) = channel();
-    // It may wait for ever, and ends with the program.
-    std::thread::spawn(move || {
-        let mut answer = Vec::new();
-        let mut byte = [0];
-        while terminal.read(&mut byte).is_ok_and(|count| count == 1) {
-            answer.push(byte[0]);
-            if byte[0] == b'c' {
-                break;
-            }
-        }
-        sender.send(String::from_utf8_lossy(&answer).into_owned())
-    });
-    receiver.recv_timeout(ANSWER).ok()
 }
 
 /// The nearest folder above that is there.

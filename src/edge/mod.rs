@@ -1,5 +1,6 @@
 //! Everything that touches the outside: files, terminal, network, clock.
 
+pub mod ask;
 pub mod clock;
 pub mod doctor;
 pub mod files;

@@ -20,9 +20,11 @@ use futures::StreamExt;
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 
-use crate::console::view::theme::Theme;
+use super::ask::ground;
+use crate::console::view::theme::{Ground, Theme};
 use crate::console::{Message, Model, view};
 use crate::session::Session;
+use crate::session::settings::{ConsoleSpec, ThemeChoice};
 
 /// Whether the terminal is ours now; held while something is written to it.
 static TAKEN: Mutex<bool> = Mutex::new(false);
@@ -32,6 +34,8 @@ static HOOK: Once = Once::new();
 #[derive(Debug)]
 pub struct Screen {
     terminal: Terminal<CrosstermBackend<Frame>>,
+    /// The terminal's background; dark, if it does not say.
+    pub ground: Ground,
     composed: Frame,
     frames: SyncSender<Vec<u8>>,
     /// The last frame is still being written.
@@ -80,6 +84,7 @@ impl Screen {
         });
         enable_raw_mode()?;
         *TAKEN.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = true;
+        let ground = ground().unwrap_or(Ground::Dark);
         let mut out = io::stdout();
         // All keys as escape codes: only then terminals report repeats and releases of letters, too.
         let keys = KeyboardEnhancementFlags::DISAMBIGUATE_ESCAPE_CODES
@@ -94,7 +99,7 @@ impl Screen {
         let frames = write_frames(busy.clone(), lost.clone());
         let composed = Frame::default();
         let terminal = Terminal::new(CrosstermBackend::new(composed.clone()))?;
-        Ok(Screen { terminal, composed, frames, busy, lost })
+        Ok(Screen { terminal, ground, composed, frames, busy, lost })
     }
 
     /// Columns and rows of the terminal.
@@ -218,13 +223,18 @@ impl Hands {
     }
 }
 
-/// Colours unless `NO_COLOR` is set (no-color.org), Unicode unless the locale says otherwise or `ascii` is asked for.
-pub fn theme(ascii: bool) -> Theme {
-    let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-    let locale =
-        ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find(|name| is_set(name)).and_then(|name| std::env::var(name).ok());
-    let plain = |locale: &str| matches!(locale, "C" | "POSIX");
-    Theme { colour: !is_set("NO_COLOR"), unicode: !ascii && !locale.as_deref().is_some_and(plain) }
+/// Colours unless `NO_COLOR` is set (no-color.org), for this background unless the settings say another; Unicode unless
+/// the settings ask for ASCII signs or the locale is one of another character set.
+pub fn theme(console: &ConsoleSpec, ground: Ground) -> Theme {
+    let value = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
+    let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(value).map(|locale| locale.to_lowercase());
+    let is_utf8 = locale.is_none_or(|locale| locale.contains("utf-8") || locale.contains("utf8"));
+    let ground = match console.theme {
+        ThemeChoice::Auto => ground,
+        ThemeChoice::Dark => Ground::Dark,
+        ThemeChoice::Light => Ground::Light,
+    };
+    Theme { colour: value("NO_COLOR").is_none(), unicode: is_utf8 && !console.ascii, ground }
 }
 
 /// A file that grows beyond the limit for files (`ulimit -f`) kills the program by a signal, unless somebody receives it:

@@ -17,6 +17,7 @@ use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::console::keys::KeyError;
 use crate::console::model::{Level, Recording};
+use crate::console::view::theme::Ground;
 use crate::console::{Command, Keys, Message, Model, update};
 use crate::edge::clock::{SessionClock, WallTime};
 use crate::edge::files::{FileError, key_map};
@@ -176,11 +177,11 @@ impl Begun {
 /// # Errors
 /// The session cannot be recorded, or the terminal is gone.
 pub(super) async fn run(begun: Begun, desk: &mut Desk) -> Result<LiveEnd, LiveError> {
-    Live::open(begun)?.run(desk).await
+    Live::open(begun, desk.screen.ground)?.run(desk).await
 }
 
 impl Live {
-    fn open(begun: Begun) -> Result<Live, LiveError> {
+    fn open(begun: Begun, ground: Ground) -> Result<Live, LiveError> {
         let Begun { engine, mut header, first, time, place } = begun;
         let (kitchen, spec) = (engine.session().kitchen.clone(), engine.session().spec.clone());
         let keys = Keys::live(&kitchen, &spec, &key_map(header.keys.as_ref())?)?;
@@ -191,7 +192,7 @@ impl Live {
             Place::After(folder, lock) => (LogWriter::create_part(&folder, &header)?, Some(lock)),
         };
         let size = Screen::size().map_err(LiveError::Terminal)?;
-        let mut model = Model::new(keys, theme(spec.console.ascii), size);
+        let mut model = Model::new(keys, theme(&spec.console, ground), size);
         model.recording = Recording::On(log.folder().display().to_string());
         let clock = SessionClock::start(time);
         let mut live = Live {

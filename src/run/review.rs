@@ -192,7 +192,7 @@ impl Review {
         let size = Screen::size().map_err(ReviewError::Terminal)?;
         let keys = film.replay.log().header.keys.as_ref();
         let keys = Keys::replay(&film.session.kitchen, &key_map(keys)?)?;
-        let mut model = Model::new(keys, theme(film.session.spec.console.ascii), size);
+        let mut model = Model::new(keys, theme(&film.session.spec.console, screen.ground), size);
         let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
         let excluded = film.standing()?.excluded.is_some();
         model.playback = Some(Playback { excluded, ..Playback::new(name) });

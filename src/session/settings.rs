@@ -210,6 +210,8 @@ pub struct ConsoleSpec {
     pub visibility: Visibility,
     /// Draw with ASCII signs only, for terminals and fonts without the others.
     pub ascii: bool,
+    /// For which background the colours are.
+    pub theme: ThemeChoice,
     /// The key file, relative to the session file; without one the keys are those of program and layout.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub keys: Option<String>,
@@ -232,6 +234,7 @@ impl Default for ConsoleSpec {
         ConsoleSpec {
             visibility: Visibility::Recommendation,
             ascii: false,
+            theme: ThemeChoice::Auto,
             keys: None,
             notes: texts(["wrong recipe", "overlooked a change", "slip", "waits for the robot", "look at this later"]),
             reasons: texts([
@@ -260,6 +263,16 @@ impl ConsoleSpec {
         let found = wrong("notes", &self.notes, MAX_NOTES, notes);
         found.or_else(|| wrong("reasons", &self.reasons, MAX_REASONS, reasons)).map_or(Ok(()), Err)
     }
+}
+
+/// For which background of the terminal the colours are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ThemeChoice {
+    /// The one that the terminal says it has; dark, if it does not say.
+    Auto,
+    Dark,
+    Light,
 }
 
 /// How much the wizard sees.

@@ -62,7 +62,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     if let Some(notice) = notice {
         let style = match notice.level {
             Level::Done => brush.style(Role::Strong),
-            Level::Refused => brush.style(Role::FalseBelief),
+            Level::Refused => brush.theme.badge(Role::Strong),
             Level::Alarm => brush.theme.badge(Role::Alarm),
         };
         brush.text_right(area.right(), area.y, said, &format!(" {} ", notice.text), style);

@@ -42,7 +42,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
 fn phase_role(phase: Phase) -> Role {
     match phase {
         Phase::Running => Role::Text,
-        Phase::Paused => Role::FalseBelief,
+        Phase::Paused => Role::Signal,
         _ => Role::Quiet,
     }
 }
@@ -102,7 +102,7 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
     }
     let robot = match (session.robot.stopped, session.robot.held) {
         (true, _) => ("ROBOT STOPPED", Role::Alarm),
-        (false, true) => ("ROBOT HELD", Role::FalseBelief),
+        (false, true) => ("ROBOT HELD", Role::Strong),
         (false, false) => ("robot ok", Role::Text),
     };
     if (room > Room::Small && model.playback.is_none()) || robot.1 != Role::Text {

@@ -105,8 +105,8 @@ impl Brush<'_> {
 
     /// Draws a panel with a title at the left and a remark at the right; returns its inside.
     pub fn panel(&mut self, area: Rect, title: &str, remark: &str) -> Rect {
-        let style = self.style(Role::Quiet);
-        self.frame(area, &self.theme.signs().frame, style);
+        let (line, style) = (self.style(Role::Frame), self.style(Role::Quiet));
+        self.frame(area, &self.theme.signs().frame, line);
         let strong = self.style(Role::Strong);
         let room = area.width.saturating_sub(4);
         self.text(area.x + 2, area.y, room, &format!(" {title} "), strong);
@@ -120,7 +120,7 @@ impl Brush<'_> {
     pub fn bar(&mut self, x: u16, y: u16, columns: u16, share: f64, role: Role) -> u16 {
         let signs = self.theme.signs();
         let filled = (share.clamp(0.0, 1.0) * f64::from(columns)).round() as u16;
-        let (full, quiet) = (self.style(role), self.style(Role::Quiet));
+        let (full, quiet) = (self.style(role), self.style(Role::Frame));
         let x = self.text(x, y, filled, &signs.bar_full.repeat(usize::from(filled)), full);
         let rest = columns - filled;
         self.text(x, y, rest, &signs.bar_empty.repeat(usize::from(rest)), quiet)

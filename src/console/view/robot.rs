@@ -75,7 +75,7 @@ fn release(model: &Model) -> String {
 
 /// Says that the robot is held; where the line goes on, and how much room is left.
 fn held(brush: &mut Brush, x: u16, y: u16, columns: u16, model: &Model) -> (u16, u16) {
-    let badge = brush.theme.badge(Role::FalseBelief);
+    let badge = brush.theme.badge(Role::Strong);
     let end = brush.text(x, y, columns, " HELD ", badge);
     let left = (x + columns).saturating_sub(end);
     let how = if left > 50 { format!(" {} ", release(model)) } else { " ".to_string() };

@@ -1,5 +1,6 @@
 //! Colours with meaning and signs with a fallback. Every meaning has a sign or a letter too, so that nothing is lost
-//! without colour; the terminal's own palette is used, so that dark and light terminals both work.
+//! without colour. The colours are fixed ones of the 256, one set for dark and one for light terminals, each chosen so
+//! that text keeps a contrast of at least 4.5 to the usual backgrounds (WCAG 2.1, success criterion 1.4.3).
 
 use ratatui::style::{Color, Modifier, Style};
 
@@ -7,8 +8,10 @@ use ratatui::style::{Color, Modifier, Style};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     Text,
-    /// Labels, frames and what is as it should be.
+    /// Labels, and what is as it should be.
     Quiet,
+    /// Lines around and between.
+    Frame,
     /// Titles and what is there.
     Strong,
     Human,
@@ -22,11 +25,19 @@ pub enum Role {
     FalseBelief,
 }
 
+/// The terminal's background.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    Dark,
+    Light,
+}
+
 /// How the console is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Theme {
     pub colour: bool,
     pub unicode: bool,
+    pub ground: Ground,
 }
 
 /// The signs of the console.
@@ -105,23 +116,34 @@ impl Theme {
         if self.unicode { &UNICODE } else { &ASCII }
     }
 
-    pub fn style(&self, role: Role) -> Style {
-        let style = Style::new();
-        let (colour, modifier) = match role {
-            Role::Text => (None, Modifier::empty()),
-            Role::Quiet => (None, Modifier::DIM),
-            Role::Strong => (None, Modifier::BOLD),
-            Role::Human => (Some(Color::Cyan), Modifier::empty()),
-            Role::Robot => (Some(Color::LightBlue), Modifier::empty()),
-            Role::Signal => (Some(Color::LightMagenta), Modifier::BOLD),
-            Role::Gaze => (Some(Color::Green), Modifier::BOLD),
-            Role::Alarm => (Some(Color::LightRed), Modifier::BOLD),
-            Role::FalseBelief => (Some(Color::Yellow), Modifier::BOLD),
+    /// The colour of a role, as an index into the 256 colours of xterm; `None` is the terminal's own.
+    pub fn colour(ground: Ground, role: Role) -> Option<u8> {
+        let (dark, light) = match role {
+            Role::Text | Role::Strong => return None,
+            Role::Quiet => (247, 241),
+            Role::Frame => (240, 248),
+            Role::Human => (80, 23),
+            Role::Robot => (111, 25),
+            Role::Signal => (177, 127),
+            Role::Gaze => (114, 22),
+            Role::Alarm => (203, 160),
+            Role::FalseBelief => (221, 94),
         };
-        let style = style.add_modifier(modifier);
-        match colour {
-            Some(colour) if self.colour => style.fg(colour),
-            _ => style,
+        Some(if ground == Ground::Dark { dark } else { light })
+    }
+
+    pub fn style(&self, role: Role) -> Style {
+        let modifier = match role {
+            Role::Text | Role::Human | Role::Robot => Modifier::empty(),
+            // A grey of its own is darker or brighter by as much as it should be; where there is none, dim has to do.
+            Role::Quiet | Role::Frame if self.colour => Modifier::empty(),
+            Role::Quiet | Role::Frame => Modifier::DIM,
+            Role::Strong | Role::Signal | Role::Gaze | Role::Alarm | Role::FalseBelief => Modifier::BOLD,
+        };
+        let style = Style::new().add_modifier(modifier);
+        match Theme::colour(self.ground, role).filter(|_| self.colour) {
+            Some(index) => style.fg(Color::Indexed(index)),
+            None => style,
         }
     }
 

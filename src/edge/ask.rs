@@ -1,0 +1,63 @@
+//! Questions to the terminal, and its answers. They are asked before anything else reads the keyboard, and read to their
+//! end, so that no part of an answer is taken for a key.
+
+use std::time::{Duration, Instant};
+
+use crate::console::view::theme::Ground;
+
+/// A terminal answers within milliseconds, over a network within a second.
+const PATIENCE: Duration = Duration::from_secs(1);
+/// What every terminal answers (primary device attributes): asked last, it ends the waiting for all that came before.
+const LAST: &str = "\x1b[c";
+
+/// Writes a question to the terminal, which is in raw mode, and reads what it answers.
+#[cfg(unix)]
+pub fn ask(question: &str) -> Option<String> {
+    use std::io::{Read, Write};
+
+    use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+    let mut terminal = std::fs::OpenOptions::new().read(true).write(true).open("/dev/tty").ok()?;
+    terminal.write_all(question.as_bytes()).and_then(|()| terminal.write_all(LAST.as_bytes())).ok()?;
+    let until = Instant::now() + PATIENCE;
+    let mut answer = Vec::new();
+    while !is_whole(&answer) {
+        let left = Timespec::try_from(until.saturating_duration_since(Instant::now())).ok()?;
+        if poll(&mut [PollFd::new(&terminal, PollFlags::IN)], Some(&left)).ok()? == 0 {
+            return None;
+        }
+        let mut bytes = [0; 256];
+        match terminal.read(&mut bytes).ok()? {
+            0 => return None,
+            count => answer.extend_from_slice(&bytes[..count]),
+        }
+    }
+    Some(String::from_utf8_lossy(&answer).into_owned())
+}
+
+/// Terminals of other systems are not asked.
+#[cfg(not(unix))]
+pub fn ask(_: &str) -> Option<String> {
+    None
+}
+
+/// Whether the answer to [`LAST`] is there: `ESC [ ? … c`.
+fn is_whole(answer: &[u8]) -> bool {
+    let start = answer.windows(3).rposition(|bytes| bytes == b"\x1b[?");
+    start.is_some_and(|start| answer[start..].iter().all(|byte| byte.is_ascii()) && answer.last() == Some(&b'c'))
+}
+
+/// The terminal's background, if it tells (OSC 11).
+pub fn ground() -> Option<Ground> {
+    let answer = ask("\x1b]11;?\x1b\\")?;
+    let colour = answer.split("]11;rgb:").nth(1)?;
+    let mut parts = colour.split('/').map(|part| {
+        let digits: String = part.chars().take_while(char::is_ascii_hexdigit).collect();
+        let value = u32::from_str_radix(&digits, 16).ok()?;
+        Some(f64::from(value) / f64::from(16_u32.pow(digits.len() as u32) - 1))
+    });
+    let [red, green, blue] = [parts.next()??, parts.next()??, parts.next()??];
+    // Perceived brightness (ITU-R BT.601) of the values as they are.
+    let brightness = 0.299 * red + 0.587 * green + 0.114 * blue;
+    Some(if brightness > 0.5 { Ground::Light } else { Ground::Dark })
+}

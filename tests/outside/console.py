@@ -1,0 +1,133 @@
+"""A live console in a pseudo terminal: keys go in as bytes, the screen is what a terminal emulator makes of the output."""
+
+import fcntl
+import os
+import pty
+import re
+import select
+import struct
+import subprocess
+import termios
+import threading
+import time
+from pathlib import Path
+
+import pyte
+
+# What the program asks of a terminal, and what this one answers: a black background, and that it is a terminal.
+ANSWERS = {b"\x1b]11;?\x1b\\": b"\x1b]11;rgb:0000/0000/0000\x1b\\", b"\x1b[c": b"\x1b[?62;22c"}
+
+
+class Console:
+    """Runs `tomcom operate` with these arguments until it is left by `with`."""
+
+    def __init__(self, tomcom, arguments, size=(120, 40)):
+        self.screen = pyte.Screen(*size)
+        self.stream = pyte.ByteStream(self.screen)
+        self.lock = threading.Lock()
+        self.watched = None
+        self.drawn = None
+        self.master, slave = pty.openpty()
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
+        environment = {**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8"}
+        environment.pop("NO_COLOR", None)
+        self.process = subprocess.Popen(
+            [tomcom, "operate", *map(str, arguments)],
+            stdin=slave, stdout=slave, stderr=slave, env=environment, start_new_session=True,
+            preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),
+        )
+        os.close(slave)
+        self.reader = threading.Thread(target=self.read, daemon=True)
+        self.reader.start()
+
+    def read(self):
+        while True:
+            try:
+                output = os.read(self.master, 1 << 16)
+            except OSError:
+                return
+            if not output:
+                return
+            for question, answer in ANSWERS.items():
+                if question in output:
+                    os.write(self.master, answer)
+            # pyte knows no private sequences that end in u (keyboard protocol).
+            output = re.sub(rb"\x1b\[[<>=?][0-9;]*u", b"", output)
+            with self.lock:
+                self.stream.feed(output)
+                if self.watched and self.watched(self.screen.display):
+                    self.drawn, self.watched = time.monotonic(), None
+
+    def watch(self, is_there):
+        """From now on the time is noted at which this is on the screen: see `drawn`."""
+        with self.lock:
+            self.drawn, self.watched = None, is_there
+
+    def text(self):
+        with self.lock:
+            return "\n".join(self.screen.display)
+
+    def wait_for(self, pattern, seconds=30):
+        until = time.monotonic() + seconds
+        while not re.search(pattern, self.text()):
+            assert self.process.poll() is None, f"the console has ended:\n{self.text()}"
+            assert time.monotonic() < until, f"{pattern} did not appear:\n{self.text()}"
+            time.sleep(0.02)
+
+    def key(self, key):
+        os.write(self.master, key.encode())
+
+    def cpu_s(self):
+        """Seconds of processor time so far."""
+        fields = Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def rss_bytes(self):
+        return int(Path(f"/proc/{self.process.pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+    def quit(self):
+        self.key("\x03")
+        self.wait_for("Quit tomcom")
+        self.key("y")
+        assert self.process.wait(30) == 0, self.text()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+        # What the reader waits for ends with the terminal.
+        while select.select([self.master], [], [], 0)[0] and self.reader.is_alive():
+            time.sleep(0.01)
+        os.close(self.master)
+
+
+class Log:
+    """The end of a log that grows."""
+
+    def __init__(self, recording):
+        self.file = open(recording / "events.jsonl", "rb", buffering=0)
+        self.rest = b""
+
+    def new_lines(self):
+        *lines, self.rest = (self.rest + self.file.read(1 << 24)).split(b"\n")
+        return lines
+
+
+def session_file(folder, **participant):
+    """A session that does not end by itself, in this folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / "session.toml"
+    settings = "\n".join(f"{name} = {value!r}" for name, value in participant.items()).replace("'", '"')
+    layout = Path("layouts/sushi.toml").resolve()
+    path.write_text(
+        f'layout = "{layout}"\n[trial]\npresses = 4000000000\nseconds = 86400.0\n[participant]\n{settings}\n'
+    )
+    return path
+
+
+def percentile(values, share):
+    ordered = sorted(values)
+    return ordered[min(len(ordered) - 1, int(share * len(ordered)))]

@@ -42,6 +42,25 @@ pub struct Chances {
     pub press: Vec<f64>,
 }
 
+/// Where presses slip to: to the neighbouring button and to the one with the look-alike symbol.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Slips {
+    /// By the button that is meant: the nearest other one, and the look-alike or else again the nearest one.
+    to: Vec<[ButtonId; 2]>,
+}
+
+impl Slips {
+    /// Those of the human's buttons.
+    pub fn of(kitchen: &Kitchen) -> Slips {
+        let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+        let to = buttons.map(|button| {
+            let next = kitchen.nearest_button(Agent::Human, button).unwrap_or(button);
+            [next, kitchen.look_alike_button(Agent::Human, button).unwrap_or(next)]
+        });
+        Slips { to: to.collect() }
+    }
+}
+
 impl DecisionModel {
     /// The ways the kitchen may be that stand for a belief in this model.
     pub fn cases(&self, kitchen: &Kitchen, belief: &Belief, random: &mut Stream) -> Vec<Case> {
@@ -65,20 +84,40 @@ impl DecisionModel {
         let total: f64 = meant.iter().sum();
         let waits = (-self.tau * (here + self.wait_cost - 1.0 - least)).min(f64::MAX.ln() / 2.0).exp();
         let meant: Vec<f64> = meant.iter().map(|weight| weight / total).collect();
-        Chances { wait: waits / (waits + total), press: self.slipped(kitchen, &meant) }
+        Chances { wait: waits / (waits + total), press: self.slipped(&Slips::of(kitchen), &meant) }
+    }
+
+    /// p(a | b) of a human who presses something. `sums[x]` is C(s') after button x, summed over `states` states and
+    /// recipes drawn from b.
+    pub fn press_chance(&self, slips: &Slips, sums: &[u32], states: f64, button: ButtonId) -> f64 {
+        let least = sums.iter().copied().min().unwrap_or(0);
+        let mut meant = [0.0; MAX_BUTTONS];
+        let mut total = 0.0;
+        for (weight, &sum) in meant.iter_mut().zip(sums) {
+            *weight = match sum == least {
+                true => 1.0,
+                false => (-self.tau * f64::from(sum - least) / states).exp(),
+            };
+            total += *weight;
+        }
+        let slipping = self.lapse * (1.0 - self.lapse_anywhere) / 2.0;
+        let mut pressed = (1.0 - self.lapse) * meant[button.index()];
+        for (to, weight) in slips.to.iter().zip(&meant) {
+            let here = to.iter().filter(|&&slipped| slipped == button).count();
+            pressed += slipping * here as f64 * weight;
+        }
+        pressed / total + self.lapse * self.lapse_anywhere / sums.len() as f64
     }
 
     /// What is pressed of what is meant.
-    fn slipped(&self, kitchen: &Kitchen, meant: &[f64]) -> Vec<f64> {
+    fn slipped(&self, slips: &Slips, meant: &[f64]) -> Vec<f64> {
         let anywhere = self.lapse * self.lapse_anywhere / meant.len() as f64;
-        let slips = self.lapse * (1.0 - self.lapse_anywhere);
+        let slipping = self.lapse * (1.0 - self.lapse_anywhere) / 2.0;
         let mut pressed: Vec<f64> = meant.iter().map(|p| (1.0 - self.lapse) * p + anywhere).collect();
-        for (index, p) in meant.iter().enumerate() {
-            let button = ButtonId(index as u8);
-            let next = kitchen.nearest_button(Agent::Human, button).unwrap_or(button);
-            let alike = kitchen.look_alike_button(Agent::Human, button).unwrap_or(next);
-            pressed[next.index()] += slips * p / 2.0;
-            pressed[alike.index()] += slips * p / 2.0;
+        for (to, p) in slips.to.iter().zip(meant) {
+            for button in to {
+                pressed[button.index()] += slipping * p;
+            }
         }
         pressed
     }

@@ -82,6 +82,12 @@ impl Dirichlet {
         self.set_second(second);
     }
 
+    /// Everything that was one value is another one now; exact.
+    pub fn shift(&mut self, from: usize, to: usize) {
+        self.mean[to] += std::mem::take(&mut self.mean[from]);
+        self.put_right(self.precision);
+    }
+
     /// Takes the precision that fits this second moment and the present mean.
     fn set_second(&mut self, second: f64) {
         let spread = second - self.square();

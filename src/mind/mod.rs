@@ -3,6 +3,7 @@
 pub mod belief;
 pub mod decision;
 pub mod dirichlet;
+pub mod filter;
 pub mod model;
 pub mod observation;
 

@@ -5,7 +5,7 @@ use rand::RngExt;
 use super::IdleReason;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Action, Agent, ButtonId, Kitchen, LocationId, State};
+use crate::kitchen::{Action, Agent, ButtonId, Kitchen, LocationId, Recipes, State};
 
 /// What the robot does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,29 +15,55 @@ pub enum Decision {
 }
 
 /// The presses of the robot that bring the goal nearer: those after which the cost to go is one less.
-pub fn best_presses(kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Vec<ButtonId> {
-    let decision = cost.decision(state, &kitchen.true_recipes(), Agent::Robot);
+pub fn best_presses(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes) -> Vec<ButtonId> {
+    let decision = cost.decision(state, recipes, Agent::Robot);
     let buttons = (0..kitchen.buttons[Agent::Robot.index()].len()).map(|index| ButtonId(index as u8));
     buttons.filter(|button| decision.after[button.index()] < decision.here).collect()
 }
 
 /// Of these presses those for the order that is nearer to being served, which is the one that the human works on as a rule;
 /// all of them if none is for it, or if both orders are as near.
-fn for_the_nearer_order(kitchen: &Kitchen, cost: &mut CostToGo, state: State, presses: Vec<ButtonId>) -> Vec<ButtonId> {
-    let recipes = kitchen.true_recipes();
+fn for_the_nearer_order(
+    kitchen: &Kitchen,
+    cost: &mut CostToGo,
+    state: State,
+    recipes: &Recipes,
+    presses: Vec<ButtonId>,
+) -> Vec<ButtonId> {
     let mut orders: Vec<(u32, LocationId)> =
-        kitchen.wanted(state).map(|(order, _)| (cost.order(state, &recipes, order), order)).collect();
+        kitchen.wanted(state).map(|(order, _)| (cost.order(state, recipes, order), order)).collect();
     orders.sort_unstable();
     let [(presses_left, nearer), (others, _)] = orders[..] else { return presses };
     if presses_left == others {
         return presses;
     }
     let helps = |button: &ButtonId| {
-        let next = kitchen.press(state, &recipes, Agent::Robot, *button);
-        next.is_some_and(|next| cost.order(next, &recipes, nearer) < presses_left)
+        let next = kitchen.press(state, recipes, Agent::Robot, *button);
+        next.is_some_and(|next| cost.order(next, recipes, nearer) < presses_left)
     };
     let helping: Vec<ButtonId> = presses.iter().copied().filter(helps).collect();
     if helping.is_empty() { presses } else { helping }
+}
+
+/// What the robot may press in this state if these are the recipes, each as likely; nothing if no press brings the goal
+/// nearer.
+pub fn choices(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes) -> Vec<ButtonId> {
+    let best = best_presses(kitchen, cost, state, recipes);
+    chosen(kitchen, cost, state, recipes, best)
+}
+
+/// Of these best presses those that the robot decides between.
+fn chosen(
+    kitchen: &Kitchen,
+    cost: &mut CostToGo,
+    state: State,
+    recipes: &Recipes,
+    best: Vec<ButtonId>,
+) -> Vec<ButtonId> {
+    let best = for_the_nearer_order(kitchen, cost, state, recipes, best);
+    // What serves no order is thrown away: put down somewhere, it would soon be in the way again.
+    let trash = best.iter().copied().find(|&button| kitchen.button(Agent::Robot, button).action == Action::Trash);
+    trash.map_or(best, |trash| vec![trash])
 }
 
 /// Decides for the state as it truly is: of several best presses one at random, idle if none brings the goal nearer.
@@ -52,17 +78,16 @@ pub fn decide(
     if kitchen.wanted(state).next().is_none() {
         return Decision::Idle(IdleReason::NoOrder);
     }
-    let all = best_presses(kitchen, cost, state);
+    let recipes = kitchen.true_recipes();
+    let all = best_presses(kitchen, cost, state, &recipes);
     let best: Vec<ButtonId> = all.iter().copied().filter(|&button| Some(button) != skipped).collect();
     if best.len() < all.len() && best.is_empty() {
         return Decision::Idle(IdleReason::Skipped);
     }
-    let best = for_the_nearer_order(kitchen, cost, state, best);
-    // What serves no order is thrown away: put down somewhere, it would soon be in the way again.
-    let trash = best.iter().copied().find(|&button| kitchen.button(Agent::Robot, button).action == Action::Trash);
-    match (trash, best.is_empty()) {
-        (Some(trash), _) => Decision::Press(trash),
-        (None, true) => Decision::Idle(IdleReason::HumanTurn),
-        (None, false) => Decision::Press(best[random.random_range(0..best.len())]),
+    match chosen(kitchen, cost, state, &recipes, best)[..] {
+        [] => Decision::Idle(IdleReason::HumanTurn),
+        // What is thrown away is no choice, and draws nothing.
+        [only] if kitchen.button(Agent::Robot, only).action == Action::Trash => Decision::Press(only),
+        ref choices => Decision::Press(choices[random.random_range(0..choices.len())]),
     }
 }

@@ -123,7 +123,8 @@ impl TimedRobot {
     /// it up.
     pub fn touch(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotDeed> {
         let Errand { button, driven, .. } = self.busy.take()?;
-        match driven || policy::best_presses(kitchen, cost, state).contains(&button) {
+        let recipes = kitchen.true_recipes();
+        match driven || policy::best_presses(kitchen, cost, state, &recipes).contains(&button) {
             true => Some(RobotDeed::Press(button)),
             false => Some(RobotDeed::Abort(button, AbortReason::NoLongerUseful)),
         }

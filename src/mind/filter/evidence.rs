@@ -1,0 +1,244 @@
+//! The evidence of a press: beliefs under which it was likely gain weight.
+//!
+//! p(a | b) is a softmax over expected costs to go, and so has no closed form. Belief samples stand for it, each by the
+//! states and recipes that are drawn from it (see [`super::urn`]). The posterior of an aspect is the mixture of
+//! Dir(alpha + n_j) with the weights w_j, collapsed by its mean and second moment. What equal weights would give is
+//! subtracted and the prior's exact moments are added (a control variate), so that a press without information changes
+//! nothing.
+
+use crate::base::rng::Stream;
+use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
+use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, OrderContent, Recipes, State};
+use crate::mind::decision::{DecisionModel, Slips};
+use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
+use crate::mind::model::InferenceModel;
+
+use super::urn::Urn;
+
+/// What is not drawn, since nothing depends on it.
+const UNDRAWN: u8 = u8::MAX;
+
+/// How well a press could be explained.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evidence {
+    /// ln p(a) under the estimate before the press, in nats.
+    pub log_p: f64,
+    /// Belief samples that were drawn.
+    pub beliefs: usize,
+    /// 1 / sum of the squared weights.
+    pub effective: f64,
+}
+
+/// Room for the samples, kept from press to press.
+#[derive(Clone, Debug, Default)]
+pub struct Sampler {
+    urns: Vec<Urn>,
+    /// `[(belief * aspects + aspect) * states + draw]`: value indices.
+    drawn: Vec<u8>,
+    firsts: Vec<u8>,
+    /// p(a | belief), by belief sample.
+    likelihoods: Vec<f64>,
+    cases: Vec<(State, Recipes, u32)>,
+}
+
+/// What a press is judged by.
+pub struct Judge<'a> {
+    pub kitchen: &'a Kitchen,
+    pub decision: &'a DecisionModel,
+    pub slips: &'a Slips,
+    pub inference: &'a InferenceModel,
+}
+
+impl Sampler {
+    /// Updates the belief by the evidence of a press of the human.
+    pub fn weigh(
+        &mut self,
+        judge: &Judge,
+        cost: &mut CostToGo,
+        belief: &mut DirichletBelief,
+        button: ButtonId,
+        random: &mut Stream,
+    ) -> Evidence {
+        let states = judge.inference.states;
+        self.urns.resize(belief.aspects.len(), Urn::default());
+        for (urn, dirichlet) in self.urns.iter_mut().zip(&belief.aspects) {
+            urn.fill(dirichlet, states);
+        }
+        self.drawn.clear();
+        self.likelihoods.clear();
+        let mut wanted = judge.inference.beliefs;
+        loop {
+            self.draw(judge, cost, button, wanted, random);
+            let evidence = self.evidence();
+            let can_double = wanted * 2 <= judge.inference.max_beliefs;
+            if evidence.effective >= judge.inference.min_effective || !can_double {
+                self.collapse(belief, states);
+                return evidence;
+            }
+            wanted *= 2;
+        }
+    }
+
+    /// Draws belief samples until there are so many.
+    fn draw(&mut self, judge: &Judge, cost: &mut CostToGo, button: ButtonId, wanted: usize, random: &mut Stream) {
+        let (kitchen, states) = (judge.kitchen, judge.inference.states);
+        let aspects = self.urns.len();
+        let row = aspects * states;
+        let old = self.likelihoods.len();
+        self.drawn.resize(wanted * row, UNDRAWN);
+        let mut firsts = std::mem::take(&mut self.firsts);
+        firsts.resize(wanted - old, 0);
+        for aspect in 0..aspects {
+            self.urns[aspect].first_draws(random, &mut firsts);
+            for (sample, &first) in firsts.iter().enumerate() {
+                self.drawn[(old + sample) * row + aspect * states] = first;
+            }
+        }
+        self.firsts = firsts;
+        for sample in old..wanted {
+            let drawn = &mut self.drawn[sample * row..(sample + 1) * row];
+            draw_cases(kitchen, &self.urns, states, drawn, &mut self.cases, random);
+            let likelihood = press_chance(judge, cost, &self.cases, states, button);
+            self.likelihoods.push(likelihood);
+        }
+    }
+
+    fn evidence(&self) -> Evidence {
+        let beliefs = self.likelihoods.len();
+        let total: f64 = self.likelihoods.iter().sum();
+        let squares: f64 = self.likelihoods.iter().map(|p| p * p).sum();
+        Evidence { log_p: (total / beliefs as f64).ln(), beliefs, effective: total * total / squares }
+    }
+
+    /// Maps the weighted samples back to Dirichlets.
+    fn collapse(&self, belief: &mut DirichletBelief, states: usize) {
+        let beliefs = self.likelihoods.len();
+        let total: f64 = self.likelihoods.iter().sum();
+        let row = belief.aspects.len() * states;
+        for (aspect, dirichlet) in belief.aspects.iter_mut().enumerate() {
+            let mut moments = Moments::of(dirichlet);
+            for (sample, likelihood) in self.likelihoods.iter().enumerate() {
+                let start = sample * row + aspect * states;
+                moments.add(&self.drawn[start..start + states], likelihood / total - 1.0 / beliefs as f64);
+            }
+            *dirichlet = moments.collapsed();
+        }
+    }
+}
+
+/// Draws the states and recipes of one belief sample; equal ones are put together, with their number.
+fn draw_cases(
+    kitchen: &Kitchen,
+    urns: &[Urn],
+    states: usize,
+    drawn: &mut [u8],
+    cases: &mut Vec<(State, Recipes, u32)>,
+    random: &mut Stream,
+) {
+    let locations = kitchen.locations.len();
+    for location in 0..locations {
+        urns[location].draw_on(random, &mut drawn[location * states..(location + 1) * states]);
+    }
+    // Recipes count where an order wants the dish; the other first draws are taken back.
+    for aspect in locations..kitchen.aspects.len() {
+        let AspectKind::Recipe(dish) = kitchen.aspects[aspect].kind else { continue };
+        let code = OrderContent::Dish(dish).code();
+        let is_wanted = kitchen.orders.iter().any(|&order| {
+            let value = kitchen.aspects[order.index()].index_of(code).map_or(UNDRAWN, |value| value as u8);
+            drawn[order.index() * states..(order.index() + 1) * states].contains(&value)
+        });
+        let of_aspect = &mut drawn[aspect * states..(aspect + 1) * states];
+        match is_wanted {
+            true => urns[aspect].draw_on(random, of_aspect),
+            false => of_aspect.fill(UNDRAWN),
+        }
+    }
+    cases.clear();
+    for draw in 0..states {
+        let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
+        for aspect in 0..kitchen.aspects.len() {
+            let value = drawn[aspect * states + draw];
+            if value != UNDRAWN {
+                kitchen.set_value(&mut state, &mut recipes, AspectId(aspect as u8), usize::from(value));
+            }
+        }
+        match cases.iter_mut().find(|(other, others, _)| *other == state && *others == recipes) {
+            Some((_, _, count)) => *count += 1,
+            None => cases.push((state, recipes, 1)),
+        }
+    }
+}
+
+/// p(a | b) of who presses something, with the cases that stand for b.
+fn press_chance(
+    judge: &Judge,
+    cost: &mut CostToGo,
+    cases: &[(State, Recipes, u32)],
+    states: usize,
+    button: ButtonId,
+) -> f64 {
+    let buttons = judge.kitchen.buttons[Agent::Human.index()].len();
+    let mut sums = [0u32; MAX_BUTTONS];
+    for (state, recipes, count) in cases {
+        let decision = cost.decision(*state, recipes, Agent::Human);
+        for (sum, &after) in sums.iter_mut().zip(&decision.after[..buttons]) {
+            *sum += count * u32::from(after);
+        }
+    }
+    judge.decision.press_chance(judge.slips, &sums[..buttons], states as f64, button)
+}
+
+/// Mean and second moment of a mixture of Dirichlets, from those of the Dirichlet that all of them come from.
+struct Moments<'a> {
+    prior: &'a Dirichlet,
+    mean: Vec<f64>,
+    second: f64,
+    square: f64,
+}
+
+impl Moments<'_> {
+    fn of(prior: &Dirichlet) -> Moments<'_> {
+        let mean = prior.mean().to_vec();
+        let square = mean.iter().map(|m| m * m).sum();
+        Moments { prior, mean, second: prior.second(), square }
+    }
+
+    /// Adds Dir(alpha + counts of these draws) with this weight; all weights sum to 0.
+    fn add(&mut self, drawn: &[u8], weight: f64) {
+        let (precision, prior) = (self.prior.precision(), self.prior.mean());
+        let mut counts: Vec<(u8, u32)> = Vec::with_capacity(8);
+        let mut drawn_in_all = 0u32;
+        for &value in drawn.iter().filter(|&&value| value != UNDRAWN) {
+            drawn_in_all += 1;
+            match counts.iter_mut().find(|(other, _)| *other == value) {
+                Some((_, count)) => *count += 1,
+                None => counts.push((value, 1)),
+            }
+        }
+        let size = precision + f64::from(drawn_in_all);
+        // What the prior's alphas give alone; where all aspects have as many draws, it cancels out.
+        let share = weight * precision / size;
+        if drawn_in_all == 0 {
+            return self.add_prior(weight);
+        }
+        let (mut cross, mut squares) = (0.0, 0.0);
+        for &(value, count) in &counts {
+            let (value, count) = (usize::from(value), f64::from(count));
+            self.mean[value] += weight * count / size;
+            cross += prior[value] * count;
+            squares += count * count;
+        }
+        self.mean.iter_mut().zip(prior).for_each(|(mean, p)| *mean += share * p);
+        let second = precision * precision * self.square + 2.0 * precision * cross + squares + size;
+        self.second += weight * second / (size * (size + 1.0));
+    }
+
+    fn add_prior(&mut self, weight: f64) {
+        self.mean.iter_mut().zip(self.prior.mean()).for_each(|(mean, p)| *mean += weight * p);
+        self.second += weight * self.prior.second();
+    }
+
+    fn collapsed(self) -> Dirichlet {
+        Dirichlet::of_moments(self.mean, self.second)
+    }
+}

@@ -1,0 +1,302 @@
+//! What the human learns from a press of a location's button: hand and location decide together what happens.
+
+use crate::base::rng::Stream;
+use crate::kitchen::{Action, Agent, AspectId, Kitchen, LocationId};
+use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
+
+use super::gamma;
+use super::own_press::DOUBT;
+
+/// What a press does with the values of hand and location.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Outcome {
+    Nothing,
+    PickUp,
+    PutDown,
+    /// The location holds this value then.
+    Stack(usize),
+}
+
+/// A location's button: kinds of contents of hand and location that it treats alike, and what becomes of them.
+#[derive(Clone, Debug)]
+pub struct Exchange {
+    hand: Side,
+    location: Side,
+    /// `[hand value * values of the location + location value]`.
+    outcomes: Vec<Outcome>,
+    /// The same for kinds; of stacks only that it is one.
+    by_kind: Vec<Outcome>,
+}
+
+/// Hand or location.
+#[derive(Clone, Debug)]
+struct Side {
+    aspect: AspectId,
+    empty: usize,
+    /// The kind of each value, and the number of kinds.
+    kind_of: Vec<usize>,
+    kinds: usize,
+    /// Each value as one of the other side, where it can be there.
+    across: Vec<Option<usize>>,
+}
+
+impl Exchange {
+    /// The human's button of this location.
+    pub fn new(kitchen: &Kitchen, location: LocationId) -> Exchange {
+        let hand_at = kitchen.hands[Agent::Human.index()];
+        let aspects = [AspectId::of_location(hand_at), AspectId::of_location(location)];
+        let [held, there] = aspects.map(|aspect| &kitchen.aspects[aspect.index()]);
+        let mut outcomes = Vec::with_capacity(held.values.len() * there.values.len());
+        for &in_hand in &held.values {
+            for &at_location in &there.values {
+                let mut state = kitchen.empty_state();
+                state.set_code(hand_at, in_hand);
+                state.set_code(location, at_location);
+                let next = kitchen.act(state, &kitchen.true_recipes(), Agent::Human, Action::Use(location));
+                let result = next.and_then(|next| there.index_of(next.code(location)));
+                outcomes.push(match (result, in_hand, at_location) {
+                    (None, _, _) => Outcome::Nothing,
+                    (Some(_), 0, _) => Outcome::PickUp,
+                    (Some(_), _, 0) => Outcome::PutDown,
+                    (Some(value), _, _) => Outcome::Stack(value),
+                });
+            }
+        }
+        let (rows, width) = (held.values.len(), there.values.len());
+        let kind_at = |x: usize, y: usize| match outcomes[x * width + y] {
+            Outcome::Stack(_) => Outcome::Stack(0),
+            other => other,
+        };
+        let row = |x: usize| (0..width).map(|y| kind_at(x, y)).collect::<Vec<_>>();
+        let column = |y: usize| (0..rows).map(|x| kind_at(x, y)).collect::<Vec<_>>();
+        let (hand_kinds, hand_firsts) = kinds(rows, row);
+        let (location_kinds, location_firsts) = kinds(width, column);
+        let pairs = hand_firsts.iter().flat_map(|&x| location_firsts.iter().map(move |&y| (x, y)));
+        let by_kind = pairs.map(|(x, y)| kind_at(x, y)).collect();
+        let side = |index: usize, kind_of: Vec<usize>, kinds: usize| {
+            let [own, other] = [aspects[index], aspects[1 - index]].map(|aspect| &kitchen.aspects[aspect.index()]);
+            let across = own.values.iter().map(|&code| other.index_of(code)).collect();
+            Side { aspect: aspects[index], empty: own.index_of(0).unwrap_or(0), kind_of, kinds, across }
+        };
+        let hand = side(0, hand_kinds, hand_firsts.len());
+        let location = side(1, location_kinds, location_firsts.len());
+        Exchange { hand, location, outcomes, by_kind }
+    }
+
+    /// Learns from a press of this button.
+    pub fn learn(&self, belief: &mut DirichletBelief, effective: bool, draws: usize, random: &mut Stream) {
+        let sides = [&self.hand, &self.location].map(|side| Parts::of(belief.of(side.aspect), side));
+        let shares = self.shares(&sides, effective, draws, random);
+        let [of_hand, of_location] = match effective {
+            true => self.exchanged(&sides, &shares),
+            false => [0, 1].map(|side| sides[side].kept(&shares.change[side])),
+        };
+        belief.aspects[self.hand.aspect.index()] = of_hand;
+        belief.aspects[self.location.aspect.index()] = of_location;
+    }
+
+    /// The moments of the shares of all pairs of kinds, given effect or none.
+    fn shares(&self, sides: &[Parts; 2], effective: bool, draws: usize, random: &mut Stream) -> Shares {
+        let [rows, columns] = [self.hand.kinds, self.location.kinds];
+        let mut shares = Shares::new(rows, columns);
+        let mut drawn = [vec![0.0; rows], vec![0.0; columns]];
+        let mut joint = vec![0.0; rows * columns];
+        for _ in 0..draws {
+            for (parts, drawn) in sides.iter().zip(&mut drawn) {
+                gamma::draw(random, &parts.alphas, drawn);
+                for (p, mean) in drawn.iter_mut().zip(&parts.means) {
+                    *p = (1.0 - DOUBT) * *p + DOUBT * mean;
+                }
+            }
+            let mut total = 0.0;
+            for (index, share) in joint.iter_mut().enumerate() {
+                let fits = (self.by_kind[index] != Outcome::Nothing) == effective;
+                *share = if fits { drawn[0][index / columns] * drawn[1][index % columns] } else { 0.0 };
+                total += *share;
+            }
+            if total > 0.0 {
+                joint.iter_mut().for_each(|share| *share /= total);
+                shares.add(&joint, &drawn, &self.by_kind);
+            }
+        }
+        shares.divide();
+        shares
+    }
+
+    /// Something was picked up, put down or stacked.
+    fn exchanged(&self, sides: &[Parts; 2], shares: &Shares) -> [Dirichlet; 2] {
+        let [held, there] = sides;
+        let [width, columns] = [self.location.kind_of.len(), self.location.kinds];
+        let mut of_hand = Mixture::new(self.hand.kind_of.len());
+        let mut of_location = Mixture::new(width);
+        of_hand.add_point(self.hand.empty, shares.emptied[0]);
+        of_location.add_point(self.location.empty, shares.emptied[1]);
+        for (index, &share) in shares.of_pairs.iter().enumerate() {
+            let (x, y) = (index / columns, index % columns);
+            match self.by_kind[index] {
+                Outcome::Nothing => {}
+                Outcome::PickUp => of_hand.add_part(share, there, y),
+                Outcome::PutDown => of_location.add_part(share, held, x),
+                Outcome::Stack(_) => {
+                    of_location.second += share[1] * held.seconds[x] * there.seconds[y];
+                    for above in held.of_kind(x) {
+                        for below in there.of_kind(y) {
+                            if let Outcome::Stack(stack) = self.outcomes[above * width + below] {
+                                of_location.mean[stack] += share[0] * held.inner(above) * there.inner(below);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        [of_hand, of_location].map(|mixture| Dirichlet::of_moments(mixture.mean, mixture.second))
+    }
+}
+
+/// The kind of each of `count` values by what tells them apart, and the first value of each kind.
+fn kinds<T: PartialEq>(count: usize, trait_of: impl Fn(usize) -> T) -> (Vec<usize>, Vec<usize>) {
+    let mut known: Vec<T> = Vec::new();
+    let (mut kind_of, mut firsts) = (Vec::with_capacity(count), Vec::new());
+    for value in 0..count {
+        let of_value = trait_of(value);
+        let kind = known.iter().position(|other| *other == of_value).unwrap_or_else(|| {
+            known.push(of_value);
+            firsts.push(value);
+            firsts.len() - 1
+        });
+        kind_of.push(kind);
+    }
+    (kind_of, firsts)
+}
+
+/// A belief about hand or location by kinds: their shares, and how each kind is divided among its values.
+struct Parts<'a> {
+    side: &'a Side,
+    belief: &'a Dirichlet,
+    /// Expected shares and alphas of the kinds.
+    means: Vec<f64>,
+    alphas: Vec<f64>,
+    /// Second moments of the division of each kind.
+    seconds: Vec<f64>,
+}
+
+impl<'a> Parts<'a> {
+    fn of(belief: &'a Dirichlet, side: &'a Side) -> Parts<'a> {
+        let (mut means, mut squares) = (vec![0.0; side.kinds], vec![0.0; side.kinds]);
+        for (&mean, &kind) in belief.mean().iter().zip(&side.kind_of) {
+            means[kind] += mean;
+            squares[kind] += mean * mean;
+        }
+        let alphas: Vec<f64> = means.iter().map(|mean| belief.precision() * mean).collect();
+        let second = |kind: usize| {
+            let square = squares[kind] / (means[kind] * means[kind]);
+            (alphas[kind] * square + 1.0) / (alphas[kind] + 1.0)
+        };
+        let seconds = (0..side.kinds).map(second).collect();
+        Parts { side, belief, means, alphas, seconds }
+    }
+
+    fn of_kind(&self, kind: usize) -> impl Iterator<Item = usize> {
+        let kinds = self.side.kind_of.iter().enumerate();
+        kinds.filter(move |(_, other)| **other == kind).map(|(value, _)| value)
+    }
+
+    /// The expected share of a value in its kind.
+    fn inner(&self, value: usize) -> f64 {
+        self.belief.mean()[value] / self.means[self.side.kind_of[value]]
+    }
+
+    /// The belief where nothing happened: `change` is what that does to the moments of the kinds' shares.
+    fn kept(&self, change: &[[f64; 2]]) -> Dirichlet {
+        let mut mixture = Mixture::new(self.side.kind_of.len());
+        let precision = self.belief.precision();
+        let square = |kind: usize| self.means[kind] * (self.alphas[kind] + 1.0) / (precision + 1.0);
+        for (kind, change) in change.iter().enumerate() {
+            let share = [(self.means[kind] + change[0]).max(0.0), (square(kind) + change[1]).max(0.0)];
+            mixture.second += share[1] * self.seconds[kind];
+            for value in self.of_kind(kind) {
+                mixture.mean[value] += share[0] * self.inner(value);
+            }
+        }
+        Dirichlet::of_moments(mixture.mean, mixture.second)
+    }
+}
+
+/// First and second moments of shares, over draws.
+struct Shares {
+    draws: f64,
+    of_pairs: Vec<[f64; 2]>,
+    /// That the hand, that the location is empty then.
+    emptied: [[f64; 2]; 2],
+    /// By side and kind: what is added to the moments from before the press.
+    change: [Vec<[f64; 2]>; 2],
+}
+
+impl Shares {
+    fn new(rows: usize, columns: usize) -> Shares {
+        let change = [vec![[0.0; 2]; rows], vec![[0.0; 2]; columns]];
+        Shares { draws: 0.0, of_pairs: vec![[0.0; 2]; rows * columns], emptied: [[0.0; 2]; 2], change }
+    }
+
+    fn add(&mut self, joint: &[f64], drawn: &[Vec<f64>; 2], by_kind: &[Outcome]) {
+        self.draws += 1.0;
+        let columns = drawn[1].len();
+        let mut sums = [vec![0.0; drawn[0].len()], vec![0.0; columns]];
+        let mut emptied = [0.0; 2];
+        for (index, &share) in joint.iter().enumerate() {
+            add(&mut self.of_pairs[index], share);
+            sums[0][index / columns] += share;
+            sums[1][index % columns] += share;
+            match by_kind[index] {
+                Outcome::Nothing => {}
+                Outcome::PickUp => emptied[1] += share,
+                Outcome::PutDown | Outcome::Stack(_) => emptied[0] += share,
+            }
+        }
+        for side in 0..2 {
+            add(&mut self.emptied[side], emptied[side]);
+            for ((change, sum), before) in self.change[side].iter_mut().zip(&sums[side]).zip(&drawn[side]) {
+                change[0] += sum - before;
+                change[1] += sum * sum - before * before;
+            }
+        }
+    }
+
+    fn divide(&mut self) {
+        let draws = self.draws.max(1.0);
+        let all = self.of_pairs.iter_mut().chain(&mut self.emptied).chain(self.change.iter_mut().flatten());
+        all.flatten().for_each(|moment| *moment /= draws);
+    }
+}
+
+fn add(moments: &mut [f64; 2], share: f64) {
+    moments[0] += share;
+    moments[1] += share * share;
+}
+
+/// Moments that are put together from parts.
+struct Mixture {
+    mean: Vec<f64>,
+    second: f64,
+}
+
+impl Mixture {
+    fn new(values: usize) -> Mixture {
+        Mixture { mean: vec![0.0; values], second: 0.0 }
+    }
+
+    fn add_point(&mut self, value: usize, share: [f64; 2]) {
+        self.mean[value] += share[0];
+        self.second += share[1];
+    }
+
+    /// Adds what was on the other side as one kind.
+    fn add_part(&mut self, share: [f64; 2], other: &Parts, kind: usize) {
+        self.second += share[1] * other.seconds[kind];
+        for value in other.of_kind(kind) {
+            if let Some(here) = other.side.across[value] {
+                self.mean[here] += share[0] * other.inner(value);
+            }
+        }
+    }
+}

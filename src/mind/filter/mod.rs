@@ -1,0 +1,206 @@
+//! Inference of the human's belief, event by event: a product of Dirichlets over the state aspects (paper, section
+//! "Inference of the human belief").
+//!
+//! What has a closed form is computed by it: reading, forgetting, signals, own presses that one location decides. Only the
+//! evidence of a press needs samples, and what a press of several locations or of the robot may have done.
+
+mod evidence;
+mod exchange;
+mod gamma;
+mod own_press;
+mod reading;
+mod robot_press;
+mod serving;
+mod urn;
+
+use std::sync::Arc;
+
+use super::decision::Slips;
+use super::dirichlet::{Dirichlet, DirichletBelief};
+use super::model::HumanModel;
+use super::observation::{Observation, Observed};
+use crate::base::rng::{Stream, stream};
+use crate::base::time::SessionTime;
+use crate::kitchen::State;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Action, Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
+pub use evidence::Evidence;
+use evidence::{Judge, Sampler};
+use exchange::Exchange;
+use reading::Reader;
+use serving::Serving;
+
+/// What the human learns from a button that several locations decide about.
+#[derive(Clone, Debug)]
+enum Lesson {
+    Alone,
+    Exchange(Exchange),
+    Serving(Serving),
+}
+
+/// The estimate of the human's belief, and all it takes to go on with it.
+#[derive(Clone, Debug)]
+pub struct BeliefFilter {
+    kitchen: Arc<Kitchen>,
+    model: HumanModel,
+    seed: u64,
+    belief: DirichletBelief,
+    /// What recipes are forgotten to.
+    prior: DirichletBelief,
+    reader: Reader,
+    slips: Slips,
+    /// By button of the human.
+    lessons: Vec<Lesson>,
+    sampler: Sampler,
+    shown: State,
+    /// When it was last forgotten; nothing while the trial stands still.
+    forgot: Option<SessionTime>,
+    evidence: Option<Evidence>,
+}
+
+impl BeliefFilter {
+    /// An estimate before the trial's start.
+    pub fn new(kitchen: Arc<Kitchen>, model: HumanModel, seed: u64) -> BeliefFilter {
+        let shown = kitchen.empty_state();
+        let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
+        let lesson = |action: Action| match action {
+            Action::Use(location) => Lesson::Exchange(Exchange::new(&kitchen, location)),
+            Action::Serve(order) => Lesson::Serving(Serving::new(&kitchen, order)),
+            Action::Take(_) | Action::Process(_) | Action::Trash => Lesson::Alone,
+        };
+        let lessons = kitchen.buttons[Agent::Human.index()].iter().map(|button| lesson(button.action)).collect();
+        BeliefFilter {
+            reader: Reader::new(&kitchen, &model.perception),
+            slips: Slips::of(&kitchen),
+            belief: prior.clone(),
+            sampler: Sampler::default(),
+            forgot: None,
+            evidence: None,
+            kitchen,
+            model,
+            seed,
+            prior,
+            lessons,
+            shown,
+        }
+    }
+
+    /// The estimate.
+    pub fn belief(&self) -> &DirichletBelief {
+        &self.belief
+    }
+
+    /// How well the last press of the human could be explained.
+    pub fn evidence(&self) -> Option<Evidence> {
+        self.evidence
+    }
+
+    /// Moves the estimate on by one observation. Chance follows from seed and the observation's number alone.
+    pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
+        let now = observation.time;
+        if let Observed::Gaze { sample, taken } = observation.what {
+            if self.forgot.is_some() {
+                self.reader.read(&self.kitchen, &self.model.perception, &mut self.belief, &sample, taken);
+            }
+            return;
+        }
+        self.forget(now);
+        match observation.what {
+            Observed::Started { state } => {
+                self.prior = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);
+                self.belief.clone_from(&self.prior);
+                self.forgot = Some(now);
+                self.show(now, state);
+            }
+            Observed::Gaze { .. } => {}
+            Observed::Pressed { agent, button, before, after } => {
+                let mut random = stream(self.seed, "belief", observation.number);
+                match agent {
+                    Agent::Human => self.human_pressed(button, after.is_some(), cost, &mut random),
+                    Agent::Robot => {
+                        let (draws, foresight) = (self.model.inference.beliefs, self.model.transition.foresight);
+                        robot_press::predict(&self.kitchen, cost, &mut self.belief, draws, foresight, &mut random);
+                    }
+                }
+                self.show(now, after.unwrap_or(before));
+            }
+            Observed::Displayed { state } => {
+                self.expect_cleared(state);
+                self.show(now, state);
+            }
+            Observed::Told { location } => self.told(location),
+            Observed::Paused => self.forgot = None,
+            Observed::Resumed => {
+                self.forgot = Some(now);
+                self.reader.rest();
+            }
+        }
+    }
+
+    fn show(&mut self, now: SessionTime, state: State) {
+        self.shown = state;
+        self.reader.show(now, state, self.model.perception.history_s);
+    }
+
+    /// Recipes decay towards what was believed of them at first.
+    fn forget(&mut self, now: SessionTime) {
+        let Some(last) = self.forgot else { return };
+        self.forgot = Some(now.max(last));
+        let lost = 1.0 - 0.5_f64.powf(now.secs_since(last) / self.model.transition.recipe_half_life_s);
+        for index in 0..self.kitchen.aspects.len() {
+            if matches!(self.kitchen.aspects[index].kind, AspectKind::Recipe(_)) {
+                self.belief.aspects[index].mix(lost, &self.prior.aspects[index]);
+            }
+        }
+    }
+
+    fn human_pressed(&mut self, button: ButtonId, effective: bool, cost: &mut CostToGo, random: &mut Stream) {
+        let judge = Judge {
+            kitchen: &self.kitchen,
+            decision: &self.model.decision,
+            slips: &self.slips,
+            inference: &self.model.inference,
+        };
+        self.evidence = Some(self.sampler.weigh(&judge, cost, &mut self.belief, button, random));
+        let draws = self.model.inference.beliefs;
+        match &self.lessons[button.index()] {
+            Lesson::Alone => {
+                let action = self.kitchen.button(Agent::Human, button).action;
+                own_press::learn_alone(&self.kitchen, &mut self.belief, action, effective);
+            }
+            Lesson::Exchange(exchange) => exchange.learn(&mut self.belief, effective, draws, random),
+            Lesson::Serving(serving) => serving.learn(&mut self.belief, effective, draws, random),
+        }
+    }
+
+    /// Orders that stop showing "served": who knows that they were served expects that.
+    fn expect_cleared(&mut self, state: State) {
+        for &order in &self.kitchen.orders {
+            if self.shown.order(order) != OrderContent::Served || state.order(order) == OrderContent::Served {
+                continue;
+            }
+            let aspect = &self.kitchen.aspects[order.index()];
+            let [served, none] = [OrderContent::Served, OrderContent::None].map(|what| aspect.index_of(what.code()));
+            if let (Some(served), Some(none)) = (served, none) {
+                self.belief.aspects[order.index()].shift(served, none);
+            }
+        }
+    }
+
+    /// A signal makes certain what it is about, if it is noticed.
+    fn told(&mut self, location: LocationId) {
+        let kitchen = self.kitchen.clone();
+        let mut aspects = vec![AspectId::of_location(location)];
+        if let (LocationKind::Order, OrderContent::Dish(dish)) =
+            (kitchen.location(location).kind, self.shown.order(location))
+        {
+            aspects.push(kitchen.aspect_of_dish(dish));
+        }
+        for aspect in aspects {
+            let truth = kitchen.true_value(self.shown, aspect);
+            let of_aspect: &mut Dirichlet = &mut self.belief.aspects[aspect.index()];
+            let values = of_aspect.mean().len();
+            of_aspect.learn(self.model.signal.noticed, (0..values).map(|value| f64::from(value == truth)));
+        }
+    }
+}

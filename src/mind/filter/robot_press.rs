@@ -1,0 +1,128 @@
+//! The prediction of a robot's press: the human notices that the robot pressed something, not what.
+//!
+//! States and recipes are drawn from the estimate; under each of them the robot's task policy says what it may press, and
+//! the rules what comes of it. That gives for every aspect how likely each of its values turns into which other, a kernel
+//! T. The belief b becomes b T, so that its mean is m T, and, since b is Dirichlet,
+//! S' = (A sum_w m'_w^2 + sum_v m_v sum_w T_vw^2) / (A + 1). Values that no press turns into others stay exactly as
+//! they are.
+
+use crate::base::rng::Stream;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, Recipes, State};
+use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
+use crate::robot::policy;
+
+use super::urn::Urn;
+
+/// One way a value may go, and how often it did.
+#[derive(Clone, Copy, Debug)]
+struct Flow {
+    aspect: usize,
+    from: usize,
+    to: usize,
+    weight: f64,
+}
+
+/// Moves the belief on by a press of the robot that the human thinks through with probability `foresight`.
+pub fn predict(
+    kitchen: &Kitchen,
+    cost: &mut CostToGo,
+    belief: &mut DirichletBelief,
+    draws: usize,
+    foresight: f64,
+    random: &mut Stream,
+) {
+    let drawn = draw(kitchen, belief, draws, random);
+    let locations = kitchen.locations.len();
+    let mut flows: Vec<Flow> = Vec::new();
+    let mut occurred: Vec<Vec<f64>> =
+        kitchen.aspects[..locations].iter().map(|aspect| vec![0.0; aspect.values.len()]).collect();
+    for (state, recipes, count) in drawn {
+        for (index, occurred) in occurred.iter_mut().enumerate() {
+            if let Some(value) = kitchen.aspects[index].index_of(state.code(LocationId(index as u8))) {
+                occurred[value] += count;
+            }
+        }
+        let choices = policy::choices(kitchen, cost, state, &recipes);
+        let weight = count / choices.len().max(1) as f64;
+        for next in choices.iter().filter_map(|&button| kitchen.press(state, &recipes, Agent::Robot, button)) {
+            note_changes(kitchen, state, next, weight, &mut flows);
+        }
+    }
+    for (index, occurred) in occurred.iter().enumerate() {
+        let of_aspect: Vec<Flow> = flows.iter().copied().filter(|flow| flow.aspect == index).collect();
+        if !of_aspect.is_empty() {
+            let moved = moved(&belief.aspects[index], &of_aspect, occurred);
+            belief.aspects[index].mix(foresight, &moved);
+        }
+    }
+}
+
+fn note_changes(kitchen: &Kitchen, before: State, after: State, weight: f64, flows: &mut Vec<Flow>) {
+    for index in 0..kitchen.locations.len() {
+        let (from, to) = (before.code(LocationId(index as u8)), after.code(LocationId(index as u8)));
+        if from == to {
+            continue;
+        }
+        let aspect = &kitchen.aspects[index];
+        let (Some(from), Some(to)) = (aspect.index_of(from), aspect.index_of(to)) else { continue };
+        match flows.iter_mut().find(|flow| flow.aspect == index && flow.from == from && flow.to == to) {
+            Some(flow) => flow.weight += weight,
+            None => flows.push(Flow { aspect: index, from, to, weight }),
+        }
+    }
+}
+
+/// The belief after a kernel, given by what flowed and by how often each value was drawn.
+fn moved(dirichlet: &Dirichlet, flows: &[Flow], occurred: &[f64]) -> Dirichlet {
+    let (old, precision) = (dirichlet.mean(), dirichlet.precision());
+    let mut mean = old.to_vec();
+    // By value, what stays, and the sum over targets of T^2.
+    let mut stays = vec![1.0; old.len()];
+    let mut squares = vec![0.0; old.len()];
+    for flow in flows {
+        let share = flow.weight / occurred[flow.from];
+        mean[flow.from] -= share * old[flow.from];
+        mean[flow.to] += share * old[flow.from];
+        stays[flow.from] -= share;
+        squares[flow.from] += share * share;
+    }
+    let square: f64 = mean.iter().map(|m| m * m).sum();
+    let spread: f64 =
+        old.iter().zip(stays.iter().zip(&squares)).map(|(m, (stay, rest))| m * (stay * stay + rest)).sum();
+    Dirichlet::of_moments(mean, (precision * square + spread) / (precision + 1.0))
+}
+
+/// States and recipes drawn from the expected belief, each value as often as its share says; equal ones together.
+fn draw(kitchen: &Kitchen, belief: &DirichletBelief, draws: usize, random: &mut Stream) -> Vec<(State, Recipes, f64)> {
+    let mut cases = vec![(kitchen.empty_state(), kitchen.true_recipes()); draws];
+    let mut values = vec![0; draws];
+    let mut urn = Urn::default();
+    for (index, dirichlet) in belief.aspects.iter().enumerate() {
+        urn.fill(dirichlet, 1);
+        urn.first_draws(random, &mut values);
+        for ((state, recipes), &value) in cases.iter_mut().zip(&values) {
+            let is_open = match kitchen.aspects[index].kind {
+                AspectKind::Location(_) => true,
+                AspectKind::Recipe(dish) => is_wanted(kitchen, *state, OrderContent::Dish(dish)),
+            };
+            if is_open {
+                kitchen.set_value(state, recipes, AspectId(index as u8), usize::from(value));
+            }
+        }
+    }
+    cases.sort_unstable();
+    let mut together: Vec<(State, Recipes, f64)> = Vec::new();
+    for (state, recipes) in cases {
+        match together.last_mut() {
+            Some((last, others, count)) if *last == state && *others == recipes => *count += 1.0,
+            _ => together.push((state, recipes, 1.0)),
+        }
+    }
+    together
+}
+
+/// Whether an order wants this.
+fn is_wanted(kitchen: &Kitchen, state: State, content: OrderContent) -> bool {
+    kitchen.orders.iter().any(|&order| state.order(order) == content)
+}

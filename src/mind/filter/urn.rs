@@ -1,0 +1,100 @@
+//! Polya urns: draws from a categorical distribution that is itself drawn from a Dirichlet, without drawing it.
+//!
+//! The first draw has the Dirichlet's mean; the n-th repeats one of those before it with probability (n - 1) / (A + n - 1).
+//! Given the draws, the distribution is Dir(alpha + counts) (Blackwell and MacQueen 1973).
+
+use rand::RngExt;
+
+use crate::base::rng::Stream;
+use crate::mind::dirichlet::Dirichlet;
+
+/// The urn of one aspect.
+#[derive(Clone, Debug, Default)]
+pub struct Urn {
+    /// Values, the likeliest first, and the chance that a draw is one of those up to it.
+    order: Vec<(u8, f64)>,
+    /// `stays[k]`: the chance that none of the draws 1 to k (the first is 0) is a new one.
+    stays: Vec<f64>,
+}
+
+impl Urn {
+    /// The urn of this Dirichlet, for `draws` draws.
+    pub fn fill(&mut self, dirichlet: &Dirichlet, draws: usize) {
+        let mean = dirichlet.mean();
+        self.order.clear();
+        self.order.extend(mean.iter().enumerate().map(|(value, &p)| (value as u8, p)));
+        self.order.sort_unstable_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        let mut sum = 0.0;
+        for (_, p) in &mut self.order {
+            sum += *p;
+            *p = sum;
+        }
+        self.stays.clear();
+        let mut stays = 1.0;
+        for drawn in 0..draws {
+            if drawn > 0 {
+                stays *= drawn as f64 / (dirichlet.precision() + drawn as f64);
+            }
+            self.stays.push(stays);
+        }
+    }
+
+    /// The value at this point of the cumulated mean, 0 to 1.
+    #[inline]
+    fn value_at(&self, point: f64) -> u8 {
+        let reached = self.order.iter().find(|(_, sum)| point < *sum);
+        reached.or(self.order.last()).map_or(0, |(value, _)| *value)
+    }
+
+    /// A draw from the mean.
+    #[inline]
+    pub fn draw(&self, random: &mut Stream) -> u8 {
+        self.value_at(random.random::<f64>())
+    }
+
+    /// First draws for many urns, each value as often as its mean says, to a draw, in random order.
+    pub fn first_draws(&self, random: &mut Stream, out: &mut [u8]) {
+        let step = 1.0 / out.len() as f64;
+        let offset = random.random::<f64>();
+        let mut at = 0;
+        for (index, first) in out.iter_mut().enumerate() {
+            let point = (index as f64 + offset) * step;
+            while at + 1 < self.order.len() && point >= self.order[at].1 {
+                at += 1;
+            }
+            *first = self.order[at].0;
+        }
+        for last in (1..out.len()).rev() {
+            out.swap(last, random.random_range(0..=last));
+        }
+    }
+
+    /// The draws that follow `drawn[0]`.
+    #[inline]
+    pub fn draw_on(&self, random: &mut Stream, drawn: &mut [u8]) {
+        let mut next_new = self.next_new(random, 0);
+        let mut is_pure = true;
+        for index in 1..drawn.len() {
+            drawn[index] = if index == next_new {
+                next_new = self.next_new(random, index);
+                let value = self.draw(random);
+                is_pure &= value == drawn[0];
+                value
+            } else if is_pure {
+                drawn[0]
+            } else {
+                drawn[random.random_range(0..index)]
+            };
+        }
+    }
+
+    /// The next draw after this one that repeats none before it.
+    #[inline]
+    fn next_new(&self, random: &mut Stream, after: usize) -> usize {
+        let limit = random.random::<f64>() * self.stays[after];
+        if self.stays[self.stays.len() - 1] > limit {
+            return self.stays.len();
+        }
+        (after + 1..self.stays.len()).find(|&draw| self.stays[draw] <= limit).unwrap_or(self.stays.len())
+    }
+}

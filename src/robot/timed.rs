@@ -133,7 +133,7 @@ impl TimedRobot {
     /// Something else than a press changed the state: what is no longer useful is given up at once.
     pub fn reconsider(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotDeed> {
         let errand = self.busy.filter(|errand| !errand.driven)?;
-        match policy::best_presses(kitchen, cost, state).contains(&errand.button) {
+        match policy::best_presses(kitchen, cost, state, &kitchen.true_recipes()).contains(&errand.button) {
             true => None,
             false => self.give_up(AbortReason::NoLongerUseful),
         }

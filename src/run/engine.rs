@@ -215,6 +215,9 @@ impl Engine {
         self.tell_participant(&stamped, before);
         let given_up = self.tell_robot(&stamped);
         self.out.push(stamped);
+        if let Some(estimate) = self.follower.take_estimate() {
+            self.record_own(now, Event::BeliefEstimated(estimate));
+        }
         if let Some(deed) = given_up {
             self.record_deed(now, deed);
         }

@@ -1,6 +1,7 @@
 //! A session with what is derived from it press by press. Live runs and replays go through it alike.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonId, Kitchen, State};
@@ -9,7 +10,9 @@ use crate::measures::attribution::Attributor;
 use crate::measures::errors::Judge;
 use crate::measures::sequences::Episodes;
 use crate::mind::belief::Belief;
-use crate::mind::decision::DecisionModel;
+use crate::mind::filter::BeliefFilter;
+use crate::mind::observation::{Observation, Observed};
+use crate::mind::witness::{AspectEstimate, EstimateWitness, rounded};
 use crate::session::apply::ApplyError;
 use crate::session::{Effect, Event, Session, SessionSpec, Stamped, apply};
 
@@ -21,20 +24,36 @@ pub struct Follower {
     pub judged: Vec<JudgedPress>,
     /// What was believed wrong for how long, as far as that is known.
     pub episodes: Episodes,
+    /// The estimate of what the human believes.
+    pub filter: BeliefFilter,
+    /// How long the estimate took, where that is measured.
+    pub timing: Option<Timing>,
     pub(super) cost: CostToGo,
     judge: Judge,
     attributor: Attributor,
     /// What the participant believes before its next press.
     belief: Option<Belief>,
+    /// What is to be recorded of the estimate before the last press.
+    estimated: Option<EstimateWitness>,
+}
+
+/// Nanoseconds that single steps of the inference took.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Timing {
+    pub gaze_ns: Vec<u64>,
+    /// Presses of the human and of the robot.
+    pub action_ns: Vec<u64>,
 }
 
 impl Follower {
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, cost: CostToGo) -> Follower {
         let judge = Judge::new(kitchen.clone());
-        let attributor = Attributor::new(DecisionModel::default(), spec.seed);
+        let attributor = Attributor::new(spec.human.decision.clone(), spec.seed);
+        let filter = BeliefFilter::new(kitchen.clone(), spec.human.clone(), spec.seed);
         let session = Session::new(kitchen, spec);
         let (judged, episodes) = (Vec::new(), Episodes::default());
-        Follower { session, judged, episodes, cost, judge, attributor, belief: None }
+        let (timing, belief, estimated) = (None, None, None);
+        Follower { session, judged, episodes, filter, timing, cost, judge, attributor, belief, estimated }
     }
 
     /// Moves on by one event.
@@ -65,7 +84,63 @@ impl Follower {
             }
             _ => {}
         }
+        self.estimate(stamped, before, counts);
         Ok(effects)
+    }
+
+    /// Moves the estimate of the belief on by an event that was just applied; `counts`: the trial ran when it came.
+    fn estimate(&mut self, stamped: &Stamped, before: State, counts: bool) {
+        let Some(what) = self.observed(stamped, before, counts) else { return };
+        let observation = Observation { number: stamped.seq, time: stamped.time, what };
+        let aspects = match what {
+            Observed::Pressed { agent: Agent::Human, .. } => {
+                Some(AspectEstimate::all(&self.session.kitchen, self.filter.belief(), before))
+            }
+            _ => None,
+        };
+        let began = self.timing.is_some().then(Instant::now);
+        self.filter.observe(&observation, &mut self.cost);
+        if let (Some(timing), Some(began)) = (&mut self.timing, began) {
+            let took_ns = began.elapsed().as_nanos() as u64;
+            match what {
+                Observed::Gaze { .. } => timing.gaze_ns.push(took_ns),
+                Observed::Pressed { .. } => timing.action_ns.push(took_ns),
+                _ => {}
+            }
+        }
+        if let (Some(aspects), Some(evidence)) = (aspects, self.filter.evidence()) {
+            let (log_p, effective) = (rounded(evidence.log_p), rounded(evidence.effective));
+            self.estimated = Some(EstimateWitness { press: stamped.seq, log_p, effective, aspects });
+        }
+    }
+
+    /// What an event tells about the human's belief.
+    fn observed(&self, stamped: &Stamped, before: State, counts: bool) -> Option<Observed> {
+        let (kitchen, state) = (&self.session.kitchen, self.session.state);
+        match &stamped.event {
+            Event::TrialStarted => Some(Observed::Started { state }),
+            Event::TrialPaused => Some(Observed::Paused),
+            Event::TrialResumed => Some(Observed::Resumed),
+            Event::Gaze(sample) => Some(Observed::Gaze { sample: *sample, taken: stamped.time }),
+            Event::Press { agent, button } if counts => {
+                let button = kitchen.button_named(*agent, button)?;
+                // A press that has an effect changes the state.
+                let after = (state != before).then_some(state);
+                Some(Observed::Pressed { agent: *agent, button, before, after })
+            }
+            Event::OrderShown { .. } | Event::OrderCleared { .. } | Event::KitchenCorrected { .. } => {
+                Some(Observed::Displayed { state })
+            }
+            Event::SignalShown { signal, .. } => {
+                Some(Observed::Told { location: kitchen.location_named(signal.target())? })
+            }
+            _ => None,
+        }
+    }
+
+    /// What was estimated before the press that was just applied, to be recorded once.
+    pub fn take_estimate(&mut self) -> Option<EstimateWitness> {
+        self.estimated.take()
     }
 
     /// Judges a press of the human that has just been applied, and finds out why it was an error.

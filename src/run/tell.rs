@@ -10,6 +10,7 @@ use crate::communication::Signal;
 use crate::kitchen::{Agent, Kitchen};
 use crate::measures::attribution::Cause;
 use crate::mind::BeliefWitness;
+use crate::mind::witness::EstimateWitness;
 use crate::robot::{AbortReason, IdleReason};
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::{Event, Stamped};
@@ -80,6 +81,8 @@ pub const HEADING: &str = " trial time  what happened";
 pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
     let words = match &stamped.event {
         Event::Gaze(_) => return None,
+        // An estimate is worth a line where it says that something is believed wrong.
+        Event::BeliefEstimated(estimate) => estimated(estimate)?,
         Event::TrialStarted => "trial started".to_string(),
         Event::TrialPaused => "trial paused".to_string(),
         Event::TrialResumed => "trial goes on".to_string(),
@@ -159,4 +162,11 @@ fn believes(belief: &BeliefWitness) -> String {
         true => format!("participant believes what is true ({})", belief.cause),
         false => format!("participant believes {} ({})", wrong.join(", "), belief.cause),
     }
+}
+
+fn estimated(estimate: &EstimateWitness) -> Option<String> {
+    let wrong = estimate.aspects.iter().filter(|aspect| aspect.p_truth < 0.5);
+    let wrong: Vec<String> =
+        wrong.map(|aspect| format!("{} = {} ({:.2})", aspect.aspect, aspect.believes, 1.0 - aspect.p_truth)).collect();
+    (!wrong.is_empty()).then(|| format!("estimated: participant believes {}", wrong.join(", ")))
 }

@@ -101,6 +101,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::RobotIntends { .. }
         | Event::RobotAborts { .. }
         | Event::RobotIdles { .. }
-        | Event::ParticipantBelieves(_) => false,
+        | Event::ParticipantBelieves(_)
+        | Event::BeliefEstimated(_) => false,
     }
 }

@@ -10,6 +10,7 @@ use crate::communication::{Sender, Signal};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
 use crate::mind::BeliefWitness;
+use crate::mind::witness::EstimateWitness;
 use crate::robot::{AbortReason, IdleReason};
 
 /// An event with its place in the log.
@@ -123,6 +124,8 @@ pub enum Event {
     FocusRegained,
     /// Witness: what a simulated participant believes, written before each of its presses.
     ParticipantBelieves(BeliefWitness),
+    /// Witness: what was estimated of the human's belief before the press of the human that was just recorded.
+    BeliefEstimated(EstimateWitness),
     /// The session is over; a log without it was cut.
     SessionEnded,
 }
@@ -159,6 +162,7 @@ impl Event {
             Event::FocusLost => "focus_lost",
             Event::FocusRegained => "focus_regained",
             Event::ParticipantBelieves(_) => "participant_believes",
+            Event::BeliefEstimated(_) => "belief_estimated",
             Event::SessionEnded => "session_ended",
         }
     }

@@ -23,6 +23,8 @@ pub struct Goal {
     pub class_of: Vec<u8>,
     /// A content of each class.
     pub content: Vec<ContentId>,
+    /// For each content the first one that can stand for it: of the same class, and pressed about in the same ways.
+    pub stands_for: Vec<ContentId>,
     /// `[target][class]`: bit j if the class can become the j-th item of the target, or has it.
     pub fills: [Vec<u8>; MAX_TARGETS],
     /// `[target][class]`: the same for those that can be stacked as they are.
@@ -73,6 +75,7 @@ impl Goal {
             }
         }
         let mut goal = Goal {
+            stands_for: stands_for(kitchen, &class_of),
             class_of,
             fills: Default::default(),
             ready: Default::default(),
@@ -225,4 +228,23 @@ fn ready(kitchen: &Kitchen, target: ContentId, content: ContentId) -> u8 {
     let wanted = &kitchen.content(target).items;
     let bit = |item: &ContentId| wanted.iter().position(|other| other == item).map(|bit| 1 << bit);
     kitchen.content(content).items.iter().map(bit).sum::<Option<u8>>().unwrap_or(0)
+}
+
+/// For each content the first one of the same class that every location accepts, every process changes and every other
+/// content stacks with alike. Then all presses lead to the same classes, and so do all costs to go after them.
+fn stands_for(kitchen: &Kitchen, class_of: &[u8]) -> Vec<ContentId> {
+    let contents = || (0..kitchen.contents.len()).map(|index| ContentId(index as u8));
+    let locations = || (kitchen.orders.len()..kitchen.locations.len()).map(|index| LocationId(index as u8));
+    let class = |content: Option<ContentId>| content.map(|content| class_of[content.index()]);
+    let alike = |one: ContentId, other: ContentId| {
+        class_of[one.index()] == class_of[other.index()]
+            && locations().all(|at| kitchen.accepts(at, one) == kitchen.accepts(at, other))
+            && (0..kitchen.processes.len() as u8)
+                .all(|process| class(kitchen.processed(process, one)) == class(kitchen.processed(process, other)))
+            && contents().all(|third| {
+                class(kitchen.stacked(one, third)) == class(kitchen.stacked(other, third))
+                    && class(kitchen.stacked(third, one)) == class(kitchen.stacked(third, other))
+            })
+    };
+    contents().map(|one| contents().find(|&other| alike(one, other)).unwrap_or(one)).collect()
 }

@@ -90,13 +90,37 @@ impl CostToGo {
     /// decisions, inference and rollouts need.
     #[inline]
     pub fn decision(&mut self, state: State, recipes: &Recipes, agent: Agent) -> &Decision {
-        let (targets, _) = self.targets(state, recipes);
+        let (mut targets, count) = self.targets(state, recipes);
         let question = u32::from(targets[0].0) | u32::from(targets[1].0) << 8 | (agent as u32) << 16;
         let (index, known) = self.decisions.find(state, question);
         if !known {
-            self.decide(index, question, state, recipes, agent);
+            let alike = self.stand_in(state, &mut targets[..count]);
+            let (there, known) = self.decisions.find(alike, question);
+            if !known {
+                self.decide(there, question, alike, recipes, agent);
+            }
+            let found = *self.decisions.get(there);
+            self.decisions.set(index, state, question, found.here, found.after);
         }
         self.decisions.get(index)
+    }
+
+    /// The state in which contents of no use are put by others that are pressed about in the same ways: its decisions are
+    /// the same, and strange states have few of them.
+    fn stand_in(&mut self, state: State, targets: &mut [ContentId]) -> State {
+        targets.sort_unstable();
+        if targets.is_empty() {
+            return state;
+        }
+        let slot = self.slot(targets);
+        self.make_goal(slot, targets);
+        let Some(goal) = &self.goals[slot] else { return state };
+        let mut alike = state;
+        for location in self.ground.places() {
+            let location = LocationId(location as u8);
+            alike.set_content(location, goal.stands_for[state.content(location).index()]);
+        }
+        alike
     }
 
     /// How much was looked up and how much computed since the start.

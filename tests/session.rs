@@ -94,7 +94,7 @@ fn a_trial_ends_after_its_number_of_presses_at_once() {
     let mut engine = engine(|spec| spec.trial.presses = 2);
     check(&mut engine, &[(0.0, Event::TrialStarted), (0.5, press("take rice"))]);
     let kinds = check(&mut engine, &[(0.6, press("counter"))]);
-    assert_eq!(kinds, [("press", 0.6), ("trial_ended", 0.6)]);
+    assert_eq!(kinds, [("press", 0.6), ("belief_estimated", 0.6), ("trial_ended", 0.6)]);
 }
 
 #[test]

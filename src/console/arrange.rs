@@ -54,9 +54,8 @@ struct Item {
     min_columns: u16,
 }
 
-const MIN_BOX: u16 = 12;
-const STRIP_ROWS: u16 = 3;
-const MAX_STRIP_BOX: u16 = 34;
+const MIN_CARD: u16 = 12;
+const MAX_ORDER: u16 = 44;
 
 impl Plan {
     /// Arranges a kitchen in these cells, with room for the keys of the human's storage where somebody has them.
@@ -71,7 +70,8 @@ impl Plan {
             let all: Vec<&Item> = items.iter().collect();
             return Plan::columns(&all, cells, [0.0, 1.0]);
         }
-        let strip_rows = if cells.height >= 22 { STRIP_ROWS + 1 } else { STRIP_ROWS };
+        // An order is one line where there is little room; else name, dish, recipe, and air.
+        let strip_rows = if cells.height >= 18 { 4 } else { 1 };
         let (strip_cells, body_cells) = match above {
             true => split_rows(cells, strip_rows),
             false => {
@@ -199,8 +199,9 @@ fn items(kitchen: &Kitchen, with_keys: bool) -> Vec<Item> {
     let location = |(index, location): (usize, &crate::kitchen::Location)| {
         let owner = if let LocationKind::Hand(agent) = location.kind { Some(agent) } else { None };
         let thing = Thing::Location(LocationId(index as u8));
-        // Frame, space and gap beside the name; orders stand in a strip of their own.
-        let min_columns = (location.label().chars().count() as u16 + 4).max(MIN_BOX);
+        // Rule, key and gap beside the name (the own hand is seldom highlighted); orders stand in a strip of their own.
+        let beside = if location.kind == LocationKind::Hand(Agent::Human) { 2 } else { 5 };
+        let min_columns = (location.label().chars().count() as u16 + beside).max(MIN_CARD);
         Item { thing, area: location.display, owner, min_columns }
     };
     let storage = |(index, storage): (usize, &crate::kitchen::layout::Storage)| Item {
@@ -210,9 +211,9 @@ fn items(kitchen: &Kitchen, with_keys: bool) -> Vec<Item> {
         // A space before the name, and room for the key; the robot's keeps away from what is right of it.
         min_columns: storage.label.chars().count() as u16
             + match storage.agent {
-                Agent::Human if with_keys => 5,
+                Agent::Human if with_keys => 4,
                 Agent::Human => 1,
-                Agent::Robot => 2,
+                Agent::Robot => 1,
             },
     };
     let locations = kitchen.locations.iter().enumerate().map(location);
@@ -309,9 +310,12 @@ fn owner(column: &[&Item]) -> Option<Agent> {
 fn spot(item: &Item, region: Rect, display: Bounds) -> Spot {
     let cells = match item.thing {
         Thing::Location(_) => {
-            // Lower boxes leave air between them; where there is much room, they grow with it.
-            let height = region.height.min((region.height / 3 + 2).max(5));
-            let width = region.width.saturating_sub(u16::from(region.width > MIN_BOX));
+            // Low cards leave air between them; where there is much room, they grow with it.
+            let height = match region.height {
+                rows @ 0..=4 => rows.min(3),
+                rows => 4 + (rows / 10).min(2),
+            };
+            let width = region.width.saturating_sub(u16::from(region.width > MIN_CARD));
             Rect { y: region.y + (region.height - height) / 2, width, height, ..region }
         }
         Thing::Storage(_) => Rect { y: region.y + region.height / 2, height: region.height.min(1), ..region },
@@ -332,8 +336,9 @@ fn row_of_orders(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Vec<Spot>
     let edge = |index: usize| cells.x + (usize::from(cells.width) * index / groups.len().max(1)) as u16;
     let place = |(index, group): (usize, &Vec<&Item>)| {
         let region = Rect { x: edge(index), width: edge(index + 1) - edge(index), ..cells };
-        let width = region.width.saturating_sub(2).min(MAX_STRIP_BOX);
-        let cells = Rect { x: region.x + (region.width - width) / 2, width, ..region };
+        let width = region.width.saturating_sub(2).min(MAX_ORDER);
+        let height = region.height.min(3);
+        let cells = Rect { x: region.x + (region.width - width) / 2, width, height, ..region };
         let display = Bounds([ends(&groups, index, 0, [0.0, 1.0]), display_y]);
         Spot { thing: group[0].thing, cells, area: group[0].area, display, screen: bounds(region) }
     };

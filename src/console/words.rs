@@ -112,3 +112,11 @@ pub fn changed_by(session: &Session, at: SessionTime) -> Option<Agent> {
         _ => None,
     })
 }
+
+/// Whether a location changed by no press of the human and was not looked at since: a fact, no estimate.
+pub fn is_unseen(session: &Session, location: LocationId) -> bool {
+    let at = session.changed_at[location.index()];
+    let seen = session.gaze.looked_at[location.index()].is_some_and(|seen| seen >= at);
+    let knows = seen || session.gaze.samples == 0 || at == SessionTime::ZERO;
+    !knows && changed_by(session, at) != Some(Agent::Human)
+}

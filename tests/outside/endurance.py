@@ -18,7 +18,7 @@ FLAT = 0.10
 def run(tomcom, folder, minutes, gap_s):
     console, log = begin(tomcom, folder, 0)
     keys = list(SIGNALS)
-    rss, medians = [], []
+    rss, medians, sent = [], [], 0
     with console:
         console.key(".")
         console.wait_for("RUNNING")
@@ -27,7 +27,8 @@ def run(tomcom, folder, minutes, gap_s):
         for minute in range(minutes):
             logged, drawn, cpu_s = [], [], console.cpu_s()
             while time.monotonic() < began + 60 * (minute + 1):
-                key = keys[len(logged) % len(keys)]
+                key = keys[sent % len(keys)]
+                sent += 1
                 to_log, to_screen = send(console, log, key, SIGNALS[key])
                 logged.append(to_log)
                 drawn.append(to_screen)

@@ -51,7 +51,8 @@ def send(console, log, key, name):
     while logged is None or console.drawn is None:
         if logged is None and any(b"signal_shown" in line and wanted in line for line in log.new_lines()):
             logged = time.monotonic()
-        assert time.monotonic() < pressed + 10, f"{key} had no effect:\n{console.text()}"
+        told = f"{key}: in the log: {logged is not None}, on the screen: {console.drawn is not None}"
+        assert time.monotonic() < pressed + 10, f"{told}\n{console.text()}"
         time.sleep(0.0002)
     return logged - pressed, console.drawn - pressed
 

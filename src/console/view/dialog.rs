@@ -4,6 +4,7 @@ use ratatui::layout::Rect;
 
 use super::paint::{Brush, width};
 use super::picker;
+use super::regions::inside;
 use super::theme::Role;
 use crate::console::chord::Chord;
 use crate::console::keys::{Binding, Layer};
@@ -45,14 +46,13 @@ pub(super) fn open(brush: &mut Brush, screen: Rect, size: (u16, u16), title: &st
             }
         }
     }
-    let inside = brush.panel(area, title, remark);
     let style = brush.style(Role::Strong);
     brush.frame(area, &brush.theme.signs().frame, style);
     brush.text(area.x + 2, area.y, columns, &format!(" {title} "), style);
     if !remark.is_empty() {
         brush.text_right(area.right() - 2, area.y, columns, &format!(" {remark} "), style);
     }
-    inside
+    inside(area)
 }
 
 fn ask(brush: &mut Brush, screen: Rect, title: &str, lines: &[&str]) {

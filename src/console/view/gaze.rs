@@ -1,15 +1,13 @@
-//! The gaze: where, how old, how good; what changed unseen; and the gaze map.
+//! The gaze: where, how old, how good; and the gaze map.
 
 use ratatui::layout::Rect;
 
 use super::paint::{Brush, fit};
 use super::regions::{Regions, Room};
 use super::theme::Role;
-use crate::base::time::SessionTime;
 use crate::console::model::Model;
-use crate::console::words;
 use crate::gaze::nearest_location;
-use crate::kitchen::{Agent, LocationId};
+use crate::kitchen::LocationId;
 use crate::session::Session;
 
 /// How long the trail of the gaze map is, in seconds.
@@ -18,14 +16,10 @@ const TRAIL_S: f64 = 2.0;
 /// Draws the gaze panel.
 pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
     let area = regions.gaze;
-    let unseen = unseen(session, model);
     if regions.room == Room::Small {
         brush.parts(area.x, area.y, area.width, &[(" gaze     ", Role::Quiet)]);
         let x = line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
-        if !unseen.is_empty() {
-            let rest = area.right().saturating_sub(x + 3);
-            brush.parts(x + 3, area.y, rest, &[("unseen: ", Role::Quiet), (&unseen.join(", "), Role::Text)]);
-        }
+        quality(brush, x + 3, area.y, area.right().saturating_sub(x + 4), session, model);
         return;
     }
     let source = Model::gaze_label(session.spec.participant.gaze);
@@ -37,12 +31,6 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
     quality(brush, x, inside.y + 1, columns, session, model);
-    let list = if unseen.is_empty() { "nothing".to_string() } else { unseen.join(", ") };
-    let list = format!("changed unseen: {list}");
-    let text = brush.style(Role::Text);
-    for (row, line) in super::paint::wrap(&list, columns).iter().take(usize::from(inside.height - 2)).enumerate() {
-        brush.text(x, inside.y + 2 + row as u16, columns, line, text);
-    }
 }
 
 fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) -> u16 {
@@ -78,26 +66,6 @@ fn quality(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, m
         (None, _) => "0 Hz, confidence -, -% unusable".to_string(),
     };
     brush.parts(x, y, columns, &[(&text, Role::Quiet)]);
-}
-
-/// The locations that changed by no press of the human and were not looked at since, the longest first: facts, no
-/// estimate.
-fn unseen(session: &Session, model: &Model) -> Vec<String> {
-    let changed = |index: &usize| {
-        let at = session.changed_at[*index];
-        let seen = session.gaze.looked_at[*index].is_some_and(|seen| seen >= at);
-        at > SessionTime::ZERO
-            && session.gaze.samples > 0
-            && !seen
-            && words::changed_by(session, at) != Some(Agent::Human)
-    };
-    let mut unseen: Vec<usize> = (0..session.kitchen.locations.len()).filter(changed).collect();
-    unseen.sort_by_key(|&index| session.changed_at[index]);
-    let label = |index: usize| {
-        let location = session.kitchen.location(LocationId(index as u8)).label();
-        format!("{location} {}", session.age(session.changed_at[index], model.now))
-    };
-    unseen.into_iter().map(label).collect()
 }
 
 /// Draws the display to scale with the trail of the gaze, and when each place was looked at last.

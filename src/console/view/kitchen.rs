@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::paint::{Brush, fit, width, wrap};
-use super::regions::{Regions, Room, inside};
+use super::regions::{Regions, Room};
 use super::theme::Role;
 use crate::base::time::SessionTime;
 use crate::console::arrange::{Plan, Thing};
@@ -18,8 +18,9 @@ use crate::session::settings::{Condition, ParticipantKind};
 
 /// How long a change is told, in seconds.
 const FRESH_S: f64 = 5.0;
-/// How long it is told loudly.
+/// How long it is told loudly, and how long in bold.
 const LOUD_S: f64 = 1.2;
+const FADING_S: f64 = 3.0;
 /// How long the last gaze is drawn.
 const GAZE_S: f64 = 3.0;
 
@@ -100,7 +101,7 @@ fn agent_role(agent: Option<Agent>) -> Role {
     }
 }
 
-/// A location's box.
+/// A location's card: a rule at its left that says at a glance how it is, then key and name, then what lies there.
 struct Place<'a> {
     session: &'a Session,
     model: &'a Model,
@@ -132,54 +133,63 @@ impl<'a> Place<'a> {
     }
 
     fn draw(&self, brush: &mut Brush, cells: Rect) {
-        if cells.width < 6 || cells.height < 3 {
+        if cells.width < 6 || cells.height == 0 {
             return;
         }
-        let signs = brush.theme.signs();
-        let (frame, style) = match (self.is_shown, self.fresh) {
-            (true, _) => (&signs.heavy, brush.style(Role::Signal)),
-            (_, Some((_, by))) => (&signs.frame, brush.style(agent_role(by))),
-            _ => (&signs.frame, brush.style(if self.is_empty { Role::Quiet } else { Role::Text })),
-        };
-        brush.frame(cells, frame, style);
-        let label_inside = self.title(brush, cells);
-        let inner = inside(cells);
-        let inner = Rect { x: inner.x + 1, width: inner.width.saturating_sub(1), ..inner };
-        let mut y = inner.y;
-        if label_inside && inner.height >= 3 {
-            let quiet = brush.style(Role::Quiet);
-            let label = self.kitchen.location(self.id).label();
-            // A name that is too long by a letter takes the margin.
-            let margin = u16::from(width(&label) > inner.width);
-            let room = inner.width + margin;
-            brush.text(inner.x - margin, y, room, &squeeze(&label, room), quiet);
-            y += 1;
+        self.rule(brush, cells);
+        let name_ends = self.title(brush, cells);
+        let is_order = self.kitchen.location(self.id).kind == LocationKind::Order;
+        let below = Rect { x: cells.x + 2, y: cells.y + 1, width: cells.width - 2, height: cells.height - 1 };
+        match (is_order, below.height) {
+            (true, 0) => {
+                let x = name_ends + 2;
+                self.order(brush, Rect { x, width: cells.right().saturating_sub(x), ..cells });
+            }
+            (true, _) => self.order(brush, below),
+            (false, 0) => {}
+            (false, height) => {
+                let buttons = self.other_buttons();
+                let lines =
+                    self.contents(brush, Rect { height: height - (buttons.len() as u16).min(height - 1), ..below });
+                match buttons.is_empty() {
+                    true => self.news(brush, below, lines),
+                    false => draw_buttons(brush, below, &buttons),
+                }
+            }
         }
-        let room = Rect { y, height: inner.bottom() - y, ..inner };
-        match self.kitchen.location(self.id).kind {
-            LocationKind::Order => self.order(brush, room),
-            _ => self.contents(brush, room),
-        }
-        self.bottom(brush, cells);
     }
 
-    /// Key and name in the upper edge; whether the name did not fit there.
-    fn title(&self, brush: &mut Brush, cells: Rect) -> bool {
-        let end = cells.right() - 1;
+    /// The line at the left: heavy where the participant is shown the place, in the colour of who changed it just now.
+    fn rule(&self, brush: &mut Brush, cells: Rect) {
+        let signs = brush.theme.signs();
+        let (sign, role) = match (self.is_shown, self.fresh) {
+            (true, _) => (signs.rules[2], Role::Signal),
+            (_, Some((_, by))) => (signs.rules[1], agent_role(by)),
+            _ => (signs.rules[0], if self.is_empty { Role::Frame } else { Role::Quiet }),
+        };
+        let style = brush.style(role);
+        for y in cells.y..cells.bottom() {
+            brush.text(cells.x, y, 1, sign, style);
+        }
+    }
+
+    /// Key and name; where they end.
+    fn title(&self, brush: &mut Brush, cells: Rect) -> u16 {
+        let label = self.kitchen.location(self.id).label();
         let mut x = cells.x + 1;
         if let Some((key, role)) = self.key() {
-            x = badge(brush, x, Rect { width: cells.width - 1, ..cells }, &key, role);
+            let fits = x + width(&key) + 2 + width(&label) <= cells.right();
+            let style = brush.style(role).add_modifier(Modifier::BOLD);
+            let key = if fits { format!("[{key}]") } else { format!("{key} ") };
+            x = brush.text(x, cells.y, cells.width, &key, style);
         }
-        let label = self.kitchen.location(self.id).label();
-        let room = end.saturating_sub(x);
-        let style = brush.style(if self.is_shown { Role::Signal } else { Role::Quiet });
-        let fits = width(&label) + 2 <= room;
-        if fits {
-            brush.text(x, cells.y, room, &format!(" {label} "), style);
-        } else if cells.height < 5 {
-            brush.text(x, cells.y, room, &label, style);
-        }
-        !fits && cells.height >= 5
+        let style = match self.is_shown {
+            true => brush.theme.badge(Role::Signal),
+            false => brush.style(if self.is_empty { Role::Quiet } else { Role::Text }),
+        };
+        let room = cells.right().saturating_sub(x);
+        let label = if width(&label) < room { format!(" {label}") } else { label };
+        brush.text(x, cells.y, room, &squeeze(&label, room), style)
     }
 
     /// The key that acts here, in the active layer.
@@ -195,25 +205,31 @@ impl<'a> Place<'a> {
 
     fn content_style(&self, brush: &Brush) -> Style {
         match self.fresh {
-            Some((age_s, by)) if age_s < LOUD_S && !self.is_empty => brush.theme.badge(agent_role(by)),
-            Some((_, by)) => brush.style(agent_role(by)).add_modifier(Modifier::BOLD),
+            Some((age_s, by)) if age_s < LOUD_S => brush.theme.badge(agent_role(by)),
+            Some((age_s, by)) if age_s < FADING_S => brush.style(agent_role(by)).add_modifier(Modifier::BOLD),
+            Some((_, by)) => brush.style(agent_role(by)),
             None if self.is_empty => brush.style(Role::Quiet),
             None => brush.style(Role::Strong),
         }
     }
 
-    fn contents(&self, brush: &mut Brush, room: Rect) {
+    /// What lies there; how many lines that takes.
+    fn contents(&self, brush: &mut Brush, room: Rect) -> u16 {
         let style = self.content_style(brush);
-        let lines = match room.height {
-            1 => vec![squeeze(&self.content, room.width)],
-            _ => wrap(&self.content, room.width),
-        };
-        let shown = usize::from(room.height);
-        for (row, line) in lines.iter().take(shown).enumerate() {
+        let mut lines = wrap(&self.content, room.width);
+        if lines.len() > usize::from(room.height) {
+            lines = match room.height {
+                1 => vec![squeeze(&self.content, room.width)],
+                _ => vec![lines[0].clone(), squeeze(&lines[1..].join(" "), room.width)],
+            };
+        }
+        for (row, line) in lines.iter().take(usize::from(room.height)).enumerate() {
             brush.text(room.x, room.y + row as u16, room.width, line, style);
         }
+        lines.len() as u16
     }
 
+    /// An order: what is wanted, since when, and, while it is shown, the recipe.
     fn order(&self, brush: &mut Brush, room: Rect) {
         let style = self.content_style(brush);
         let is_wanted = matches!(self.session.state.order(self.id), OrderContent::Dish(_));
@@ -224,10 +240,11 @@ impl<'a> Place<'a> {
             OrderContent::None => "no order".to_string(),
             OrderContent::Dish(_) => self.content.clone(),
         };
-        brush.text(room.x, room.y, room.width, &text, style);
+        let end = brush.text(room.x, room.y, room.width.saturating_sub(6), &text, style);
         if is_wanted {
-            let quiet = brush.style(Role::Text);
-            brush.text_right(room.right().saturating_sub(1), room.y, 6, &age.to_string(), quiet);
+            let unseen = if words::is_unseen(self.session, self.id) { "  unseen" } else { "" };
+            let left = room.right().saturating_sub(end + 2);
+            brush.parts(end + 2, room.y, left, &[(&age.to_string(), Role::Quiet), (unseen, Role::Gaze)]);
         }
         if let (true, true, Some(recipe)) = (self.is_shown, room.height > 1, words::recipe(self.session, self.id)) {
             let style = brush.style(Role::Signal);
@@ -235,46 +252,37 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// The lower edge: what the robot is about to do here, what just changed, and the participant's other buttons.
-    fn bottom(&self, brush: &mut Brush, cells: Rect) {
-        let y = cells.bottom() - 1;
-        let buttons = self.other_buttons();
-        if !buttons.is_empty() {
-            self.draw_buttons(brush, cells, &buttons);
-            return;
-        }
-        let room = cells.width.saturating_sub(2);
-        let mut x = cells.x + 1;
+    /// Below what lies there, or at the right of its last line: what the robot is about to do here, and what just changed.
+    fn news(&self, brush: &mut Brush, room: Rect, lines: u16) {
         let signs = brush.theme.signs();
+        let mut news: Vec<(String, Role)> = Vec::new();
         if let Some((button, _, _)) = self.session.robot.intention
             && words::place(self.kitchen, Agent::Robot, button) == self.id
             && !self.session.robot.stopped
         {
-            let style = brush.style(Role::Robot);
-            x = brush.text(x, y, room, &format!("{}robot ", signs.to), style);
+            news.push((format!("{}robot", signs.to), Role::Robot));
         }
         if let Some((age_s, by)) = self.fresh {
-            let style = brush.style(agent_role(by));
-            let label = format!("{}{age_s:.0}s", signs.changed);
-            if x + width(&label) < cells.right() {
-                brush.text_right(cells.right() - 1, y, room, &label, style);
-            }
+            news.push((format!("{}{age_s:.0}s", signs.changed), agent_role(by)));
+        } else if words::is_unseen(self.session, self.id) {
+            let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
+            news.push((format!("unseen {age}"), Role::Gaze));
         }
-    }
-
-    /// One button a line, from the lower edge upwards; where the box is too low for that, all in the edge.
-    fn draw_buttons(&self, brush: &mut Brush, cells: Rect, buttons: &[(String, String)]) {
-        let style = brush.style(Role::Human).add_modifier(Modifier::BOLD);
-        let count = buttons.len() as u16;
-        let room = cells.width.saturating_sub(2);
-        for (index, (key, name)) in buttons.iter().enumerate() {
-            let index = index as u16;
-            let (x, y, room) = match cells.height > 3 {
-                true => (cells.x + 1, cells.bottom() - count + index, room),
-                false => (cells.x + 1 + index * room / count, cells.bottom() - 1, room / count),
-            };
-            let name = fit(name, room.saturating_sub(3), "");
-            brush.text(x, y, room, &format!("[{key}]{name}"), style);
+        let y = room.y + lines.min(room.height - 1);
+        let needed = news.iter().map(|(text, _)| width(text) + 1).sum::<u16>();
+        // With no line of its own it takes the end of the last one, if that is free.
+        let ends = match lines < room.height {
+            true => 0,
+            false => (0..room.width).filter(|x| brush.is_written(room.x + x, y)).max().map_or(0, |x| x + 1),
+        };
+        if ends + needed > room.width {
+            news.retain(|(_, role)| *role != Role::Robot || ends + needed <= room.width);
+        }
+        let mut x = if lines < room.height { room.x } else { room.right().saturating_sub(needed) };
+        for (text, role) in news {
+            if x >= room.x + ends && x + width(&text) <= room.right() {
+                x = brush.parts(x, y, width(&text), &[(&text, role)]) + 1;
+            }
         }
     }
 
@@ -295,6 +303,21 @@ impl<'a> Place<'a> {
             Some((key.to_string(), button.name.replace('_', " ")))
         });
         with_key.collect()
+    }
+}
+
+/// One button a line, from the lower edge of the card upwards; where it is too low for that, all in its last line.
+fn draw_buttons(brush: &mut Brush, room: Rect, buttons: &[(String, String)]) {
+    let style = brush.style(Role::Human).add_modifier(Modifier::BOLD);
+    let count = buttons.len() as u16;
+    for (index, (key, name)) in buttons.iter().enumerate() {
+        let index = index as u16;
+        let (x, y, columns) = match room.height > count {
+            true => (room.x, room.bottom() - count + index, room.width),
+            false => (room.x + index * room.width / count, room.bottom() - 1, room.width / count),
+        };
+        let name = fit(name, columns.saturating_sub(3), "");
+        brush.text(x, y, columns, &format!("[{key}]{name}"), style);
     }
 }
 
@@ -330,9 +353,9 @@ fn gaze_mark(brush: &mut Brush, plan: &Plan, panel: Rect, session: &Session, mod
         brush.text(x, y, 1, sign, style);
         return;
     }
-    // A word under the gaze stays readable: its letter is marked, and the sign goes to the box's corner.
+    // A word under the gaze stays readable: its letter is marked, and the sign goes beside the card's name.
     brush.buffer.set_style(Rect::new(x, y, 1, 1), style.add_modifier(Modifier::REVERSED));
     if let Some(spot) = plan.spots.iter().find(|spot| spot.cells.contains((x, y).into())) {
-        brush.text(spot.cells.right().saturating_sub(2), spot.cells.y, 1, sign, style);
+        brush.text(spot.cells.right(), spot.cells.y, 1, sign, style);
     }
 }

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::Span;
 
-use super::regions::inside;
+use super::regions::below_title;
 use super::theme::{Role, Theme};
 
 /// Paints on a buffer in a theme.
@@ -69,6 +69,11 @@ impl Brush<'_> {
         self.buffer.set_stringn(x, y, &text, usize::from(columns), Style::reset().patch(style)).0
     }
 
+    /// Whether something stands in a cell.
+    pub fn is_written(&self, x: u16, y: u16) -> bool {
+        self.buffer.cell((x, y)).is_some_and(|cell| cell.symbol() != " ")
+    }
+
     /// Writes a text that ends before column `right`.
     pub fn text_right(&mut self, right: u16, y: u16, columns: u16, text: &str, style: Style) {
         let text = fit(text, columns, self.theme.signs().ellipsis);
@@ -103,17 +108,18 @@ impl Brush<'_> {
         }
     }
 
-    /// Draws a panel with a title at the left and a remark at the right; returns its inside.
+    /// Draws the title line of a panel, with a remark at the right; returns what is below it.
     pub fn panel(&mut self, area: Rect, title: &str, remark: &str) -> Rect {
-        let (line, style) = (self.style(Role::Frame), self.style(Role::Quiet));
-        self.frame(area, &self.theme.signs().frame, line);
-        let strong = self.style(Role::Strong);
-        let room = area.width.saturating_sub(4);
-        self.text(area.x + 2, area.y, room, &format!(" {title} "), strong);
-        if !remark.is_empty() && width(title) + width(remark) + 6 < room {
-            self.text_right(area.right().saturating_sub(2), area.y, room, &format!(" {remark} "), style);
+        let (line, quiet, strong) = (self.style(Role::Frame), self.style(Role::Quiet), self.style(Role::Strong));
+        let room = area.width.saturating_sub(2);
+        let rule = self.theme.signs().frame[4].repeat(usize::from(room));
+        self.text(area.x + 1, area.y, room, &rule, line);
+        let end = self.text(area.x + 1, area.y, room, title, strong);
+        self.text(end, area.y, 1, " ", line);
+        if !remark.is_empty() && width(title) + width(remark) + 4 < room {
+            self.text_right(area.right() - 1, area.y, room, &format!(" {remark}"), quiet);
         }
-        inside(area)
+        below_title(area)
     }
 
     /// A bar of `columns`, filled by `share` of 0 to 1.

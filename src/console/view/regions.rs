@@ -28,20 +28,26 @@ pub struct Regions {
     pub recommendation: Rect,
     /// The gaze map, in the room of the two above where the wizard may not see them.
     pub gaze_map: Rect,
+    /// The participant's side: what the display shows, and where the gaze is; two lines where there is little room.
     pub shown: Rect,
-    pub robot: Rect,
     pub gaze: Rect,
+    pub robot: Rect,
     pub events: Rect,
     pub timeline: Rect,
     pub footer: Rect,
 }
+
+/// The least columns of the kitchen panel in which names of the usual length are written out.
+const KITCHEN_COLUMNS: u16 = 80;
+/// Rows of the timeline with its title.
+const TIMELINE_ROWS: u16 = 7;
 
 impl Regions {
     /// Deals out a terminal of `size` columns and rows.
     pub fn new(size: (u16, u16), visibility: Visibility) -> Regions {
         let room = match size {
             (columns, rows) if columns >= 168 && rows >= 46 => Room::Large,
-            (columns, rows) if columns >= 108 && rows >= 34 => Room::Medium,
+            (columns, rows) if columns >= 112 && rows >= 34 => Room::Medium,
             _ => Room::Small,
         };
         let all = Rect::new(0, 0, size.0, size.1);
@@ -64,44 +70,66 @@ impl Regions {
         };
         match room {
             Room::Small => bare.small(visibility),
-            Room::Medium | Room::Large => bare.wide(visibility),
+            Room::Medium => bare.medium(visibility),
+            Room::Large => bare.large(visibility),
         }
     }
 
+    /// The panels as lines below the kitchen, the three worst beliefs among them.
     fn small(self, visibility: Visibility) -> Regions {
         let (rest, timeline) = bottom(self.kitchen, 4);
         let (rest, recommendation) = bottom(rest, u16::from(visibility == Visibility::Recommendation));
-        let (rest, belief) = bottom(rest, u16::from(visibility >= Visibility::Belief));
+        let beliefs = if rest.height >= 17 { 3 } else { 1 };
+        let (rest, belief) = bottom(rest, if visibility >= Visibility::Belief { beliefs } else { 0 });
         let (rest, gaze) = bottom(rest, 1);
         let (rest, shown) = bottom(rest, 1);
         let (kitchen, robot) = bottom(rest, 1);
         Regions { kitchen, robot, shown, gaze, belief, recommendation, timeline, ..self }
     }
 
-    fn wide(self, visibility: Visibility) -> Regions {
-        let is_large = self.room == Room::Large;
-        let (rest, timeline) = bottom(self.kitchen, 8);
-        let (rest, events) = right(rest, if is_large { rest.width / 4 } else { 0 });
-        let (kitchen, side) = right(rest, if is_large { rest.width * 38 / 100 } else { rest.width / 3 });
-        let (side, gaze) = bottom(side, if is_large { 7 } else { 6 });
+    /// The kitchen at the left; at the right from what is believed over what could be said to who does what.
+    fn medium(self, visibility: Visibility) -> Regions {
+        let (rest, timeline) = bottom(self.kitchen, TIMELINE_ROWS);
+        let (kitchen, side) = left(rest, (rest.width * 13 / 20).max(KITCHEN_COLUMNS));
         let (side, robot) = bottom(side, 4);
-        let (side, shown) = bottom(side, 5);
-        let regions = Regions { kitchen, shown, robot, gaze, events, timeline, ..self };
+        let (side, gaze) = bottom(side, 4);
+        let (side, shown) = bottom(side, 4);
+        Regions { kitchen, shown, robot, gaze, timeline, ..self }.judge(side, visibility)
+    }
+
+    /// Three columns: what is, what is believed and could be said, what happened.
+    fn large(self, visibility: Visibility) -> Regions {
+        let (rest, timeline) = bottom(self.kitchen, TIMELINE_ROWS);
+        let (rest, events) = right(rest, 44);
+        let (kitchen, side) = left(rest, rest.width * 11 / 20);
+        let (kitchen, below) = bottom(kitchen, kitchen.height * 3 / 10);
+        let (participant, map) = left(below, below.width / 2);
+        let (shown, gaze) = top(participant, 5);
+        let (side, robot) = bottom(side, 6);
+        let regions = Regions { kitchen, shown, gaze, robot, events, timeline, ..self };
         match visibility {
             Visibility::State => Regions { gaze_map: side, ..regions },
-            Visibility::Belief => Regions { belief: side, ..regions },
+            _ => Regions { gaze_map: map, ..regions.judge(side, visibility) },
+        }
+    }
+
+    /// Gives this area to what the wizard may see beside the state.
+    fn judge(self, side: Rect, visibility: Visibility) -> Regions {
+        match visibility {
+            Visibility::State => Regions { gaze_map: side, ..self },
+            Visibility::Belief => Regions { belief: side, ..self },
             Visibility::Recommendation => {
                 let (belief, recommendation) = bottom(side, side.height * 2 / 5);
-                Regions { belief, recommendation, ..regions }
+                Regions { belief, recommendation, ..self }
             }
         }
     }
 
-    /// The cells of the kitchen panel without its frame, where the display points are.
+    /// The cells of the kitchen panel without its title, where the display points are.
     pub fn kitchen_inside(&self) -> Rect {
         match self.room {
             Room::Small => self.kitchen,
-            _ => inside(self.kitchen),
+            _ => below_title(self.kitchen),
         }
     }
 }
@@ -109,6 +137,11 @@ impl Regions {
 /// What is left inside of a frame.
 pub fn inside(area: Rect) -> Rect {
     Rect { x: area.x + 1, y: area.y + 1, width: area.width.saturating_sub(2), height: area.height.saturating_sub(2) }
+}
+
+/// What is left below the title of a panel, with a margin at both sides.
+pub fn below_title(area: Rect) -> Rect {
+    Rect { x: area.x + 1, y: area.y + 1, width: area.width.saturating_sub(2), height: area.height.saturating_sub(1) }
 }
 
 fn top(area: Rect, rows: u16) -> (Rect, Rect) {
@@ -119,6 +152,11 @@ fn top(area: Rect, rows: u16) -> (Rect, Rect) {
 fn bottom(area: Rect, rows: u16) -> (Rect, Rect) {
     let (rest, bottom) = top(area, area.height.saturating_sub(rows));
     (rest, bottom)
+}
+
+fn left(area: Rect, columns: u16) -> (Rect, Rect) {
+    let (left, right) = right(area, area.width.saturating_sub(columns));
+    (left, right)
 }
 
 fn right(area: Rect, columns: u16) -> (Rect, Rect) {

@@ -45,8 +45,8 @@ pub struct Theme {
 pub struct Signs {
     /// Corners top left, top right, bottom left, bottom right, then horizontal and vertical line.
     pub frame: [&'static str; 6],
-    /// The same of what is highlighted.
-    pub heavy: [&'static str; 6],
+    /// The rule of a card: as it is, changed just now, shown to the participant.
+    pub rules: [&'static str; 3],
     pub bar_full: &'static str,
     pub bar_empty: &'static str,
     pub gaze: &'static str,
@@ -69,7 +69,7 @@ pub struct Signs {
 
 const UNICODE: Signs = Signs {
     frame: ["╭", "╮", "╰", "╯", "─", "│"],
-    heavy: ["┏", "┓", "┗", "┛", "━", "┃"],
+    rules: ["▏", "▌", "█"],
     bar_full: "▰",
     bar_empty: "▱",
     gaze: "◉",
@@ -91,7 +91,7 @@ const UNICODE: Signs = Signs {
 
 const ASCII: Signs = Signs {
     frame: [".", ".", "'", "'", "-", "|"],
-    heavy: ["#", "#", "#", "#", "#", "#"],
+    rules: ["|", "!", "#"],
     bar_full: "=",
     bar_empty: "-",
     gaze: "@",

@@ -13,6 +13,7 @@ use super::detection::{Calibration, auc};
 use super::flags::{Flags, Thresholds};
 use super::sequences::FALSE_BELOW;
 use crate::kitchen::{AspectId, AspectKind, ButtonId, Kitchen, State};
+use crate::mind::witness::EstimateWitness;
 
 /// Predictions outside of this range are not asked for their calibration: most aspects are plainly right most of the time.
 pub const CALIBRATED: [f64; 2] = [0.05, 0.95];
@@ -38,10 +39,19 @@ pub struct PressView {
 /// What an estimate says before a press.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimateView {
-    /// For each aspect the probability that the participant's own P(truth) is below 0.5.
+    /// For each aspect the expected share of the belief that is not on the truth. People hold point-like beliefs, so this
+    /// is also the probability that the participant's own P(truth) is below 0.5.
     pub p_wrong: Vec<f64>,
     /// The log of the probability of the press, given that one is made, in nats.
     pub log_p: f64,
+}
+
+impl EstimateView {
+    /// Of an estimate as it is written down.
+    pub fn of(witness: &EstimateWitness) -> EstimateView {
+        let p_wrong = witness.aspects.iter().map(|aspect| 1.0 - aspect.p_truth);
+        EstimateView { p_wrong: p_wrong.collect(), log_p: witness.log_p }
+    }
 }
 
 /// The presses of one trial, in their order.

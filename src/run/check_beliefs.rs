@@ -16,7 +16,7 @@ use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
-use crate::measures::beliefs::{Detection, PressView, TrialView};
+use crate::measures::beliefs::{Detection, EstimateView, PressView, TrialView};
 use crate::measures::flags::Thresholds;
 use crate::measures::likelihood::LogLikelihood;
 use crate::mind::belief::Belief;
@@ -119,16 +119,18 @@ fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView)> {
     loop {
         before.state = replay.session().state;
         let Some(line) = replay.step()? else { break };
-        let kitchen = &replay.session().kitchen;
+        let kitchen = replay.session().kitchen.clone();
         match &line.stamped.event {
             Event::ParticipantBelieves(witness) => {
-                let fits = Belief::of_witness(kitchen, before.state, witness).is_some();
+                let fits = Belief::of_witness(&kitchen, before.state, witness).is_some();
                 held = fits.then(|| witness.aspects.iter().map(|aspect| aspect.p_truth).collect());
             }
             Event::Press { agent: Agent::Human, button } => {
-                let counted = replay.follower.judged.last().filter(|press| press.seq == line.stamped.seq);
+                let counted = replay.follower.judged.last().filter(|press| press.seq == line.stamped.seq).copied();
                 if let (Some(judged), Some(button)) = (counted, kitchen.button_named(Agent::Human, button)) {
-                    trial.push(before.press(kitchen, button, judged, held.take()));
+                    let press = before.press(&kitchen, button, &judged, held.take());
+                    let estimate = replay.follower.take_estimate().map(|witness| EstimateView::of(&witness));
+                    trial.push(PressView { estimate, ..press });
                 }
             }
             _ => {}

@@ -13,6 +13,7 @@ use tomcom::console::keys::{KeyPlace, Layer};
 use tomcom::console::model::{Dialog, Recording};
 use tomcom::console::picker::{Picker, Question};
 use tomcom::console::playback::Playback;
+use tomcom::console::screen::screen;
 use tomcom::console::view::regions::Regions;
 use tomcom::console::view::theme::{Ground, Role, Theme};
 use tomcom::console::{Command, KeyMap, Keys, Message, Model, update, view};
@@ -20,6 +21,7 @@ use tomcom::edge::files::read_kitchen;
 use tomcom::gaze::GazeSample;
 use tomcom::kitchen::{Agent, Kitchen, LocationKind};
 use tomcom::session::event::{EndReason, Event, SignalEnd, Stamped};
+use tomcom::session::preflight::Verdict;
 use tomcom::session::settings::{GazeSource, ParticipantKind, Visibility};
 use tomcom::session::{Phase, Session, SessionSpec, apply};
 
@@ -48,6 +50,7 @@ impl Stage {
         let theme = Theme { colour: true, unicode: true, ground: Ground::Dark };
         let mut model = Model::new(keys, theme, (120, 40));
         model.recording = Recording::On("sessions/2026-03-14-P01-1".to_string());
+        model.free_bytes = Some(1 << 40);
         Stage { session: Session::new(kitchen, spec), model, seq: 0 }
     }
 
@@ -141,6 +144,7 @@ impl Stage {
 fn input(command: Option<Command>) -> Option<Event> {
     match command {
         Some(Command::Input(event)) => Some(event),
+        Some(Command::Start(_)) => Some(Event::TrialStarted),
         _ => None,
     }
 }
@@ -639,4 +643,104 @@ fn colours_keep_their_contrast_on_dark_and_light_terminals() {
             assert_ne!(colour(other), colour(FalseBelief), "one colour is that of false beliefs alone");
         }
     }
+}
+
+#[test]
+fn a_trial_starts_at_once_if_all_is_ok_and_what_was_found_is_recorded() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    let Some(Command::Start(Event::Preflight { checks, overridden })) = stage.key(KeyCode::Char('.')) else {
+        panic!("{}", stage.notice());
+    };
+    let names: Vec<&str> = checks.iter().map(|check| check.name.as_str()).collect();
+    assert_eq!(names, ["participant", "gaze", "robot", "recording", "free space", "keyboard"]);
+    assert!(!overridden && checks.iter().all(|check| check.verdict == Verdict::Ok), "{checks:?}");
+    stage.at(0.0, Event::Preflight { checks, overridden });
+    stage.at(0.0, Event::TrialStarted);
+    stage.wait(1.0);
+    stage.control('f');
+    assert!(stage.notice().contains("started already"), "{}", stage.notice());
+}
+
+#[test]
+fn what_is_not_ok_before_a_trial_is_listed_mended_or_overridden() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Keyboard);
+    stage.session.spec.participant.gaze = GazeSource::Json;
+    stage.at(0.1, Event::RobotStopped);
+    stage.model.free_bytes = Some(100 << 20);
+    assert_eq!(stage.key(KeyCode::Char('.')), None);
+    assert_eq!(stage.model.dialog, Some(Dialog::Preflight));
+    for size in SIZES {
+        insta::assert_snapshot!(format!("preflight_{}x{}", size.0, size.1), stage.screen(size));
+    }
+    // The key that opened the list does not start the trial, held or pressed again.
+    for gap_s in [0.5, 0.03, 1.0] {
+        stage.wait(gap_s);
+        assert_eq!(stage.key(KeyCode::Char('.')), None);
+    }
+    assert_eq!(input(stage.control('r')), Some(Event::RobotResumed));
+    stage.at(3.0, Event::RobotResumed);
+    let started = stage.key(KeyCode::Char('o'));
+    let Some(Command::Start(Event::Preflight { checks, overridden: true })) = started else { panic!("{started:?}") };
+    let verdict = |name: &str| checks.iter().find(|check| check.name == name).map(|check| check.verdict);
+    assert_eq!(verdict("gaze"), Some(Verdict::Failed));
+    assert_eq!(verdict("free space"), Some(Verdict::Warning));
+    assert_eq!(verdict("robot"), Some(Verdict::Ok));
+    // As soon as all is mended, the key that starts a trial starts it.
+    stage.key(KeyCode::Char('.'));
+    stage.model.free_bytes = Some(1 << 40);
+    for step in 0..120 {
+        stage.look(4.0 + f64::from(step) / 120.0, 0.5, 0.5);
+    }
+    stage.wait(0.01);
+    stage.model.dialog = Some(Dialog::Preflight);
+    assert!(stage.screen((80, 24)).contains("usable, confidence 0.97"), "{}", stage.screen((80, 24)));
+    assert!(matches!(stage.key(KeyCode::Char('.')), Some(Command::Start(Event::Preflight { overridden: false, .. }))));
+}
+
+#[test]
+fn notes_in_words_are_written_when_paused_and_only_there_the_space_bar_types() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    assert_eq!(stage.key(KeyCode::Char('0')), None);
+    assert!(stage.notice().contains("only when paused"), "{}", stage.notice());
+    stage.at(23.0, Event::TrialPaused);
+    stage.wait(1.0);
+    stage.key(KeyCode::Char('0'));
+    for letter in "Asks fhr  help".chars() {
+        stage.wait(0.05);
+        assert_eq!(stage.key(KeyCode::Char(letter)), None, "a space is typed, and stops nothing");
+    }
+    for _ in 0..7 {
+        stage.key(KeyCode::Left);
+    }
+    stage.key(KeyCode::Backspace);
+    stage.key(KeyCode::Char('o'));
+    stage.key(KeyCode::End);
+    for size in [(80, 24), (200, 60)] {
+        insta::assert_snapshot!(format!("note_{}x{}", size.0, size.1), stage.screen(size));
+    }
+    let note = Event::Marker { note: "Asks for  help".to_string() };
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(note));
+    assert_eq!(input(stage.key(KeyCode::Char(' '))), Some(Event::RobotStopped));
+    stage.wait(1.0);
+    stage.key(KeyCode::Char('0'));
+    assert_eq!(stage.key(KeyCode::Esc), None);
+    assert_eq!(stage.model.dialog, None);
+}
+
+#[test]
+fn what_the_wizard_sees_is_told_by_size_visibility_and_dialog() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let mut rooms = Vec::new();
+    for size in [(50, 12), (80, 24), (120, 40), (200, 60)] {
+        stage.model.size = size;
+        let seen = screen(&stage.session, &stage.model);
+        assert_eq!(seen.panels.iter().any(|panel| panel == "belief"), seen.room != "too_small", "{seen:?}");
+        rooms.push(seen.room);
+    }
+    assert_eq!(rooms, ["too_small", "small", "medium", "large"]);
+    stage.session.spec.console.visibility = Visibility::State;
+    stage.control('k');
+    let seen = screen(&stage.session, &stage.model);
+    assert!(!seen.panels.iter().any(|panel| panel == "belief" || panel == "recommendation"), "{seen:?}");
+    assert_eq!((seen.visibility, seen.dialog.as_deref()), (Visibility::State, Some("correct_place")));
 }

@@ -78,7 +78,7 @@ fn check_kill(number: u64, limit: Duration) {
         return;
     }
     terminal.see("READY");
-    terminal.key_logs(".", "trial_started");
+    terminal.start();
     let mut tracker = TcpStream::connect(("127.0.0.1", port)).expect("it listens");
     tracker.set_nodelay(true).expect("a socket");
     let length = Duration::from_millis(random.random_range(200..3000));
@@ -119,7 +119,7 @@ fn a_kill_at_any_moment_loses_nothing_and_the_session_goes_on_in_a_new_part() {
 fn a_recording_is_written_by_one_program_and_continued_once() {
     let Some(terminal) = Terminal::open("one-writer") else { return };
     terminal.operate("default.toml", "");
-    terminal.key_logs(".", "trial_started");
+    terminal.start();
     let recording = terminal.recording();
     let refused = |recording: &Path, says: &str| {
         let output = tomcom(&["operate", "--continue", &recording.display().to_string()]);
@@ -175,8 +175,8 @@ fn is_over(terminal: &Terminal, before: &str, recording: &Path) {
 fn check_loss(name: &str, bad: impl FnOnce(&Path)) {
     let Some(terminal) = Terminal::open(name) else { return };
     terminal.operate("default.toml", "");
-    terminal.key_logs(".", "trial_started");
-    terminal.wait("gaze", || terminal.count("\"gaze\"") > 50);
+    terminal.start();
+    terminal.wait("gaze", || terminal.count("\"kind\":\"gaze\"") > 50);
     let (recording, before) = (terminal.recording(), terminal.log());
     let began = Instant::now();
     bad(&recording);
@@ -236,8 +236,8 @@ fn a_full_disk_is_told_at_once_and_the_session_goes_on_when_there_is_room() {
     let Some(terminal) = Terminal::open("full") else { return };
     let Some(disk) = Disk::mount(terminal.folder.join("recordings")) else { return };
     terminal.operate("default.toml", "");
-    terminal.key_logs(".", "trial_started");
-    terminal.wait("gaze", || terminal.count("\"gaze\"") > 50);
+    terminal.start();
+    terminal.wait("gaze", || terminal.count("\"kind\":\"gaze\"") > 50);
     let (recording, before) = (terminal.recording(), terminal.log());
     let filler = disk.0.join("filler");
     let began = Instant::now();
@@ -259,7 +259,7 @@ fn a_limit_for_files_is_told_as_a_full_disk_is() {
     // In blocks of 512 bytes.
     terminal.shell("ulimit -f 120");
     terminal.operate("default.toml", "");
-    terminal.key_logs(".", "trial_started");
+    terminal.start();
     let before = terminal.log();
     terminal.see("RECORDING LOST");
     is_over(&terminal, &before, &terminal.recording());
@@ -271,7 +271,7 @@ fn a_program_that_stood_still_goes_on_where_it_was_and_the_log_says_so() {
     // A shell with job control would take the terminal back from a stopped program.
     terminal.shell("set +m");
     terminal.operate("default.toml", "");
-    terminal.key_logs(".", "trial_started");
+    terminal.start();
     let pid = terminal.read("pid");
     signal(&pid, "STOP");
     std::thread::sleep(Duration::from_millis(2500));

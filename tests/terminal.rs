@@ -30,7 +30,7 @@ fn check_wizard(session: &str) {
     let Some(terminal) = Terminal::open(&format!("wizard-{session}")) else { return };
     let kitchen = kitchen(session);
     terminal.operate(session, "");
-    terminal.key_logs(".", "trial_started");
+    terminal.start();
     terminal.see("RUNNING");
     for location in &kitchen.locations {
         let Some(key) = location.signal_key.filter(|_| location.name != "human_hand") else { continue };
@@ -57,6 +57,11 @@ fn check_wizard(session: &str) {
     std::thread::sleep(Duration::from_millis(800));
     terminal.key_logs(".", "trial_paused");
     terminal.see("PAUSED");
+    terminal.key("0");
+    terminal.see("A note");
+    terminal.tmux(&["send-keys", "-l", "Asks for help"]);
+    terminal.see("Asks for help");
+    terminal.key_logs("Enter", "\"note\":\"Asks for help\"");
     std::thread::sleep(Duration::from_millis(800));
     terminal.key_logs(".", "trial_resumed");
     terminal.key("?");
@@ -68,6 +73,13 @@ fn check_wizard(session: &str) {
     terminal.key_logs("y", "trial_ended");
     terminal.quit();
     assert_eq!(terminal.count("session_ended"), 1);
+    assert_eq!(terminal.count("\"kind\":\"preflight\""), 1);
+    for open in ["note", "help", "end_trial", "quit"] {
+        let seen = "\"room\":\"medium\",\"panels\":[\"kitchen\",\"belief\",\"recommendation\"";
+        let log = terminal.log();
+        let mut lines = log.lines().filter(|line| line.contains(seen));
+        assert!(lines.any(|line| line.contains(&format!("\"dialog\":\"{open}\""))), "{open}:\n{log}");
+    }
     terminal.verifies();
 }
 
@@ -86,7 +98,7 @@ fn a_signal_to_the_program_closes_the_recording_and_gives_the_terminal_back() {
     for signal in ["TERM", "INT", "HUP"] {
         let Some(terminal) = Terminal::open(&format!("signal-{signal}")) else { return };
         terminal.operate("default.toml", "--participant keyboard --gaze mouse");
-        terminal.key_logs(".", "trial_started");
+        terminal.start();
         let pid = terminal.read("pid");
         let killed = Command::new("kill").args([&format!("-{signal}"), pid.trim()]).status().expect("kill runs");
         assert!(killed.success());
@@ -118,7 +130,7 @@ fn check_by_hand(session: &str) {
     let Some(terminal) = Terminal::open(&format!("by-hand-{session}")) else { return };
     let kitchen = kitchen(session);
     terminal.operate(session, "--participant keyboard --gaze mouse");
-    terminal.key_logs(".", "trial_started");
+    terminal.start();
     terminal.key("Tab");
     terminal.see("KEYS: PARTICIPANT");
     let panel = Regions::new(SIZE, Visibility::Recommendation).kitchen_inside();
@@ -170,7 +182,7 @@ fn the_same_button_pressed_twice_is_in_the_log_twice() {
     let Some(terminal) = Terminal::open("twice") else { return };
     let kitchen = kitchen("default.toml");
     terminal.operate("default.toml", "--participant keyboard --gaze mouse");
-    terminal.key_logs(".", "trial_started");
+    terminal.start();
     terminal.key("Tab");
     terminal.see("KEYS: PARTICIPANT");
     let button = kitchen.button_named(Agent::Human, "assembly_board").expect("a button of the sushi kitchen");
@@ -199,7 +211,7 @@ fn a_running_session_is_watched_from_another_terminal_and_looked_at_again() {
     let Some(terminal) = Terminal::open("watched") else { return };
     let Some(other) = Terminal::open("watching") else { return };
     terminal.operate("default.toml", "");
-    terminal.key_logs(".", "trial_started");
+    terminal.start();
     let recording = terminal.recording();
     other.run(&format!("{TOMCOM} replay {} --follow", recording.display()));
     other.see("RUNNING");
@@ -246,7 +258,7 @@ fn gaze_comes_from_any_program_that_writes_lines() {
     writeln!(tracker, "nonsense").expect("sent");
     terminal.see("1 malformed");
     terminal.see("assembly board");
-    assert_eq!(terminal.count("\"gaze\""), 50);
+    assert_eq!(terminal.count("\"kind\":\"gaze\""), 50);
     terminal.quit();
     terminal.verifies();
 }
@@ -256,9 +268,14 @@ fn an_aborted_trial_is_done_again_in_a_recording_of_its_own() {
     let Some(terminal) = Terminal::open("again") else { return };
     terminal.operate("default.toml", "");
     let first = terminal.recording();
-    terminal.key_logs(".", "trial_started");
+    terminal.start();
     terminal.key_logs("C-p", "robot_held");
     terminal.see("HELD");
+    // What a terminal reports when its window loses and regains the keyboard.
+    for (report, event) in [("\x1b[O", "focus_lost"), ("\x1b[I", "focus_regained")] {
+        terminal.tmux(&["send-keys", "-l", report]);
+        terminal.wait(event, || terminal.count(event) == 1);
+    }
     terminal.key("C-k");
     terminal.see("Correct the kitchen");
     terminal.key("Enter");
@@ -279,7 +296,7 @@ fn an_aborted_trial_is_done_again_in_a_recording_of_its_own() {
     let log = |folder: &Path| fs::read_to_string(folder.join("events.jsonl")).expect("a log");
     assert!(log(&second).contains(&format!("\"redoes\":\"{name}\"")));
     assert!(log(&first).ends_with("\"session_ended\"}\n"), "the aborted recording is closed");
-    terminal.key(".");
+    terminal.start();
     terminal.see("RUNNING");
     terminal.quit();
     let orders = |log: &str| -> Vec<String> {

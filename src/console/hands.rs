@@ -2,6 +2,7 @@
 
 use super::message::Command;
 use super::model::{Dialog, Level, Model};
+use super::note::Line;
 use super::picker::{Answer, Picked, Picker, Question};
 use super::update::send;
 use super::words;
@@ -25,6 +26,10 @@ pub enum Hand {
     Abort,
     /// Do a trial again that was aborted or excluded.
     Redo,
+    /// Show what is ready for the trial, and what is not.
+    Preflight,
+    /// Write a note in words.
+    NoteInWords,
     /// Leave the trial out of the analysis, for a reason; or take that back.
     Exclude,
 }
@@ -49,6 +54,18 @@ pub(super) fn act(model: &mut Model, session: &Session, hand: Hand) -> Option<Co
             refuse(model, "there is no trial to abort")
         }
         Hand::Abort => ask(model, Question::Abort),
+        Hand::Preflight if session.phase != Phase::Ready => refuse(model, "the trial was started already"),
+        Hand::Preflight => {
+            model.dialog = Some(Dialog::Preflight);
+            None
+        }
+        Hand::NoteInWords if session.phase != Phase::Paused => {
+            refuse(model, "notes in words only when paused: the space bar has to stop the robot")
+        }
+        Hand::NoteInWords => {
+            model.dialog = Some(Dialog::Note(Line::default()));
+            None
+        }
         Hand::Redo => redo(model, session),
         Hand::Exclude if session.excluded.is_some() => {
             send(model, session, Event::TrialIncluded, Level::Done, "the trial is no longer excluded")
@@ -76,6 +93,24 @@ fn refuse(model: &mut Model, reason: &str) -> Option<Command> {
 fn ask(model: &mut Model, question: Question) -> Option<Command> {
     model.dialog = Some(Dialog::Pick(Picker::new(question)));
     None
+}
+
+/// A key on the line for a note.
+pub(super) fn write(model: &mut Model, session: &Session, mut line: Line, code: KeyCode) -> Option<Command> {
+    model.dialog = None;
+    match code {
+        KeyCode::Esc => None,
+        KeyCode::Enter if line.text().is_empty() => None,
+        KeyCode::Enter => {
+            let note = line.text();
+            send(model, session, Event::Marker { note }, Level::Done, "the note is kept")
+        }
+        _ => {
+            line.key(code);
+            model.dialog = Some(Dialog::Note(line));
+            None
+        }
+    }
 }
 
 /// A key in an open list.

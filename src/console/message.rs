@@ -24,6 +24,8 @@ pub enum Message {
 pub enum Command {
     /// An input of the session.
     Input(Event),
+    /// Record what was found before the trial, and start it.
+    Start(Event),
     /// Another place in a recording.
     Move(Move),
     /// Close this recording and do its trial again in another one.

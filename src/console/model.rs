@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use crossterm::event::KeyCode;
 
 use super::keys::{Keys, Layer};
+use super::note::Line;
 use super::picker::Picker;
 use super::playback::Playback;
 use super::view::theme::Theme;
@@ -27,6 +28,10 @@ pub enum Dialog {
     EndTrial,
     /// A list to choose from.
     Pick(Picker),
+    /// What was found before the trial.
+    Preflight,
+    /// A line for a note in words.
+    Note(Line),
 }
 
 /// How much a notice matters.
@@ -75,6 +80,8 @@ pub struct Model {
     pub dialog: Option<Dialog>,
     pub notice: Option<Notice>,
     pub recording: Recording,
+    /// Bytes that are free where the recording is; none: not known.
+    pub free_bytes: Option<u64>,
     /// The terminal window has the keyboard.
     pub focused: bool,
     /// The cell under the mouse pointer, as a display point (fractions; outside of 0..1 beside the kitchen).
@@ -106,6 +113,7 @@ impl Model {
             dialog: None,
             notice: None,
             recording: Recording::Off,
+            free_bytes: None,
             focused: true,
             pointer: None,
             trail: VecDeque::with_capacity(TRAIL),

@@ -53,15 +53,16 @@ pub fn live(kitchen: &Kitchen) -> Vec<Binding> {
             "resume it after a stop",
             Some("resume robot"),
         ),
-        hand("hold_robot", 'p', Hand::HoldRobot, ROBOT, "hold it before its next press, release it"),
-        hand("skip_press", 's', Hand::SkipPress, ROBOT, "skip its press: it decides anew"),
-        hand("drive_robot", 'd', Hand::DriveRobot, ROBOT, "drive it: choose its next press"),
+        hand("hold_robot", 'p', Hand::HoldRobot, ROBOT, "hold it, release it"),
+        hand("skip_press", 's', Hand::SkipPress, ROBOT, "skip its press"),
+        hand("drive_robot", 'd', Hand::DriveRobot, ROBOT, "choose its next press"),
         line("start_pause", &[Chord::char('.')], Action::Advance, TRIAL, "start, pause, resume", Some("start/pause")),
         line("end_trial", &[Chord::ctrl('e')], Action::EndTrial, TRIAL, "end the trial (asks first)", Some("end")),
-        hand("correct", 'k', Hand::Correct, TRIAL, "correct the kitchen: what is where"),
-        hand("abort_trial", 'x', Hand::Abort, TRIAL, "abort the trial (asks why)"),
-        hand("redo_trial", 'n', Hand::Redo, TRIAL, "do an aborted trial again"),
-        hand("exclude_trial", 'l', Hand::Exclude, TRIAL, "leave the trial out (asks why), or not"),
+        hand("preflight", 'f', Hand::Preflight, TRIAL, "what is ready for it"),
+        hand("correct", 'k', Hand::Correct, TRIAL, "correct what lies where"),
+        hand("abort_trial", 'x', Hand::Abort, TRIAL, "abort it (asks why)"),
+        hand("redo_trial", 'n', Hand::Redo, TRIAL, "do an aborted one again"),
+        hand("exclude_trial", 'l', Hand::Exclude, TRIAL, "exclude it, include it"),
         line(
             "switch_keys",
             &plain(Tab),
@@ -81,6 +82,15 @@ pub fn live(kitchen: &Kitchen) -> Vec<Binding> {
         let help = format!("note {digit} of the session");
         lines.push(wizards(line(&name, &[Chord::char(digit)], Action::Note(index), MARKERS, &help, footer)));
     }
+    let help = "a note in words, when paused";
+    lines.push(wizards(line(
+        "note_in_words",
+        &[Chord::char('0')],
+        Action::Hand(Hand::NoteInWords),
+        MARKERS,
+        help,
+        None,
+    )));
     lines.extend(buttons(kitchen));
     lines.extend([
         line("help", &[Chord::char('?')], Action::Help, CONSOLE, "this help", Some("help")),

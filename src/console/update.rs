@@ -8,6 +8,7 @@ use super::hands::{self, Hand};
 use super::keys::{Action, Layer};
 use super::message::{Command, Message};
 use super::model::{Dialog, Level, Model};
+use super::preflight;
 use super::view::regions::Regions;
 use super::words;
 use crate::communication::Sender;
@@ -63,6 +64,12 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
     let chord = Chord::of(key);
     let action = model.keys.find(model.layer, chord).map(|line| line.action.clone());
     match action {
+        // Only where the trial is paused, and the robot stands, does the space bar type a space.
+        _ if let Some(Dialog::Note(line)) = &model.dialog => {
+            let line = line.clone();
+            let counts = !chord.ctrl && (key.code != KeyCode::Enter || touch == Touch::Press);
+            if counts { hands::write(model, session, line, key.code) } else { None }
+        }
         Some(Action::StopRobot) => stop_robot(model, session),
         Some(Action::Move(to)) if model.dialog.is_none() => Some(Command::Move(to)),
         _ if let Some(Dialog::Pick(picker)) = &model.dialog => {
@@ -70,6 +77,9 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
             // A list takes quick typing and held arrows; the key that opened it, and a held enter, answer nothing.
             let counts = !chord.ctrl && (chord.code != KeyCode::Enter || touch == Touch::Press);
             if counts { hands::pick(model, session, picker, chord.code) } else { None }
+        }
+        action if model.dialog == Some(Dialog::Preflight) => {
+            preflight::answer(model, session, chord.code, action, touch == Touch::Press)
         }
         _ if touch == Touch::Held => {
             if model.dialog.is_none() {
@@ -140,7 +150,7 @@ fn answer(model: &mut Model, chord: Chord, action: Option<Action>, touch: Touch)
     let again = match dialog {
         Dialog::Quit => Some(Action::Quit),
         Dialog::EndTrial => Some(Action::EndTrial),
-        Dialog::Help | Dialog::Pick(_) => None,
+        Dialog::Help | Dialog::Pick(_) | Dialog::Preflight | Dialog::Note(_) => None,
     };
     if touch == Touch::Again && again.is_some() && action == again {
         return None;
@@ -154,7 +164,7 @@ fn answer(model: &mut Model, chord: Chord, action: Option<Action>, touch: Touch)
     }
 }
 
-fn act(model: &mut Model, session: &Session, action: Action) -> Option<Command> {
+pub(super) fn act(model: &mut Model, session: &Session, action: Action) -> Option<Command> {
     match action {
         Action::Signal(_, signal) => {
             let words = format!("shown: {}", words::signal(&signal));
@@ -204,7 +214,7 @@ fn act(model: &mut Model, session: &Session, action: Action) -> Option<Command> 
 
 fn advance(model: &mut Model, session: &Session) -> Option<Command> {
     let (event, words) = match session.phase {
-        Phase::Ready => (Event::TrialStarted, "the trial runs"),
+        Phase::Ready => return preflight::start(model, session),
         Phase::Running => (Event::TrialPaused, "paused"),
         Phase::Paused => (Event::TrialResumed, "the trial runs"),
         Phase::Over(_) | Phase::Closed => {

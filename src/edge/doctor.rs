@@ -15,39 +15,15 @@ use super::clock::WallTime;
 use super::log::Lock;
 use super::terminal::theme;
 use crate::console::view::theme::Ground;
+use crate::session::preflight::{Check, Verdict, space};
 use crate::session::settings::ConsoleSpec;
 
 /// The console breathes from here on, in columns and rows.
 const ROOMY: (u16, u16) = (120, 40);
 /// It works from here on.
 const WORKABLE: (u16, u16) = (80, 24);
-/// A session of a quarter of an hour takes about 10 MB: with less than the first there is room for some, with less than
-/// the second there may not be for one.
-const FREE_BYTES: (u64, u64) = (1 << 30, 50 << 20);
 /// The program is written after this date; a clock that shows an earlier one is not set.
 const WRITTEN: &str = "2025-01-01";
-
-/// How something was found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Verdict {
-    Fine,
-    /// The program works, but less well.
-    Weak,
-    /// The program does not work so.
-    Broken,
-}
-
-/// One thing that was looked at.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Check {
-    pub name: &'static str,
-    pub verdict: Verdict,
-    pub found: String,
-    /// How to mend it, unless it is fine.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub remedy: Option<&'static str>,
-}
 
 /// What `tomcom doctor` found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -57,19 +33,13 @@ pub struct Findings {
     pub checks: Vec<Check>,
 }
 
-impl Check {
-    fn new(name: &'static str, verdict: Verdict, found: impl Into<String>, remedy: &'static str) -> Check {
-        Check { name, verdict, found: found.into(), remedy: (verdict != Verdict::Fine).then_some(remedy) }
-    }
-}
-
 /// Looks at everything; `out` is where recordings would go.
 pub fn examine(out: &Path) -> Findings {
     let mut checks = terminal();
     checks.push(folder(out));
-    checks.push(space(out));
+    checks.push(space(free_bytes(&existing(out)).ok()));
     checks.extend([wall_clock(), timer()]);
-    let healthy = checks.iter().all(|check| check.verdict != Verdict::Broken);
+    let healthy = checks.iter().all(|check| check.verdict != Verdict::Failed);
     Findings { healthy, checks }
 }
 
@@ -77,11 +47,11 @@ pub fn examine(out: &Path) -> Findings {
 pub fn describe(findings: &Findings) -> String {
     let line = |check: &Check| {
         let mark = match check.verdict {
-            Verdict::Fine => "ok    ",
-            Verdict::Weak => "weak  ",
-            Verdict::Broken => "BROKEN",
+            Verdict::Ok => "ok    ",
+            Verdict::Warning => "warn  ",
+            Verdict::Failed => "FAILED",
         };
-        let remedy = check.remedy.map_or(String::new(), |remedy| format!("{:26}mend: {remedy}\n", ""));
+        let remedy = check.remedy.as_ref().map_or(String::new(), |remedy| format!("{:26}mend: {remedy}\n", ""));
         format!("{mark}  {:<16}  {}\n{remedy}", check.name, check.found)
     };
     findings.checks.iter().map(line).collect()
@@ -90,19 +60,19 @@ pub fn describe(findings: &Findings) -> String {
 fn terminal() -> Vec<Check> {
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
         let remedy = "run it in a terminal, not through a pipe";
-        return vec![Check::new("terminal", Verdict::Broken, "input or output is no terminal", remedy)];
+        return vec![Check::new("terminal", Verdict::Failed, "input or output is no terminal", remedy)];
     }
     let mut checks = vec![screen_size(), colours()];
     let keys = match supports_keyboard_enhancement() {
-        Ok(true) => (Verdict::Fine, "the terminal reports them: a held key is told from a second press"),
-        _ => (Verdict::Weak, "the terminal does not report them: a held key is told from a second press by time"),
+        Ok(true) => (Verdict::Ok, "the terminal reports them: a held key is told from a second press"),
+        _ => (Verdict::Warning, "the terminal does not report them: a held key is told from a second press by time"),
     };
     let remedy = "a terminal with the kitty keyboard protocol (kitty, foot, WezTerm, Ghostty), without a multiplexer";
     checks.push(Check::new("key releases", keys.0, keys.1, remedy));
     let mouse = match mouse_mode() {
-        Some(true) => (Verdict::Fine, "the terminal knows mouse reports (SGR)"),
-        Some(false) => (Verdict::Weak, "the terminal does not know mouse reports (SGR)"),
-        None => (Verdict::Weak, "the terminal does not say whether it knows mouse reports"),
+        Some(true) => (Verdict::Ok, "the terminal knows mouse reports (SGR)"),
+        Some(false) => (Verdict::Warning, "the terminal does not know mouse reports (SGR)"),
+        None => (Verdict::Warning, "the terminal does not say whether it knows mouse reports"),
     };
     checks.push(Check::new(
         "mouse",
@@ -117,9 +87,9 @@ fn screen_size() -> Check {
     let (columns, rows) = size().unwrap_or_default();
     let fits = |least: (u16, u16)| columns >= least.0 && rows >= least.1;
     let verdict = match (fits(ROOMY), fits(WORKABLE)) {
-        (true, _) => Verdict::Fine,
-        (_, true) => Verdict::Weak,
-        _ => Verdict::Broken,
+        (true, _) => Verdict::Ok,
+        (_, true) => Verdict::Warning,
+        _ => Verdict::Failed,
     };
     Check::new(
         "terminal size",
@@ -138,7 +108,7 @@ fn colours() -> Check {
         true => format!("{} colours, {signs}", if count > 256 { "16 million".to_string() } else { count.to_string() }),
         false => format!("no colours (NO_COLOR is set), {signs}"),
     };
-    let verdict = if theme.colour && theme.unicode && count >= 8 { Verdict::Fine } else { Verdict::Weak };
+    let verdict = if theme.colour && theme.unicode && count >= 8 { Verdict::Ok } else { Verdict::Warning };
     Check::new("colours", verdict, found, remedy)
 }
 
@@ -173,39 +143,31 @@ fn folder(out: &Path) -> Check {
     match tried {
         Ok(took) => {
             let found = format!("{} can be written to (64 KiB on the disk in {} ms)", out.display(), took.as_millis());
-            Check::new("recordings", Verdict::Fine, found, remedy)
+            Check::new("recordings", Verdict::Ok, found, remedy)
         }
-        Err(reason) => Check::new("recordings", Verdict::Broken, format!("{}: {reason}", out.display()), remedy),
+        Err(reason) => Check::new("recordings", Verdict::Failed, format!("{}: {reason}", out.display()), remedy),
     }
 }
 
-fn space(out: &Path) -> Check {
-    let remedy = "free space on this disk, or another one with --out";
-    let Ok(free) = free_bytes(&existing(out)) else {
-        return Check::new("free space", Verdict::Weak, "the system does not say how much there is", remedy);
-    };
-    let verdict = match free {
-        free if free >= FREE_BYTES.0 => Verdict::Fine,
-        free if free >= FREE_BYTES.1 => Verdict::Weak,
-        _ => Verdict::Broken,
-    };
-    Check::new("free space", verdict, format!("{} MB for {}", free / 1_000_000, out.display()), remedy)
-}
-
+/// Bytes that a folder's disk has left.
+///
+/// # Errors
+/// The system does not say.
 #[cfg(unix)]
-fn free_bytes(folder: &Path) -> io::Result<u64> {
+pub fn free_bytes(folder: &Path) -> io::Result<u64> {
     let found = rustix::fs::statvfs(folder)?;
     Ok(found.f_bavail.saturating_mul(found.f_frsize))
 }
 
+/// The system does not say.
 #[cfg(not(unix))]
-fn free_bytes(_: &Path) -> io::Result<u64> {
+pub fn free_bytes(_: &Path) -> io::Result<u64> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
 fn wall_clock() -> Check {
     let now = WallTime::now();
-    let verdict = if now.date().as_str() >= WRITTEN { Verdict::Fine } else { Verdict::Broken };
+    let verdict = if now.date().as_str() >= WRITTEN { Verdict::Ok } else { Verdict::Failed };
     let remedy = "set the clock: recordings are named by date (session time does not depend on it)";
     Check::new("wall clock", verdict, now.rfc3339(), remedy)
 }
@@ -218,7 +180,7 @@ fn timer() -> Check {
         began.elapsed().saturating_sub(Duration::from_millis(5))
     });
     let late_ms = late.max().unwrap_or_default().as_secs_f64() * 1000.0;
-    let verdict = if late_ms < 20.0 { Verdict::Fine } else { Verdict::Weak };
+    let verdict = if late_ms < 20.0 { Verdict::Ok } else { Verdict::Warning };
     Check::new(
         "timer",
         verdict,

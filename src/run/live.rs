@@ -17,17 +17,20 @@ use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::console::keys::KeyError;
 use crate::console::model::{Level, Recording};
+use crate::console::screen::screen as on_screen;
 use crate::console::view::theme::Ground;
 use crate::console::{Command, Keys, Message, Model, update};
 use crate::edge::clock::{SessionClock, WallTime};
+use crate::edge::doctor::free_bytes;
 use crate::edge::files::{FileError, key_map};
 use crate::edge::gaze_json::GazeLine;
 use crate::edge::log::{Lock, LogWriter, WriteError};
 use crate::edge::terminal::{Screen, theme};
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
+use crate::session::screen::Screen as OnScreen;
 use crate::session::settings::GazeSource;
-use crate::session::{Event, Header, SessionSpec, Stamped};
+use crate::session::{Event, Header, Phase, SessionSpec, Stamped};
 
 /// At most 30 frames a second.
 const FRAME: Duration = Duration::from_millis(33);
@@ -114,6 +117,8 @@ struct Live {
     /// The log cannot be written any more.
     failed: Option<WriteError>,
     clock: SessionClock,
+    /// What the wizard sees, as it was recorded last.
+    seen: Option<OnScreen>,
     /// How many judged presses the model knows.
     judged: usize,
     /// Something changed since the last frame.
@@ -204,9 +209,11 @@ impl Live {
             _before: before,
             failed: None,
             clock,
+            seen: None,
             judged: 0,
             dirty: true,
         };
+        live.model.free_bytes = free_bytes(live.log.folder()).ok();
         live.record(&first);
         Ok(live)
     }
@@ -259,6 +266,10 @@ impl Live {
         self.dirty |= !matches!(message, Message::Pointer(..));
         match update(&mut self.model, self.engine.session(), message) {
             Some(Command::Input(event)) => self.input(event),
+            Some(Command::Start(preflight)) => {
+                self.input(preflight);
+                self.input(Event::TrialStarted);
+            }
             Some(Command::Quit) => return true,
             Some(Command::Redo) => {
                 self.again = true;
@@ -321,6 +332,9 @@ impl Live {
             let text = format!("the clock jumped by {:.1} s: session time did not", by_ms as f64 / 1000.0);
             self.model.say(Level::Alarm, text);
         }
+        if self.engine.session().phase == Phase::Ready {
+            self.model.free_bytes = free_bytes(self.log.folder()).ok();
+        }
         if self.failed.is_none()
             && let Err(error) = self.log.check()
         {
@@ -361,9 +375,21 @@ impl Live {
 
     fn draw(&mut self, screen: &mut Screen) -> io::Result<()> {
         self.tick();
+        if screen.is_ready() {
+            self.tell_screen();
+        }
         // A terminal that is still busy with the last frame gets this one later.
         self.dirty = !screen.is_ready();
         screen.draw(self.engine.session(), &self.model)
+    }
+
+    /// Records what the wizard is about to see, if that is something else than before.
+    fn tell_screen(&mut self) {
+        let now = on_screen(self.engine.session(), &self.model);
+        if self.engine.session().phase != Phase::Closed && self.seen.as_ref() != Some(&now) {
+            self.seen = Some(now.clone());
+            self.input(Event::Screen(now));
+        }
     }
 
     fn close(mut self) -> Result<LiveEnd, LiveError> {

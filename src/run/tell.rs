@@ -13,6 +13,8 @@ use crate::mind::BeliefWitness;
 use crate::mind::witness::EstimateWitness;
 use crate::robot::{AbortReason, IdleReason};
 use crate::session::event::{EndReason, SignalEnd};
+use crate::session::preflight::{Check, Verdict};
+use crate::session::screen::Screen;
 use crate::session::{Event, Stamped};
 
 /// What `tomcom replay RECORDING` prints as figures.
@@ -93,6 +95,8 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::TrialAborted { reason } => format!("trial aborted: {reason}"),
         Event::TrialExcluded { reason } => format!("trial excluded: {reason}"),
         Event::TrialIncluded => "trial no longer excluded".to_string(),
+        Event::Preflight { checks, overridden } => preflight(checks, *overridden),
+        Event::Screen(screen) => on_screen(screen),
         Event::FocusLost => "the terminal lost the keyboard".to_string(),
         Event::FocusRegained => "the terminal has the keyboard again".to_string(),
         Event::Press { agent, button } => format!("{} presses {button}{}", agent.name(), verdict(stamped, follower)),
@@ -127,6 +131,21 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::SessionEnded => "session over".to_string(),
     };
     Some(format!("{:>9.3} s  {words}", follower.session.trial_clock(stamped.time).as_secs_f64()))
+}
+
+fn preflight(checks: &[Check], overridden: bool) -> String {
+    let not_ok = checks.iter().filter(|check| check.verdict != Verdict::Ok);
+    let not_ok: Vec<String> = not_ok.map(|check| format!("{} ({})", check.name, check.found)).collect();
+    match (not_ok.is_empty(), overridden) {
+        (true, _) => format!("preflight: {} ok", count(checks.len() as u64, "check", "checks")),
+        (false, true) => format!("preflight overridden: {}", not_ok.join(", ")),
+        (false, false) => format!("preflight: not ok: {}", not_ok.join(", ")),
+    }
+}
+
+fn on_screen(screen: &Screen) -> String {
+    let dialog = screen.dialog.as_ref().map_or(String::new(), |dialog| format!(", {dialog} open"));
+    format!("the wizard sees {} ({}{dialog})", screen.panels.join(", "), screen.room)
 }
 
 /// What the press of the human was worth, if it was just judged.

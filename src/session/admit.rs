@@ -18,6 +18,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
     refuse_if(phase == Phase::Closed, "the session is over")?;
     match event {
         Event::TrialStarted => refuse_if(phase != Phase::Ready, "the trial was started already"),
+        Event::Preflight { .. } => refuse_if(phase != Phase::Ready, "the trial was started already"),
         Event::TrialPaused => refuse_if(phase != Phase::Running, "no trial runs"),
         Event::TrialResumed => refuse_if(phase != Phase::Paused, "the trial is not paused"),
         Event::TrialEnded { reason: EndReason::Aborted } => Err("an aborted trial needs a reason: trial_aborted"),
@@ -86,6 +87,8 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::TrialAborted { .. }
         | Event::TrialExcluded { .. }
         | Event::TrialIncluded
+        | Event::Preflight { .. }
+        | Event::Screen(_)
         | Event::FocusLost
         | Event::FocusRegained
         | Event::Marker { .. }

@@ -5,6 +5,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::preflight::Check;
+use super::screen::Screen;
 use crate::base::time::SessionTime;
 use crate::communication::{Sender, Signal};
 use crate::gaze::GazeSample;
@@ -29,6 +31,11 @@ pub struct Stamped {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Event {
+    /// What was looked at before the trial, and whether it was started although not all was ok.
+    Preflight {
+        checks: Vec<Check>,
+        overridden: bool,
+    },
     /// The trial's clock starts; empty kitchen.
     TrialStarted,
     /// Clock, robot and orders stand still; presses have no effect.
@@ -119,6 +126,8 @@ pub enum Event {
     ClockJumped {
         by_ms: i64,
     },
+    /// Witness: what is on the wizard's screen from now on.
+    Screen(Screen),
     /// Witness: the terminal lost the keyboard: keys went elsewhere, the robot stop among them.
     FocusLost,
     FocusRegained,
@@ -134,6 +143,7 @@ impl Event {
     /// The word that stands for it in the log.
     pub fn kind(&self) -> &'static str {
         match self {
+            Event::Preflight { .. } => "preflight",
             Event::TrialStarted => "trial_started",
             Event::TrialPaused => "trial_paused",
             Event::TrialResumed => "trial_resumed",
@@ -159,6 +169,7 @@ impl Event {
             Event::SignalEnded { .. } => "signal_ended",
             Event::Marker { .. } => "marker",
             Event::ClockJumped { .. } => "clock_jumped",
+            Event::Screen(_) => "screen",
             Event::FocusLost => "focus_lost",
             Event::FocusRegained => "focus_regained",
             Event::ParticipantBelieves(_) => "participant_believes",

@@ -7,6 +7,8 @@ pub mod event;
 mod hands;
 pub mod header;
 pub mod orders;
+pub mod preflight;
+pub mod screen;
 pub mod settings;
 pub mod timers;
 

@@ -113,6 +113,19 @@ impl Terminal {
         self.wait(&format!("{text} after {key}"), || self.count(text) > before);
     }
 
+    /// Starts the trial, also where not all is ok for it: no tracker sends yet, or the disk is small.
+    pub fn start(&self) {
+        self.key(".");
+        let mut overridden = false;
+        self.wait("the trial", || {
+            if !overridden && self.screen().contains("starts all the same") {
+                self.key("o");
+                overridden = true;
+            }
+            self.screen().contains("RUNNING")
+        });
+    }
+
     /// Waits for the program's end and checks that the terminal is as it was before.
     pub fn is_whole(&self, exit: &str) {
         self.wait("the end", || self.folder.join("after").exists());

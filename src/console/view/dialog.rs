@@ -2,6 +2,7 @@
 
 use ratatui::layout::Rect;
 
+use super::hands;
 use super::paint::{Brush, width};
 use super::picker;
 use super::regions::inside;
@@ -16,6 +17,8 @@ pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
     match &model.dialog {
         None => {}
         Some(Dialog::Pick(list)) => picker::draw(brush, screen, session, list),
+        Some(Dialog::Preflight) => hands::preflight(brush, screen, session, model),
+        Some(Dialog::Note(line)) => hands::note(brush, screen, line),
         Some(Dialog::Help) => help(brush, screen, model),
         Some(Dialog::EndTrial) => ask(brush, screen, "End the trial?", &["It cannot be resumed after that."]),
         Some(Dialog::Quit) => {
@@ -115,28 +118,28 @@ fn help_line(brush: &mut Brush, x: u16, y: u16, columns: u16, line: &Line) {
     }
 }
 
-/// The groups in as few columns as hold them; a group that is longer than a column goes on in the next.
+/// The groups in as few columns as hold them: each in the first column that has room, one that is longer than a column
+/// goes on in the next.
 fn columns<'a>(groups: &'a [(&'a str, Vec<&'a Binding>)], rows: usize) -> Vec<Vec<Line<'a>>> {
     let rows = rows.max(4);
     let mut columns: Vec<Vec<Line>> = vec![Vec::new()];
     for (group, members) in groups {
-        let used = columns.last().map_or(0, Vec::len);
-        if used > 0 && used + members.len() + 2 > rows {
+        // A heading, and a line between it and what is above.
+        let fits = |column: &Vec<Line>| column.is_empty() || column.len() + members.len() + 2 <= rows;
+        let mut index = columns.iter().position(fits).unwrap_or(columns.len());
+        if index == columns.len() {
             columns.push(Vec::new());
         }
-        for (index, member) in members.iter().enumerate() {
-            let Some(column) = columns.last_mut() else { continue };
-            if column.len() >= rows {
+        if !columns[index].is_empty() {
+            columns[index].push(Line::Space);
+        }
+        columns[index].push(Line::Heading(group));
+        for member in members {
+            if columns[index].len() >= rows {
                 columns.push(Vec::new());
+                index = columns.len() - 1;
             }
-            let Some(column) = columns.last_mut() else { continue };
-            if index == 0 {
-                if !column.is_empty() {
-                    column.push(Line::Space);
-                }
-                column.push(Line::Heading(group));
-            }
-            column.push(Line::Key(member));
+            columns[index].push(Line::Key(member));
         }
     }
     columns

@@ -5,7 +5,7 @@ use super::regions::Regions;
 use super::theme::Role;
 use crate::console::hands::Hand;
 use crate::console::keys::{Action, Binding, Layer};
-use crate::console::model::{Level, Model};
+use crate::console::model::{Dialog, Level, Model};
 use crate::console::playback::Move;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Phase, Session};
@@ -76,6 +76,12 @@ fn is_over(session: &Session, model: &Model) -> bool {
 
 /// What the footer says of a key, if it does something now.
 fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&'a str> {
+    match &model.dialog {
+        // It types a space there.
+        Some(Dialog::Note(_)) => return None,
+        Some(_) if binding.action != Action::StopRobot => return None,
+        _ => {}
+    }
     let can_redo = session.aborted.is_some() || session.excluded.is_some();
     if binding.action == Action::Hand(Hand::Redo) && matches!(session.phase, Phase::Over(_)) && can_redo {
         return Some("do it again");

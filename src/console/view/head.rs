@@ -77,7 +77,7 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
     }
     let excluded = model.playback.as_ref().is_some_and(|playback| playback.excluded) || session.excluded.is_some();
     if excluded {
-        healths.push((" EXCLUDED ".to_string(), Role::FalseBelief));
+        healths.push((" EXCLUDED ".to_string(), Role::Strong));
     }
     match &model.playback {
         Some(playback) => {

@@ -5,6 +5,7 @@ pub mod dialog;
 pub mod events;
 pub mod footer;
 pub mod gaze;
+pub mod hands;
 pub mod head;
 pub mod kitchen;
 pub mod paint;
@@ -59,6 +60,8 @@ fn too_small(brush: &mut Brush, session: &Session, model: &Model) {
         Some(Dialog::EndTrial) => "End the trial? y yes, any other key no",
         Some(Dialog::Help) => "The help needs more room; any key closes it",
         Some(Dialog::Pick(_)) => "The list needs more room; esc leaves it",
+        Some(Dialog::Preflight) => "Not all is ok for the trial; more room shows what; esc leaves",
+        Some(Dialog::Note(_)) => "A note: enter keeps it, esc leaves",
         None => return,
     };
     let strong = brush.style(Role::Strong);

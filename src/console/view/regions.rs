@@ -125,6 +125,22 @@ impl Regions {
         }
     }
 
+    /// The names of the panels that have room.
+    pub fn panels(&self) -> Vec<&'static str> {
+        let panels = [
+            ("kitchen", self.kitchen),
+            ("belief", self.belief),
+            ("recommendation", self.recommendation),
+            ("gaze_map", self.gaze_map),
+            ("display", self.shown),
+            ("robot", self.robot),
+            ("gaze", self.gaze),
+            ("events", self.events),
+            ("timeline", self.timeline),
+        ];
+        panels.into_iter().filter(|(_, area)| area.area() > 0).map(|(name, _)| name).collect()
+    }
+
     /// The cells of the kitchen panel without its title, where the display points are.
     pub fn kitchen_inside(&self) -> Rect {
         match self.room {

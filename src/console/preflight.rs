@@ -1,0 +1,106 @@
+//! Before a trial starts: everything is looked at. If all is ok the trial starts at once; else a list says what is not and
+//! how to mend it, and the wizard mends it or starts all the same. What was found is recorded.
+
+use crossterm::event::KeyCode;
+
+use super::hands::Hand;
+use super::keys::Action;
+use super::message::Command;
+use super::model::{Dialog, Level, Model, Recording};
+use crate::session::admit::admit;
+use crate::session::preflight::{Check, Verdict, participant, space};
+use crate::session::{Event, Session};
+
+/// The key that starts a trial although not all is ok.
+pub const OVERRIDE: char = 'o';
+
+/// Looks at everything.
+pub fn checks(session: &Session, model: &Model) -> Vec<Check> {
+    let mut checks = participant(session, model.now);
+    checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);
+    checks
+}
+
+/// Whether all is as it should be.
+pub fn all_ok(checks: &[Check]) -> bool {
+    checks.iter().all(|check| check.verdict == Verdict::Ok)
+}
+
+fn robot(session: &Session, model: &Model) -> Check {
+    let key = |action: &Action| model.keys.of(action).map(|key| key.to_string()).unwrap_or_default();
+    match (session.robot.stopped, session.robot.held) {
+        (true, _) => {
+            Check::new("robot", Verdict::Failed, "stopped", format!("{} lets it go on", key(&Action::ResumeRobot)))
+        }
+        (false, true) => {
+            let key = key(&Action::Hand(Hand::HoldRobot));
+            Check::new("robot", Verdict::Warning, "held before its first press", format!("{key} releases it"))
+        }
+        (false, false) => Check::ok("robot", "ready"),
+    }
+}
+
+fn recording(model: &Model) -> Check {
+    match &model.recording {
+        Recording::On(folder) => Check::ok("recording", folder.clone()),
+        Recording::Off => Check::new("recording", Verdict::Failed, "nothing is recorded", "start the program anew"),
+        Recording::Lost => Check::new("recording", Verdict::Failed, "it cannot be written", "start the program anew"),
+    }
+}
+
+fn keyboard(model: &Model) -> Check {
+    match model.focused {
+        true => Check::ok("keyboard", "keys arrive here"),
+        false => Check::new("keyboard", Verdict::Failed, "keys go elsewhere", "click into this window"),
+    }
+}
+
+/// Starts the trial if all is ok; else shows what is not.
+pub(super) fn start(model: &mut Model, session: &Session) -> Option<Command> {
+    match all_ok(&checks(session, model)) {
+        true => go(model, session, false),
+        false => {
+            if let Err(reason) = admit(session, &Event::TrialStarted) {
+                model.say(Level::Refused, reason);
+                return None;
+            }
+            model.dialog = Some(Dialog::Preflight);
+            None
+        }
+    }
+}
+
+fn go(model: &mut Model, session: &Session, overridden: bool) -> Option<Command> {
+    let checks = checks(session, model);
+    if let Err(reason) = admit(session, &Event::TrialStarted) {
+        model.say(Level::Refused, reason);
+        return None;
+    }
+    model.dialog = None;
+    let words = if overridden { "the trial runs, although not all was ok" } else { "all is ok: the trial runs" };
+    model.say(Level::Done, words);
+    Some(Command::Start(Event::Preflight { checks, overridden }))
+}
+
+/// A key while the list is open.
+pub(super) fn answer(
+    model: &mut Model,
+    session: &Session,
+    code: KeyCode,
+    action: Option<Action>,
+    is_press: bool,
+) -> Option<Command> {
+    let is_ok = all_ok(&checks(session, model));
+    match (code, action) {
+        (KeyCode::Esc, _) => {
+            model.dialog = None;
+            None
+        }
+        // What mends it works here, too.
+        (_, Some(Action::ResumeRobot)) => super::update::act(model, session, Action::ResumeRobot),
+        (_, Some(Action::Hand(Hand::HoldRobot))) if is_press => super::hands::act(model, session, Hand::HoldRobot),
+        (_, Some(Action::Advance)) if is_press && is_ok => go(model, session, false),
+        (KeyCode::Char(OVERRIDE), _) if is_press && !is_ok => go(model, session, true),
+        _ => None,
+    }
+}

@@ -1,0 +1,44 @@
+//! What the wizard can see now, for the record.
+
+use super::model::{Dialog, Model};
+use super::picker::Question;
+use super::view::regions::{LEAST, Regions, Room};
+use crate::session::Session;
+use crate::session::screen::Screen;
+
+/// What is on the screen.
+pub fn screen(session: &Session, model: &Model) -> Screen {
+    let visibility = session.spec.console.visibility;
+    let fits = model.size.0 >= LEAST.0 && model.size.1 >= LEAST.1;
+    let regions = Regions::new(model.size, visibility);
+    let room = match regions.room {
+        _ if !fits => "too_small",
+        Room::Small => "small",
+        Room::Medium => "medium",
+        Room::Large => "large",
+    };
+    let panels = if fits { regions.panels() } else { Vec::new() };
+    Screen {
+        visibility,
+        room: room.to_string(),
+        panels: panels.into_iter().map(str::to_string).collect(),
+        dialog: model.dialog.as_ref().map(|dialog| name(dialog).to_string()),
+    }
+}
+
+fn name(dialog: &Dialog) -> &'static str {
+    match dialog {
+        Dialog::Help => "help",
+        Dialog::Quit => "quit",
+        Dialog::EndTrial => "end_trial",
+        Dialog::Preflight => "preflight",
+        Dialog::Note(_) => "note",
+        Dialog::Pick(list) => match list.question {
+            Question::Place => "correct_place",
+            Question::Content(_) => "correct_content",
+            Question::Button => "drive_robot",
+            Question::Abort => "abort_trial",
+            Question::Exclude => "exclude_trial",
+        },
+    }
+}

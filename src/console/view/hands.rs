@@ -1,0 +1,78 @@
+//! The list before a trial starts, and the line for a note in words.
+
+use ratatui::layout::Rect;
+
+use super::dialog::open;
+use super::paint::{Brush, wrap};
+use super::theme::Role;
+use crate::console::keys::Action;
+use crate::console::model::Model;
+use crate::console::note::Line;
+use crate::console::preflight::{OVERRIDE, all_ok, checks};
+use crate::session::preflight::{Check, Verdict};
+use crate::session::{Phase, Session};
+
+const COLUMNS: u16 = 76;
+/// Where what was found begins.
+const FOUND: u16 = 23;
+
+/// Draws what was found before a trial.
+pub fn preflight(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
+    let checks = checks(session, model);
+    let mended = checks.iter().filter(|check| check.remedy.is_some()).count();
+    let size = (COLUMNS, (checks.len() + mended) as u16 + 5);
+    let inside = open(brush, screen, size, "Before the trial", "space stops the robot");
+    let mut y = inside.y;
+    for check in &checks {
+        line(brush, inside, y, check);
+        y += 1;
+        if let Some(remedy) = &check.remedy {
+            let x = inside.x + FOUND;
+            brush.parts(x, y, inside.right().saturating_sub(x + 1), &[("mend: ", Role::Quiet), (remedy, Role::Text)]);
+            y += 1;
+        }
+    }
+    let start = model.keys.of(&Action::Advance).map(|key| key.to_string()).unwrap_or_default();
+    let anyway = OVERRIDE.to_string();
+    let (key, does) = match (session.phase, all_ok(&checks)) {
+        (Phase::Ready, true) => (start.as_str(), " starts the trial   "),
+        (Phase::Ready, false) => (anyway.as_str(), " starts all the same   "),
+        _ => ("", ""),
+    };
+    let parts = [(key, Role::Strong), (does, Role::Quiet), ("esc", Role::Strong), (" leaves", Role::Quiet)];
+    brush.parts(inside.x + 1, inside.bottom().saturating_sub(1), inside.width.saturating_sub(2), &parts);
+}
+
+fn line(brush: &mut Brush, inside: Rect, y: u16, check: &Check) {
+    let (word, role) = match check.verdict {
+        Verdict::Ok => ("ok", Role::Text),
+        Verdict::Warning => ("warning", Role::Strong),
+        Verdict::Failed => ("FAILED", Role::Alarm),
+    };
+    brush.parts(inside.x + 1, y, 8, &[(word, role)]);
+    brush.parts(inside.x + 10, y, FOUND - 11, &[(&check.name, Role::Text)]);
+    let x = inside.x + FOUND;
+    brush.parts(x, y, inside.right().saturating_sub(x + 1), &[(&check.found, role)]);
+}
+
+/// Draws the line for a note.
+pub fn note(brush: &mut Brush, screen: Rect, text: &Line) {
+    let says = "The trial is paused and the robot stands: only here the space bar types a space.";
+    let lines = wrap(says, COLUMNS - 4);
+    let size = (COLUMNS, lines.len() as u16 + 7);
+    let inside = open(brush, screen, size, "A note", "the trial is paused");
+    let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+    let [before, under, after] = text.parts(usize::from(columns));
+    let style = brush.style(Role::Strong);
+    let badge = brush.theme.badge(Role::Text);
+    let at = brush.text(x, inside.y + 1, columns, &before, style);
+    let at = brush.text(at, inside.y + 1, (x + columns).saturating_sub(at), &under, badge);
+    brush.text(at, inside.y + 1, (x + columns).saturating_sub(at), &after, style);
+    let quiet = brush.style(Role::Quiet);
+    for (row, line) in lines.iter().enumerate() {
+        brush.text(x, inside.y + 3 + row as u16, columns, line, quiet);
+    }
+    let parts =
+        [("enter", Role::Strong), (" keeps it   ", Role::Quiet), ("esc", Role::Strong), (" leaves", Role::Quiet)];
+    brush.parts(x, inside.bottom().saturating_sub(1), columns, &parts);
+}

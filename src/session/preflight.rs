@@ -1,0 +1,104 @@
+//! What is looked at before a trial starts, and before a session: each with a verdict, and how to mend it.
+
+use serde::{Deserialize, Serialize};
+
+use super::Session;
+use super::settings::{GazeSource, ParticipantKind};
+use crate::base::time::SessionTime;
+
+/// Slower gaze misses short looks, in samples a second.
+const SLOW_HZ: f64 = 20.0;
+/// After so many seconds without a usable sample nothing is known of the gaze.
+const UNUSABLE_S: f64 = 1.0;
+/// A session of a quarter of an hour takes about 10 MB: with less than the first there is room for some, with less than
+/// the second there may not be for one. In bytes.
+const FREE_BYTES: (u64, u64) = (1 << 30, 50 << 20);
+
+/// How something was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    Ok,
+    /// It works, but less well.
+    Warning,
+    /// It does not work so.
+    Failed,
+}
+
+/// One thing that was looked at.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Check {
+    pub name: String,
+    pub verdict: Verdict,
+    pub found: String,
+    /// How to mend it, unless it is ok.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub remedy: Option<String>,
+}
+
+impl Check {
+    pub fn new(name: &str, verdict: Verdict, found: impl Into<String>, remedy: impl Into<String>) -> Check {
+        let remedy = (verdict != Verdict::Ok).then(|| remedy.into());
+        Check { name: name.to_string(), verdict, found: found.into(), remedy }
+    }
+
+    /// Something that is as it should be.
+    pub fn ok(name: &str, found: impl Into<String>) -> Check {
+        Check::new(name, Verdict::Ok, found, "")
+    }
+}
+
+/// Whether there is room for a recording, with so many bytes free; `None`: the system does not say.
+pub fn space(free_bytes: Option<u64>) -> Check {
+    let remedy = "free some, or record elsewhere with --out";
+    let Some(free) = free_bytes else {
+        return Check::new("free space", Verdict::Warning, "the system does not say how much there is", remedy);
+    };
+    let verdict = match free {
+        free if free >= FREE_BYTES.0 => Verdict::Ok,
+        free if free >= FREE_BYTES.1 => Verdict::Warning,
+        _ => Verdict::Failed,
+    };
+    Check::new("free space", verdict, format!("{} MB", free / 1_000_000), remedy)
+}
+
+/// Who takes part, and where the gaze comes from. No source has a calibration of its own that could be asked for.
+pub fn participant(session: &Session, now: SessionTime) -> Vec<Check> {
+    let spec = &session.spec.participant;
+    let who = match spec.kind {
+        ParticipantKind::Simulated => "simulated",
+        ParticipantKind::Keyboard => "at this keyboard",
+    };
+    let mut checks = vec![Check::ok("participant", format!("{}, {who}", spec.code))];
+    match spec.gaze {
+        GazeSource::Simulated => checks.push(Check::ok("gaze", "simulated: it comes with the trial")),
+        GazeSource::None => checks.push(Check::ok("gaze", "none is asked for")),
+        GazeSource::Mouse | GazeSource::Json => checks.extend(gaze(session, now)),
+    }
+    checks
+}
+
+fn gaze(session: &Session, now: SessionTime) -> Vec<Check> {
+    let mends = match session.spec.participant.gaze {
+        GazeSource::Json => format!("start what sends lines to port {}", session.spec.participant.gaze_port),
+        _ => "move the pointer over the kitchen".to_string(),
+    };
+    let Some(hz) = session.gaze_hz(now) else {
+        let verdict =
+            if session.spec.participant.gaze == GazeSource::Json { Verdict::Failed } else { Verdict::Warning };
+        return vec![Check::new("gaze", verdict, "no sample arrives", mends)];
+    };
+    let verdict = if hz < SLOW_HZ { Verdict::Warning } else { Verdict::Ok };
+    let rate =
+        Check::new("gaze", verdict, format!("{hz:.0} samples a second"), "a faster tracker: 60 a second or more");
+    let usable = session.gaze.last.filter(|(at, _)| now.secs_since(*at) <= UNUSABLE_S);
+    let quality = match usable {
+        Some((_, sample)) => Check::ok("gaze quality", format!("usable, confidence {:.2}", sample.confidence)),
+        None => {
+            let found = "no sample is on the display with enough confidence";
+            Check::new("gaze quality", Verdict::Warning, found, "set the tracker up anew, or calibrate it")
+        }
+    };
+    vec![rate, quality]
+}

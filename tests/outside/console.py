@@ -123,7 +123,8 @@ def session_file(folder, **participant):
     settings = "\n".join(f"{name} = {value!r}" for name, value in participant.items()).replace("'", '"')
     layout = Path("layouts/sushi.toml").resolve()
     path.write_text(
-        f'layout = "{layout}"\n[trial]\npresses = 4000000000\nseconds = 86400.0\n[participant]\n{settings}\n'
+        f'layout = "{layout}"\n[trial]\npresses = 4000000000\nseconds = 86400.0\n'
+        f"[signals]\ncool_down_s = 0.0\n[participant]\n{settings}\n"
     )
     return path
 

@@ -72,6 +72,9 @@ def measure(tomcom, folder, signals, gap_s, hz):
     with console:
         if hz:
             sender = subprocess.Popen([sys.executable, "-c", SENDER, str(PORT), str(hz)])
+            # Without gaze that arrives the trial would not start at once.
+            console.wait_for("confidence 0.9")
+            time.sleep(0.5)
         console.key(".")
         console.wait_for("RUNNING")
         time.sleep(2)

@@ -19,13 +19,15 @@ use crate::edge::doctor;
 use crate::edge::files::{self, FileError};
 use crate::edge::log::{self, RulingError, WriteError};
 use crate::run::live::LiveError;
-use crate::run::options::{self, Beginning, Overrides};
+use crate::run::options::{self, Beginning, Overrides, Series};
+use crate::run::plan::{self, Overview};
 use crate::run::replay::Replay;
 use crate::run::review::{self, ReviewError};
+use crate::run::series::{self, Sitting};
 use crate::run::simulate::SimulateError;
 use crate::run::standing::Standing;
-use crate::run::{check_beliefs, kitchen, series, simulate, tell, verify};
-use crate::session::settings::{Condition, GazeSource, ParticipantKind};
+use crate::run::{check_beliefs, kitchen, simulate, tell, verify};
+use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
 
 /// Exit code: something failed.
 const FAILED: u8 = 1;
@@ -83,6 +85,7 @@ impl From<LiveError> for Failure {
         match error {
             LiveError::Resume(error) => Failure::Wrong(miette::Report::new(error)),
             LiveError::File(error) => Failure::from(*error),
+            error @ LiveError::Plan(_) => Failure::Wrong(miette::Report::new(error)),
             error => Failure::Failed(miette::Report::new(error)),
         }
     }
@@ -117,6 +120,7 @@ pub fn main() -> ExitCode {
         Command::Operate(args) => operate(&args),
         Command::Replay(args) => replay(&args),
         Command::Simulate(args) => simulate(&args),
+        Command::Plan(args) => show_plan(&args),
         Command::Kitchen(args) => kitchen(&args),
         Command::Keys(args) => keys(&args),
         Command::Exclude(args) => exclude(&args),
@@ -145,15 +149,14 @@ fn print(format: Format, figures: &impl Serialize, text: impl FnOnce() -> String
 }
 
 fn operate(args: &OperateArgs) -> Result<(), Failure> {
-    let beginning = match &args.recording {
-        Some(recording) => Beginning::Continued(recording.clone()),
+    let done = match &args.recording {
+        Some(recording) => series::operate(Beginning::Continued(recording.clone()))?,
         None => new_session(args)?,
     };
-    let done = series::operate(beginning)?;
     Ok(write!(std::io::stdout(), "{}", series::describe(&done))?)
 }
 
-fn new_session(args: &OperateArgs) -> Result<Beginning, Failure> {
+fn new_session(args: &OperateArgs) -> Result<Sitting, Failure> {
     let flags = &args.flags;
     let mut files = options::session_or_default(args.session.as_deref())?;
     let overrides = Overrides {
@@ -172,11 +175,33 @@ fn new_session(args: &OperateArgs) -> Result<Beginning, Failure> {
             ConditionArg::Wizard => Condition::Wizard,
         }),
         seed: flags.seed,
+        code: flags.code.clone(),
     };
-    overrides
-        .apply(&mut files)
-        .map_err(|error| Failure::Wrong(miette::miette!(help = error.remedy, "found {}", error.found)))?;
-    Ok(Beginning::New { files: Box::new(files), out: flags.out.clone() })
+    overrides.apply(&mut files).map_err(wrong_setting)?;
+    let out = flags.out.clone();
+    match &files.spec.plan {
+        None => Ok(series::operate(Beginning::New { files: Box::new(files), trial: 0, out })?),
+        Some(plan) => {
+            let participant = options::participant_of_plan(plan, flags.code.as_deref());
+            let participant = participant.map_err(wrong_setting)?;
+            Ok(series::operate_series(Series { files, participant, out })?)
+        }
+    }
+}
+
+/// A setting that cannot be, of the command line.
+fn wrong_setting(error: SettingError) -> Failure {
+    Failure::Wrong(miette::miette!(help = error.remedy, "found {}", error.found))
+}
+
+fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
+    let files = files::read_session(&args.session)?;
+    let Some(study) = files.study() else {
+        let found = "a session without a plan".to_string();
+        return Err(wrong_argument(&args.session, found, "a session file with a [plan], like sessions/study.toml"));
+    };
+    let figures = Overview::of(&study, &args.out)?;
+    print(args.format, &figures, || plan::describe(&figures))
 }
 
 fn replay(args: &ReplayArgs) -> Result<(), Failure> {
@@ -243,8 +268,19 @@ fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         return Err(wrong_argument(&args.session, found, "kind = \"simulated\" and gaze = \"simulated\""));
     }
     files.spec.seed = args.seed.unwrap_or(files.spec.seed);
-    let simulation = simulate::Simulation { files, trials: args.trials, out: args.out.clone() };
-    let bar = progress(args.trials, "trials");
+    let trials = match (args.trials, files.study()) {
+        (trials, None) => trials.unwrap_or(1),
+        (trials, Some(study)) => {
+            let most = study.plan.codes().len() as u64 * study.plan.conditions.len() as u64;
+            if let Some(trials) = trials.filter(|&trials| trials > most) {
+                let found = format!("--trials {trials}, with a plan of {most} trials");
+                return Err(wrong_argument(&args.session, found, "at most the trials of the plan"));
+            }
+            trials.unwrap_or(most)
+        }
+    };
+    let simulation = simulate::Simulation { files, trials, out: args.out.clone() };
+    let bar = progress(trials, "trials");
     let figures = simulate::simulate(&simulation, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &figures, || simulate::describe(&figures))

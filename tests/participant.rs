@@ -241,7 +241,7 @@ impl Bench {
     fn new(population: &Population, seed: u64) -> Bench {
         let kitchen = kitchen("sushi");
         let state = kitchen.empty_state();
-        let mut one = SimulatedParticipant::of_population(kitchen.clone(), population, seed, 0);
+        let mut one = SimulatedParticipant::of_population(kitchen.clone(), population, seed, 0, 0);
         assert_eq!(one.next_due(), None, "nothing before the trial");
         one.on_trial_start(SessionTime::ZERO, state);
         let cost = CostToGo::new(kitchen.clone());

@@ -22,6 +22,7 @@ pub(super) enum Command {
     Operate(OperateArgs),
     Replay(ReplayArgs),
     Simulate(SimulateArgs),
+    Plan(PlanArgs),
     Kitchen(KitchenArgs),
     Keys(KeysArgs),
     Exclude(ExcludeArgs),
@@ -41,12 +42,15 @@ pub(super) enum Format {
 
 /// Opens the wizard's console and runs a session; everything that happens is recorded.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom operate sessions/default.toml --participant keyboard --gaze mouse")]
+#[command(
+    after_help = "Examples: tomcom operate sessions/default.toml --participant keyboard --gaze mouse\n          \
+                  tomcom operate sessions/study.toml --code P07"
+)]
 pub(super) struct OperateArgs {
     /// The session file; by default sessions/default.toml, or the one that the program carries.
     pub(super) session: Option<PathBuf>,
     /// Take up this recording, which was cut, in a new part beside it; its session is the same, a running trial is paused.
-    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "participant", "gaze", "condition", "seed", "out"])]
+    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "condition", "seed", "out"])]
     pub(super) recording: Option<PathBuf>,
     #[command(flatten)]
     pub(super) flags: OperateFlags,
@@ -54,6 +58,9 @@ pub(super) struct OperateArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct OperateFlags {
+    /// The participant's code, never a name; where the session file has a plan, the next step of this participant is run.
+    #[arg(long)]
+    pub(super) code: Option<String>,
     /// Who plays the human's part, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) participant: Option<Participant>,
@@ -120,15 +127,30 @@ pub(super) struct ReplayArgs {
     pub(super) format: Format,
 }
 
+/// Prints a plan: participants, groups, what is done and what comes next, from the recordings that are there.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom plan sessions/study.toml --out sessions")]
+pub(super) struct PlanArgs {
+    /// The session file with the plan.
+    pub(super) session: PathBuf,
+    /// Where the recordings are.
+    #[arg(long, default_value = "sessions")]
+    pub(super) out: PathBuf,
+    /// How to print it.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(super) format: Format,
+}
+
 /// Simulates whole trials, faster than real time. Participants are simulated and unassisted: nobody is there to signal.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom simulate sessions/default.toml --trials 20 --seed 7 --out recordings")]
 pub(super) struct SimulateArgs {
     /// The session file.
     pub(super) session: PathBuf,
-    /// How many trials; each has orders and a participant of its own and does not depend on how many there are.
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=100_000))]
-    pub(super) trials: u64,
+    /// How many trials; each has orders and a participant of its own and does not depend on how many there are. Of a
+    /// session with a plan, the first so many of its trials, participant by participant. By default 1, or the whole plan.
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub(super) trials: Option<u64>,
     /// Everything random follows from it; by default the session file's.
     #[arg(long)]
     pub(super) seed: Option<u64>,

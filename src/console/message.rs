@@ -30,6 +30,8 @@ pub enum Command {
     Move(Move),
     /// Close this recording and do its trial again in another one.
     Redo,
+    /// This recording is done: close it and go on to the next one of the series.
+    Next,
     /// Close the console; in a live run the session ends.
     Quit,
 }

@@ -3,6 +3,7 @@
 
 pub mod arrange;
 pub mod chord;
+pub mod form;
 pub mod hands;
 pub mod keymap;
 pub mod keys;
@@ -12,6 +13,7 @@ pub mod note;
 pub mod picker;
 pub mod playback;
 pub mod preflight;
+pub mod question;
 pub mod screen;
 mod table;
 pub mod update;

@@ -4,6 +4,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
 use super::arrange::Plan;
 use super::chord::Chord;
+use super::form::{self, sheet};
 use super::hands::{self, Hand};
 use super::keys::{Action, Layer};
 use super::message::{Command, Message};
@@ -92,9 +93,35 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
             None
         }
         action if model.dialog.is_some() => answer(model, chord, action, touch),
+        action if model.playback.is_none() && sheet(session).is_some() => {
+            on_sheet(model, session, key.code, action, touch)
+        }
         Some(action) => act(model, session, action),
         None => {
             unknown(model, session, key.code);
+            None
+        }
+    }
+}
+
+/// A key while a sheet lies in front of the console: of the others, those that help and leave still work.
+fn on_sheet(
+    model: &mut Model,
+    session: &Session,
+    code: KeyCode,
+    action: Option<Action>,
+    touch: Touch,
+) -> Option<Command> {
+    match (form::stroke(code, action == Some(Action::Advance)), action) {
+        // Nobody reads a step or an item so fast: the key is still down from the last one.
+        (Some(form::Stroke::On | form::Stroke::Digit(_)), _) if touch == Touch::Again => None,
+        (Some(stroke), _) => form::write(model, session, stroke),
+        (None, Some(action @ (Action::Help | Action::Quit | Action::ResumeRobot))) => act(model, session, action),
+        (None, _) => {
+            model.say(
+                Level::Refused,
+                "this key has no meaning before the trial: the last line of the sheet says what has",
+            );
             None
         }
     }
@@ -217,8 +244,9 @@ fn advance(model: &mut Model, session: &Session) -> Option<Command> {
         Phase::Ready => return preflight::start(model, session),
         Phase::Running => (Event::TrialPaused, "paused"),
         Phase::Paused => (Event::TrialResumed, "the trial runs"),
-        Phase::Over(_) | Phase::Closed => {
-            model.say(Level::Refused, "the trial is over");
+        Phase::Over(_) => return form::leave(model, session),
+        Phase::Closed => {
+            model.say(Level::Refused, "the session is over");
             return None;
         }
     };

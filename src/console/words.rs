@@ -1,9 +1,12 @@
 //! What happened, in words.
 
 use crate::base::time::SessionTime;
+use crate::base::words::count;
 use crate::communication::{Sender, Signal};
 use crate::kitchen::{Action, Agent, Kitchen, LocationId, OrderContent};
 use crate::session::event::{EndReason, SignalEnd};
+use crate::session::plan::PhaseSpec;
+use crate::session::protocol::ProtocolEvent;
 use crate::session::{Happening, Phase, Session};
 
 /// A button in words: "cutting board", "take rice".
@@ -51,6 +54,14 @@ pub fn recipe(session: &Session, order: LocationId) -> Option<String> {
     Some(names.join(" + "))
 }
 
+/// Where the session is, in a word: the phase of the study around the trial, and that of the trial in it.
+pub fn stage(session: &Session) -> String {
+    match session.study_phase().map(PhaseSpec::phase) {
+        Some(around) if !around.has_trial() && session.phase != Phase::Closed => around.name().to_uppercase(),
+        _ => phase(session.phase).to_string(),
+    }
+}
+
 /// The phase of the trial in a word.
 pub fn phase(phase: Phase) -> &'static str {
     match phase {
@@ -60,6 +71,28 @@ pub fn phase(phase: Phase) -> &'static str {
         Phase::Over(EndReason::Aborted) => "ABORTED",
         Phase::Over(_) => "TRIAL OVER",
         Phase::Closed => "CLOSED",
+    }
+}
+
+/// What happened around the trial.
+pub fn protocol(event: &ProtocolEvent) -> String {
+    match event {
+        ProtocolEvent::ConsentGiven => "the participant agrees to be recorded".to_string(),
+        ProtocolEvent::PhaseStarted { phase, .. } => format!("phase: {}", phase.name()),
+        ProtocolEvent::Ticked { step, done: true } => format!("step {step} is done"),
+        ProtocolEvent::Ticked { step, done: false } => format!("step {step} is not done after all"),
+        ProtocolEvent::ItemShown { item } => format!("item {item} is shown"),
+        ProtocolEvent::AnswersShown => "all answers are shown".to_string(),
+        ProtocolEvent::ItemAnswered { item, answer } => format!("item {item}: {answer}"),
+        ProtocolEvent::ItemSkipped { item } => format!("item {item}: no answer"),
+        ProtocolEvent::AnswersConfirmed => "the answers are confirmed".to_string(),
+        ProtocolEvent::CriterionChecked { met, orders, presses, errors } => {
+            let met = if *met { "met" } else { "not met" };
+            let orders = count(*orders, "order", "orders");
+            let errors = count(*errors, "error", "errors");
+            format!("criterion {met}: {orders} served, {errors} in {}", count(*presses, "press", "presses"))
+        }
+        ProtocolEvent::CriterionWaived { reason } => format!("criterion waived: {reason}"),
     }
 }
 
@@ -98,6 +131,7 @@ fn trial(phase: Phase) -> &'static str {
         Phase::Paused => "paused",
         Phase::Over(EndReason::Presses) => "over: all presses made",
         Phase::Over(EndReason::Time) => "over: time is up",
+        Phase::Over(EndReason::Orders) => "over: all orders served",
         Phase::Over(EndReason::Wizard) => "ended by the wizard",
         Phase::Over(EndReason::Aborted) => "aborted by the wizard",
         Phase::Closed => "closed",

@@ -17,6 +17,8 @@ use crate::kitchen::recipe::RecipesSpec;
 use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
 use crate::session::header::FileText;
+use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study};
+use crate::session::settings::SettingError;
 
 /// What reading a file gives.
 pub type FileResult<T> = Result<T, FileError>;
@@ -67,6 +69,15 @@ pub struct SessionFiles {
     pub spec: SessionSpec,
     pub kitchen: KitchenFiles,
     pub keys: Option<FileText>,
+    /// Those that its plan names, in order.
+    pub questionnaires: Vec<Questionnaire>,
+}
+
+impl SessionFiles {
+    /// The study that it plans.
+    pub fn study(&self) -> Option<Study> {
+        Study::new(&self.spec, self.questionnaires.clone())
+    }
 }
 
 /// Reads a session file, the layout and the key file that it names, and the recipes that the layout names.
@@ -82,8 +93,16 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
         }
         spec.human = read_human_model(&folder.join(file))?;
     }
-    spec.check()
-        .map_err(|error| FileError::at(path, &text, line_of(&text, error.key), error.found, error.remedy.into()))?;
+    spec.check().map_err(|error| wrong_setting(path, &text, error))?;
+    if let Some(step) = &spec.step {
+        let found = format!("the place of a recording in the plan \"{}\"", step.plan);
+        let remedy = "no [step]: the program finds it out from the plan and its recordings".to_string();
+        return Err(FileError::at(path, &text, line_of(&text, "digest"), found, remedy));
+    }
+    let questionnaires = match &spec.plan {
+        Some(plan) => read_questionnaires(path, &text, plan)?,
+        None => Vec::new(),
+    };
     let layout_path = folder.join(&spec.layout);
     if let Err(reason) = std::fs::metadata(&layout_path) {
         let found = format!("layout = \"{}\", which cannot be read: {reason}", spec.layout);
@@ -104,7 +123,30 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     };
     let mut kitchen = read_kitchen_with(&layout_path, keys.as_ref())?;
     kitchen.layout.path.clone_from(&spec.layout);
-    Ok(SessionFiles { spec, kitchen, keys })
+    Ok(SessionFiles { spec, kitchen, keys, questionnaires })
+}
+
+/// Reads the questionnaires of a plan, in its order.
+fn read_questionnaires(session: &Path, text: &str, plan: &PlanSpec) -> FileResult<Vec<Questionnaire>> {
+    let folder = session.parent().unwrap_or(Path::new("."));
+    let read = |asked: &QuestionnaireSpec| {
+        let path = folder.join(&asked.file);
+        if let Err(reason) = std::fs::metadata(&path) {
+            let found = format!("file = \"{}\", which cannot be read: {reason}", asked.file);
+            let remedy = "the path of a questionnaire, relative to the session file".to_string();
+            return Err(FileError::at(session, text, line_of(text, "file"), found, remedy));
+        }
+        let text = read_text(&path)?;
+        let questionnaire: Questionnaire = parse(&path, &text)?;
+        questionnaire.check().map_err(|error| wrong_setting(&path, &text, error))?;
+        Ok(questionnaire)
+    };
+    plan.questionnaire.iter().map(read).collect()
+}
+
+/// The error of a setting in a file's text.
+fn wrong_setting(path: &Path, text: &str, error: SettingError) -> FileError {
+    FileError::at(path, text, line_of(text, error.key), error.found, error.remedy.to_string())
 }
 
 /// Reads a file with parameters of the human model; those that it does not name have their defaults.
@@ -129,15 +171,21 @@ pub fn built_in_session() -> FileResult<SessionFiles> {
     let layout = (Path::new(&spec.layout), include_str!("../../layouts/sushi.toml").to_string());
     let recipes = (Path::new("../recipes/sushi.toml"), include_str!("../../recipes/sushi.toml").to_string());
     let kitchen = compile_kitchen(layout, recipes)?;
-    Ok(SessionFiles { spec, kitchen, keys: None })
+    Ok(SessionFiles { spec, kitchen, keys: None, questionnaires: Vec::new() })
 }
 
-/// Where the line with `key = …` is in a TOML text.
+/// Where the line with `key = …` is in a TOML text; of `table.key` the one below the header of that table.
 fn line_of(text: &str, key: &str) -> Option<Range<usize>> {
+    let (table, key) = key.rsplit_once('.').unwrap_or(("", key));
+    let mut is_table = table.is_empty();
     let mut start = 0;
     for line in text.split_inclusive('\n') {
-        let rest = line.trim_start().strip_prefix(key);
-        if rest.is_some_and(|rest| rest.trim_start().starts_with('=')) {
+        let trimmed = line.trim();
+        if trimmed.starts_with('[') && !table.is_empty() {
+            is_table = trimmed.trim_matches(['[', ']']).rsplit('.').next() == Some(table);
+        }
+        let rest = trimmed.strip_prefix(key);
+        if is_table && rest.is_some_and(|rest| rest.trim_start().starts_with('=')) {
             return Some(start..start + line.trim_end().len());
         }
         start += line.len();
@@ -236,6 +284,7 @@ pub enum Kind {
     Recipes,
     HumanModel,
     Keys,
+    Questionnaire,
 }
 
 impl Kind {
@@ -246,6 +295,7 @@ impl Kind {
         match () {
             () if has(&["recipes", "display", "storage", "place"]) => Some(Kind::Layout),
             () if has(&["ingredient", "slot", "dish"]) => Some(Kind::Recipes),
+            () if has(&["scale", "item"]) => Some(Kind::Questionnaire),
             () if has(&["layout"]) => Some(Kind::Session),
             () if has(&["prior", "perception", "transition", "decision"]) => Some(Kind::HumanModel),
             () if has(&["console", "replay", "signals", "buttons"]) => Some(Kind::Keys),
@@ -260,6 +310,7 @@ impl Kind {
             Kind::Recipes => "a recipe file",
             Kind::HumanModel => "a file with parameters of the human model",
             Kind::Keys => "a key file",
+            Kind::Questionnaire => "a questionnaire",
         }
     }
 
@@ -268,6 +319,7 @@ impl Kind {
             Kind::Session => "a session file, like sessions/default.toml",
             Kind::Layout => "a layout file, like layouts/sushi.toml",
             Kind::Recipes => "a recipe file, like recipes/sushi.toml",
+            Kind::Questionnaire => "a questionnaire, like questionnaires/acceptance.toml",
             Kind::HumanModel => "parameters of the human model, like those in the header of a recording",
             Kind::Keys => "a key file, as tomcom keys prints it",
         }
@@ -290,6 +342,10 @@ impl OfKind for LayoutSpec {
 
 impl OfKind for RecipesSpec {
     const KIND: Kind = Kind::Recipes;
+}
+
+impl OfKind for Questionnaire {
+    const KIND: Kind = Kind::Questionnaire;
 }
 
 impl OfKind for HumanModel {

@@ -6,4 +6,5 @@ pub mod doctor;
 pub mod files;
 pub mod gaze_json;
 pub mod log;
+pub mod recordings;
 pub mod terminal;

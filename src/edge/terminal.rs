@@ -21,6 +21,8 @@ use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 
 use super::ask::ground;
+use crate::console::question::Question;
+use crate::console::view::sheet::draw_question;
 use crate::console::view::theme::{Ground, Theme};
 use crate::console::{Message, Model, view};
 use crate::session::Session;
@@ -125,11 +127,23 @@ impl Screen {
     /// # Errors
     /// The terminal's size cannot be found out.
     pub fn draw(&mut self, session: &Session, model: &Model) -> io::Result<()> {
+        self.compose(|frame| view(session, model, frame))
+    }
+
+    /// Composes a question that stands alone.
+    ///
+    /// # Errors
+    /// The terminal's size cannot be found out.
+    pub fn ask(&mut self, question: &Question, theme: Theme) -> io::Result<()> {
+        self.compose(|frame| draw_question(question, theme, frame))
+    }
+
+    fn compose(&mut self, draw: impl FnOnce(&mut ratatui::Frame)) -> io::Result<()> {
         if !self.is_ready() {
             return Ok(());
         }
         queue!(self.terminal.backend_mut(), BeginSynchronizedUpdate)?;
-        self.terminal.draw(|frame| view(session, model, frame))?;
+        self.terminal.draw(draw)?;
         queue!(self.terminal.backend_mut(), EndSynchronizedUpdate)?;
         self.busy.store(true, Ordering::Release);
         if self.frames.try_send(self.composed.take()).is_err() {

@@ -82,14 +82,15 @@ pub struct SimulatedParticipant {
 }
 
 impl SimulatedParticipant {
-    /// The participant of this trial, from the default population.
-    pub fn new(kitchen: Arc<Kitchen>, seed: u64, trial: u64) -> Self {
-        Self::of_population(kitchen, &Population::default(), seed, trial)
+    /// The participant of this trial, from the default population. Who it is follows from `person`, what it happens to do
+    /// from `trial`: one person may have several trials, each of which it begins afresh.
+    pub fn new(kitchen: Arc<Kitchen>, seed: u64, person: u64, trial: u64) -> Self {
+        Self::of_population(kitchen, &Population::default(), seed, person, trial)
     }
 
-    /// The participant of this trial, drawn from a population.
-    pub fn of_population(kitchen: Arc<Kitchen>, population: &Population, seed: u64, trial: u64) -> Self {
-        let person = population.draw(&mut stream(seed, "participant", trial));
+    /// The same, drawn from a population.
+    pub fn of_population(kitchen: Arc<Kitchen>, population: &Population, seed: u64, person: u64, trial: u64) -> Self {
+        let person = population.draw(&mut stream(seed, "participant", person));
         let mut beliefs = Beliefs::of_state(&kitchen, kitchen.empty_state(), SURE_AT_START);
         let recall = stream(seed, "participant's memory", trial);
         let memory = Memory::new(&kitchen, population, &person, recall, &mut beliefs);

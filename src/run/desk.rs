@@ -3,18 +3,27 @@
 
 use std::io;
 use std::pin::Pin;
+use std::time::Duration;
 
 use tokio::sync::mpsc::Receiver;
+use tokio::time::sleep;
 
 use super::live::LiveError;
 use crate::console::Message;
+use crate::console::question::{Question, Reply};
+use crate::console::view::theme::Theme;
 use crate::edge::gaze_json::{self, GazeLine};
-use crate::edge::terminal::{Hands, Screen, asked_to_end, outlive_file_limits};
-use crate::session::settings::{GazeSource, ParticipantSpec};
+use crate::edge::terminal::{Hands, Screen, asked_to_end, outlive_file_limits, theme};
+use crate::session::SessionSpec;
+use crate::session::settings::GazeSource;
+
+/// A question is drawn so often.
+const REDRAW: Duration = Duration::from_millis(100);
 
 /// What the recordings of a series share.
 pub(super) struct Desk {
     pub screen: Screen,
+    theme: Theme,
     hands: Hands,
     end: Pin<Box<dyn Future<Output = io::Result<()>>>>,
     /// Lines of the tracker's program, if the gaze comes from one.
@@ -22,11 +31,12 @@ pub(super) struct Desk {
 }
 
 impl Desk {
-    /// Opens the devices that this participant needs, and takes the terminal.
+    /// Opens the devices that these settings need, and takes the terminal.
     ///
     /// # Errors
     /// There is no terminal, or nothing can listen for gaze.
-    pub async fn take(participant: &ParticipantSpec) -> Result<Desk, LiveError> {
+    pub async fn take(spec: &SessionSpec) -> Result<Desk, LiveError> {
+        let participant = &spec.participant;
         outlive_file_limits().map_err(LiveError::Terminal)?;
         let gaze = match (participant.gaze, participant.gaze_port) {
             (GazeSource::Json, port) => {
@@ -35,7 +45,8 @@ impl Desk {
             _ => None,
         };
         let screen = Screen::take(participant.gaze == GazeSource::Mouse).map_err(LiveError::Terminal)?;
-        Ok(Desk { screen, hands: Hands::default(), end: Box::pin(asked_to_end()), gaze })
+        let theme = theme(&spec.console, screen.ground);
+        Ok(Desk { screen, theme, hands: Hands::default(), end: Box::pin(asked_to_end()), gaze })
     }
 
     /// What comes in next; nothing if the program has to end, because it is asked to or because the terminal is gone.
@@ -45,6 +56,33 @@ impl Desk {
             _ = &mut self.end => None,
             message = self.hands.next() => message.map(Arrival::Message),
             Some(line) = receive(&mut self.gaze) => Some(Arrival::Gaze(line)),
+        }
+    }
+
+    /// Asks before a recording begins; the place of the answer, nothing if the program is to be left.
+    ///
+    /// # Errors
+    /// The terminal is gone.
+    pub async fn ask(&mut self, question: &Question) -> Result<Option<usize>, LiveError> {
+        loop {
+            self.screen.ask(question, self.theme).map_err(LiveError::Terminal)?;
+            let arrival = tokio::select! {
+                arrival = self.next() => arrival,
+                // A terminal that was still busy with a frame gets the question now.
+                () = sleep(REDRAW) => continue,
+            };
+            match arrival {
+                Some(Arrival::Message(Message::Key(key))) => match question.reply(&key) {
+                    Some(Reply::Answer(index)) => return Ok(Some(index)),
+                    Some(Reply::Leave) => return Ok(None),
+                    None => {}
+                },
+                Some(_) => {}
+                None => return Ok(None),
+            }
+            if self.screen.is_lost() {
+                return Ok(None);
+            }
         }
     }
 }

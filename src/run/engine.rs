@@ -17,9 +17,10 @@ use crate::session::admit::{admit, hygiene};
 use crate::session::apply::ApplyError;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::orders::OrderList;
+use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::timers::TimerQueue;
-use crate::session::{Effect, Event, Session, SessionSpec, Stamped, Timer};
+use crate::session::{Effect, Event, Phase, Session, SessionSpec, Stamped, Timer};
 
 /// A running session.
 #[derive(Clone, Debug)]
@@ -56,10 +57,12 @@ impl Engine {
     /// A session before its first event. `cost` may be shared with other engines of the same kitchen: what it remembers
     /// never changes what it answers.
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64, cost: CostToGo) -> Engine {
-        let orders = OrderList::new(kitchen.dishes.len(), spec.seed, trial);
+        let orders = OrderList::new(kitchen.dishes.len(), &spec, trial);
         let robot = TimedRobot::new(spec.robot.press_s, spec.robot.press_spread, spec.seed, trial);
         let is_simulated = spec.participant.kind == ParticipantKind::Simulated;
-        let participant = is_simulated.then(|| SimulatedParticipant::new(kitchen.clone(), spec.seed, trial));
+        // In a plan the same person has several trials.
+        let person = spec.step.as_ref().map_or(trial, |step| u64::from(step.participant));
+        let participant = is_simulated.then(|| SimulatedParticipant::new(kitchen.clone(), spec.seed, person, trial));
         let follower = Follower::new(kitchen, spec, cost);
         Engine { follower, timers: TimerQueue::default(), orders, robot, participant, next_seq: 0, out: Vec::new() }
     }
@@ -163,6 +166,7 @@ impl Engine {
             }
             Timer::EndSignal => Event::SignalEnded { reason: SignalEnd::Elapsed },
             Timer::EndTrial => Event::TrialEnded { reason: EndReason::Time },
+            Timer::EndTrialByOrders => Event::TrialEnded { reason: EndReason::Orders },
             Timer::EndTrialByPresses => Event::TrialEnded { reason: EndReason::Presses },
         };
         self.record_own(now, event);
@@ -221,6 +225,7 @@ impl Engine {
         if let Some(deed) = given_up {
             self.record_deed(now, deed);
         }
+        self.check_criterion(now);
         Ok(())
     }
 
@@ -243,6 +248,20 @@ impl Engine {
             _ => {}
         }
         None
+    }
+
+    /// When a familiarisation is over: whether the participant may go on to the first trial.
+    fn check_criterion(&mut self, now: SessionTime) {
+        let session = self.session();
+        let Some((step, protocol)) = session.step() else { return };
+        let Some(criterion) = step.criterion.filter(|_| protocol.practice.is_none()) else { return };
+        if !matches!(session.phase, Phase::Over(_)) || session.aborted.is_some() {
+            return;
+        }
+        let (orders, presses) = (session.served.len() as u32, session.presses[Agent::Human.index()]);
+        let errors = self.follower.errors() as u32;
+        let met = criterion.is_met(orders, presses, errors);
+        self.record_own(now, Event::Protocol(ProtocolEvent::CriterionChecked { met, orders, presses, errors }));
     }
 
     fn perform(&mut self, effect: Effect) {

@@ -2,6 +2,7 @@
 
 use super::engine::Engine;
 use crate::base::time::SessionTime;
+use crate::session::protocol::ProtocolEvent;
 use crate::session::{Event, Phase, Stamped};
 
 /// Runs a whole session of one trial, from its start to its end, and gives every event to `record`.
@@ -9,6 +10,10 @@ use crate::session::{Event, Phase, Stamped};
 /// # Errors
 /// The first error of `record`; the session stops there.
 pub fn run<E>(engine: &mut Engine, mut record: impl FnMut(&Stamped) -> Result<(), E>) -> Result<(), E> {
+    if let Some(phase) = engine.session().next_phase() {
+        let event = Event::Protocol(ProtocolEvent::PhaseStarted { phase, number: 1 });
+        engine.input(SessionTime::ZERO, event).events.iter().try_for_each(&mut record)?;
+    }
     engine.input(SessionTime::ZERO, Event::TrialStarted).events.iter().try_for_each(&mut record)?;
     // The trial's time is always pending while it runs, so there is a next event until it is over.
     while engine.session().phase == Phase::Running {

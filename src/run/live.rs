@@ -28,6 +28,7 @@ use crate::edge::log::{Lock, LogWriter, WriteError};
 use crate::edge::terminal::{Screen, theme};
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
+use crate::session::protocol::ProtocolEvent;
 use crate::session::screen::Screen as OnScreen;
 use crate::session::settings::GazeSource;
 use crate::session::{Event, Header, Phase, SessionSpec, Stamped};
@@ -65,6 +66,11 @@ pub enum LiveError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Resume(#[from] ResumeError),
+    #[error("found {0}")]
+    #[diagnostic(help(
+        "the plan as it was, or another folder with --out for another plan; tomcom plan SESSION shows it"
+    ))]
+    Plan(String),
 }
 
 impl From<FileError> for LiveError {
@@ -73,11 +79,23 @@ impl From<FileError> for LiveError {
     }
 }
 
+/// How the wizard left a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Leaving {
+    /// The program ends.
+    Quit,
+    /// What comes next in the series begins.
+    Next,
+    /// The trial is done again, in another recording.
+    Redo,
+}
+
 /// What came of a live session.
 #[derive(Clone, Debug)]
 pub struct LiveEnd {
     /// The folder of the recording.
     pub folder: PathBuf,
+    pub leaving: Leaving,
     pub figures: TrialFigures,
     pub standing: Standing,
     /// What its trial is done again with, if that was asked for.
@@ -110,8 +128,6 @@ struct Live {
     /// Of this recording.
     header: Header,
     log: LogWriter,
-    /// The trial is to be done again.
-    again: bool,
     /// The part that is continued is not to be written by anybody else.
     _before: Option<Lock>,
     /// The log cannot be written any more.
@@ -131,6 +147,8 @@ pub(super) struct Begun {
     header: Header,
     /// What belongs at the beginning of the recording.
     first: Vec<Stamped>,
+    /// The participant has just agreed to be recorded.
+    consent: bool,
     /// When it begins.
     time: SessionTime,
     place: Place,
@@ -150,25 +168,31 @@ impl Begun {
     /// The recording that is to go on cannot.
     pub fn new(beginning: Beginning) -> Result<Begun, LiveError> {
         match beginning {
-            Beginning::New { files, out } => {
+            Beginning::New { files, trial, out } => {
                 let kitchen = Arc::new(files.kitchen.kitchen);
-                let mut header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+                let mut header = Header::new(files.spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
                 header.keys = files.keys;
-                let engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
-                Ok(Begun { engine, header, first: Vec::new(), time: SessionTime::ZERO, place: Place::In(out) })
+                let engine = Engine::new(kitchen.clone(), files.spec, trial, CostToGo::new(kitchen));
+                let (first, time, place) = (Vec::new(), SessionTime::ZERO, Place::In(out));
+                Ok(Begun { engine, header, first, consent: false, time, place })
             }
             Beginning::Again { header, kitchen, out } => {
                 let engine = Engine::new(kitchen.clone(), header.session.clone(), header.trial, CostToGo::new(kitchen));
                 let (header, place) = (*header, Place::In(out));
-                Ok(Begun { engine, header, first: Vec::new(), time: SessionTime::ZERO, place })
+                Ok(Begun { engine, header, first: Vec::new(), consent: false, time: SessionTime::ZERO, place })
             }
             Beginning::Continued(recording) => {
                 let resumed = resume(&recording)?;
                 let place = Place::After(resumed.folder, resumed.lock);
                 let (header, first, time) = (resumed.header, resumed.first, resumed.time);
-                Ok(Begun { engine: resumed.engine, header, first, time, place })
+                Ok(Begun { engine: resumed.engine, header, first, consent: false, time, place })
             }
         }
+    }
+
+    /// The participant has just agreed to be recorded.
+    pub fn with_consent(self) -> Begun {
+        Begun { consent: true, ..self }
     }
 
     /// Its settings.
@@ -187,7 +211,7 @@ pub(super) async fn run(begun: Begun, desk: &mut Desk) -> Result<LiveEnd, LiveEr
 
 impl Live {
     fn open(begun: Begun, ground: Ground) -> Result<Live, LiveError> {
-        let Begun { engine, mut header, first, time, place } = begun;
+        let Begun { engine, mut header, first, consent, time, place } = begun;
         let (kitchen, spec) = (engine.session().kitchen.clone(), engine.session().spec.clone());
         let keys = Keys::live(&kitchen, &spec, &key_map(header.keys.as_ref())?)?;
         let wall = WallTime::now();
@@ -205,7 +229,6 @@ impl Live {
             model,
             header,
             log,
-            again: false,
             _before: before,
             failed: None,
             clock,
@@ -215,6 +238,8 @@ impl Live {
         };
         live.model.free_bytes = free_bytes(live.log.folder()).ok();
         live.record(&first);
+        live.tick();
+        live.begin_protocol(consent);
         Ok(live)
     }
 
@@ -224,6 +249,7 @@ impl Live {
         pointer.set_missed_tick_behavior(MissedTickBehavior::Skip);
         let mut flush = interval(FLUSH);
         let mut watch = interval(WATCH);
+        let mut leaving = Leaving::Quit;
         let mut next_frame = Instant::now();
         let mut next_move = Instant::now();
         while !desk.screen.is_lost() {
@@ -232,7 +258,10 @@ impl Live {
             tokio::select! {
                 biased;
                 arrival = desk.next() => match arrival {
-                    Some(Arrival::Message(message)) => if self.take(message) { break },
+                    Some(Arrival::Message(message)) => if let Some(how) = self.take(message) {
+                        leaving = how;
+                        break;
+                    },
                     Some(Arrival::Gaze(line)) => self.gaze(line),
                     None => break,
                 },
@@ -251,7 +280,19 @@ impl Live {
                 }
             }
         }
-        self.close()
+        self.close(leaving)
+    }
+
+    /// Begins the first phase of a plan; without consent nothing is recorded, so that comes first.
+    fn begin_protocol(&mut self, consent: bool) {
+        if consent {
+            self.input(Event::Protocol(ProtocolEvent::ConsentGiven));
+        }
+        let session = self.engine.session();
+        let first = session.next_phase().filter(|_| session.protocol.as_ref().is_some_and(|it| it.number == 0));
+        if let Some(phase) = first {
+            self.input(Event::Protocol(ProtocolEvent::PhaseStarted { phase, number: 1 }));
+        }
     }
 
     /// Tells the model what time it is.
@@ -260,8 +301,8 @@ impl Live {
         self.model.clock = self.model.now;
     }
 
-    /// Takes a message of the terminal; whether the wizard has quit.
-    fn take(&mut self, message: Message) -> bool {
+    /// Takes a message of the terminal; how the wizard leaves the recording, if that is what it says.
+    fn take(&mut self, message: Message) -> Option<Leaving> {
         self.tick();
         self.dirty |= !matches!(message, Message::Pointer(..));
         match update(&mut self.model, self.engine.session(), message) {
@@ -270,14 +311,12 @@ impl Live {
                 self.input(preflight);
                 self.input(Event::TrialStarted);
             }
-            Some(Command::Quit) => return true,
-            Some(Command::Redo) => {
-                self.again = true;
-                return true;
-            }
+            Some(Command::Quit) => return Some(Leaving::Quit),
+            Some(Command::Next) => return Some(Leaving::Next),
+            Some(Command::Redo) => return Some(Leaving::Redo),
             Some(Command::Move(_)) | None => {}
         }
-        false
+        None
     }
 
     /// The same trial in another recording beside this one.
@@ -392,18 +431,22 @@ impl Live {
         }
     }
 
-    fn close(mut self) -> Result<LiveEnd, LiveError> {
+    fn close(mut self, leaving: Leaving) -> Result<LiveEnd, LiveError> {
         if self.failed.is_none() {
-            self.input(Event::SessionEnded);
+            // What was left in the middle of a plan is not over: it can be continued.
+            if leaving != Leaving::Quit || self.engine.session().is_step_done() {
+                self.input(Event::SessionEnded);
+            }
             self.flush();
         }
         let folder = self.log.folder().to_path_buf();
         match self.failed {
             Some(error) => Err(error.into()),
             None => {
-                let again = self.again.then(|| self.beginning_again());
+                let again = (leaving == Leaving::Redo).then(|| self.beginning_again());
                 let standing = Standing::at_console(self.engine.session());
-                Ok(LiveEnd { folder, figures: TrialFigures::of(&self.engine.into_follower()), standing, again })
+                let figures = TrialFigures::of(&self.engine.into_follower());
+                Ok(LiveEnd { folder, leaving, figures, standing, again })
             }
         }
     }

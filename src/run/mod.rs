@@ -9,6 +9,7 @@ pub mod headless;
 pub mod kitchen;
 pub mod live;
 pub mod options;
+pub mod plan;
 pub mod replay;
 pub mod resume;
 pub mod review;

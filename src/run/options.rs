@@ -6,26 +6,39 @@ use std::sync::Arc;
 use crate::edge::files::{self, FileResult, SessionFiles};
 use crate::kitchen::Kitchen;
 use crate::session::Header;
+use crate::session::plan::PlanSpec;
 use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
 
 /// What `tomcom operate` is asked for.
 #[derive(Clone, Debug)]
 pub enum Beginning {
-    /// A new session with these settings, recorded in a folder in `out`.
-    New { files: Box<SessionFiles>, out: PathBuf },
     /// A trial that is done again, in another recording in `out`: the header of that, and the kitchen that it describes.
     Again { header: Box<Header>, kitchen: Arc<Kitchen>, out: PathBuf },
+    /// A new session with these settings, recorded in a folder in `out`; `trial` tells it from others with the same seed.
+    New { files: Box<SessionFiles>, trial: u64, out: PathBuf },
     /// The session of this recording, which was cut.
     Continued(PathBuf),
 }
 
+/// What is still to be done by a participant of a plan.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// The settings with the plan.
+    pub files: SessionFiles,
+    /// The participant's place in the plan, from 0.
+    pub participant: usize,
+    /// Where its recordings are and come.
+    pub out: PathBuf,
+}
+
 /// Settings of the session file that arguments replace.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Overrides {
     pub participant: Option<ParticipantKind>,
     pub gaze: Option<GazeSource>,
     pub condition: Option<Condition>,
     pub seed: Option<u64>,
+    pub code: Option<String>,
 }
 
 impl Overrides {
@@ -36,9 +49,19 @@ impl Overrides {
     /// Settings that exclude each other.
     pub fn apply(self, files: &mut SessionFiles) -> Result<(), SettingError> {
         let spec = &mut files.spec;
+        let decided = [("--condition", self.condition.is_some()), ("--seed", self.seed.is_some())];
+        if let Some((key, _)) = decided.into_iter().find(|(_, is_given)| *is_given && spec.plan.is_some()) {
+            let found = format!("{key}, with a session that has a plan");
+            return Err(SettingError {
+                key,
+                found,
+                remedy: "the plan decides it: groups and conditions follow from it",
+            });
+        }
         spec.seed = self.seed.unwrap_or(spec.seed);
         spec.trial.condition = self.condition.unwrap_or(spec.trial.condition);
         let participant = &mut spec.participant;
+        participant.code = self.code.unwrap_or(std::mem::take(&mut participant.code));
         participant.kind = self.participant.unwrap_or(participant.kind);
         participant.gaze = match (self.gaze, self.participant, participant.gaze) {
             (Some(gaze), _, _) => gaze,
@@ -47,6 +70,18 @@ impl Overrides {
         };
         spec.check()
     }
+}
+
+/// The place of the participant with this code in a plan.
+///
+/// # Errors
+/// No code, or one that is not in the plan.
+pub fn participant_of_plan(plan: &PlanSpec, code: Option<&str>) -> Result<usize, SettingError> {
+    let remedy = "--code with one of the codes that tomcom plan SESSION lists";
+    let wrong = |found: String| SettingError { key: "code", found, remedy };
+    let code = code.ok_or_else(|| wrong(format!("the plan \"{}\", and no participant", plan.name)))?;
+    let place = plan.codes().iter().position(|one| one == code);
+    place.ok_or_else(|| wrong(format!("--code {code}, who is not in the plan \"{}\"", plan.name)))
 }
 
 /// The session file that was named; else `sessions/default.toml` if it is there; else the one that the program carries.

@@ -250,7 +250,7 @@ impl Review {
         match update(&mut self.model, &self.film.session, message) {
             Some(Command::Move(to)) => self.go(to),
             Some(Command::Quit) => return true,
-            Some(Command::Input(_) | Command::Start(_) | Command::Redo) | None => {}
+            Some(Command::Input(_) | Command::Start(_) | Command::Next | Command::Redo) | None => {}
         }
         false
     }

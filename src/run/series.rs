@@ -2,38 +2,200 @@
 //! series of them, made at the same desk without leaving the console.
 
 use super::desk::Desk;
-use super::live::{self, Begun, LiveEnd, LiveError};
-use super::options::Beginning;
+use super::live::{self, Begun, Leaving, LiveEnd, LiveError};
+use super::options::{Beginning, Series};
+use crate::console::question::Question;
+use crate::edge::files::SessionFiles;
+use crate::edge::recordings;
+use crate::session::plan::{Next, Progress, Study};
 
-/// Runs sessions at the console, one after another, until the wizard quits or none is left. What was recorded, in order.
-///
-/// # Errors
-/// There is no terminal, a session cannot be recorded, or the gaze input cannot be opened.
-pub fn operate(beginning: Beginning) -> Result<Vec<LiveEnd>, LiveError> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(LiveError::Terminal)?;
-    // Inside, since signals and sockets belong to the runtime.
-    runtime.block_on(run(beginning))
+/// What came of one session or a series.
+#[derive(Clone, Debug)]
+pub struct Sitting {
+    pub done: Vec<LiveEnd>,
+    /// How the participant stands, for people.
+    pub remark: Option<String>,
 }
 
-async fn run(beginning: Beginning) -> Result<Vec<LiveEnd>, LiveError> {
-    let mut done = Vec::new();
-    let mut desk = None;
-    let mut next = Some(beginning);
-    while let Some(beginning) = next.take() {
+/// Runs one session at the console, until the wizard leaves it; its trial again, where that is asked for.
+///
+/// # Errors
+/// There is no terminal, the session cannot be recorded, or the gaze input cannot be opened.
+pub fn operate(beginning: Beginning) -> Result<Sitting, LiveError> {
+    in_runtime(async {
         // Before the terminal is taken and a recording is made: a session that cannot start leaves nothing behind.
-        let begun = Begun::new(beginning)?;
-        let desk = match &mut desk {
-            Some(desk) => desk,
-            none => none.insert(Desk::take(&begun.spec().participant).await?),
-        };
-        let mut end = live::run(begun, desk).await?;
-        next = end.again.take();
-        done.push(end);
-    }
-    Ok(done)
+        let mut begun = Begun::new(beginning)?;
+        let mut desk = Desk::take(begun.spec()).await?;
+        let mut done = Vec::new();
+        loop {
+            let mut end = live::run(begun, &mut desk).await?;
+            let again = end.again.take();
+            done.push(end);
+            match again {
+                Some(again) => begun = Begun::new(again)?,
+                None => return Ok(Sitting { done, remark: None }),
+            }
+        }
+    })
+}
+
+/// Runs what is still to be done by a participant of a plan, one recording after another, until the wizard quits.
+///
+/// # Errors
+/// Those of [`operate`], and recordings that cannot be read or do not fit the plan.
+pub fn operate_series(series: Series) -> Result<Sitting, LiveError> {
+    in_runtime(async { Planned::new(series)?.run().await })
+}
+
+/// Signals and sockets belong to a runtime.
+fn in_runtime(work: impl Future<Output = Result<Sitting, LiveError>>) -> Result<Sitting, LiveError> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(LiveError::Terminal)?;
+    runtime.block_on(work)
 }
 
 /// What came of it, for people.
-pub fn describe(done: &[LiveEnd]) -> String {
-    done.iter().map(|end| format!("{}\n", end.describe())).collect()
+pub fn describe(sitting: &Sitting) -> String {
+    let ends: String = sitting.done.iter().map(|end| format!("{}\n", end.describe())).collect();
+    let remark = sitting.remark.as_ref().map_or(String::new(), |remark| format!("{remark}\n"));
+    ends + &remark
+}
+
+/// What the wizard chose before a recording.
+enum Choice {
+    Begin(Box<Begun>),
+    /// Nothing: the program is left, with this remark.
+    Leave(Option<String>),
+}
+
+/// The series of one participant of a plan. What comes next is read from the recordings each time, and kept nowhere else.
+struct Planned {
+    series: Series,
+    study: Study,
+}
+
+impl Planned {
+    fn new(series: Series) -> Result<Planned, LiveError> {
+        let study = series.files.study().ok_or(LiveError::Plan("a session without a plan".to_string()))?;
+        Ok(Planned { series, study })
+    }
+
+    fn progress(&self) -> Result<Progress, LiveError> {
+        let made = recordings::of_plan(&self.series.out, &self.study.plan.name)?;
+        Progress::of(&self.study, self.series.participant, &made).map_err(LiveError::Plan)
+    }
+
+    async fn run(self) -> Result<Sitting, LiveError> {
+        let mut done = Vec::new();
+        let mut progress = self.progress()?;
+        if progress.next == Next::Finished {
+            return Ok(Sitting { done, remark: Some(stands(&progress)) });
+        }
+        let mut desk = Desk::take(&self.series.files.spec).await?;
+        while progress.next != Next::Finished {
+            let begun = match self.choose(&progress, &mut desk).await? {
+                Choice::Begin(begun) => begun,
+                Choice::Leave(remark) => {
+                    let remark = remark.unwrap_or_else(|| stands(&progress));
+                    return Ok(Sitting { done, remark: Some(remark) });
+                }
+            };
+            let end = live::run(*begun, &mut desk).await?;
+            let (leaving, slot) = (end.leaving, progress.next.slot());
+            done.push(end);
+            progress = self.progress()?;
+            match leaving {
+                Leaving::Quit => break,
+                Leaving::Next => {}
+                Leaving::Redo => progress.redo(slot),
+            }
+        }
+        Ok(Sitting { done, remark: Some(stands(&progress)) })
+    }
+
+    /// Gets the next recording ready, after what has to be asked first.
+    async fn choose(&self, progress: &Progress, desk: &mut Desk) -> Result<Choice, LiveError> {
+        let (slot, attempt, open) = match &progress.next {
+            Next::Begin { slot, attempt } => (*slot, *attempt, None),
+            Next::Choose { recording, slot, attempt } => (*slot, *attempt, Some(recording)),
+            Next::Finished => return Ok(Choice::Leave(None)),
+        };
+        let (spec, trial) = self.study.settings(progress.wanted(slot, attempt));
+        let label = spec.step.as_ref().map_or(String::new(), |step| step.label());
+        let continued = match open {
+            None => None,
+            Some(recording) => match desk.ask(&which(progress, recording, slot)).await? {
+                Some(0) => Some(recording),
+                Some(_) => None,
+                None => return Ok(Choice::Leave(None)),
+            },
+        };
+        if !progress.consent {
+            match desk.ask(&consent(&self.study, progress, &label)).await? {
+                Some(0) => {}
+                Some(_) => {
+                    let remark = format!("{} does not agree: nothing was recorded", progress.code);
+                    return Ok(Choice::Leave(Some(remark)));
+                }
+                None => return Ok(Choice::Leave(None)),
+            }
+        }
+        let beginning = match continued {
+            Some(recording) => Beginning::Continued(self.series.out.join(recording)),
+            None => {
+                let files = Box::new(SessionFiles { spec, ..self.series.files.clone() });
+                Beginning::New { files, trial, out: self.series.out.clone() }
+            }
+        };
+        let begun = Begun::new(beginning)?;
+        Ok(Choice::Begin(Box::new(if progress.consent { begun } else { begun.with_consent() })))
+    }
+}
+
+/// Whether an open recording is continued or done again.
+fn which(progress: &Progress, recording: &str, slot: usize) -> Question {
+    let name = slot_name(progress, slot);
+    let attempt = progress.steps.get(slot).and_then(|stand| stand.recordings.last());
+    let presses = attempt.map_or(0, |attempt| attempt.presses);
+    Question {
+        title: format!("{}: the {name} is not done", progress.code),
+        text: vec![format!("{recording} was cut, or left before everything was done. It has {presses} presses.")],
+        answers: vec![
+            "continue it where it was, with a running trial paused".to_string(),
+            "do it again from its beginning; what was recorded is kept, and does not count".to_string(),
+        ],
+    }
+}
+
+/// Nothing is recorded before the participant agrees.
+fn consent(study: &Study, progress: &Progress, label: &str) -> Question {
+    Question {
+        title: format!("{}: {label}", progress.code),
+        text: vec![study.plan.consent.clone()],
+        answers: vec!["yes, the participant agrees".to_string(), "no: nothing is recorded".to_string()],
+    }
+}
+
+/// "familiarisation", "trial 1".
+pub(super) fn slot_name(progress: &Progress, slot: usize) -> String {
+    match progress.steps.get(slot).and_then(|stand| stand.slot.period) {
+        Some(period) => format!("trial {period}"),
+        None => "familiarisation".to_string(),
+    }
+}
+
+/// How a participant stands, in a line.
+pub(super) fn stands(progress: &Progress) -> String {
+    let (code, done, all) = (&progress.code, progress.done(), progress.steps.len());
+    match &progress.next {
+        Next::Finished => format!("{code}: everything is done"),
+        Next::Begin { slot, attempt: 1 } => {
+            format!("{code}: {done} of {all} done, next {}", slot_name(progress, *slot))
+        }
+        Next::Begin { slot, attempt } => {
+            format!("{code}: {done} of {all} done, next {} again (attempt {attempt})", slot_name(progress, *slot))
+        }
+        Next::Choose { slot, recording, .. } => {
+            format!("{code}: {done} of {all} done, {} is open in {recording}", slot_name(progress, *slot))
+        }
+    }
 }

@@ -37,8 +37,8 @@ pub struct Simulation {
     pub out: PathBuf,
 }
 
-/// The settings of a simulated trial. Nobody is there to send signals, so the condition is the unassisted one; every
-/// trial has a participant of its own, with a code of its own.
+/// The settings of a simulated trial without a plan. Nobody is there to send signals, so the condition is the unassisted
+/// one; every trial has a participant of its own, with a code of its own.
 pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
     let mut spec = spec.clone();
     spec.trial.condition = Condition::None;
@@ -106,12 +106,21 @@ pub fn simulate(simulation: &Simulation, done: impl Fn() + Sync) -> Result<Simul
 
 /// Where the recording of a trial goes; the name does not depend on how many trials there are.
 fn folder_of_trial(out: &Path, spec: &SessionSpec) -> PathBuf {
-    out.join(format!("seed{}-{}", spec.seed, spec.participant.code))
+    let period = spec.step.as_ref().and_then(|step| step.period);
+    let period = period.map_or(String::new(), |period| format!("-{period}"));
+    out.join(format!("seed{}-{}{period}", spec.seed, spec.participant.code))
 }
 
+/// The header of a trial: of a plan the trials participant by participant, else each of a participant of its own.
 fn header_of_trial(simulation: &Simulation, trial: u64) -> Header {
     let files = &simulation.files.kitchen;
-    let spec = settings_of_trial(&simulation.files.spec, trial);
+    let (spec, trial) = match simulation.files.study() {
+        None => (settings_of_trial(&simulation.files.spec, trial), trial),
+        Some(study) => {
+            let periods = study.plan.conditions.len() as u64;
+            study.simulated((trial / periods) as usize, (trial % periods) as u32 + 1)
+        }
+    };
     Header::new(spec, trial, files.layout.clone(), files.recipes.clone())
 }
 
@@ -124,7 +133,7 @@ fn simulate_trial(
     let header = header_of_trial(simulation, trial);
     let folder = folder_of_trial(&simulation.out, &header.session);
     let mut log = LogWriter::create_simulated(&folder, &header)?;
-    let mut engine = Engine::new(kitchen.clone(), header.session, trial, cost);
+    let mut engine = Engine::new(kitchen.clone(), header.session, header.trial, cost);
     headless::run(&mut engine, |stamped: &Stamped| log.append(stamped))?;
     log.flush()?;
     let follower: Follower = engine.into_follower();

@@ -7,6 +7,7 @@ use super::follower::Follower;
 use super::standing::Standing;
 use crate::base::words::count;
 use crate::communication::Signal;
+use crate::console::words;
 use crate::kitchen::{Agent, Kitchen};
 use crate::measures::attribution::Cause;
 use crate::mind::BeliefWitness;
@@ -90,6 +91,7 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::TrialResumed => "trial goes on".to_string(),
         Event::TrialEnded { reason: EndReason::Presses } => "trial over: number of presses".to_string(),
         Event::TrialEnded { reason: EndReason::Time } => "trial over: time".to_string(),
+        Event::TrialEnded { reason: EndReason::Orders } => "trial over: orders served".to_string(),
         Event::TrialEnded { reason: EndReason::Wizard } => "trial ended by the wizard".to_string(),
         Event::TrialEnded { reason: EndReason::Aborted } => "trial aborted".to_string(),
         Event::TrialAborted { reason } => format!("trial aborted: {reason}"),
@@ -126,6 +128,7 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::SignalEnded { reason: SignalEnd::Elapsed } => "signal ends".to_string(),
         Event::SignalEnded { reason: SignalEnd::TakenBack } => "signal taken back".to_string(),
         Event::Marker { note } => format!("marker: {note}"),
+        Event::Protocol(event) => words::protocol(event),
         Event::ClockJumped { by_ms } => format!("the wall clock jumped by {:.1} s", *by_ms as f64 / 1000.0),
         Event::ParticipantBelieves(belief) => believes(belief),
         Event::SessionEnded => "session over".to_string(),

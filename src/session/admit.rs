@@ -2,6 +2,7 @@
 //! event that is applied.
 
 use super::event::{EndReason, Event, SignalEnd};
+use super::protocol::{self, ProtocolEvent};
 use super::settings::{Condition, ParticipantKind};
 use super::{Phase, Session, hands};
 use crate::base::time::SessionTime;
@@ -17,7 +18,10 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
     let phase = session.phase;
     refuse_if(phase == Phase::Closed, "the session is over")?;
     match event {
-        Event::TrialStarted => refuse_if(phase != Phase::Ready, "the trial was started already"),
+        Event::TrialStarted => {
+            refuse_if(phase != Phase::Ready, "the trial was started already")?;
+            protocol::admit_trial(session)
+        }
         Event::Preflight { .. } => refuse_if(phase != Phase::Ready, "the trial was started already"),
         Event::TrialPaused => refuse_if(phase != Phase::Running, "no trial runs"),
         Event::TrialResumed => refuse_if(phase != Phase::Paused, "the trial is not paused"),
@@ -33,6 +37,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         Event::RobotResumed => refuse_if(!session.robot.stopped, "the robot is not stopped"),
         Event::SignalShown { by, signal } => admit_signal(session, *by, signal),
         Event::SignalEnded { .. } => refuse_if(session.shown.is_none(), "no signal is shown"),
+        Event::Protocol(event) => protocol::admit(session, event),
         other => hands::admit(session, other),
     }
 }
@@ -95,6 +100,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::ClockJumped { .. }
         | Event::SessionEnded => true,
         Event::TrialEnded { reason } => *reason == EndReason::Wizard,
+        Event::Protocol(event) => !matches!(event, ProtocolEvent::CriterionChecked { .. }),
         Event::SignalShown { by, .. } => *by == Sender::Wizard,
         Event::SignalEnded { reason } => *reason == SignalEnd::TakenBack,
         Event::Gaze(_) => !participant.simulates_gaze(),

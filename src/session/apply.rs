@@ -2,6 +2,7 @@
 
 use super::admit::admit;
 use super::event::{EndReason, Event, SignalEnd, Stamped};
+use super::protocol;
 use super::{Entry, Happening, Phase, RobotStatus, Served, Session, ShownSignal};
 use crate::base::time::SessionTime;
 use crate::communication::{Sender, Signal};
@@ -40,6 +41,8 @@ pub enum Timer {
     EndTrial,
     /// The set number of presses was reached.
     EndTrialByPresses,
+    /// The set number of orders was served.
+    EndTrialByOrders,
 }
 
 /// An event that cannot be: a log written by another program, or a broken one.
@@ -133,6 +136,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
         }
         Event::SignalEnded { reason } => end_signal(session, now, *reason, &mut effects),
         Event::Marker { note: text } => note(session, now, Happening::Marker(text.clone())),
+        Event::Protocol(event) => protocol::apply(session, event),
         Event::Preflight { .. } | Event::Screen(_) => {}
         Event::ClockJumped { .. } | Event::ParticipantBelieves(_) | Event::BeliefEstimated(_) => {}
         Event::SessionEnded => close(session, now, &mut effects),
@@ -339,6 +343,9 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
             let after_s = |seconds| now + SessionTime::from_secs_f64(seconds);
             effects.push(Effect::At { time: after_s(kitchen.served_shown_s), timer: Timer::ClearOrder(order) });
             effects.push(Effect::At { time: after_s(kitchen.new_order_after_s), timer: Timer::NewOrder(order) });
+        }
+        if session.spec.trial.orders.is_some_and(|orders| session.served.len() >= orders as usize) {
+            effects.push(Effect::At { time: now, timer: Timer::EndTrialByOrders });
         }
     }
     if session.presses.iter().sum::<u32>() >= session.spec.trial.presses {

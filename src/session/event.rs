@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::preflight::Check;
+use super::protocol::ProtocolEvent;
 use super::screen::Screen;
 use crate::base::time::SessionTime;
 use crate::communication::{Sender, Signal};
@@ -121,6 +122,8 @@ pub enum Event {
     Marker {
         note: String,
     },
+    /// What is around the trial, in a plan.
+    Protocol(ProtocolEvent),
     /// Witness: the wall clock went on by so much more than session time (less, if negative), in milliseconds: the
     /// program or the computer stood still, or the clock was set.
     ClockJumped {
@@ -168,6 +171,7 @@ impl Event {
             Event::SignalShown { .. } => "signal_shown",
             Event::SignalEnded { .. } => "signal_ended",
             Event::Marker { .. } => "marker",
+            Event::Protocol(_) => "protocol",
             Event::ClockJumped { .. } => "clock_jumped",
             Event::Screen(_) => "screen",
             Event::FocusLost => "focus_lost",
@@ -187,6 +191,8 @@ pub enum EndReason {
     Presses,
     /// The set time was over.
     Time,
+    /// The set number of orders was served.
+    Orders,
     /// The wizard ended it.
     Wizard,
     /// The wizard aborted it: `trial_aborted` says why, and `trial_ended` never says this.

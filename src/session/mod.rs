@@ -7,7 +7,9 @@ pub mod event;
 mod hands;
 pub mod header;
 pub mod orders;
+pub mod plan;
 pub mod preflight;
+pub mod protocol;
 pub mod screen;
 pub mod settings;
 pub mod timers;
@@ -74,6 +76,8 @@ pub struct Session {
     pub gaze: GazeStatus,
     /// What happened, without the gaze: the timeline of the console.
     pub timeline: Vec<Entry>,
+    /// Where it is in its plan, if it belongs to one.
+    pub protocol: Option<protocol::Protocol>,
 }
 
 /// A served order.
@@ -173,6 +177,7 @@ impl Session {
     /// A session before its first event.
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec) -> Session {
         let state = kitchen.empty_state();
+        let protocol = spec.step.as_ref().map(|_| protocol::Protocol::default());
         Session {
             kitchen,
             spec,
@@ -193,6 +198,7 @@ impl Session {
             excluded: None,
             gaze: GazeStatus::default(),
             timeline: Vec::new(),
+            protocol,
         }
     }
 

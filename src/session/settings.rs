@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::plan::{PlanSpec, StepSpec};
 use crate::mind::model::HumanModel;
 
 /// A session file: who takes part, under which condition, and for how long.
@@ -29,6 +30,12 @@ pub struct SessionSpec {
     /// The parameters of the human model; in a recording those that were in force.
     #[serde(default)]
     pub human: HumanModel,
+    /// A study of many participants, with several trials each.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plan: Option<PlanSpec>,
+    /// The place of a recording in its plan: written by the program, and in no session file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step: Option<StepSpec>,
 }
 
 fn default_seed() -> u64 {
@@ -71,9 +78,15 @@ impl SessionSpec {
             let found = format!("press_spread = {}", self.robot.press_spread);
             return Err(SettingError { key: "press_spread", found, remedy: "a number from 0 to 2" });
         }
+        if self.trial.orders == Some(0) {
+            let found = "orders = 0".to_string();
+            return Err(SettingError { key: "orders", found, remedy: "a number above 0" });
+        }
+        if let Some(plan) = &self.plan {
+            plan.check()?;
+        }
         let code = &self.participant.code;
-        let is_code = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-        if code.is_empty() || code.len() > 32 || !code.chars().all(is_code) {
+        if !is_code(code) {
             let found = format!("code = \"{code}\"");
             let remedy = "a code of 1 to 32 letters, digits, - and _, such as \"P07\"; never a name";
             return Err(SettingError { key: "code", found, remedy });
@@ -95,6 +108,12 @@ impl SessionSpec {
     }
 }
 
+/// Whether a text is short and simple enough to name a participant, a plan, an item: in folders, keys and tables.
+pub fn is_code(text: &str) -> bool {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    !text.is_empty() && text.len() <= 32 && text.chars().all(is_plain)
+}
+
 /// When a trial ends, and who sends signals in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -103,11 +122,14 @@ pub struct TrialSpec {
     /// Presses of both agents; the default is the mean of the paper.
     pub presses: u32,
     pub seconds: f64,
+    /// It ends when so many orders are served, too.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub orders: Option<u32>,
 }
 
 impl Default for TrialSpec {
     fn default() -> Self {
-        TrialSpec { condition: Condition::Wizard, presses: 304, seconds: 900.0 }
+        TrialSpec { condition: Condition::Wizard, presses: 304, seconds: 900.0, orders: None }
     }
 }
 
@@ -119,6 +141,16 @@ pub enum Condition {
     None,
     /// The person at the console.
     Wizard,
+}
+
+impl Condition {
+    /// As it stands in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Condition::None => "none",
+            Condition::Wizard => "wizard",
+        }
+    }
 }
 
 /// The participant.

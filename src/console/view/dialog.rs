@@ -26,6 +26,9 @@ pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
                 Phase::Running | Phase::Paused => {
                     &["The trial is not over.", "The session ends, the recording is kept."]
                 }
+                _ if !session.is_step_done() => {
+                    &["Not everything of this step is done.", "It can be continued, or done again."]
+                }
                 _ => &["The session ends, the recording is kept."],
             };
             ask(brush, screen, "Quit tomcom?", lines);

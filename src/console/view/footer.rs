@@ -7,6 +7,7 @@ use crate::console::hands::Hand;
 use crate::console::keys::{Action, Binding, Layer};
 use crate::console::model::{Dialog, Level, Model};
 use crate::console::playback::Move;
+use crate::session::protocol::StudyPhase;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Phase, Session};
 
@@ -37,7 +38,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     // The end of the trial is rare, and gives its room to the others; after it only leaving is left to do.
     let is_over = is_over(session, model);
     let is_late = |binding: &&Binding| match is_over {
-        true => !matches!(binding.action, Action::Quit | Action::Hand(Hand::Redo)),
+        true => !matches!(binding.action, Action::Advance | Action::Quit | Action::Hand(Hand::Redo)),
         false => binding.action == Action::EndTrial,
     };
     let (late, first): (Vec<&Binding>, Vec<&Binding>) = model.keys.bindings.iter().partition(is_late);
@@ -74,6 +75,17 @@ fn is_over(session: &Session, model: &Model) -> bool {
     model.playback.is_none() && matches!(session.phase, Phase::Over(_) | Phase::Closed)
 }
 
+/// What comes after the trial, in a plan.
+fn onward(session: &Session) -> Option<&'static str> {
+    session.protocol.as_ref().filter(|_| session.phase != Phase::Closed)?;
+    Some(match session.next_phase() {
+        _ if session.aborted.is_some() => "do it again",
+        Some(StudyPhase::Questionnaire) => "questionnaire",
+        Some(StudyPhase::Debriefing) => "debriefing",
+        _ => "done: next",
+    })
+}
+
 /// What the footer says of a key, if it does something now.
 fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&'a str> {
     match &model.dialog {
@@ -93,6 +105,8 @@ fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&
     let runs = matches!(session.phase, Phase::Running | Phase::Paused);
     if is_over(session, model) {
         return match binding.action {
+            Action::Advance => onward(session),
+            Action::Quit if !session.is_step_done() => Some(label),
             Action::Quit => Some("closes the session"),
             Action::Note(_) if session.phase != Phase::Closed => Some(label),
             Action::Help => Some(label),

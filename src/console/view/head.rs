@@ -18,7 +18,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let name = if is_tight { "" } else { "tomcom" };
     let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
     let badge = brush.theme.badge(phase_role(session.phase));
-    x = brush.text(x, area.y, 14, &format!(" {} ", words::phase(session.phase)), badge) + gap;
+    x = brush.text(x, area.y, 19, &format!(" {} ", words::stage(session)), badge) + gap;
     x = clock(brush, x, area.y, session, model) + gap;
     let presses = session.presses.iter().sum::<u32>();
     let counts = format!("{presses:>3}/{} presses", session.spec.trial.presses);
@@ -61,6 +61,9 @@ fn facts(session: &Session, model: &Model) -> Vec<String> {
     };
     let served = format!("{} served", session.served.len());
     let code = session.spec.participant.code.clone();
+    if let (Some((step, _)), None) = (session.step(), &model.playback) {
+        return vec![format!("{code} {} {condition}", step.label()), served, session.kitchen.title.clone()];
+    }
     let mut facts = match &model.playback {
         None => vec![code, condition.to_string(), served],
         Some(playback) => vec![served, code, condition.to_string(), playback.name.clone()],

@@ -13,6 +13,7 @@ pub mod picker;
 pub mod recommendation;
 pub mod regions;
 pub mod robot;
+pub mod sheet;
 pub mod shown;
 pub mod theme;
 pub mod timeline;
@@ -45,6 +46,7 @@ pub fn view(session: &Session, model: &Model, frame: &mut Frame) {
     events::draw(&mut brush, &regions, session, model);
     timeline::draw(&mut brush, &regions, session, model);
     footer::draw(&mut brush, &regions, session, model);
+    sheet::draw(&mut brush, area, session);
     dialog::draw(&mut brush, area, session, model);
 }
 

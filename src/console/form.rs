@@ -1,0 +1,143 @@
+//! What is on the screen around a trial: steps to be ticked, items to be answered, a criterion that was not met. Arrows,
+//! digits and the key that goes on work it; everything that they do is an event.
+
+use crossterm::event::KeyCode;
+
+use super::message::Command;
+use super::model::{Level, Model};
+use super::update::send;
+use crate::session::plan::{PhaseSpec, Questionnaire};
+use crate::session::protocol::{Protocol, ProtocolEvent};
+use crate::session::{Event, Session};
+
+/// Why a participant may go on who did not meet the criterion: short, so that no text has to be typed.
+pub const WAIVERS: [&str; 4] =
+    ["knows the task all the same", "no time for more practice", "trouble with a device", "other, see the notes"];
+
+/// What stands on the sheet in front of the console.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sheet<'a> {
+    /// Steps to be ticked one after another.
+    Steps {
+        title: &'static str,
+        steps: &'a [String],
+    },
+    Questions(&'a Questionnaire),
+    /// The criterion was not met: again, or go on all the same.
+    Failed,
+}
+
+/// The sheet of the running phase, if it has one.
+pub fn sheet(session: &Session) -> Option<Sheet<'_>> {
+    let (_, protocol) = session.step()?;
+    match session.study_phase()? {
+        PhaseSpec::Instruction { steps } => Some(Sheet::Steps { title: "Instruction of the participant", steps }),
+        PhaseSpec::Debriefing { steps } => Some(Sheet::Steps { title: "Debriefing of the wizard", steps }),
+        PhaseSpec::Questionnaire { questionnaire } => Some(Sheet::Questions(questionnaire)),
+        PhaseSpec::Familiarisation => {
+            let failed = protocol.practice.as_ref().is_some_and(|practice| !practice.met && practice.waived.is_none());
+            failed.then_some(Sheet::Failed)
+        }
+        PhaseSpec::Trial => None,
+    }
+}
+
+/// What a key on the sheet asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stroke {
+    /// On: the next step, item or phase.
+    On,
+    Back,
+    Digit(u8),
+}
+
+/// What a key means on a sheet, if it means anything there; `advances`: it is the key that starts and pauses trials.
+pub(super) fn stroke(code: KeyCode, advances: bool) -> Option<Stroke> {
+    match code {
+        _ if advances => Some(Stroke::On),
+        KeyCode::Enter | KeyCode::Right | KeyCode::Down => Some(Stroke::On),
+        KeyCode::Left | KeyCode::Up | KeyCode::Backspace => Some(Stroke::Back),
+        KeyCode::Char(digit @ '0'..='9') => Some(Stroke::Digit(digit as u8 - b'0')),
+        _ => None,
+    }
+}
+
+/// Does what the key on the sheet asks for.
+pub(super) fn write(model: &mut Model, session: &Session, stroke: Stroke) -> Option<Command> {
+    let (sheet, protocol) = (sheet(session)?, session.protocol.as_ref()?);
+    match (sheet, stroke) {
+        (Sheet::Steps { .. }, Stroke::On) => match protocol.ticks.iter().position(|done| !done) {
+            Some(open) => tell(model, session, ProtocolEvent::Ticked { step: open + 1, done: true }),
+            None => leave(model, session),
+        },
+        (Sheet::Steps { .. }, Stroke::Back) => {
+            let last = protocol.ticks.iter().rposition(|done| *done)?;
+            tell(model, session, ProtocolEvent::Ticked { step: last + 1, done: false })
+        }
+        (Sheet::Questions(_), _) if protocol.confirmed => match stroke {
+            Stroke::On => leave(model, session),
+            _ => refuse(model, "the answers are confirmed"),
+        },
+        (Sheet::Questions(questionnaire), stroke) => ask(model, session, questionnaire, protocol, stroke),
+        (Sheet::Failed, Stroke::On) => Some(Command::Next),
+        (Sheet::Failed, Stroke::Digit(digit)) => {
+            let reason = usize::from(digit).checked_sub(1).and_then(|index| WAIVERS.get(index))?;
+            tell(model, session, ProtocolEvent::CriterionWaived { reason: reason.to_string() })
+        }
+        (Sheet::Steps { .. }, Stroke::Digit(_)) | (Sheet::Failed, Stroke::Back) => None,
+    }
+}
+
+fn ask(
+    model: &mut Model,
+    session: &Session,
+    questionnaire: &Questionnaire,
+    protocol: &Protocol,
+    stroke: Stroke,
+) -> Option<Command> {
+    let id = |index: usize| questionnaire.items.get(index).map(|item| item.id.clone());
+    let shown = id(protocol.item);
+    match (stroke, shown) {
+        (Stroke::Digit(0), Some(item)) => tell(model, session, ProtocolEvent::ItemSkipped { item }),
+        (Stroke::Digit(answer), Some(item)) => tell(model, session, ProtocolEvent::ItemAnswered { item, answer }),
+        (Stroke::Digit(_), None) => refuse(model, "go back to the item first"),
+        (Stroke::Back, _) => {
+            let item = id(protocol.item.checked_sub(1)?)?;
+            tell(model, session, ProtocolEvent::ItemShown { item })
+        }
+        (Stroke::On, Some(_)) => match id(protocol.item + 1) {
+            Some(item) => tell(model, session, ProtocolEvent::ItemShown { item }),
+            None => tell(model, session, ProtocolEvent::AnswersShown),
+        },
+        (Stroke::On, None) => match protocol.open_item().and_then(id) {
+            Some(item) => tell(model, session, ProtocolEvent::ItemShown { item }),
+            None => tell(model, session, ProtocolEvent::AnswersConfirmed),
+        },
+    }
+}
+
+/// From a phase that is done to the next one, or to the next recording.
+pub(super) fn leave(model: &mut Model, session: &Session) -> Option<Command> {
+    if session.protocol.is_some() && session.aborted.is_some() {
+        return Some(Command::Redo);
+    }
+    if let Some(lacks) = session.phase_lacks() {
+        return refuse(model, lacks);
+    }
+    let Some(number) = session.protocol.as_ref().map(|protocol| protocol.number + 1) else {
+        return refuse(model, "the trial is over");
+    };
+    match session.next_phase() {
+        Some(phase) => tell(model, session, ProtocolEvent::PhaseStarted { phase, number }),
+        None => Some(Command::Next),
+    }
+}
+
+fn tell(model: &mut Model, session: &Session, event: ProtocolEvent) -> Option<Command> {
+    send(model, session, Event::Protocol(event), Level::Done, "")
+}
+
+fn refuse(model: &mut Model, reason: &str) -> Option<Command> {
+    model.say(Level::Refused, reason);
+    None
+}

@@ -1,0 +1,218 @@
+//! What lies in front of the console around a trial: instruction, questionnaire, debriefing, and the questions before a
+//! recording.
+
+use ratatui::Frame;
+use ratatui::layout::Rect;
+
+use super::dialog::open;
+use super::paint::{Brush, width, wrap};
+use super::theme::{Role, Theme};
+use crate::console::form::{Sheet, WAIVERS, sheet};
+use crate::console::question::Question;
+use crate::session::Session;
+use crate::session::plan::Questionnaire;
+use crate::session::protocol::{Answer, Protocol};
+
+/// Longer lines are hard to read.
+const WIDEST: u16 = 84;
+
+/// Lines of a sheet: each with its indent, and how it is drawn.
+#[derive(Default)]
+struct Page {
+    columns: u16,
+    lines: Vec<(u16, String, Role)>,
+    /// The line that has to be seen.
+    focus: usize,
+}
+
+impl Page {
+    fn new(screen: Rect) -> Page {
+        Page { columns: screen.width.saturating_sub(4).min(WIDEST).saturating_sub(4), ..Page::default() }
+    }
+
+    fn text(&mut self, indent: u16, text: &str, role: Role) {
+        let lines = wrap(text, self.columns.saturating_sub(indent));
+        self.lines.extend(lines.into_iter().map(|line| (indent, line, role)));
+    }
+
+    /// A text behind a mark that stands before its first line.
+    fn marked(&mut self, mark: &str, text: &str, role: Role) {
+        let first = self.lines.len();
+        self.text(width(mark) + 1, text, role);
+        if let Some(line) = self.lines.get_mut(first) {
+            *line = (0, format!("{mark} {}", line.1), role);
+        }
+    }
+
+    fn space(&mut self) {
+        self.lines.push((0, String::new(), Role::Text));
+    }
+
+    /// Draws it, as much as there is room for, with its focus, and what the keys do on the last line.
+    fn draw(self, brush: &mut Brush, screen: Rect, title: &str, remark: &str, keys: &[(&str, Role)]) {
+        let rows = (self.lines.len() as u16 + 5).min(screen.height.saturating_sub(2));
+        let inside = open(brush, screen, (self.columns + 4, rows), title, remark);
+        let room = usize::from(inside.height.saturating_sub(3));
+        let last = self.lines.len().saturating_sub(room);
+        let from = (self.focus + 2).saturating_sub(room).min(last);
+        for (row, (indent, line, role)) in self.lines.iter().skip(from).take(room).enumerate() {
+            let style = brush.style(*role);
+            brush.text(inside.x + 1 + indent, inside.y + 1 + row as u16, self.columns - indent, line, style);
+        }
+        brush.parts(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 1, keys);
+    }
+}
+
+/// Draws the sheet of the running phase, if it has one.
+pub fn draw(brush: &mut Brush, screen: Rect, session: &Session) {
+    let (Some(sheet), Some((step, protocol))) = (sheet(session), session.step()) else { return };
+    let code = &session.spec.participant.code;
+    let where_ = format!("{code}  {}", step.label());
+    match sheet {
+        Sheet::Steps { title, steps } => draw_steps(brush, screen, (title, &where_), steps, protocol, session),
+        Sheet::Questions(questionnaire) => draw_questions(brush, screen, &where_, questionnaire, protocol, session),
+        Sheet::Failed => draw_failed(brush, screen, &where_, session),
+    }
+}
+
+/// What the key that goes on leads to.
+fn onward(session: &Session) -> String {
+    match session.next_phase() {
+        Some(phase) => format!(" on to the {}", phase.name()),
+        None => " on to the next recording".to_string(),
+    }
+}
+
+fn draw_steps(
+    brush: &mut Brush,
+    screen: Rect,
+    heads: (&str, &str),
+    steps: &[String],
+    protocol: &Protocol,
+    session: &Session,
+) {
+    let mut page = Page::new(screen);
+    let open = protocol.ticks.iter().position(|done| !done);
+    for (index, step) in steps.iter().enumerate() {
+        let is_done = protocol.ticks.get(index) == Some(&true);
+        let role = if open == Some(index) {
+            Role::Strong
+        } else if is_done {
+            Role::Quiet
+        } else {
+            Role::Text
+        };
+        if open == Some(index) {
+            page.focus = page.lines.len();
+        }
+        page.marked(if is_done { "[x]" } else { "[ ]" }, step, role);
+    }
+    if open.is_none() {
+        page.focus = page.lines.len();
+    }
+    let on = if open.is_some() { " this step is done".to_string() } else { onward(session) };
+    let keys = [("enter", Role::Strong), (on.as_str(), Role::Text), ("   left", Role::Strong), (" back", Role::Text)];
+    page.draw(brush, screen, heads.0, heads.1, &keys);
+}
+
+fn draw_questions(
+    brush: &mut Brush,
+    screen: Rect,
+    where_: &str,
+    questionnaire: &Questionnaire,
+    protocol: &Protocol,
+    session: &Session,
+) {
+    let items = questionnaire.items.len();
+    let mut page = Page::new(screen);
+    if let Some(item) = questionnaire.items.get(protocol.item) {
+        let given = protocol.answers.get(protocol.item).copied().flatten();
+        page.text(0, &format!("{} of {items}", protocol.item + 1), Role::Quiet);
+        page.space();
+        page.text(0, &item.text, Role::Strong);
+        page.space();
+        scale(&mut page, questionnaire, given);
+        let points = format!("1-{}", questionnaire.scale.points);
+        let keys = [
+            (points.as_str(), Role::Strong),
+            (" answer   ", Role::Text),
+            ("0", Role::Strong),
+            (" no answer   ", Role::Text),
+            ("left right", Role::Strong),
+            (" back, on", Role::Text),
+        ];
+        return page.draw(brush, screen, &questionnaire.title, where_, &keys);
+    }
+    for (item, answer) in questionnaire.items.iter().zip(&protocol.answers) {
+        let answer = match answer {
+            Some(Answer::Rated(points)) => points.to_string(),
+            Some(Answer::Skipped) => "-".to_string(),
+            None => "?".to_string(),
+        };
+        page.marked(&format!("{answer:>3}"), &item.text, Role::Text);
+    }
+    page.focus = page.lines.len();
+    let (on, back) = match (protocol.confirmed, protocol.open_item()) {
+        (true, _) => (onward(session), ""),
+        (false, Some(_)) => (" to the item without an answer".to_string(), " back"),
+        (false, None) => (" confirm the answers".to_string(), " back"),
+    };
+    let left = if back.is_empty() { "" } else { "   left" };
+    let keys = [("enter", Role::Strong), (on.as_str(), Role::Text), (left, Role::Strong), (back, Role::Text)];
+    page.draw(brush, screen, &questionnaire.title, where_, &keys);
+}
+
+/// The points of the scale, the given one marked, with what its ends mean.
+fn scale(page: &mut Page, questionnaire: &Questionnaire, given: Option<Answer>) {
+    let point = |point: u8| match given == Some(Answer::Rated(point)) {
+        true => format!("[{point}]"),
+        false => format!(" {point} "),
+    };
+    let points: Vec<String> = (1..=questionnaire.scale.points).map(point).collect();
+    let line = points.join("   ");
+    let (low, high) = (&questionnaire.scale.low, &questionnaire.scale.high);
+    page.lines.push((0, line.clone(), Role::Strong));
+    let gap = usize::from(width(&line).saturating_sub(width(low) + width(high)).max(3));
+    page.lines.push((0, format!("{low}{}{high}", " ".repeat(gap)), Role::Quiet));
+    if given == Some(Answer::Skipped) {
+        page.space();
+        page.text(0, "no answer", Role::Strong);
+    }
+}
+
+fn draw_failed(brush: &mut Brush, screen: Rect, where_: &str, session: &Session) {
+    let Some((step, protocol)) = session.step() else { return };
+    let (Some(criterion), Some(practice)) = (step.criterion, &protocol.practice) else { return };
+    let mut page = Page::new(screen);
+    let rate = criterion.error_rate.map_or(String::new(), |rate| format!(", at most {:.0} % errors", 100.0 * rate));
+    page.text(0, &format!("Asked for: {} orders served{rate}.", criterion.orders), Role::Text);
+    let share = 100.0 * f64::from(practice.errors) / f64::from(practice.presses.max(1));
+    let (orders, presses, errors) = (practice.orders, practice.presses, practice.errors);
+    let found = format!("Found: {orders} served, {errors} errors in {presses} presses ({share:.0} %).");
+    page.text(0, &found, Role::Strong);
+    page.space();
+    page.text(0, "To go on to the first trial all the same, say why:", Role::Text);
+    for (index, reason) in WAIVERS.iter().enumerate() {
+        page.marked(&format!("  {}", index + 1), reason, Role::Text);
+    }
+    let keys =
+        [("enter", Role::Strong), (" practise again   ", Role::Text), ("1-4", Role::Strong), (" go on", Role::Text)];
+    page.draw(brush, screen, "The criterion is not met", where_, &keys);
+}
+
+/// Draws a question before a recording begins: nothing else is on the screen.
+pub fn draw_question(question: &Question, theme: Theme, frame: &mut Frame) {
+    let screen = frame.area();
+    let mut brush = Brush { buffer: frame.buffer_mut(), theme };
+    let mut page = Page::new(screen);
+    for paragraph in &question.text {
+        page.text(0, paragraph, Role::Text);
+        page.space();
+    }
+    for (index, answer) in question.answers.iter().enumerate() {
+        page.marked(&format!("  {}", index + 1), answer, Role::Strong);
+    }
+    page.focus = page.lines.len();
+    let keys = [("esc", Role::Strong), (" leave: nothing is recorded", Role::Text)];
+    page.draw(&mut brush, screen, &question.title, "", &keys);
+}

@@ -1,0 +1,170 @@
+//! What recordings say of themselves: a look over a folder of them, without running any of them again.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use super::files::{FileError, FileResult};
+use super::log::{LOG_NAME, ruling};
+use crate::session::plan::{Made, Outcome, StepSpec};
+use crate::session::protocol::{ProtocolEvent, StudyPhase};
+use crate::session::{Event, Header, Stamped};
+
+/// The live recordings of the plan with this name in a folder, those with several parts as one, by the names of their
+/// folders. Simulated ones do not count, nor what is no recording.
+///
+/// # Errors
+/// The folder or a recording in it cannot be read.
+pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<Made>> {
+    let mut found = BTreeMap::new();
+    let unreadable = |reason| FileError::unreadable(folder, reason, "the folder with the recordings, as --out");
+    let entries = match fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(reason) if reason.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(reason) => return Err(unreadable(reason)),
+    };
+    for entry in entries {
+        let path = entry.map_err(unreadable)?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if let Some(mut part) = Part::read(&path.join(LOG_NAME), plan)? {
+            // What was said later, beside the log, holds before what is in it.
+            if let Some(ruling) = ruling(&path)? {
+                part.excluded = Some(ruling.excluded.then_some(ruling.reason));
+            }
+            found.insert(name, part);
+        }
+    }
+    let continued: Vec<String> = found.values().filter_map(|part| part.continues.clone()).collect();
+    let last = found.iter().filter(|(name, _)| !continued.contains(name));
+    Ok(last.map(|(name, part)| part.made(name, &found)).collect())
+}
+
+/// What the log of one part says.
+#[derive(Debug)]
+struct Part {
+    code: String,
+    step: StepSpec,
+    continues: Option<String>,
+    consent: bool,
+    instructed: bool,
+    /// The number of the phase that was begun last.
+    phase: usize,
+    presses: u32,
+    trial_over: bool,
+    criterion_failed: bool,
+    criterion_waived: bool,
+    aborted: Option<String>,
+    /// Whether something was said about the analysis, and why it is left out.
+    excluded: Option<Option<String>>,
+    ended: bool,
+}
+
+impl Part {
+    /// Reads a log; nothing if it is none of this plan.
+    fn read(path: &Path, plan: &str) -> FileResult<Option<Part>> {
+        let Ok(file) = File::open(path) else { return Ok(None) };
+        let mut lines = BufReader::with_capacity(1 << 16, file);
+        let mut line = Vec::new();
+        let mut next = |line: &mut Vec<u8>| {
+            line.clear();
+            let read = lines.read_until(b'\n', line);
+            let read = read.map_err(|reason| FileError::unreadable(path, reason, "a readable recording"))?;
+            // A last line without its end was cut, or is being written.
+            Ok::<bool, FileError>(read > 0 && line.last() == Some(&b'\n'))
+        };
+        if !next(&mut line)? {
+            return Ok(None);
+        }
+        let Ok(header) = serde_json::from_slice::<Header>(&line) else { return Ok(None) };
+        let Some(step) = header.session.step.filter(|step| step.plan == plan && header.started.is_some()) else {
+            return Ok(None);
+        };
+        let mut part = Part {
+            code: header.session.participant.code,
+            step,
+            continues: header.continues.map(|before| before.recording),
+            consent: false,
+            instructed: false,
+            phase: 0,
+            presses: 0,
+            trial_over: false,
+            criterion_failed: false,
+            criterion_waived: false,
+            aborted: None,
+            excluded: None,
+            ended: false,
+        };
+        while next(&mut line)? {
+            if !is_gaze(&line)
+                && let Ok(stamped) = serde_json::from_slice::<Stamped>(&line)
+            {
+                part.follow(&stamped.event);
+            }
+        }
+        Ok(Some(part))
+    }
+
+    fn follow(&mut self, event: &Event) {
+        match event {
+            Event::Press { .. } => self.presses += 1,
+            Event::TrialEnded { .. } => self.trial_over = true,
+            Event::TrialAborted { reason } => self.aborted = Some(reason.clone()),
+            Event::TrialExcluded { reason } => self.excluded = Some(Some(reason.clone())),
+            Event::TrialIncluded => self.excluded = Some(None),
+            Event::SessionEnded => self.ended = true,
+            Event::Protocol(ProtocolEvent::ConsentGiven) => self.consent = true,
+            Event::Protocol(ProtocolEvent::PhaseStarted { phase, number }) => {
+                self.phase = *number;
+                self.instructed |= *phase != StudyPhase::Instruction;
+            }
+            Event::Protocol(ProtocolEvent::CriterionChecked { met, .. }) => self.criterion_failed = !met,
+            Event::Protocol(ProtocolEvent::CriterionWaived { .. }) => self.criterion_waived = true,
+            _ => {}
+        }
+    }
+
+    /// The whole recording of which this is the last part.
+    fn made(&self, name: &str, parts: &BTreeMap<String, Part>) -> Made {
+        let mut all = vec![self];
+        // A part that is named twice would lead in a circle.
+        while let Some(before) = all.last().and_then(|part| parts.get(part.continues.as_ref()?)) {
+            if all.len() > parts.len() {
+                break;
+            }
+            all.push(before);
+        }
+        let any = |is: fn(&Part) -> bool| all.iter().any(|part| is(part));
+        let phase = all.iter().map(|part| part.phase).max().unwrap_or(0);
+        // The last part that says something about it is right.
+        let excluded = all.iter().find_map(|part| part.excluded.clone()).flatten();
+        let aborted = all.iter().find_map(|part| part.aborted.as_ref());
+        let void = |reason: &str| Outcome::Void { reason: reason.to_string() };
+        let outcome = if !self.ended {
+            Outcome::Open
+        } else if let Some(reason) = aborted {
+            void(&format!("aborted ({reason})"))
+        } else if any(|part| part.criterion_failed) && !any(|part| part.criterion_waived) {
+            void("criterion not met")
+        } else if phase < self.step.phases.len() || !any(|part| part.trial_over) {
+            void("closed before everything was done")
+        } else {
+            excluded.map_or(Outcome::Complete, |reason| Outcome::Excluded { reason })
+        };
+        Made {
+            recording: name.to_string(),
+            code: self.code.clone(),
+            step: self.step.clone(),
+            consent: any(|part| part.consent),
+            instructed: any(|part| part.instructed),
+            presses: all.iter().map(|part| part.presses).sum(),
+            outcome,
+        }
+    }
+}
+
+/// Most lines are gaze samples, and say nothing here.
+fn is_gaze(line: &[u8]) -> bool {
+    const GAZE: &[u8] = br#""kind":"gaze""#;
+    line[..line.len().min(80)].windows(GAZE.len()).any(|part| part == GAZE)
+}

@@ -1,0 +1,95 @@
+//! `tomcom plan`: who takes part in which group, what is done, and what comes next.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::live::LiveError;
+use super::series::{slot_name, stands};
+use crate::edge::recordings;
+use crate::session::plan::{Outcome, Progress, Study};
+
+/// What `tomcom plan SESSION` prints.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Overview {
+    pub plan: String,
+    pub digest: String,
+    pub seed: u64,
+    /// How many participants there are, and how many are through.
+    pub planned: usize,
+    pub finished: usize,
+    pub participants: Vec<Progress>,
+}
+
+impl Overview {
+    /// How far a study is, from the recordings in `out`.
+    ///
+    /// # Errors
+    /// Recordings that cannot be read, or that the plan would not have asked for.
+    pub fn of(study: &Study, out: &Path) -> Result<Overview, LiveError> {
+        let made = recordings::of_plan(out, &study.plan.name)?;
+        let codes = study.plan.codes();
+        if let Some(stranger) = made.iter().find(|made| !codes.contains(&made.code)) {
+            let (recording, code) = (&stranger.recording, &stranger.code);
+            return Err(LiveError::Plan(format!("{recording} of {code}, who is not in the plan")));
+        }
+        let progress = |participant| Progress::of(study, participant, &made).map_err(LiveError::Plan);
+        let participants = (0..codes.len()).map(progress).collect::<Result<Vec<_>, _>>()?;
+        Ok(Overview {
+            plan: study.plan.name.clone(),
+            digest: study.digest.clone(),
+            seed: study.session.seed,
+            planned: participants.len(),
+            finished: participants.iter().filter(|one| one.done() == one.steps.len()).count(),
+            participants,
+        })
+    }
+}
+
+/// The plan for people.
+pub fn describe(figures: &Overview) -> String {
+    let mut sizes = BTreeMap::new();
+    for one in &figures.participants {
+        *sizes.entry(one.group.as_str()).or_insert(0) += 1;
+    }
+    let sizes: Vec<String> = sizes.iter().map(|(group, size)| format!("{size} {group}")).collect();
+    let head = format!(
+        "plan {} ({}), seed {}: {} of {} participants are through; groups: {}\n",
+        figures.plan,
+        figures.digest,
+        figures.seed,
+        figures.finished,
+        figures.planned,
+        sizes.join(", ")
+    );
+    let one = |progress: &Progress| {
+        let trials = progress.steps.iter().filter(|stand| stand.slot.period.is_some());
+        let order: Vec<&str> = trials.map(|stand| stand.slot.condition.name()).collect();
+        let width = figures.participants.iter().map(|one| one.code.len()).max().unwrap_or(0);
+        let stands = stands(progress);
+        let stands = stands.split_once(": ").map_or(stands.as_str(), |(_, stands)| stands);
+        let line = format!("{:width$}  {}  {}  {stands}\n", progress.code, progress.group, order.join(", "));
+        line + &attempts(progress)
+    };
+    head + &figures.participants.iter().map(one).collect::<String>()
+}
+
+/// What has to be known of a participant's recordings: those that do not count, and those of another version of the plan.
+fn attempts(progress: &Progress) -> String {
+    let mut lines = String::new();
+    for (slot, stand) in progress.steps.iter().enumerate() {
+        for attempt in &stand.recordings {
+            let version = if attempt.other_version { ", recorded under another version of the plan" } else { "" };
+            let how = match &attempt.outcome {
+                Outcome::Complete if attempt.other_version => "done",
+                Outcome::Complete => continue,
+                Outcome::Open => "open",
+                Outcome::Excluded { reason } => &format!("excluded ({reason})"),
+                Outcome::Void { reason } => reason,
+            };
+            lines += &format!("      {} in {}: {how}{version}\n", slot_name(progress, slot), attempt.recording);
+        }
+    }
+    lines
+}

@@ -1,0 +1,54 @@
+//! Who starts with which condition: permuted blocks (Pocock 1983, Clinical Trials, ch. 5), so that the groups are equal
+//! after every block, and nobody can foresee the next one.
+
+use rand::RngExt;
+use serde::Serialize;
+
+use super::PlanSpec;
+use crate::base::rng::stream;
+use crate::session::settings::Condition;
+
+/// A starting group: an order of the conditions.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Group {
+    /// "AB": the first condition of the plan comes first.
+    pub name: String,
+    /// The condition of each trial.
+    pub conditions: Vec<Condition>,
+}
+
+/// Every order of `count` conditions, as indices; the plan's own order first.
+pub fn groups(count: usize) -> Vec<Vec<usize>> {
+    if count == 0 {
+        return vec![Vec::new()];
+    }
+    let mut all = Vec::new();
+    for shorter in groups(count - 1) {
+        for place in (0..count).rev() {
+            let mut order = shorter.clone();
+            order.insert(place, count - 1);
+            all.push(order);
+        }
+    }
+    all.sort();
+    all
+}
+
+impl PlanSpec {
+    /// The group of the participant with this index: a function of plan and seed alone.
+    pub fn group(&self, seed: u64, participant: usize) -> Group {
+        let orders = groups(self.conditions.len());
+        let block = self.block.map_or(2 * orders.len(), |block| block as usize);
+        let mut places: Vec<usize> = (0..block).map(|place| place % orders.len()).collect();
+        let mut random = stream(seed, "groups", (participant / block) as u64);
+        // Fisher and Yates: every order of the block is as likely.
+        for last in (1..block).rev() {
+            places.swap(last, random.random_range(0..=last));
+        }
+        let order = &orders[places[participant % block]];
+        Group {
+            name: order.iter().map(|&index| char::from(b'A' + index as u8)).collect(),
+            conditions: order.iter().map(|&index| self.conditions[index]).collect(),
+        }
+    }
+}

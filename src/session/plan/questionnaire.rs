@@ -1,0 +1,88 @@
+//! Questionnaires: items that are answered on a rating scale (Likert 1932).
+
+use serde::{Deserialize, Serialize};
+
+use crate::session::settings::{Condition, SettingError, is_code};
+
+/// A questionnaire, as its file says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Questionnaire {
+    pub name: String,
+    /// What stands above the items.
+    pub title: String,
+    /// The language of the items, as in "en".
+    pub language: String,
+    pub scale: Scale,
+    #[serde(rename = "item")]
+    pub items: Vec<Item>,
+}
+
+/// The scale: 1 to `points`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scale {
+    pub points: u8,
+    /// What 1 means, and what `points` means.
+    pub low: String,
+    pub high: String,
+}
+
+/// A statement to be rated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Item {
+    /// Stands for the item in the log and in tables.
+    pub id: String,
+    pub text: String,
+    /// What it is about: items about the same are read together.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub about: Option<String>,
+    /// Agreement speaks against what it is about.
+    #[serde(default)]
+    pub reversed: bool,
+    /// Asked only after trials in these conditions; by default after all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub conditions: Option<Vec<Condition>>,
+}
+
+impl Questionnaire {
+    /// What is asked after a trial in this condition; nothing if no item is.
+    pub fn after(&self, condition: Condition) -> Option<Questionnaire> {
+        let is_asked = |item: &&Item| item.conditions.as_ref().is_none_or(|only| only.contains(&condition));
+        let items: Vec<Item> = self.items.iter().filter(is_asked).cloned().collect();
+        (!items.is_empty()).then(|| Questionnaire { items, ..self.clone() })
+    }
+
+    /// The place of an item.
+    pub fn position(&self, id: &str) -> Option<usize> {
+        self.items.iter().position(|item| item.id == id)
+    }
+
+    /// Checks what the types do not.
+    ///
+    /// # Errors
+    /// The first setting that cannot be.
+    pub fn check(&self) -> Result<(), SettingError> {
+        let wrong = |key, found, remedy| Err(SettingError { key, found, remedy });
+        if !is_code(&self.name) {
+            let remedy = "a short name of letters, digits, - and _, such as \"acceptance\"";
+            return wrong("name", format!("name = \"{}\"", self.name), remedy);
+        }
+        if !(2..=9).contains(&self.scale.points) {
+            let found = format!("points = {}", self.scale.points);
+            return wrong("points", found, "2 to 9 points: each is a key");
+        }
+        if self.items.is_empty() {
+            return wrong("item", "a questionnaire without items".to_string(), "at least one [[item]]");
+        }
+        if let Some(item) = self.items.iter().find(|item| !is_code(&item.id)) {
+            let remedy = "a short id of letters, digits, - and _, such as \"too_often\"";
+            return wrong("id", format!("id = \"{}\"", item.id), remedy);
+        }
+        match (1..self.items.len()).find(|&index| self.items[..index].iter().any(|i| i.id == self.items[index].id)) {
+            Some(index) => wrong("id", format!("the id \"{}\" twice", self.items[index].id), "each id once"),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! A step of a plan: one recording, with at most one trial and what is around it.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Group, PlanSpec, Questionnaire};
+use crate::base::rng::mix;
+use crate::session::protocol::StudyPhase;
+use crate::session::settings::{Condition, SessionSpec};
+
+/// Where a recording belongs in its plan, and what happens in it; part of the settings of every recording of a plan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StepSpec {
+    /// The name of the plan.
+    pub plan: String,
+    /// Changes whenever something in plan, settings or questionnaires does.
+    pub digest: String,
+    /// The participant's place in the plan, from 0.
+    pub participant: u32,
+    /// The starting group, as in "AB".
+    pub group: String,
+    /// The number of the trial, 1 the first; none of the familiarisation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period: Option<u32>,
+    /// How many trials there are.
+    pub periods: u32,
+    /// 1, or more where it had to be done again.
+    pub attempt: u32,
+    /// Of the familiarisation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub criterion: Option<Criterion>,
+    /// What happens, in this order.
+    #[serde(rename = "phase")]
+    pub phases: Vec<PhaseSpec>,
+}
+
+/// When the familiarisation is over: so many orders served, at most this share of the human's presses errors.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Criterion {
+    pub orders: u32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error_rate: Option<f64>,
+}
+
+impl Criterion {
+    /// Whether it is met by so many served orders and errors among so many presses of the human.
+    pub fn is_met(&self, orders: u32, presses: u32, errors: u32) -> bool {
+        let share = f64::from(errors) / f64::from(presses.max(1));
+        orders >= self.orders && self.error_rate.is_none_or(|most| share <= most)
+    }
+}
+
+/// A phase with what is shown in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "what", rename_all = "snake_case", deny_unknown_fields)]
+pub enum PhaseSpec {
+    Instruction { steps: Vec<String> },
+    Familiarisation,
+    Trial,
+    Questionnaire { questionnaire: Questionnaire },
+    Debriefing { steps: Vec<String> },
+}
+
+impl PhaseSpec {
+    pub fn phase(&self) -> StudyPhase {
+        match self {
+            PhaseSpec::Instruction { .. } => StudyPhase::Instruction,
+            PhaseSpec::Familiarisation => StudyPhase::Familiarisation,
+            PhaseSpec::Trial => StudyPhase::Trial,
+            PhaseSpec::Questionnaire { .. } => StudyPhase::Questionnaire,
+            PhaseSpec::Debriefing { .. } => StudyPhase::Debriefing,
+        }
+    }
+
+    /// The steps that are ticked in it.
+    pub fn steps(&self) -> &[String] {
+        match self {
+            PhaseSpec::Instruction { steps } | PhaseSpec::Debriefing { steps } => steps,
+            _ => &[],
+        }
+    }
+}
+
+impl StepSpec {
+    /// "trial 1/2", "familiarisation": where it is in the participant's series.
+    pub fn label(&self) -> String {
+        let again = if self.attempt > 1 { format!(", attempt {}", self.attempt) } else { String::new() };
+        match self.period {
+            Some(period) => format!("trial {period}/{}{again}", self.periods),
+            None => format!("familiarisation{again}"),
+        }
+    }
+}
+
+/// A place in a participant's series, to be filled by one recording that is complete.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Slot {
+    /// The number of the trial; none: the familiarisation.
+    pub period: Option<u32>,
+    pub condition: Condition,
+}
+
+/// A plan with everything that is needed to run it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    pub plan: PlanSpec,
+    /// In the order of the plan.
+    pub questionnaires: Vec<Questionnaire>,
+    /// The settings of every trial.
+    pub session: SessionSpec,
+    pub digest: String,
+}
+
+/// Which recording of a study is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    /// The participant's place in the plan, from 0.
+    pub participant: usize,
+    /// The place in its series, from 0.
+    pub slot: usize,
+    /// 1 the first.
+    pub attempt: u32,
+    /// The participant was instructed already.
+    pub instructed: bool,
+}
+
+impl Study {
+    /// The study of a session file; `questionnaires` are the files that its plan names, in order. None without a plan.
+    pub fn new(session: &SessionSpec, questionnaires: Vec<Questionnaire>) -> Option<Study> {
+        let plan = session.plan.clone()?;
+        let session = SessionSpec { plan: None, ..session.clone() };
+        // What is serialised has no maps with other keys than strings.
+        let text = serde_json::to_string(&(&plan, &questionnaires, &session.trial, session.seed)).unwrap_or_default();
+        let digest = digest(&text);
+        Some(Study { plan, questionnaires, session, digest })
+    }
+
+    pub fn group(&self, participant: usize) -> Group {
+        self.plan.group(self.session.seed, participant)
+    }
+
+    /// The series of a participant.
+    pub fn slots(&self, participant: usize) -> Vec<Slot> {
+        let practice = self.plan.familiarisation.as_ref().map(|practice| (None, practice.condition));
+        let trials = self.group(participant).conditions.into_iter().enumerate();
+        let trials = trials.map(|(index, condition)| (Some(index as u32 + 1), condition));
+        practice.into_iter().chain(trials).map(|(period, condition)| Slot { period, condition }).collect()
+    }
+
+    /// The settings of a recording with people, and the number of its trial.
+    pub fn settings(&self, wanted: Wanted) -> (SessionSpec, u64) {
+        let slots = self.slots(wanted.participant);
+        let slot = slots[wanted.slot];
+        let mut spec = self.session.clone();
+        spec.participant.code.clone_from(&self.plan.codes()[wanted.participant]);
+        spec.trial.condition = slot.condition;
+        let practice = self.plan.familiarisation.as_ref().filter(|_| slot.period.is_none());
+        if let Some(practice) = practice {
+            spec.trial.presses = practice.presses;
+            spec.trial.seconds = practice.seconds;
+            spec.trial.orders = Some(practice.orders);
+        }
+        spec.step = Some(StepSpec {
+            plan: self.plan.name.clone(),
+            digest: self.digest.clone(),
+            participant: wanted.participant as u32,
+            group: self.group(wanted.participant).name,
+            period: slot.period,
+            periods: self.plan.conditions.len() as u32,
+            attempt: wanted.attempt,
+            criterion: practice.map(|it| Criterion { orders: it.orders, error_rate: it.error_rate }),
+            phases: self.phases(slot, wanted),
+        });
+        (spec, trial_number(wanted))
+    }
+
+    /// The settings of a simulated trial, and its number. Nobody is there to signal, so it is an unassisted one; to whom
+    /// nothing is explained, and who is asked nothing.
+    pub fn simulated(&self, participant: usize, period: u32) -> (SessionSpec, u64) {
+        let slots = self.slots(participant);
+        let slot = slots.iter().position(|slot| slot.period == Some(period)).unwrap_or(0);
+        let (mut spec, trial) = self.settings(Wanted { participant, slot, attempt: 1, instructed: true });
+        spec.trial.condition = Condition::None;
+        if let Some(step) = &mut spec.step {
+            step.phases = vec![PhaseSpec::Trial];
+        }
+        (spec, trial)
+    }
+
+    fn phases(&self, slot: Slot, wanted: Wanted) -> Vec<PhaseSpec> {
+        let mut phases = Vec::new();
+        if !wanted.instructed && !self.plan.instruction.is_empty() {
+            phases.push(PhaseSpec::Instruction { steps: self.plan.instruction.clone() });
+        }
+        let Some(period) = slot.period else {
+            phases.push(PhaseSpec::Familiarisation);
+            return phases;
+        };
+        phases.push(PhaseSpec::Trial);
+        for (when, questionnaire) in self.plan.questionnaire.iter().zip(&self.questionnaires) {
+            let is_asked = when.after.as_ref().is_none_or(|after| after.contains(&period));
+            if let Some(questionnaire) = questionnaire.after(slot.condition).filter(|_| is_asked) {
+                phases.push(PhaseSpec::Questionnaire { questionnaire });
+            }
+        }
+        if period as usize == self.plan.conditions.len() && !self.plan.debriefing.is_empty() {
+            phases.push(PhaseSpec::Debriefing { steps: self.plan.debriefing.clone() });
+        }
+        phases
+    }
+}
+
+/// A number of its own for every recording of a plan, which says in decimals which one it is: participant, slot, attempt.
+fn trial_number(wanted: Wanted) -> u64 {
+    (wanted.participant as u64 + 1) * 1_000_000 + wanted.slot as u64 * 10_000 + u64::from(wanted.attempt)
+}
+
+/// A fingerprint of a text: sixteen hexadecimal digits.
+fn digest(text: &str) -> String {
+    let sum = text.bytes().fold(text.len() as u64, |sum, byte| mix(sum ^ u64::from(byte)));
+    format!("{sum:016x}")
+}

@@ -1,0 +1,316 @@
+//! What is around a trial: the phases that a recording of a plan goes through, one after another.
+
+use serde::{Deserialize, Serialize};
+
+use super::plan::{PhaseSpec, Questionnaire, StepSpec};
+use super::{Phase, Session};
+
+/// A phase of a study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StudyPhase {
+    Instruction,
+    /// A trial for practice.
+    Familiarisation,
+    Trial,
+    Questionnaire,
+    /// Of the wizard.
+    Debriefing,
+}
+
+impl StudyPhase {
+    pub fn name(self) -> &'static str {
+        match self {
+            StudyPhase::Instruction => "instruction",
+            StudyPhase::Familiarisation => "familiarisation",
+            StudyPhase::Trial => "trial",
+            StudyPhase::Questionnaire => "questionnaire",
+            StudyPhase::Debriefing => "debriefing",
+        }
+    }
+
+    /// Whether the kitchen is worked in.
+    pub fn has_trial(self) -> bool {
+        matches!(self, StudyPhase::Trial | StudyPhase::Familiarisation)
+    }
+}
+
+/// Something that happens around a trial.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "what", rename_all = "snake_case")]
+pub enum ProtocolEvent {
+    /// The participant agreed to what the plan asks; without it, there is no recording.
+    ConsentGiven,
+    /// The next phase of the recording begins; `number` counts from 1.
+    PhaseStarted {
+        phase: StudyPhase,
+        number: usize,
+    },
+    /// A step of an instruction or debriefing, counted from 1, was done, or was not after all.
+    Ticked {
+        step: usize,
+        done: bool,
+    },
+    /// An item is in front of the participant.
+    ItemShown {
+        item: String,
+    },
+    /// All answers are, to be confirmed.
+    AnswersShown,
+    /// The shown item, from 1 to the points of the scale; a later answer replaces it. The next item is shown then.
+    ItemAnswered {
+        item: String,
+        answer: u8,
+    },
+    /// The participant gives no answer to the shown item. The next item is shown then.
+    ItemSkipped {
+        item: String,
+    },
+    AnswersConfirmed,
+    /// The practice is over: how it went, and whether that meets the criterion.
+    CriterionChecked {
+        met: bool,
+        orders: u32,
+        presses: u32,
+        errors: u32,
+    },
+    /// The wizard lets the participant go on all the same.
+    CriterionWaived {
+        reason: String,
+    },
+}
+
+/// An answer to an item.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    Rated(u8),
+    Skipped,
+}
+
+/// How the practice went.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Practice {
+    pub met: bool,
+    pub orders: u32,
+    pub presses: u32,
+    pub errors: u32,
+    /// Why the participant goes on all the same.
+    pub waived: Option<String>,
+}
+
+/// Where a recording of a plan is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Protocol {
+    pub consent: bool,
+    /// The number of the phase, from 1; 0: before the first.
+    pub number: usize,
+    /// The steps of the phase that are done.
+    pub ticks: Vec<bool>,
+    /// The answers to the items of the phase.
+    pub answers: Vec<Option<Answer>>,
+    /// The item in front of the participant; the number of items: all of them, to be confirmed.
+    pub item: usize,
+    pub confirmed: bool,
+    pub practice: Option<Practice>,
+}
+
+impl Session {
+    /// Where it is in its plan, if it belongs to one.
+    pub fn step(&self) -> Option<(&StepSpec, &Protocol)> {
+        self.spec.step.as_ref().zip(self.protocol.as_ref())
+    }
+
+    /// The running phase of a plan.
+    pub fn study_phase(&self) -> Option<&PhaseSpec> {
+        let (step, protocol) = self.step()?;
+        step.phases.get(protocol.number.checked_sub(1)?)
+    }
+
+    /// The phase that comes after the running one.
+    pub fn next_phase(&self) -> Option<StudyPhase> {
+        let (step, protocol) = self.step()?;
+        step.phases.get(protocol.number).map(PhaseSpec::phase)
+    }
+
+    /// The questionnaire that is being answered.
+    pub fn questionnaire(&self) -> Option<&Questionnaire> {
+        match self.study_phase()? {
+            PhaseSpec::Questionnaire { questionnaire } => Some(questionnaire),
+            _ => None,
+        }
+    }
+
+    /// Why the running phase of a plan cannot be left yet; nothing if it can.
+    pub fn phase_lacks(&self) -> Option<&'static str> {
+        let protocol = self.protocol.as_ref()?;
+        if self.aborted.is_some() {
+            return Some("the trial was aborted");
+        }
+        match self.study_phase()? {
+            PhaseSpec::Instruction { .. } | PhaseSpec::Debriefing { .. } => {
+                protocol.ticks.contains(&false).then_some("not every step is done")
+            }
+            PhaseSpec::Trial | PhaseSpec::Familiarisation => {
+                (!matches!(self.phase, Phase::Over(_))).then_some("the trial is not over")
+            }
+            PhaseSpec::Questionnaire { .. } => (!protocol.confirmed).then_some("the answers are not confirmed"),
+        }
+    }
+
+    /// Whether everything was done that the recording is for, or its trial was aborted. True of one without a plan.
+    pub fn is_step_done(&self) -> bool {
+        match &self.protocol {
+            None => true,
+            Some(_) if self.aborted.is_some() => true,
+            Some(protocol) => protocol.number > 0 && self.next_phase().is_none() && self.phase_lacks().is_none(),
+        }
+    }
+}
+
+/// Whether the session takes the event now.
+///
+/// # Errors
+/// The reason why it does not, in words for the wizard.
+pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static str> {
+    let Some((step, protocol)) = session.step() else { return Err("the session has no plan") };
+    let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
+    match event {
+        ProtocolEvent::ConsentGiven => {
+            unless(!protocol.consent && protocol.number == 0, "consent is given once, and first")
+        }
+        ProtocolEvent::PhaseStarted { phase, number } => {
+            let next = step.phases.get(protocol.number).map(PhaseSpec::phase);
+            unless(*number == protocol.number + 1 && next == Some(*phase), "another phase comes next")?;
+            session.phase_lacks().map_or(Ok(()), Err)
+        }
+        ProtocolEvent::Ticked { step, done } => {
+            let is_done = step.checked_sub(1).and_then(|index| protocol.ticks.get(index));
+            unless(is_done.is_some_and(|is_done| is_done != done), "there is no such step to be ticked")
+        }
+        ProtocolEvent::ItemShown { item } => open_item(session, item).map(drop),
+        ProtocolEvent::AnswersShown => unless(is_open(session), "no questionnaire is being answered"),
+        ProtocolEvent::ItemAnswered { item, answer } => {
+            let questionnaire = shown_item(session, item)?;
+            unless((1..=questionnaire.scale.points).contains(answer), "the scale has no such point")
+        }
+        ProtocolEvent::ItemSkipped { item } => shown_item(session, item).map(drop),
+        ProtocolEvent::AnswersConfirmed => {
+            unless(is_open(session), "no questionnaire is being answered")?;
+            unless(protocol.answers.iter().all(Option::is_some), "not every item is answered or skipped")
+        }
+        ProtocolEvent::CriterionChecked { .. } => {
+            let is_practice = matches!(session.study_phase(), Some(PhaseSpec::Familiarisation));
+            let is_over = matches!(session.phase, Phase::Over(_));
+            unless(is_practice && is_over && protocol.practice.is_none(), "there is no practice to judge")
+        }
+        ProtocolEvent::CriterionWaived { reason } => {
+            let failed = protocol.practice.as_ref().is_some_and(|practice| !practice.met && practice.waived.is_none());
+            unless(failed, "there is no criterion to waive")?;
+            unless(!reason.is_empty(), "a reason is needed")
+        }
+    }
+}
+
+/// Whether a trial may start: in a plan, in its phase.
+///
+/// # Errors
+/// The reason why not.
+pub fn admit_trial(session: &Session) -> Result<(), &'static str> {
+    let has_trial = session.study_phase().is_some_and(|phase| phase.phase().has_trial());
+    match session.protocol.is_none() || has_trial {
+        true => Ok(()),
+        false => Err("it is not the phase for a trial"),
+    }
+}
+
+fn is_open(session: &Session) -> bool {
+    session.questionnaire().is_some() && session.protocol.as_ref().is_some_and(|protocol| !protocol.confirmed)
+}
+
+fn open_item<'a>(session: &'a Session, item: &str) -> Result<&'a Questionnaire, &'static str> {
+    let questionnaire = session.questionnaire().filter(|_| is_open(session));
+    let questionnaire = questionnaire.ok_or("no questionnaire is being answered")?;
+    questionnaire.position(item).map(|_| questionnaire).ok_or("the questionnaire has no such item")
+}
+
+fn shown_item<'a>(session: &'a Session, item: &str) -> Result<&'a Questionnaire, &'static str> {
+    let questionnaire = open_item(session, item)?;
+    let shown = session.protocol.as_ref().and_then(|protocol| questionnaire.items.get(protocol.item));
+    match shown.is_some_and(|shown| shown.id == item) {
+        true => Ok(questionnaire),
+        false => Err("another item is shown"),
+    }
+}
+
+/// Moves on by an event that was admitted.
+pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
+    let place = |item: &str| session.questionnaire().and_then(|questionnaire| questionnaire.position(item));
+    let (steps, items) = match event {
+        ProtocolEvent::PhaseStarted { number, .. } => sizes(session.spec.step.as_ref(), *number),
+        _ => (0, session.questionnaire().map_or(0, |questionnaire| questionnaire.items.len())),
+    };
+    let item = match event {
+        ProtocolEvent::ItemShown { item } => place(item),
+        _ => None,
+    };
+    let Some(protocol) = &mut session.protocol else { return };
+    match event {
+        ProtocolEvent::ConsentGiven => protocol.consent = true,
+        ProtocolEvent::PhaseStarted { number, .. } => {
+            protocol.number = *number;
+            protocol.ticks = vec![false; steps];
+            protocol.answers = vec![None; items];
+            protocol.item = 0;
+            protocol.confirmed = false;
+        }
+        ProtocolEvent::Ticked { step, done } => {
+            if let Some(tick) = step.checked_sub(1).and_then(|index| protocol.ticks.get_mut(index)) {
+                *tick = *done;
+            }
+        }
+        ProtocolEvent::ItemShown { .. } => protocol.item = item.unwrap_or(0),
+        ProtocolEvent::AnswersShown => protocol.item = items,
+        ProtocolEvent::ItemAnswered { answer, .. } => protocol.answer(Answer::Rated(*answer)),
+        ProtocolEvent::ItemSkipped { .. } => protocol.answer(Answer::Skipped),
+        ProtocolEvent::AnswersConfirmed => protocol.confirmed = true,
+        ProtocolEvent::CriterionChecked { met, orders, presses, errors } => {
+            let (met, orders, presses, errors) = (*met, *orders, *presses, *errors);
+            protocol.practice = Some(Practice { met, orders, presses, errors, waived: None });
+        }
+        ProtocolEvent::CriterionWaived { reason } => {
+            if let Some(practice) = &mut protocol.practice {
+                practice.waived = Some(reason.clone());
+            }
+        }
+    }
+}
+
+/// How many steps and items a phase has.
+fn sizes(step: Option<&StepSpec>, number: usize) -> (usize, usize) {
+    let phase = step.and_then(|step| step.phases.get(number.checked_sub(1)?));
+    let items = match phase {
+        Some(PhaseSpec::Questionnaire { questionnaire }) => questionnaire.items.len(),
+        _ => 0,
+    };
+    (phase.map_or(0, |phase| phase.steps().len()), items)
+}
+
+impl Protocol {
+    /// Answers the shown item, and shows the next one; after the last, the first that was left out, or all answers.
+    fn answer(&mut self, answer: Answer) {
+        if let Some(place) = self.answers.get_mut(self.item) {
+            *place = Some(answer);
+        }
+        let next = self.item + 1;
+        self.item = match self.open_item() {
+            None => self.answers.len(),
+            Some(open) if next == self.answers.len() => open,
+            Some(_) => next,
+        };
+    }
+
+    /// The first item without an answer.
+    pub fn open_item(&self) -> Option<usize> {
+        self.answers.iter().position(Option::is_none)
+    }
+}

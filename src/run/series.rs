@@ -157,7 +157,7 @@ fn which(progress: &Progress, recording: &str, slot: usize) -> Question {
     let attempt = progress.steps.get(slot).and_then(|stand| stand.recordings.last());
     let presses = attempt.map_or(0, |attempt| attempt.presses);
     Question {
-        title: format!("{}: the {name} is not done", progress.code),
+        title: format!("{}: {name} is not done", progress.code),
         text: vec![format!("{recording} was cut, or left before everything was done. It has {presses} presses.")],
         answers: vec![
             "continue it where it was, with a running trial paused".to_string(),

@@ -3,6 +3,7 @@
 use super::paint::{Brush, width};
 use super::regions::Regions;
 use super::theme::Role;
+use crate::console::form::sheet;
 use crate::console::hands::Hand;
 use crate::console::keys::{Action, Binding, Layer};
 use crate::console::model::{Dialog, Level, Model};
@@ -101,6 +102,10 @@ fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&
     let label = binding.footer?;
     if binding.layer.is_some_and(|layer| layer != model.layer) {
         return None;
+    }
+    if model.playback.is_none() && sheet(session).is_some() {
+        // The sheet says itself what its keys do.
+        return matches!(binding.action, Action::Quit | Action::Help | Action::StopRobot).then_some(label);
     }
     let runs = matches!(session.phase, Phase::Running | Phase::Paused);
     if is_over(session, model) {

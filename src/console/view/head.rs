@@ -13,17 +13,23 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let area = regions.head;
     let gap = if regions.room == Room::Small { 1 } else { 3 };
     let strong = brush.style(Role::Strong);
-    // A small replay needs the room of the name.
-    let is_tight = model.playback.is_some() && regions.room == Room::Small;
+    // A small replay, and one of a plan, need the room of the name.
+    let is_tight = (model.playback.is_some() || session.step().is_some()) && regions.room == Room::Small;
     let name = if is_tight { "" } else { "tomcom" };
     let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
     let badge = brush.theme.badge(phase_role(session.phase));
     x = brush.text(x, area.y, 19, &format!(" {} ", words::stage(session)), badge) + gap;
-    x = clock(brush, x, area.y, session, model) + gap;
-    let presses = session.presses.iter().sum::<u32>();
-    let counts = format!("{presses:>3}/{} presses", session.spec.trial.presses);
-    let text = brush.style(Role::Text);
-    x = brush.text(x, area.y, 20, &counts, text) + gap;
+    if let (Some(label), None) = (series(session), &model.playback) {
+        x = brush.text(x, area.y, area.right() - x, &label, strong) + gap;
+    }
+    if session.study_phase().is_none_or(|phase| phase.phase().has_trial()) {
+        x = clock(brush, x, area.y, session, model) + gap;
+        let presses = session.presses.iter().sum::<u32>();
+        let unit = if is_tight && model.playback.is_none() { "" } else { " presses" };
+        let counts = format!("{presses:>3}/{}{unit}", session.spec.trial.presses);
+        let text = brush.style(Role::Text);
+        x = brush.text(x, area.y, 20, &counts, text) + gap;
+    }
     let healths = healths(session, model, regions.room);
     let needed = healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
     let mut right = area.right().saturating_sub(needed).max(x);
@@ -53,16 +59,26 @@ fn clock(brush: &mut Brush, x: u16, y: u16, session: &Session, model: &Model) ->
     brush.parts(x, y, 16, &[(&format!("{clock:>5}"), Role::Strong), (&format!(" / {total}"), Role::Quiet)])
 }
 
-/// What stays the same during a trial, the most important first.
-fn facts(session: &Session, model: &Model) -> Vec<String> {
-    let condition = match session.spec.trial.condition {
+fn condition(session: &Session) -> &'static str {
+    match session.spec.trial.condition {
         Condition::None => "unassisted",
         Condition::Wizard => "wizard",
-    };
+    }
+}
+
+/// Where a recording is in its participant's series: "P07 trial 2/2 wizard".
+fn series(session: &Session) -> Option<String> {
+    let (step, _) = session.step()?;
+    Some(format!("{} {} {}", session.spec.participant.code, step.label(), condition(session)))
+}
+
+/// What stays the same during a trial, the most important first.
+fn facts(session: &Session, model: &Model) -> Vec<String> {
+    let condition = condition(session);
     let served = format!("{} served", session.served.len());
     let code = session.spec.participant.code.clone();
-    if let (Some((step, _)), None) = (session.step(), &model.playback) {
-        return vec![format!("{code} {} {condition}", step.label()), served, session.kitchen.title.clone()];
+    if session.step().is_some() && model.playback.is_none() {
+        return vec![served, session.kitchen.title.clone()];
     }
     let mut facts = match &model.playback {
         None => vec![code, condition.to_string(), served],

@@ -46,7 +46,7 @@ pub fn view(session: &Session, model: &Model, frame: &mut Frame) {
     events::draw(&mut brush, &regions, session, model);
     timeline::draw(&mut brush, &regions, session, model);
     footer::draw(&mut brush, &regions, session, model);
-    sheet::draw(&mut brush, area, session);
+    sheet::draw(&mut brush, area, session, model);
     dialog::draw(&mut brush, area, session, model);
 }
 

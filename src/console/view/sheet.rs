@@ -8,6 +8,7 @@ use super::dialog::open;
 use super::paint::{Brush, width, wrap};
 use super::theme::{Role, Theme};
 use crate::console::form::{Sheet, WAIVERS, sheet};
+use crate::console::model::Model;
 use crate::console::question::Question;
 use crate::session::Session;
 use crate::session::plan::Questionnaire;
@@ -15,6 +16,12 @@ use crate::session::protocol::{Answer, Protocol};
 
 /// Longer lines are hard to read.
 const WIDEST: u16 = 84;
+
+/// What a sheet is drawn with.
+struct Pen<'a, 'b> {
+    brush: &'a mut Brush<'b>,
+    with_keys: bool,
+}
 
 /// Lines of a sheet: each with its indent, and how it is drawn.
 #[derive(Default)]
@@ -49,8 +56,9 @@ impl Page {
     }
 
     /// Draws it, as much as there is room for, with its focus, and what the keys do on the last line.
-    fn draw(self, brush: &mut Brush, screen: Rect, title: &str, remark: &str, keys: &[(&str, Role)]) {
+    fn draw(self, pen: &mut Pen, screen: Rect, title: &str, remark: &str, keys: &[(&str, Role)]) {
         let rows = (self.lines.len() as u16 + 5).min(screen.height.saturating_sub(2));
+        let brush = &mut *pen.brush;
         let inside = open(brush, screen, (self.columns + 4, rows), title, remark);
         let room = usize::from(inside.height.saturating_sub(3));
         let last = self.lines.len().saturating_sub(room);
@@ -59,19 +67,22 @@ impl Page {
             let style = brush.style(*role);
             brush.text(inside.x + 1 + indent, inside.y + 1 + row as u16, self.columns - indent, line, style);
         }
-        brush.parts(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 1, keys);
+        if pen.with_keys {
+            brush.parts(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 1, keys);
+        }
     }
 }
 
 /// Draws the sheet of the running phase, if it has one.
-pub fn draw(brush: &mut Brush, screen: Rect, session: &Session) {
+pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
     let (Some(sheet), Some((step, protocol))) = (sheet(session), session.step()) else { return };
-    let code = &session.spec.participant.code;
-    let where_ = format!("{code}  {}", step.label());
+    let where_ = format!("{}  {}", session.spec.participant.code, step.label());
+    // Over a recording the keys do something else.
+    let pen = &mut Pen { brush, with_keys: model.playback.is_none() };
     match sheet {
-        Sheet::Steps { title, steps } => draw_steps(brush, screen, (title, &where_), steps, protocol, session),
-        Sheet::Questions(questionnaire) => draw_questions(brush, screen, &where_, questionnaire, protocol, session),
-        Sheet::Failed => draw_failed(brush, screen, &where_, session),
+        Sheet::Steps { title, steps } => draw_steps(pen, screen, (title, &where_), steps, protocol, session),
+        Sheet::Questions(questionnaire) => draw_questions(pen, screen, &where_, questionnaire, protocol, session),
+        Sheet::Failed => draw_failed(pen, screen, &where_, session),
     }
 }
 
@@ -84,7 +95,7 @@ fn onward(session: &Session) -> String {
 }
 
 fn draw_steps(
-    brush: &mut Brush,
+    pen: &mut Pen,
     screen: Rect,
     heads: (&str, &str),
     steps: &[String],
@@ -112,11 +123,11 @@ fn draw_steps(
     }
     let on = if open.is_some() { " this step is done".to_string() } else { onward(session) };
     let keys = [("enter", Role::Strong), (on.as_str(), Role::Text), ("   left", Role::Strong), (" back", Role::Text)];
-    page.draw(brush, screen, heads.0, heads.1, &keys);
+    page.draw(pen, screen, heads.0, heads.1, &keys);
 }
 
 fn draw_questions(
-    brush: &mut Brush,
+    pen: &mut Pen,
     screen: Rect,
     where_: &str,
     questionnaire: &Questionnaire,
@@ -141,7 +152,7 @@ fn draw_questions(
             ("left right", Role::Strong),
             (" back, on", Role::Text),
         ];
-        return page.draw(brush, screen, &questionnaire.title, where_, &keys);
+        return page.draw(pen, screen, &questionnaire.title, where_, &keys);
     }
     for (item, answer) in questionnaire.items.iter().zip(&protocol.answers) {
         let answer = match answer {
@@ -159,7 +170,7 @@ fn draw_questions(
     };
     let left = if back.is_empty() { "" } else { "   left" };
     let keys = [("enter", Role::Strong), (on.as_str(), Role::Text), (left, Role::Strong), (back, Role::Text)];
-    page.draw(brush, screen, &questionnaire.title, where_, &keys);
+    page.draw(pen, screen, &questionnaire.title, where_, &keys);
 }
 
 /// The points of the scale, the given one marked, with what its ends mean.
@@ -180,7 +191,7 @@ fn scale(page: &mut Page, questionnaire: &Questionnaire, given: Option<Answer>) 
     }
 }
 
-fn draw_failed(brush: &mut Brush, screen: Rect, where_: &str, session: &Session) {
+fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session) {
     let Some((step, protocol)) = session.step() else { return };
     let (Some(criterion), Some(practice)) = (step.criterion, &protocol.practice) else { return };
     let mut page = Page::new(screen);
@@ -195,9 +206,14 @@ fn draw_failed(brush: &mut Brush, screen: Rect, where_: &str, session: &Session)
     for (index, reason) in WAIVERS.iter().enumerate() {
         page.marked(&format!("  {}", index + 1), reason, Role::Text);
     }
-    let keys =
-        [("enter", Role::Strong), (" practise again   ", Role::Text), ("1-4", Role::Strong), (" go on", Role::Text)];
-    page.draw(brush, screen, "The criterion is not met", where_, &keys);
+    let waivers = format!("1-{}", WAIVERS.len());
+    let keys = [
+        ("enter", Role::Strong),
+        (" practise again   ", Role::Text),
+        (waivers.as_str(), Role::Strong),
+        (" go on all the same", Role::Text),
+    ];
+    page.draw(pen, screen, "The criterion is not met", where_, &keys);
 }
 
 /// Draws a question before a recording begins: nothing else is on the screen.
@@ -214,5 +230,5 @@ pub fn draw_question(question: &Question, theme: Theme, frame: &mut Frame) {
     }
     page.focus = page.lines.len();
     let keys = [("esc", Role::Strong), (" leave: nothing is recorded", Role::Text)];
-    page.draw(&mut brush, screen, &question.title, "", &keys);
+    page.draw(&mut Pen { brush: &mut brush, with_keys: true }, screen, &question.title, "", &keys);
 }

@@ -1,0 +1,624 @@
+//! Plans: who comes when under which condition with which orders, what comes next whatever was recorded, cut or left, and
+//! what happens around a trial.
+
+mod tmux;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde_json::Value;
+use tmux::{TOMCOM, Terminal, tomcom};
+use tomcom::base::time::SessionTime;
+use tomcom::edge::files::{SessionFiles, read_session};
+use tomcom::edge::log::{LOG_NAME, LogWriter};
+use tomcom::edge::recordings;
+use tomcom::kitchen::DishId;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::run::engine::Engine;
+use tomcom::run::verify::verify;
+use tomcom::session::event::EndReason;
+use tomcom::session::orders::OrderList;
+use tomcom::session::plan::{Made, Next, Outcome, Participants, PhaseSpec, Progress, StepSpec, Study, Wanted};
+use tomcom::session::protocol::ProtocolEvent;
+use tomcom::session::settings::Condition;
+use tomcom::session::{Event, Header, Phase};
+
+fn files() -> SessionFiles {
+    read_session(Path::new("sessions/study.toml")).expect("the study of the project")
+}
+
+fn study(change: impl Fn(&mut SessionFiles)) -> Study {
+    let mut files = files();
+    change(&mut files);
+    files.study().expect("a plan")
+}
+
+/// An empty folder for the test of this name.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("plan").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+#[test]
+fn the_groups_are_balanced_in_every_block_and_belong_to_plan_and_seed() {
+    for (conditions, block, orders) in [(2, None, 2), (2, Some(2), 2), (2, Some(6), 2), (1, None, 1)] {
+        let study = study(|files| {
+            let plan = files.spec.plan.as_mut().expect("a plan");
+            plan.participants = Participants::Count(60);
+            plan.conditions.truncate(conditions);
+            plan.block = block;
+        });
+        let names: Vec<String> = (0..60).map(|participant| study.group(participant).name).collect();
+        for block in names.chunks(block.unwrap_or(2 * orders) as usize) {
+            let mut sizes = BTreeMap::new();
+            block.iter().for_each(|name| *sizes.entry(name).or_insert(0) += 1);
+            assert_eq!(sizes.len(), orders as usize, "{block:?}");
+            assert!(sizes.values().all(|&size| size == block.len() / orders as usize), "{block:?}");
+        }
+        for participant in 0..60 {
+            let mut conditions = study.group(participant).conditions;
+            conditions.sort_by_key(|condition| condition.name());
+            conditions.dedup();
+            assert_eq!(conditions.len(), study.plan.conditions.len(), "each condition once");
+        }
+    }
+    let names = |seed: u64, count: u32| {
+        let study = study(|files| {
+            files.spec.seed = seed;
+            files.spec.plan.as_mut().expect("a plan").participants = Participants::Count(count);
+        });
+        (0..12).map(|participant| study.group(participant).name).collect::<String>()
+    };
+    assert_eq!(names(1, 12), names(1, 99), "more participants change nobody's group");
+    assert!((2..6).any(|seed| names(seed, 12) != names(1, 12)), "another seed, other groups");
+}
+
+/// The first `count` orders of a recording of the plan.
+fn orders(study: &Study, wanted: Wanted, menu: usize, count: usize) -> Vec<DishId> {
+    let (spec, trial) = study.settings(wanted);
+    let mut list = OrderList::new(menu, &spec, trial);
+    (0..count).map(|_| list.draw()).collect()
+}
+
+#[test]
+fn the_trials_of_a_participant_ask_for_the_same_dishes_in_another_order() {
+    let study = study(|_| ());
+    let sorted = |dishes: &[DishId]| {
+        let mut dishes = dishes.to_vec();
+        dishes.sort_by_key(|dish| dish.index());
+        dishes
+    };
+    for (menu, run) in [(6, 3), (4, 3), (9, 3)] {
+        let mut differ = 0;
+        for participant in 0..14 {
+            let of = |slot, attempt| Wanted { participant, slot, attempt, instructed: true };
+            let lists =
+                [(1, 1), (2, 1), (1, 2)].map(|(slot, attempt)| orders(&study, of(slot, attempt), menu, 4 * menu));
+            for list in &lists[1..] {
+                differ += usize::from(list != &lists[0]);
+                // At the end of every block, and of every run in it, the same dishes were asked for.
+                for end in (menu..=4 * menu).step_by(menu) {
+                    assert_eq!(sorted(&list[..end]), sorted(&lists[0][..end]));
+                    let first = end - menu + run.min(menu);
+                    assert_eq!(sorted(&list[..first]), sorted(&lists[0][..first]), "after {first} of {menu}");
+                }
+            }
+            let block = sorted(&lists[0][..menu]);
+            assert_eq!(block.iter().map(|dish| dish.index()).collect::<Vec<_>>(), (0..menu).collect::<Vec<_>>());
+        }
+        assert!(differ > 25, "of 28 pairs only {differ} differ");
+    }
+}
+
+/// What a recording of P01 might say of itself.
+fn made(study: &Study, slot: usize, attempt: u32, outcome: Outcome) -> Made {
+    let (spec, _) = study.settings(Wanted { participant: 0, slot, attempt, instructed: slot > 0 });
+    let recording = format!("2026-03-14-P01-{slot}{attempt}");
+    let step = spec.step.expect("a step of the plan");
+    Made { recording, code: spec.participant.code, step, consent: true, instructed: true, presses: 20, outcome }
+}
+
+/// Recordings as slot, attempt and outcome, and what comes next.
+fn check_next(recorded: &[(usize, u32, Outcome)], next: Next) {
+    let study = study(|_| ());
+    let mut all: Vec<Made> =
+        recorded.iter().map(|(slot, attempt, outcome)| made(&study, *slot, *attempt, outcome.clone())).collect();
+    let progress = |all: &[Made]| Progress::of(&study, 0, all).expect("recordings of the plan");
+    assert_eq!(progress(&all).next, next, "{recorded:?}");
+    all.reverse();
+    assert_eq!(progress(&all).next, next, "in whatever order they are found");
+    assert_eq!(Progress::of(&study, 1, &all).expect("another one").next, Next::Begin { slot: 0, attempt: 1 });
+}
+
+#[test]
+fn what_comes_next_follows_from_the_recordings_alone() {
+    let done = Outcome::Complete;
+    let void = || Outcome::Void { reason: "aborted".to_string() };
+    let excluded = || Outcome::Excluded { reason: "tracker off".to_string() };
+    let choose =
+        |slot, attempt: u32| Next::Choose { recording: format!("2026-03-14-P01-{slot}{}", attempt - 1), slot, attempt };
+    check_next(&[], Next::Begin { slot: 0, attempt: 1 });
+    check_next(&[(0, 1, void())], Next::Begin { slot: 0, attempt: 2 });
+    check_next(&[(0, 1, Outcome::Open)], choose(0, 2));
+    check_next(&[(0, 1, void()), (0, 2, done.clone())], Next::Begin { slot: 1, attempt: 1 });
+    check_next(&[(0, 1, done.clone()), (1, 1, Outcome::Open)], choose(1, 2));
+    check_next(&[(0, 1, done.clone()), (1, 1, Outcome::Open), (1, 2, void())], Next::Begin { slot: 1, attempt: 3 });
+    check_next(
+        &[(0, 1, done.clone()), (1, 1, Outcome::Open), (1, 2, done.clone())],
+        Next::Begin { slot: 2, attempt: 1 },
+    );
+    check_next(&[(0, 1, done.clone()), (1, 1, excluded())], Next::Begin { slot: 2, attempt: 1 });
+    check_next(&[(0, 1, done.clone()), (1, 1, excluded()), (1, 2, Outcome::Open)], choose(1, 3));
+    check_next(&[(0, 1, done.clone()), (1, 1, done.clone()), (2, 1, done)], Next::Finished);
+}
+
+#[test]
+fn recordings_of_another_group_are_told_and_not_mixed_in() {
+    let study = study(|_| ());
+    let mut other = made(&study, 0, 1, Outcome::Complete);
+    other.step.group = if other.step.group == "AB" { "BA" } else { "AB" }.to_string();
+    let told = Progress::of(&study, 0, &[other]).expect_err("another group");
+    assert!(told.contains("2026-03-14-P01-01") && told.contains("AB") && told.contains("BA"), "{told}");
+}
+
+/// A recording of the plan, driven as a wizard would, without a console.
+struct Run {
+    engine: Engine,
+    log: LogWriter,
+    now_s: f64,
+}
+
+impl Run {
+    fn new(out: &Path, wanted: Wanted) -> Run {
+        let mut files = files();
+        files.spec.trial.presses = 40;
+        let plan = files.spec.plan.as_mut().expect("a plan");
+        plan.familiarisation.as_mut().expect("practice").presses = 30;
+        let study = files.study().expect("a plan");
+        let (spec, trial) = study.settings(wanted);
+        let mut header = Header::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
+        header.started = Some("2026-03-14T09:00:00.000Z".to_string());
+        let log = LogWriter::create_live(out, "2026-03-14", &header).expect("the folder can be written");
+        let kitchen = Arc::new(files.kitchen.kitchen);
+        let engine = Engine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
+        Run { engine, log, now_s: 0.0 }
+    }
+
+    /// The reason why an input is refused, if it is.
+    fn input(&mut self, event: Event) -> Option<String> {
+        self.now_s += 0.5;
+        let outcome = self.engine.input(SessionTime::from_secs_f64(self.now_s), event);
+        outcome.events.iter().for_each(|stamped| self.log.append(stamped).expect("the log can be written"));
+        outcome.refused
+    }
+
+    fn tell(&mut self, event: ProtocolEvent) {
+        let refused = self.input(Event::Protocol(event.clone()));
+        assert_eq!(refused, None, "{event:?}");
+    }
+
+    fn refuses(&mut self, event: ProtocolEvent) {
+        let refused = self.input(Event::Protocol(event.clone()));
+        assert!(refused.is_some(), "{event:?} is taken");
+    }
+
+    fn next_phase(&mut self) {
+        let phase = self.engine.session().next_phase().expect("one more phase");
+        let number = self.engine.session().protocol.as_ref().expect("a plan").number + 1;
+        self.tell(ProtocolEvent::PhaseStarted { phase, number });
+    }
+
+    /// Runs the trial to its end by itself.
+    fn trial(&mut self) {
+        assert_eq!(self.input(Event::TrialStarted), None);
+        while self.engine.session().phase == Phase::Running {
+            let events = self.engine.fire();
+            events.iter().for_each(|stamped| self.log.append(stamped).expect("the log can be written"));
+        }
+        self.now_s = self.engine.session().time.as_secs_f64();
+    }
+
+    /// Goes through everything that is left, as it is meant.
+    fn to_the_end(&mut self) {
+        while self.engine.session().next_phase().is_some() {
+            self.next_phase();
+            match self.engine.session().study_phase().cloned().expect("a phase") {
+                PhaseSpec::Instruction { steps } | PhaseSpec::Debriefing { steps } => {
+                    (1..=steps.len()).for_each(|step| self.tell(ProtocolEvent::Ticked { step, done: true }));
+                }
+                PhaseSpec::Trial | PhaseSpec::Familiarisation => self.trial(),
+                PhaseSpec::Questionnaire { questionnaire } => {
+                    for item in questionnaire.items {
+                        self.tell(ProtocolEvent::ItemAnswered { item: item.id, answer: 5 });
+                    }
+                    self.tell(ProtocolEvent::AnswersConfirmed);
+                }
+            }
+        }
+        if self.engine.session().protocol.as_ref().is_some_and(|it| it.practice.as_ref().is_some_and(|it| !it.met)) {
+            self.tell(ProtocolEvent::CriterionWaived { reason: "no time".to_string() });
+        }
+    }
+
+    fn close(mut self) -> PathBuf {
+        assert_eq!(self.input(Event::SessionEnded), None);
+        self.log.folder().to_path_buf()
+    }
+}
+
+fn wanted(slot: usize, instructed: bool) -> Wanted {
+    Wanted { participant: 0, slot, attempt: 1, instructed }
+}
+
+#[test]
+fn what_happens_around_a_trial_keeps_its_order() {
+    let out = folder("order");
+    let mut run = Run::new(&out, wanted(0, false));
+    assert!(run.input(Event::TrialStarted).is_some(), "no trial before its phase");
+    run.tell(ProtocolEvent::ConsentGiven);
+    run.refuses(ProtocolEvent::ConsentGiven);
+    run.next_phase();
+    run.refuses(ProtocolEvent::Ticked { step: 0, done: true });
+    run.refuses(ProtocolEvent::Ticked { step: 99, done: true });
+    run.refuses(ProtocolEvent::Ticked { step: 1, done: false });
+    assert!(run.input(Event::TrialStarted).is_some(), "no trial in the instruction");
+    let (phase, number) = (run.engine.session().next_phase().expect("practice"), 2);
+    run.refuses(ProtocolEvent::PhaseStarted { phase, number });
+    let steps = run.engine.session().study_phase().expect("a phase").steps().len();
+    (1..=steps).for_each(|step| run.tell(ProtocolEvent::Ticked { step, done: true }));
+    run.refuses(ProtocolEvent::PhaseStarted { phase, number: 3 });
+    run.next_phase();
+    run.refuses(ProtocolEvent::CriterionWaived { reason: "too early".to_string() });
+    run.trial();
+    let practice = run.engine.session().protocol.clone().and_then(|it| it.practice).expect("it was judged");
+    assert!(!practice.met, "nobody serves two orders in 30 presses: {practice:?}");
+    assert!(run.engine.session().is_step_done());
+    run.refuses(ProtocolEvent::CriterionWaived { reason: String::new() });
+    let folder = run.close();
+    assert!(verify(&folder).expect("readable").verified);
+    let made = recordings::of_plan(&out, "study").expect("readable");
+    assert!(matches!(&made[0].outcome, Outcome::Void { reason } if reason == "criterion not met"), "{made:?}");
+    assert!(made[0].consent && made[0].instructed);
+}
+
+#[test]
+fn items_are_answered_back_and_forth_and_confirmed() {
+    // Of P01, the trial with signals has the items about them.
+    let study = study(|_| ());
+    let slot = study.slots(0).iter().position(|slot| slot.condition == Condition::Wizard).expect("one");
+    let out = folder("items");
+    let mut run = Run::new(&out, wanted(slot, true));
+    run.next_phase();
+    run.trial();
+    run.next_phase();
+    let items = run.engine.session().questionnaire().expect("it is asked").items.clone();
+    let id = |index: usize| items[index].id.clone();
+    assert_eq!((id(0), id(1)), ("too_often".to_string(), "annoyed".to_string()));
+    let at = |run: &Run| run.engine.session().protocol.as_ref().expect("a plan").item;
+    run.refuses(ProtocolEvent::ItemAnswered { item: id(0), answer: 0 });
+    run.refuses(ProtocolEvent::ItemAnswered { item: id(0), answer: 8 });
+    run.refuses(ProtocolEvent::ItemAnswered { item: id(1), answer: 3 });
+    run.tell(ProtocolEvent::ItemAnswered { item: id(0), answer: 7 });
+    assert_eq!(at(&run), 1);
+    run.tell(ProtocolEvent::ItemShown { item: id(2) });
+    for item in 2..items.len() {
+        run.tell(ProtocolEvent::ItemSkipped { item: id(item) });
+    }
+    assert_eq!(at(&run), 1, "after the last comes the one that was left out");
+    run.refuses(ProtocolEvent::AnswersConfirmed);
+    run.tell(ProtocolEvent::ItemAnswered { item: id(1), answer: 1 });
+    assert_eq!(at(&run), items.len(), "all answers");
+    run.tell(ProtocolEvent::ItemShown { item: id(0) });
+    run.tell(ProtocolEvent::ItemAnswered { item: id(0), answer: 2 });
+    assert_eq!(at(&run), items.len(), "one was changed, the others stand");
+    run.tell(ProtocolEvent::AnswersConfirmed);
+    run.refuses(ProtocolEvent::ItemShown { item: id(0) });
+    run.to_the_end();
+    assert!(verify(&run.close()).expect("readable").verified);
+}
+
+/// Copies a recording, cut after `bytes` of its log.
+fn cut(recording: &Path, out: &Path, bytes: usize) -> PathBuf {
+    let folder = out.join(recording.file_name().expect("a name"));
+    let _ = fs::remove_dir_all(out);
+    fs::create_dir_all(&folder).expect("a folder");
+    let text = fs::read(recording.join(LOG_NAME)).expect("a log");
+    fs::write(folder.join(LOG_NAME), &text[..bytes.min(text.len())]).expect("written");
+    folder
+}
+
+#[test]
+fn wherever_a_recording_is_cut_it_is_open_verified_and_known() {
+    let study = study(|_| ());
+    let mut run = Run::new(&folder("whole"), wanted(2, false));
+    run.tell(ProtocolEvent::ConsentGiven);
+    run.to_the_end();
+    let whole = run.close();
+    let text = fs::read(whole.join(LOG_NAME)).expect("a log");
+    let ends: Vec<usize> = (1..=text.len()).filter(|&end| text[end - 1] == b'\n').collect();
+    let cuts = folder("cuts");
+    let is_gaze = |end: usize| {
+        text[end..].starts_with(b"{\"seq\"")
+            && text[end..][..80.min(text.len() - end)].windows(13).any(|part| part == b"\"kind\":\"gaze\"")
+    };
+    let places = ends.iter().copied().filter(|&end| end < text.len() && !is_gaze(end));
+    for (index, end) in places.enumerate() {
+        // Between two lines, and within one.
+        for bytes in [end, end + 9] {
+            let recording = cut(&whole, &cuts, bytes);
+            let made = recordings::of_plan(&cuts, "study").expect("readable");
+            assert_eq!((made.len(), &made[0].outcome), (1, &Outcome::Open), "cut after {bytes} bytes");
+            // To run it again each time would take long.
+            if index % 40 == 0 {
+                let found = verify(&recording).expect("readable");
+                assert!(found.verified && found.cut, "cut after {bytes} bytes: {found:?}");
+            }
+        }
+    }
+    let recording = cut(&whole, &cuts, text.len());
+    let made = recordings::of_plan(&cuts, "study").expect("readable");
+    assert_eq!(made[0].outcome, Outcome::Complete);
+    assert!(verify(&recording).expect("readable").verified);
+    // A recording that was killed before its header was there is none; nor is one of another plan, or a simulated one.
+    cut(&whole, &cuts, 100);
+    assert_eq!(recordings::of_plan(&cuts, "study").expect("readable"), Vec::new());
+    assert_eq!(recordings::of_plan(whole.parent().expect("a folder"), "other").expect("readable"), Vec::new());
+    let progress = Progress::of(&study, 0, &[]).expect("nothing recorded");
+    assert_eq!(progress.next, Next::Begin { slot: 0, attempt: 1 });
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = tomcom(arguments);
+    assert!(output.status.success(), "{output:?}");
+    serde_json::from_slice(&output.stdout).expect("one JSON object")
+}
+
+/// The step of a recording, from its header.
+fn step(recording: &Path) -> (String, Condition, StepSpec) {
+    let text = fs::read_to_string(recording.join(LOG_NAME)).expect("a log");
+    let header: Header = serde_json::from_str(text.lines().next().expect("a header")).expect("a header");
+    let step = header.session.step.expect("a step of the plan");
+    (header.session.participant.code, header.session.trial.condition, step)
+}
+
+#[test]
+fn simulated_participants_have_both_trials_of_the_plan() {
+    let out = folder("simulated");
+    let out_name = out.to_str().expect("UTF-8");
+    let simulate = |trials: &str, out: &str| {
+        json(&["simulate", "sessions/study.toml", "--trials", trials, "--out", out, "--format", "json"])
+    };
+    let figures = simulate("4", out_name);
+    let recordings: Vec<&str> =
+        figures["recordings"].as_array().expect("paths").iter().flat_map(Value::as_str).collect();
+    assert_eq!(recordings.len(), 4);
+    let study = study(|_| ());
+    for (index, recording) in recordings.iter().enumerate() {
+        let (code, condition, step) = step(Path::new(recording));
+        assert_eq!(code, study.plan.codes()[index / 2]);
+        assert_eq!((step.period, step.periods), (Some(index as u32 % 2 + 1), 2));
+        assert_eq!(step.group, study.group(index / 2).name);
+        assert_eq!(condition, Condition::None, "nobody is there to signal");
+        assert!(verify(Path::new(recording)).expect("readable").verified);
+    }
+    let alone = folder("simulated-alone");
+    simulate("1", alone.to_str().expect("UTF-8"));
+    let same = Path::new("seed1-P01-1").join(LOG_NAME);
+    assert!(fs::read(alone.join(&same)).expect("a log") == fs::read(out.join(&same)).expect("a log"));
+    let plan = json(&["plan", "sessions/study.toml", "--out", out_name, "--format", "json"]);
+    assert_eq!(plan["finished"], 0, "simulated trials fill no plan");
+    let too_many = tomcom(&["simulate", "sessions/study.toml", "--trials", "29", "--out", out_name]);
+    assert_eq!(too_many.status.code(), Some(2), "{too_many:?}");
+}
+
+#[test]
+fn wrong_plans_and_arguments_say_what_would_be_right() {
+    let refused = |arguments: &[&str], says: &str| {
+        let output = tomcom(arguments);
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
+        assert!(told.contains(says), "{says:?} is not in\n{told}");
+    };
+    let study = "sessions/study.toml";
+    refused(&["plan", "sessions/default.toml"], "a session without a plan");
+    refused(&["operate", study], "and no participant");
+    refused(&["operate", study, "--code", "P15"], "--code P15, who is not in the plan");
+    refused(&["operate", study, "--code", "P01", "--condition", "none"], "--condition, with a session that has a plan");
+    refused(&["operate", study, "--code", "P01", "--seed", "2"], "--seed, with a session that has a plan");
+    let root = env!("CARGO_MANIFEST_DIR");
+    let text = fs::read_to_string(study).expect("the study");
+    let text = text.replace("\"../", &format!("\"{root}/"));
+    let wrong = folder("wrong").join("study.toml");
+    // What is changed, and what is said about it, at the line of the second.
+    let cases = [
+        ("participants = 14", "participants = 0", "1 to 9999 participants"),
+        ("participants = 14", "participants = [\"A1\", \"A1\"]", "the code \"A1\" twice"),
+        ("participants = 14", "participants = [\"Anna Meier\"]", "never names"),
+        ("[\"none\", \"wizard\"]", "[\"none\", \"none\"]", "the condition \"none\" twice"),
+        ("[\"none\", \"wizard\"]", "[]", "0 conditions"),
+        ("[\"none\", \"wizard\"]", "[\"assistant\"]", "unknown variant `assistant`"),
+        ("block = 2", "block = 3", "a multiple of the number of orders"),
+        ("after = [1, 2]", "after = [3]", "with 2 trials"),
+        ("orders = 2", "orders = 0", "a number above 0"),
+        ("error_rate = 0.3", "error_rate = 30.0", "a share of 0 to 1"),
+        ("acceptance.toml\"", "acceptance.yaml\"", "which cannot be read"),
+        ("name = \"study\"", "name = \"the study\"", "a short name"),
+        ("presses = 150 ", "presses = 0 ", "a number above 0"),
+        ("questionnaires/acceptance.toml", "layouts/sushi.toml", "a layout file"),
+    ];
+    for (replace, with, says) in cases {
+        assert!(text.contains(replace), "{replace}");
+        fs::write(&wrong, text.replacen(replace, with, 1)).expect("written");
+        refused(&["plan", wrong.to_str().expect("UTF-8")], says);
+    }
+    let line = text.replacen("presses = 150 ", "presses = 0 ", 1);
+    let number = 1 + line.lines().position(|line| line.starts_with("presses = 0 ")).expect("the line");
+    fs::write(&wrong, line).expect("written");
+    refused(&["plan", wrong.to_str().expect("UTF-8")], &format!("study.toml:{number}:"));
+    // The settings of a recording are no session file: its place in the plan is not for people to write.
+    let (spec, _) = self::study(|_| ()).settings(wanted(1, true));
+    let spec = toml::to_string(&spec).expect("settings").replace("\"../", &format!("\"{root}/"));
+    fs::write(&wrong, spec).expect("written");
+    refused(&["plan", wrong.to_str().expect("UTF-8")], "the place of a recording in the plan \"study\"");
+}
+
+/// A plan of two participants with trials of a few presses, with this questionnaire.
+fn tiny(folder: &Path) -> PathBuf {
+    let root = env!("CARGO_MANIFEST_DIR");
+    let session = folder.join("tiny.toml");
+    let text = format!(
+        "layout = \"{root}/layouts/sushi.toml\"\nseed = 3\n[trial]\npresses = 6\n[robot]\npress_s = 0.2\n\
+         [plan]\nname = \"tiny\"\nparticipants = [\"A1\", \"B2\"]\nconditions = [\"none\", \"wizard\"]\n\
+         instruction = [\"Show the table.\", \"Show the buttons.\"]\ndebriefing = [\"What did you miss?\"]\n\
+         [plan.familiarisation]\npresses = 4\nseconds = 60.0\norders = 1\n\
+         [[plan.questionnaire]]\nfile = \"{root}/questionnaires/acceptance.toml\"\n"
+    );
+    fs::write(&session, text).expect("written");
+    session
+}
+
+/// The plan's figures for the first participant.
+fn first(session: &Path, out: &Path) -> Value {
+    let [session, out] = [session, out].map(|path| path.display().to_string());
+    json(&["plan", &session, "--out", &out, "--format", "json"])["participants"][0].clone()
+}
+
+/// Presses the key that goes on until the screen shows the text.
+fn on_until(terminal: &Terminal, text: &str) {
+    terminal.wait(&format!("\"{text}\" on the screen"), || {
+        if terminal.screen().contains(text) {
+            return true;
+        }
+        terminal.key("Enter");
+        // Longer than a key that is still down from the last step.
+        std::thread::sleep(std::time::Duration::from_millis(800));
+        false
+    });
+}
+
+/// Starts and lets run a trial; `then` is what the footer says when it is over.
+fn trial(terminal: &Terminal, then: &str) {
+    terminal.see("READY");
+    std::thread::sleep(std::time::Duration::from_millis(800));
+    terminal.key(".");
+    terminal.see(then);
+    std::thread::sleep(std::time::Duration::from_millis(800));
+}
+
+/// Answers every item with the same key, and confirms.
+fn answer(terminal: &Terminal, key: &str) {
+    terminal.see("How was it?");
+    terminal.wait("all answers", || {
+        if terminal.screen().contains("confirm the answers") {
+            return true;
+        }
+        terminal.key(key);
+        std::thread::sleep(std::time::Duration::from_millis(800));
+        false
+    });
+    terminal.key("Enter");
+    terminal.wait("the answers confirmed", || !terminal.screen().contains("confirm the answers"));
+    std::thread::sleep(std::time::Duration::from_millis(800));
+}
+
+fn operate(terminal: &Terminal, session: &Path, out: &Path) {
+    terminal.run(&format!("{TOMCOM} operate {} --code A1 --out {}", session.display(), out.display()));
+}
+
+#[test]
+fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
+    let Some(terminal) = Terminal::open("plan") else { return };
+    let (session, out) = (tiny(&terminal.folder), terminal.folder.join("recordings"));
+    operate(&terminal, &session, &out);
+    terminal.see("agrees to it");
+    terminal.key("2");
+    terminal.is_whole("0");
+    terminal.see("A1 does not agree: nothing was recorded");
+    assert!(!out.exists(), "nothing is recorded without consent");
+    operate(&terminal, &session, &out);
+    terminal.see("agrees to it");
+    terminal.key("1");
+    terminal.see("Instruction of the participant");
+    on_until(&terminal, "READY");
+    trial(&terminal, "The criterion is not met");
+    terminal.key("2");
+    terminal.see("done: next");
+    std::thread::sleep(std::time::Duration::from_millis(800));
+    terminal.key(".");
+    terminal.see("A1 trial 1/2");
+    terminal.key(".");
+    terminal.see("questionnaire");
+    let pid = terminal.read("pid");
+    let killed = std::process::Command::new("kill").args(["-KILL", pid.trim()]).status().expect("kill runs");
+    assert!(killed.success());
+    assert_eq!(first(&session, &out)["next"]["is"], "choose");
+    let Some(other) = Terminal::open("plan-goes-on") else { return };
+    operate(&other, &session, &out);
+    other.see("A1: trial 1 is not done");
+    other.key("1");
+    other.see("A1 trial 1/2");
+    // The few presses may have been over before the kill, or not.
+    other.wait("the trial's end", || {
+        if other.screen().contains("PAUSED") {
+            other.key(".");
+            std::thread::sleep(std::time::Duration::from_millis(800));
+        }
+        other.screen().contains(". questionnaire")
+    });
+    other.key(".");
+    answer(&other, "4");
+    other.key(".");
+    other.see("A1 trial 2/2");
+    trial(&other, ". questionnaire");
+    other.key(".");
+    answer(&other, "7");
+    on_until(&other, "Debriefing of the wizard");
+    other.wait("the end of the series", || {
+        if other.folder.join("after").exists() {
+            return true;
+        }
+        other.key("Enter");
+        std::thread::sleep(std::time::Duration::from_millis(800));
+        false
+    });
+    other.is_whole("0");
+    other.see("A1: everything is done");
+    let plan = first(&session, &out);
+    assert_eq!((&plan["consent"], &plan["next"]["is"]), (&Value::Bool(true), &Value::from("finished")), "{plan}");
+    for entry in fs::read_dir(&out).expect("recordings") {
+        let recording = entry.expect("an entry").path();
+        let found = verify(&recording).unwrap_or_else(|error| panic!("{error}"));
+        assert!(found.verified, "{}: {found:?}", recording.display());
+    }
+    operate(&other, &session, &out);
+    other.is_whole("0");
+    assert_eq!(fs::read_dir(&out).expect("recordings").count(), 4, "nothing is recorded when everything is done");
+}
+
+#[test]
+fn a_trial_of_a_plan_that_the_wizard_ends_counts_and_one_that_is_left_stays_open() {
+    let out = folder("left");
+    let mut run = Run::new(&out, wanted(1, true));
+    run.next_phase();
+    assert_eq!(run.input(Event::TrialStarted), None);
+    let outcome = || recordings::of_plan(&out, "study").expect("readable")[0].outcome.clone();
+    assert_eq!(outcome(), Outcome::Open);
+    assert!(!run.engine.session().is_step_done(), "left now, it can be continued");
+    assert_eq!(run.input(Event::TrialEnded { reason: EndReason::Wizard }), None);
+    run.to_the_end();
+    run.close();
+    assert_eq!(outcome(), Outcome::Complete);
+    let aborted = folder("aborted");
+    let mut run = Run::new(&aborted, wanted(1, true));
+    run.next_phase();
+    assert_eq!(run.input(Event::TrialStarted), None);
+    assert_eq!(run.input(Event::TrialAborted { reason: "fire alarm".to_string() }), None);
+    assert!(run.engine.session().is_step_done(), "left now, it is over");
+    run.close();
+    let outcome = recordings::of_plan(&aborted, "study").expect("readable")[0].outcome.clone();
+    assert_eq!(outcome, Outcome::Void { reason: "aborted (fire alarm)".to_string() });
+}

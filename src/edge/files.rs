@@ -182,7 +182,8 @@ fn line_of(text: &str, key: &str) -> Option<Range<usize>> {
     for line in text.split_inclusive('\n') {
         let trimmed = line.trim();
         if trimmed.starts_with('[') && !table.is_empty() {
-            is_table = trimmed.trim_matches(['[', ']']).rsplit('.').next() == Some(table);
+            let name = trimmed.trim_start_matches('[').split(']').next().unwrap_or_default();
+            is_table = name.rsplit('.').next() == Some(table);
         }
         let rest = trimmed.strip_prefix(key);
         if is_table && rest.is_some_and(|rest| rest.trim_start().starts_with('=')) {

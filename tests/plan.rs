@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::Value;
-use tmux::{TOMCOM, Terminal, tomcom};
+use tmux::{TOMCOM, Terminal, tiny_plan, tomcom};
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::{SessionFiles, read_session};
 use tomcom::edge::log::{LOG_NAME, LogWriter};
@@ -466,21 +466,6 @@ fn wrong_plans_and_arguments_say_what_would_be_right() {
     refused(&["plan", wrong.to_str().expect("UTF-8")], "the place of a recording in the plan \"study\"");
 }
 
-/// A plan of two participants with trials of a few presses, with this questionnaire.
-fn tiny(folder: &Path) -> PathBuf {
-    let root = env!("CARGO_MANIFEST_DIR");
-    let session = folder.join("tiny.toml");
-    let text = format!(
-        "layout = \"{root}/layouts/sushi.toml\"\nseed = 3\n[trial]\npresses = 6\n[robot]\npress_s = 0.2\n\
-         [plan]\nname = \"tiny\"\nparticipants = [\"A1\", \"B2\"]\nconditions = [\"none\", \"wizard\"]\n\
-         instruction = [\"Show the table.\", \"Show the buttons.\"]\ndebriefing = [\"What did you miss?\"]\n\
-         [plan.familiarisation]\npresses = 4\nseconds = 60.0\norders = 1\n\
-         [[plan.questionnaire]]\nfile = \"{root}/questionnaires/acceptance.toml\"\n"
-    );
-    fs::write(&session, text).expect("written");
-    session
-}
-
 /// The plan's figures for the first participant.
 fn first(session: &Path, out: &Path) -> Value {
     let [session, out] = [session, out].map(|path| path.display().to_string());
@@ -532,7 +517,7 @@ fn operate(terminal: &Terminal, session: &Path, out: &Path) {
 #[test]
 fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     let Some(terminal) = Terminal::open("plan") else { return };
-    let (session, out) = (tiny(&terminal.folder), terminal.folder.join("recordings"));
+    let (session, out) = (tiny_plan(&terminal.folder), terminal.folder.join("recordings"));
     operate(&terminal, &session, &out);
     terminal.see("and agrees to");
     terminal.key("2");

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use rand::RngExt;
 use serde_json::Value;
-use tmux::{TOMCOM, Terminal, tomcom};
+use tmux::{TOMCOM, Terminal, tiny_plan, tomcom};
 use tomcom::base::rng::stream;
 use tomcom::edge::log::LOG_NAME;
 
@@ -296,4 +296,66 @@ fn a_terminal_that_is_fine_is_found_fine() {
     terminal.is_whole("0");
     terminal.see("120x40");
     terminal.see("can be written to");
+}
+
+/// The key that goes on in a plan from what is on this screen, if any does; `turn` keeps two presses in a row apart.
+fn onward(screen: &str, turn: u64) -> Option<&'static str> {
+    let shows = |text: &str| screen.contains(text);
+    let on = if turn.is_multiple_of(2) { "Enter" } else { "." };
+    match () {
+        () if shows("and agrees to") || shows("is not done") || shows("is not met") => Some("1"),
+        () if shows("0 no answer") => Some(if turn.is_multiple_of(2) { "3" } else { "5" }),
+        () if shows("RUNNING") => None,
+        () if shows("READY") || shows("PAUSED") || shows("done: next") || shows(". questionnaire") => Some("."),
+        () if shows("back") => Some(on),
+        () => None,
+    }
+}
+
+/// The logs of all recordings, by path.
+fn logs(out: &Path) -> Vec<(PathBuf, String)> {
+    let folders = fs::read_dir(out).into_iter().flatten().flatten().map(|entry| entry.path().join(LOG_NAME));
+    folders.filter_map(|path| Some((path.clone(), fs::read_to_string(&path).ok()?))).collect()
+}
+
+#[test]
+fn a_plan_goes_on_where_it_was_however_often_it_is_killed() {
+    let kills: u64 = std::env::var("TOMCOM_KILLS").ok().and_then(|count| count.parse().ok()).unwrap_or(5);
+    let Some(home) = Terminal::open("plan-kills") else { return };
+    let (session, out) = (tiny_plan(&home.folder), home.folder.join("recordings"));
+    let [session, out_name] = [session.display().to_string(), out.display().to_string()];
+    let mut done = 0;
+    for number in 0..=kills {
+        let Some(terminal) = Terminal::open(&format!("plan-kill-{number}")) else { return };
+        let before = logs(&out);
+        terminal.run(&format!("{TOMCOM} operate {session} --code A1 --out {out_name}"));
+        terminal.wait("a process", || terminal.read("pid").ends_with('\n'));
+        let mut random = stream(number, "kills of a plan", 0);
+        let until = Instant::now() + Duration::from_millis(random.random_range(100..9000));
+        let mut turn = 0;
+        terminal.wait("the kill, or at last the end", || {
+            if let Some(key) = onward(&terminal.screen(), turn) {
+                terminal.key(key);
+                turn += 1;
+            }
+            std::thread::sleep(Duration::from_millis(200));
+            terminal.folder.join("after").exists() || (number < kills && Instant::now() > until)
+        });
+        if !terminal.folder.join("after").exists() {
+            signal(&terminal.read("pid"), "KILL");
+            terminal.wait("the end", || terminal.folder.join("exit").exists());
+        }
+        // What was written before stays as it was, and everything verifies, cut or not.
+        let after = logs(&out);
+        assert!(before.iter().all(|log| after.contains(log)), "kill {number} changed another recording");
+        after.iter().for_each(|(log, _)| drop(verified(log.parent().expect("a folder"))));
+        let plan = tomcom(&["plan", &session, "--out", &out_name, "--format", "json"]);
+        let plan: Value = serde_json::from_slice(&plan.stdout).unwrap_or_else(|_| panic!("{plan:?}"));
+        let first = &plan["participants"][0];
+        let steps = first["steps"].as_array().expect("steps").iter().filter(|step| step["is_done"] == true).count();
+        assert!(steps >= done, "kill {number}: {steps} steps are done, {done} were before: {first}");
+        println!("kill {number}: {steps} of 3 steps are done, {} recordings", after.len());
+        done = steps;
+    }
+    assert_eq!(done, 3, "after the last kill it is brought to its end");
 }

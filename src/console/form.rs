@@ -27,6 +27,17 @@ pub enum Sheet<'a> {
     Failed,
 }
 
+impl Sheet<'_> {
+    /// As it stands in the log, where it says what the wizard sees.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Sheet::Steps { .. } => "steps",
+            Sheet::Questions(_) => "questionnaire",
+            Sheet::Failed => "criterion",
+        }
+    }
+}
+
 /// The sheet of the running phase, if it has one.
 pub fn sheet(session: &Session) -> Option<Sheet<'_>> {
     let (_, protocol) = session.step()?;

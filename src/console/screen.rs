@@ -1,5 +1,6 @@
 //! What the wizard can see now, for the record.
 
+use super::form::sheet;
 use super::model::{Dialog, Model};
 use super::picker::Question;
 use super::view::regions::{LEAST, Regions, Room};
@@ -17,12 +18,14 @@ pub fn screen(session: &Session, model: &Model) -> Screen {
         Room::Medium => "medium",
         Room::Large => "large",
     };
+    let dialog = model.dialog.as_ref().map(name);
+    let sheet = sheet(session).map(|sheet| sheet.name());
     let panels = if fits { regions.panels() } else { Vec::new() };
     Screen {
         visibility,
         room: room.to_string(),
         panels: panels.into_iter().map(str::to_string).collect(),
-        dialog: model.dialog.as_ref().map(|dialog| name(dialog).to_string()),
+        dialog: dialog.or(sheet).map(str::to_string),
     }
 }
 

@@ -2,18 +2,17 @@
 
 use std::io;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::Duration;
 
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
+use super::begun::{Begun, Place};
 use super::desk::{Arrival, Desk};
 use super::engine::Engine;
 use super::figures::TrialFigures;
 use super::options::Beginning;
-use super::resume::{ResumeError, resume};
+use super::resume::ResumeError;
 use super::standing::Standing;
-use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::console::keys::KeyError;
 use crate::console::model::{Level, Recording};
@@ -27,11 +26,10 @@ use crate::edge::gaze_json::GazeLine;
 use crate::edge::log::{Lock, LogWriter, WriteError};
 use crate::edge::terminal::{Screen, theme};
 use crate::gaze::GazeSample;
-use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::screen::Screen as OnScreen;
 use crate::session::settings::GazeSource;
-use crate::session::{Event, Header, Phase, SessionSpec, Stamped};
+use crate::session::{Event, Header, Phase, Stamped};
 
 /// At most 30 frames a second.
 const FRAME: Duration = Duration::from_millis(33);
@@ -139,66 +137,6 @@ struct Live {
     judged: usize,
     /// Something changed since the last frame.
     dirty: bool,
-}
-
-/// A session that is about to be run and recorded.
-pub(super) struct Begun {
-    engine: Engine,
-    header: Header,
-    /// What belongs at the beginning of the recording.
-    first: Vec<Stamped>,
-    /// The participant has just agreed to be recorded.
-    consent: bool,
-    /// When it begins.
-    time: SessionTime,
-    place: Place,
-}
-
-/// Where the recording goes.
-enum Place {
-    In(PathBuf),
-    /// Beside the part before, which stays locked.
-    After(PathBuf, Lock),
-}
-
-impl Begun {
-    /// Gets a session ready; nothing is recorded yet.
-    ///
-    /// # Errors
-    /// The recording that is to go on cannot.
-    pub fn new(beginning: Beginning) -> Result<Begun, LiveError> {
-        match beginning {
-            Beginning::New { files, trial, out } => {
-                let kitchen = Arc::new(files.kitchen.kitchen);
-                let mut header = Header::new(files.spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
-                header.keys = files.keys;
-                let engine = Engine::new(kitchen.clone(), files.spec, trial, CostToGo::new(kitchen));
-                let (first, time, place) = (Vec::new(), SessionTime::ZERO, Place::In(out));
-                Ok(Begun { engine, header, first, consent: false, time, place })
-            }
-            Beginning::Again { header, kitchen, out } => {
-                let engine = Engine::new(kitchen.clone(), header.session.clone(), header.trial, CostToGo::new(kitchen));
-                let (header, place) = (*header, Place::In(out));
-                Ok(Begun { engine, header, first: Vec::new(), consent: false, time: SessionTime::ZERO, place })
-            }
-            Beginning::Continued(recording) => {
-                let resumed = resume(&recording)?;
-                let place = Place::After(resumed.folder, resumed.lock);
-                let (header, first, time) = (resumed.header, resumed.first, resumed.time);
-                Ok(Begun { engine: resumed.engine, header, first, consent: false, time, place })
-            }
-        }
-    }
-
-    /// The participant has just agreed to be recorded.
-    pub fn with_consent(self) -> Begun {
-        Begun { consent: true, ..self }
-    }
-
-    /// Its settings.
-    pub fn spec(&self) -> &SessionSpec {
-        &self.engine.session().spec
-    }
 }
 
 /// Runs a session at the desk until the wizard leaves it; everything that happens is recorded.

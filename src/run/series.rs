@@ -1,8 +1,9 @@
 //! The loop over recordings: one recording is one run of at most one trial, and what a participant goes through is a
 //! series of them, made at the same desk without leaving the console.
 
+use super::begun::Begun;
 use super::desk::Desk;
-use super::live::{self, Begun, Leaving, LiveEnd, LiveError};
+use super::live::{self, Leaving, LiveEnd, LiveError};
 use super::options::{Beginning, Series};
 use crate::console::question::Question;
 use crate::edge::files::SessionFiles;

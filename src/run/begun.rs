@@ -1,0 +1,73 @@
+//! A session before it is run: new, again, or taken up where it was cut.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::engine::Engine;
+use super::live::LiveError;
+use super::options::Beginning;
+use super::resume::resume;
+use crate::base::time::SessionTime;
+use crate::edge::log::Lock;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::session::{Header, SessionSpec, Stamped};
+
+/// A session that is about to be run and recorded.
+pub(super) struct Begun {
+    pub engine: Engine,
+    pub header: Header,
+    /// What belongs at the beginning of the recording.
+    pub first: Vec<Stamped>,
+    /// The participant has just agreed to be recorded.
+    pub consent: bool,
+    /// When it begins.
+    pub time: SessionTime,
+    pub place: Place,
+}
+
+/// Where the recording goes.
+pub(super) enum Place {
+    In(PathBuf),
+    /// Beside the part before, which stays locked.
+    After(PathBuf, Lock),
+}
+
+impl Begun {
+    /// Gets a session ready; nothing is recorded yet.
+    ///
+    /// # Errors
+    /// The recording that is to go on cannot.
+    pub fn new(beginning: Beginning) -> Result<Begun, LiveError> {
+        match beginning {
+            Beginning::New { files, trial, out } => {
+                let kitchen = Arc::new(files.kitchen.kitchen);
+                let mut header = Header::new(files.spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
+                header.keys = files.keys;
+                let engine = Engine::new(kitchen.clone(), files.spec, trial, CostToGo::new(kitchen));
+                let (first, time, place) = (Vec::new(), SessionTime::ZERO, Place::In(out));
+                Ok(Begun { engine, header, first, consent: false, time, place })
+            }
+            Beginning::Again { header, kitchen, out } => {
+                let engine = Engine::new(kitchen.clone(), header.session.clone(), header.trial, CostToGo::new(kitchen));
+                let (header, place) = (*header, Place::In(out));
+                Ok(Begun { engine, header, first: Vec::new(), consent: false, time: SessionTime::ZERO, place })
+            }
+            Beginning::Continued(recording) => {
+                let resumed = resume(&recording)?;
+                let place = Place::After(resumed.folder, resumed.lock);
+                let (header, first, time) = (resumed.header, resumed.first, resumed.time);
+                Ok(Begun { engine: resumed.engine, header, first, consent: false, time, place })
+            }
+        }
+    }
+
+    /// The participant has just agreed to be recorded.
+    pub fn with_consent(self) -> Begun {
+        Begun { consent: true, ..self }
+    }
+
+    /// Its settings.
+    pub fn spec(&self) -> &SessionSpec {
+        &self.engine.session().spec
+    }
+}

@@ -307,7 +307,7 @@ fn onward(screen: &str, turn: u64) -> Option<&'static str> {
         () if shows("0 no answer") => Some(if turn.is_multiple_of(2) { "3" } else { "5" }),
         () if shows("RUNNING") => None,
         () if shows("READY") || shows("PAUSED") || shows("done: next") || shows(". questionnaire") => Some("."),
-        () if shows("back") => Some(on),
+        () if shows("enter ") => Some(on),
         () => None,
     }
 }
@@ -331,7 +331,7 @@ fn a_plan_goes_on_where_it_was_however_often_it_is_killed() {
         terminal.run(&format!("{TOMCOM} operate {session} --code A1 --out {out_name}"));
         terminal.wait("a process", || terminal.read("pid").ends_with('\n'));
         let mut random = stream(number, "kills of a plan", 0);
-        let until = Instant::now() + Duration::from_millis(random.random_range(100..9000));
+        let until = Instant::now() + Duration::from_millis(random.random_range(100..5000));
         let mut turn = 0;
         terminal.wait("the kill, or at last the end", || {
             if let Some(key) = onward(&terminal.screen(), turn) {

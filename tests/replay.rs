@@ -26,8 +26,13 @@ use tomcom::session::{Event, Header, Phase};
 /// One session for each kitchen.
 const SESSIONS: [&str; 2] = ["default.toml", "burger.toml"];
 
+/// A session file of the project, with an inference that is coarse and quick: what is held against each other here has the
+/// same fineness.
 fn session(name: &str) -> SessionFiles {
-    read_session(&Path::new("sessions").join(name)).expect("a session file of the project")
+    let mut files = read_session(&Path::new("sessions").join(name)).expect("a session file of the project");
+    let inference = &mut files.spec.human.inference;
+    (inference.beliefs, inference.states, inference.max_beliefs) = (16, 8, 32);
+    files
 }
 
 /// An empty folder for the test of this name.

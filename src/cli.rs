@@ -26,7 +26,7 @@ use crate::run::review::{self, ReviewError};
 use crate::run::series::{self, Sitting};
 use crate::run::simulate::SimulateError;
 use crate::run::standing::Standing;
-use crate::run::{check_beliefs, kitchen, simulate, tell, verify};
+use crate::run::{check_beliefs, kitchen, simulate, tell, timing, verify};
 use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
 
 /// Exit code: something failed.
@@ -216,6 +216,10 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         let found = verify::verify(recording)?;
         print(args.format, &found, || verify::describe(&found))?;
         return if found.verified { Ok(()) } else { Err(Failure::No) };
+    }
+    if args.timing {
+        let figures = timing::measure(recording)?;
+        return print(args.format, &figures, || timing::describe(&figures));
     }
     if args.format == Format::Text && std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
         return Ok(review::review(recording, args.follow)?);

@@ -119,6 +119,9 @@ pub(super) struct ReplayArgs {
     /// Hold what was estimated before each press against what simulated participants believed, and what they pressed.
     #[arg(long, conflicts_with_all = ["verify", "follow"])]
     pub(super) check_beliefs: bool,
+    /// Take the time of the inference, event by event.
+    #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs"])]
+    pub(super) timing: bool,
     /// Watch a session that is still running, until it ends.
     #[arg(long)]
     pub(super) follow: bool,

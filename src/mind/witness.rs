@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::WORTH_TELLING;
 use super::dirichlet::DirichletBelief;
-use crate::kitchen::{AspectId, Kitchen, State};
+use super::filter::Evidence;
+use crate::kitchen::{Aspect, AspectId, Kitchen, State};
 
 /// What was estimated of the human's belief before a press of the human.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,10 +36,16 @@ pub struct AspectEstimate {
     pub values: BTreeMap<String, f64>,
 }
 
-impl AspectEstimate {
-    /// What is estimated of every aspect while the kitchen is in `state`.
-    pub fn all(kitchen: &Kitchen, belief: &DirichletBelief, state: State) -> Vec<AspectEstimate> {
-        let of = |(index, aspect): (usize, &crate::kitchen::Aspect)| {
+impl EstimateWitness {
+    /// What was estimated before a press that met `state`, and how likely the press was then.
+    pub fn new(
+        kitchen: &Kitchen,
+        press: u64,
+        belief: &DirichletBelief,
+        state: State,
+        evidence: Evidence,
+    ) -> EstimateWitness {
+        let of = |(index, aspect): (usize, &Aspect)| {
             let of_aspect = &belief.aspects[index];
             let values = aspect.labels.iter().zip(of_aspect.mean()).filter(|(_, p)| **p >= WORTH_TELLING);
             AspectEstimate {
@@ -49,11 +56,16 @@ impl AspectEstimate {
                 values: values.map(|(label, &p)| (label.clone(), rounded(p))).collect(),
             }
         };
-        kitchen.aspects.iter().enumerate().map(of).collect()
+        EstimateWitness {
+            press,
+            log_p: rounded(evidence.log_p),
+            effective: rounded(evidence.effective),
+            aspects: kitchen.aspects.iter().enumerate().map(of).collect(),
+        }
     }
 }
 
 /// Four digits are enough for an estimate.
-pub fn rounded(value: f64) -> f64 {
+fn rounded(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }

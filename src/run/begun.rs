@@ -43,12 +43,13 @@ impl Begun {
                 let kitchen = Arc::new(files.kitchen.kitchen);
                 let mut header = Header::new(files.spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
                 header.keys = files.keys;
-                let engine = Engine::new(kitchen.clone(), files.spec, trial, CostToGo::new(kitchen));
+                let engine = Engine::new(kitchen.clone(), files.spec, trial, CostToGo::new(kitchen)).without_causes();
                 let (first, time, place) = (Vec::new(), SessionTime::ZERO, Place::In(out));
                 Ok(Begun { engine, header, first, consent: false, time, place })
             }
             Beginning::Again { header, kitchen, out } => {
-                let engine = Engine::new(kitchen.clone(), header.session.clone(), header.trial, CostToGo::new(kitchen));
+                let engine = Engine::new(kitchen.clone(), header.session.clone(), header.trial, CostToGo::new(kitchen))
+                    .without_causes();
                 let (header, place) = (*header, Place::In(out));
                 Ok(Begun { engine, header, first: Vec::new(), consent: false, time: SessionTime::ZERO, place })
             }
@@ -56,7 +57,7 @@ impl Begun {
                 let resumed = resume(&recording)?;
                 let place = Place::After(resumed.folder, resumed.lock);
                 let (header, first, time) = (resumed.header, resumed.first, resumed.time);
-                Ok(Begun { engine: resumed.engine, header, first, consent: false, time, place })
+                Ok(Begun { engine: resumed.engine.without_causes(), header, first, consent: false, time, place })
             }
         }
     }

@@ -128,8 +128,9 @@ fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView)> {
             Event::Press { agent: Agent::Human, button } => {
                 let counted = replay.follower.judged.last().filter(|press| press.seq == line.stamped.seq).copied();
                 if let (Some(judged), Some(button)) = (counted, kitchen.button_named(Agent::Human, button)) {
+                    let estimated = replay.follower.estimated.as_ref().filter(|one| one.press == line.stamped.seq);
+                    let estimate = estimated.map(|one| EstimateView::of(&one.witness(&kitchen)));
                     let press = before.press(&kitchen, button, &judged, held.take());
-                    let estimate = replay.follower.take_estimate().map(|witness| EstimateView::of(&witness));
                     trial.push(PressView { estimate, ..press });
                 }
             }

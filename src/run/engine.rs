@@ -11,6 +11,7 @@ use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonId, Kitchen, State};
 use crate::measures::JudgedPress;
+use crate::mind::dirichlet::DirichletBelief;
 use crate::participant::{Deed, SimulatedParticipant};
 use crate::robot::timed::{RobotDeed, TimedRobot};
 use crate::session::admit::{admit, hygiene};
@@ -65,6 +66,16 @@ impl Engine {
         let participant = is_simulated.then(|| SimulatedParticipant::new(kitchen.clone(), spec.seed, person, trial));
         let follower = Follower::new(kitchen, spec, cost);
         Engine { follower, timers: TimerQueue::default(), orders, robot, participant, next_seq: 0, out: Vec::new() }
+    }
+
+    /// The same engine without looking for the causes of errors, which takes longer than a running session can wait.
+    pub fn without_causes(self) -> Engine {
+        Engine { follower: self.follower.without_causes(), ..self }
+    }
+
+    /// The estimate of what the human believes now.
+    pub fn belief(&self) -> &DirichletBelief {
+        self.follower.filter.belief()
     }
 
     /// The session as it is now.
@@ -218,8 +229,10 @@ impl Engine {
         effects.into_iter().for_each(|effect| self.perform(effect));
         self.tell_participant(&stamped, before);
         let given_up = self.tell_robot(&stamped);
+        let estimated = self.follower.estimated.as_ref().filter(|estimated| estimated.press == stamped.seq);
+        let estimate = estimated.map(|estimated| estimated.witness(&self.session().kitchen));
         self.out.push(stamped);
-        if let Some(estimate) = self.follower.take_estimate() {
+        if let Some(estimate) = estimate {
             self.record_own(now, Event::BeliefEstimated(estimate));
         }
         if let Some(deed) = given_up {

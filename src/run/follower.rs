@@ -10,9 +10,10 @@ use crate::measures::attribution::Attributor;
 use crate::measures::errors::Judge;
 use crate::measures::sequences::Episodes;
 use crate::mind::belief::Belief;
-use crate::mind::filter::BeliefFilter;
+use crate::mind::dirichlet::DirichletBelief;
+use crate::mind::filter::{BeliefFilter, Evidence};
 use crate::mind::observation::{Observation, Observed};
-use crate::mind::witness::{AspectEstimate, EstimateWitness, rounded};
+use crate::mind::witness::EstimateWitness;
 use crate::session::apply::ApplyError;
 use crate::session::{Effect, Event, Session, SessionSpec, Stamped, apply};
 
@@ -33,8 +34,28 @@ pub struct Follower {
     attributor: Attributor,
     /// What the participant believes before its next press.
     belief: Option<Belief>,
-    /// What is to be recorded of the estimate before the last press.
-    estimated: Option<EstimateWitness>,
+    /// Whether the causes of errors are looked for.
+    finds_causes: bool,
+    /// What was estimated before the last press of the human that counts.
+    pub estimated: Option<Estimated>,
+}
+
+/// The estimate before a press of the human.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimated {
+    /// The number of the press.
+    pub press: u64,
+    /// The state that it met.
+    pub state: State,
+    pub belief: DirichletBelief,
+    pub evidence: Evidence,
+}
+
+impl Estimated {
+    /// What the log tells of it.
+    pub fn witness(&self, kitchen: &Kitchen) -> EstimateWitness {
+        EstimateWitness::new(kitchen, self.press, &self.belief, self.state, self.evidence)
+    }
 }
 
 /// Nanoseconds that single steps of the inference took.
@@ -52,8 +73,8 @@ impl Follower {
         let filter = BeliefFilter::new(kitchen.clone(), spec.human.clone(), spec.seed);
         let session = Session::new(kitchen, spec);
         let (judged, episodes) = (Vec::new(), Episodes::default());
-        let (timing, belief, estimated) = (None, None, None);
-        Follower { session, judged, episodes, filter, timing, cost, judge, attributor, belief, estimated }
+        let (timing, belief, estimated, finds_causes) = (None, None, None, true);
+        Follower { session, judged, episodes, filter, timing, cost, judge, attributor, belief, finds_causes, estimated }
     }
 
     /// Moves on by one event.
@@ -65,7 +86,7 @@ impl Follower {
         let counts = self.session.is_running();
         let effects = apply(&mut self.session, stamped)?;
         match &stamped.event {
-            Event::ParticipantBelieves(witness) => {
+            Event::ParticipantBelieves(witness) if self.finds_causes => {
                 let session = &self.session;
                 self.belief = Belief::of_witness(&session.kitchen, session.state, witness);
                 if let Some(belief) = &self.belief {
@@ -92,12 +113,8 @@ impl Follower {
     fn estimate(&mut self, stamped: &Stamped, before: State, counts: bool) {
         let Some(what) = self.observed(stamped, before, counts) else { return };
         let observation = Observation { number: stamped.seq, time: stamped.time, what };
-        let aspects = match what {
-            Observed::Pressed { agent: Agent::Human, .. } => {
-                Some(AspectEstimate::all(&self.session.kitchen, self.filter.belief(), before))
-            }
-            _ => None,
-        };
+        let is_human = matches!(what, Observed::Pressed { agent: Agent::Human, .. });
+        let belief = is_human.then(|| self.filter.belief().clone());
         let began = self.timing.is_some().then(Instant::now);
         self.filter.observe(&observation, &mut self.cost);
         if let (Some(timing), Some(began)) = (&mut self.timing, began) {
@@ -108,9 +125,8 @@ impl Follower {
                 _ => {}
             }
         }
-        if let (Some(aspects), Some(evidence)) = (aspects, self.filter.evidence()) {
-            let (log_p, effective) = (rounded(evidence.log_p), rounded(evidence.effective));
-            self.estimated = Some(EstimateWitness { press: stamped.seq, log_p, effective, aspects });
+        if let (Some(belief), Some(evidence)) = (belief, self.filter.evidence()) {
+            self.estimated = Some(Estimated { press: stamped.seq, state: before, belief, evidence });
         }
     }
 
@@ -138,9 +154,9 @@ impl Follower {
         }
     }
 
-    /// What was estimated before the press that was just applied, to be recorded once.
-    pub fn take_estimate(&mut self) -> Option<EstimateWitness> {
-        self.estimated.take()
+    /// The same without looking for the causes of errors, which takes longer than a running session can wait.
+    pub fn without_causes(self) -> Follower {
+        Follower { finds_causes: false, ..self }
     }
 
     /// Judges a press of the human that has just been applied, and finds out why it was an error.

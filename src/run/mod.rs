@@ -18,4 +18,5 @@ pub mod series;
 pub mod simulate;
 pub mod standing;
 pub mod tell;
+pub mod timing;
 pub mod verify;

@@ -62,7 +62,7 @@ impl Sampler {
         let states = judge.inference.states;
         self.urns.resize(belief.aspects.len(), Urn::default());
         for (urn, dirichlet) in self.urns.iter_mut().zip(&belief.aspects) {
-            urn.fill(dirichlet, states);
+            urn.fill(dirichlet, states, random);
         }
         self.drawn.clear();
         self.likelihoods.clear();
@@ -121,7 +121,7 @@ impl Sampler {
                 let start = sample * row + aspect * states;
                 moments.add(&self.drawn[start..start + states], likelihood / total - 1.0 / beliefs as f64);
             }
-            *dirichlet = moments.collapsed();
+            *dirichlet = moments.collapsed(self.urns[aspect].stand_in());
         }
     }
 }
@@ -238,7 +238,18 @@ impl Moments<'_> {
         self.second += weight * self.prior.second();
     }
 
-    fn collapsed(self) -> Dirichlet {
+    /// What the value that stands for the tail has gained is its own; what it has lost the whole tail loses, since it is
+    /// so improbable only as a part of it.
+    fn collapsed(mut self, stand_in: Option<usize>) -> Dirichlet {
+        let prior = self.prior.mean();
+        if let Some(value) = stand_in
+            && self.mean[value] < prior[value]
+        {
+            let tail = || (0..prior.len()).filter(|&value| Urn::is_tail(prior[value]));
+            let of_tail: f64 = tail().map(|value| prior[value]).sum();
+            let left = (1.0 + (self.mean[value] - prior[value]) / of_tail).max(0.0);
+            tail().for_each(|value| self.mean[value] = left * prior[value]);
+        }
         Dirichlet::of_moments(self.mean, self.second)
     }
 }

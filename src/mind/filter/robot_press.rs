@@ -99,7 +99,7 @@ fn draw(kitchen: &Kitchen, belief: &DirichletBelief, draws: usize, random: &mut 
     let mut values = vec![0; draws];
     let mut urn = Urn::default();
     for (index, dirichlet) in belief.aspects.iter().enumerate() {
-        urn.fill(dirichlet, 1);
+        urn.fill(dirichlet, 1, random);
         urn.first_draws(random, &mut values);
         for ((state, recipes), &value) in cases.iter_mut().zip(&values) {
             let is_open = match kitchen.aspects[index].kind {

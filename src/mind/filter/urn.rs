@@ -8,9 +8,15 @@ use rand::RngExt;
 use crate::base::rng::Stream;
 use crate::mind::dirichlet::Dirichlet;
 
-/// The urn of one aspect.
+/// Values with a smaller expected probability are the tail: one of them stands for all.
+const TAIL: f64 = 0.004;
+
+/// The urn of one aspect. The values of its tail are drawn as one, which is chosen anew for every urn by their shares: so
+/// each of them has its turn, and few strange states have to be thought through at a time.
 #[derive(Clone, Debug, Default)]
 pub struct Urn {
+    /// The value that stands for the tail.
+    stand_in: Option<u8>,
     /// Values, the likeliest first, and the chance that a draw is one of those up to it.
     order: Vec<(u8, f64)>,
     /// `stays[k]`: the chance that none of the draws 1 to k (the first is 0) is a new one.
@@ -19,10 +25,21 @@ pub struct Urn {
 
 impl Urn {
     /// The urn of this Dirichlet, for `draws` draws.
-    pub fn fill(&mut self, dirichlet: &Dirichlet, draws: usize) {
+    pub fn fill(&mut self, dirichlet: &Dirichlet, draws: usize, random: &mut Stream) {
         let mean = dirichlet.mean();
         self.order.clear();
-        self.order.extend(mean.iter().enumerate().map(|(value, &p)| (value as u8, p)));
+        self.order.extend(
+            (0..mean.len()).filter(|&value| !Urn::is_tail(mean[value])).map(|value| (value as u8, mean[value])),
+        );
+        let tail = || (0..mean.len()).filter(|&value| Urn::is_tail(mean[value]));
+        let of_tail: f64 = tail().map(|value| mean[value]).sum();
+        let mut left = random.random::<f64>() * of_tail;
+        let chosen = tail().find(|&value| {
+            left -= mean[value];
+            left < 0.0
+        });
+        self.stand_in = chosen.or(tail().last()).map(|value| value as u8);
+        self.order.extend(self.stand_in.map(|value| (value, of_tail)));
         self.order.sort_unstable_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         let mut sum = 0.0;
         for (_, p) in &mut self.order {
@@ -37,6 +54,16 @@ impl Urn {
             }
             self.stays.push(stays);
         }
+    }
+
+    /// Which of the values stands for the tail, if there is one.
+    pub fn stand_in(&self) -> Option<usize> {
+        self.stand_in.map(usize::from)
+    }
+
+    /// Whether a value of this expected probability belongs to the tail.
+    pub fn is_tail(mean: f64) -> bool {
+        mean < TAIL
     }
 
     /// The value at this point of the cumulated mean, 0 to 1.

@@ -1,0 +1,83 @@
+//! `tomcom replay RECORDING --timing`: how long the inference takes, event by event, on this machine.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::follower::Timing;
+use super::replay::Replay;
+use crate::edge::files::FileResult;
+
+/// What `--timing` prints, in microseconds. Null is what does not exist yet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TimingFigures {
+    pub gaze_us: Option<Spread>,
+    /// A press of the human or of the robot.
+    pub action_us: Option<Spread>,
+    pub plan_us: Option<Spread>,
+    /// Inference and planning.
+    pub step_us: Option<Spread>,
+    /// The length of the recording by session time, and how long its replay took, in seconds.
+    pub session_s: f64,
+    pub wall_s: f64,
+}
+
+/// Times of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    pub n: u64,
+    pub p50: f64,
+    pub p99: f64,
+    pub max: f64,
+}
+
+impl Spread {
+    /// Of times in nanoseconds, in microseconds; none of nothing. The percentiles are times that occurred (nearest rank).
+    pub fn of(mut times_ns: Vec<u64>) -> Option<Spread> {
+        times_ns.sort_unstable();
+        let (&max, n) = (times_ns.last()?, times_ns.len());
+        let us = |ns: u64| ns as f64 / 1000.0;
+        let rank = |share: f64| us(times_ns[((share * n as f64).ceil() as usize).clamp(1, n) - 1]);
+        Some(Spread { n: n as u64, p50: rank(0.5), p99: rank(0.99), max: us(max) })
+    }
+}
+
+/// Replays a recording and takes the time.
+///
+/// # Errors
+/// Those of [`Replay::run`].
+pub fn measure(recording: &Path) -> FileResult<TimingFigures> {
+    let mut replay = Replay::open(recording)?;
+    replay.follower.timing = Some(Timing::default());
+    let began = std::time::Instant::now();
+    replay.run()?;
+    let wall_s = began.elapsed().as_secs_f64();
+    let timing = replay.follower.timing.take().unwrap_or_default();
+    Ok(TimingFigures {
+        gaze_us: Spread::of(timing.gaze_ns),
+        action_us: Spread::of(timing.action_ns),
+        plan_us: None,
+        step_us: None,
+        session_s: replay.session().time.as_secs_f64(),
+        wall_s,
+    })
+}
+
+/// The figures for people.
+pub fn describe(figures: &TimingFigures) -> String {
+    let line = |what: &str, spread: Option<Spread>| match spread {
+        Some(Spread { n, p50, p99, max }) => {
+            format!("{what:<34}{n:>8} times, median {p50:>9.2} us, 99 % {p99:>9.2} us, most {max:>9.2} us\n")
+        }
+        None => format!("{what:<34}       -\n"),
+    };
+    format!(
+        "{}{}{}{}{:.0} s of session replayed in {:.2} s\n",
+        line("inference, gaze sample", figures.gaze_us),
+        line("inference, press", figures.action_us),
+        line("planning", figures.plan_us),
+        line("inference and planning", figures.step_us),
+        figures.session_s,
+        figures.wall_s
+    )
+}

@@ -98,6 +98,12 @@ impl Recipes {
         ContentId(self.0[dish.index() & (MAX_DISHES - 1)])
     }
 
+    /// All recipes as one number, for hashing.
+    #[inline]
+    pub fn bits(self) -> u128 {
+        u128::from_le_bytes(self.0)
+    }
+
     #[inline]
     pub fn set(&mut self, dish: DishId, stack: ContentId) {
         self.0[dish.index() & (MAX_DISHES - 1)] = stack.0;

@@ -23,7 +23,7 @@ use contents::Items;
 /// At most so many orders at a time; the cost to go is exact for one and for two.
 pub const MAX_ORDERS: usize = 2;
 /// At most so many ways to fill the locations other than orders: the keys of the cost to go have so many numbers.
-const MAX_STATES: u128 = 1 << 40;
+const MAX_STATES: u128 = 1 << 39;
 /// At most so many places where something is processed.
 const MAX_STATIONS: usize = 8;
 /// Locations on the display keep at least this distance, so that gaze can tell them apart.

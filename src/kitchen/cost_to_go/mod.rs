@@ -38,7 +38,9 @@ pub const UNREACHABLE: u32 = 255;
 const CACHE_BITS: u32 = 20;
 const DECISION_BITS: u32 = 17;
 /// Keys leave so many bits for the goal.
-const SLOT_BITS: u32 = 16;
+const SLOT_BITS: u32 = 17;
+/// The highest of them tells rough values from exact ones.
+const ROUGH_BIT: u32 = SLOT_BITS - 1;
 
 /// Computes costs to go and remembers them.
 #[derive(Clone, Debug)]
@@ -50,6 +52,15 @@ pub struct CostToGo {
     cache: Cache,
     decisions: Decisions,
     counts: Counts,
+}
+
+/// How much care is taken of a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Care {
+    /// Where bound and plans do not agree, it is searched for.
+    Exact,
+    /// It is that of the best plan: mostly exact, else a press or two too high. For what hardly counts.
+    Rough,
 }
 
 /// How often what was done since the start.
@@ -75,13 +86,13 @@ impl CostToGo {
     /// C(s, recipes): presses until all present orders are served; 0 if there is none, [`UNREACHABLE`] if they never can be.
     pub fn all_orders(&mut self, state: State, recipes: &Recipes) -> u32 {
         let (mut targets, count) = self.targets(state, recipes);
-        self.cost(state, &mut targets[..count])
+        self.cost(Care::Exact, state, &mut targets[..count])
     }
 
     /// C_k(s, recipes): presses until the order at this location is served; 0 if it wants nothing.
     pub fn order(&mut self, state: State, recipes: &Recipes, order: LocationId) -> u32 {
         match state.order(order) {
-            OrderContent::Dish(dish) => self.cost(state, &mut [recipes.get(dish)]),
+            OrderContent::Dish(dish) => self.cost(Care::Exact, state, &mut [recipes.get(dish)]),
             _ => 0,
         }
     }
@@ -90,14 +101,22 @@ impl CostToGo {
     /// decisions, inference and rollouts need.
     #[inline]
     pub fn decision(&mut self, state: State, recipes: &Recipes, agent: Agent) -> &Decision {
+        self.decision_with(Care::Exact, state, recipes, agent)
+    }
+
+    /// The same with more or less care. What is known of one is not used for the other, so that a value never depends on
+    /// what was asked before.
+    #[inline]
+    pub fn decision_with(&mut self, care: Care, state: State, recipes: &Recipes, agent: Agent) -> &Decision {
         let (mut targets, count) = self.targets(state, recipes);
-        let question = u32::from(targets[0].0) | u32::from(targets[1].0) << 8 | (agent as u32) << 16;
+        let question =
+            u32::from(targets[0].0) | u32::from(targets[1].0) << 8 | (agent as u32) << 16 | (care as u32) << 17;
         let (index, known) = self.decisions.find(state, question);
         if !known {
             let alike = self.stand_in(state, &mut targets[..count]);
             let (there, known) = self.decisions.find(alike, question);
             if !known {
-                self.decide(there, question, alike, recipes, agent);
+                self.decide(there, question, care, alike, recipes, agent);
             }
             let found = *self.decisions.get(there);
             self.decisions.set(index, state, question, found.here, found.after);
@@ -129,14 +148,18 @@ impl CostToGo {
     }
 
     /// Puts a decision together and keeps it.
-    fn decide(&mut self, index: usize, question: u32, state: State, recipes: &Recipes, agent: Agent) {
+    fn decide(&mut self, index: usize, question: u32, care: Care, state: State, recipes: &Recipes, agent: Agent) {
         self.counts.decisions_missed += 1;
         let kitchen = self.kitchen.clone();
-        let here = self.all_orders(state, recipes) as u8;
+        let mut value = |state: State| {
+            let (mut targets, count) = self.targets(state, recipes);
+            self.cost(care, state, &mut targets[..count]) as u8
+        };
+        let here = value(state);
         let mut after = [here; MAX_BUTTONS];
         for (button, after) in after.iter_mut().enumerate().take(kitchen.buttons[agent.index()].len()) {
             if let Some(next) = kitchen.press(state, recipes, agent, ButtonId(button as u8)) {
-                *after = self.all_orders(next, recipes) as u8;
+                *after = value(next);
             }
         }
         self.decisions.set(index, state, question, here, after);
@@ -156,7 +179,7 @@ impl CostToGo {
         (targets, count)
     }
 
-    fn cost(&mut self, state: State, targets: &mut [ContentId]) -> u32 {
+    fn cost(&mut self, care: Care, state: State, targets: &mut [ContentId]) -> u32 {
         if targets.is_empty() {
             return 0;
         }
@@ -165,7 +188,7 @@ impl CostToGo {
         let slot = self.slot(targets);
         self.make_goal(slot, targets);
         let Some(goal) = &self.goals[slot] else { return UNREACHABLE };
-        let key = goal.key_of_state(state) << SLOT_BITS | slot as u64;
+        let key = goal.key_of_state(state) << SLOT_BITS | slot as u64 | (care as u64) << ROUGH_BIT;
         if let Some(value) = self.cache.get(key) {
             return value;
         }
@@ -174,7 +197,7 @@ impl CostToGo {
         for location in self.ground.places() {
             classes[location] = goal.class_of[state.content(LocationId(location as u8)).index()];
         }
-        self.compute(key, slot, &goal, &classes)
+        self.compute(care, key, slot, &goal, &classes)
     }
 
     /// The value of a state of classes without one of its targets, which has just been served.
@@ -192,20 +215,20 @@ impl CostToGo {
             classes[location] = rest.class_of[goal.content[usize::from(state[location])].index()];
         }
         let key = self.key(slot, &rest, &classes);
-        self.cache.get(key).unwrap_or_else(|| self.compute(key, slot, &rest, &classes))
+        self.cache.get(key).unwrap_or_else(|| self.compute(Care::Exact, key, slot, &rest, &classes))
     }
 
-    fn compute(&mut self, key: u64, slot: usize, goal: &Goal, state: &Classes) -> u32 {
+    fn compute(&mut self, care: Care, key: u64, slot: usize, goal: &Goal, state: &Classes) -> u32 {
         self.counts.values_missed += 1;
-        let value = self.solve(slot, goal, state).min(UNREACHABLE);
+        let value = self.solve(care, slot, goal, state).min(UNREACHABLE);
         self.cache.insert(key, value);
         value
     }
 
-    fn solve(&mut self, slot: usize, goal: &Goal, state: &Classes) -> u32 {
+    fn solve(&mut self, care: Care, slot: usize, goal: &Goal, state: &Classes) -> u32 {
         let rating = Rating::new(&self.ground, goal, state);
         let upper = rating.upper(&self.ground, goal, state);
-        if upper <= rating.lower {
+        if upper <= rating.lower || care == Care::Rough {
             return upper;
         }
         self.counts.searches += 1;

@@ -8,11 +8,12 @@
 
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
-use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, OrderContent, Recipes, State};
+use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, OrderContent};
 use crate::mind::decision::{DecisionModel, Slips};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::model::InferenceModel;
 
+use super::cases::Cases;
 use super::urn::Urn;
 
 /// What is not drawn, since nothing depends on it.
@@ -38,7 +39,9 @@ pub struct Sampler {
     firsts: Vec<u8>,
     /// p(a | belief), by belief sample.
     likelihoods: Vec<f64>,
-    cases: Vec<(State, Recipes, u32)>,
+    cases: Cases,
+    /// `[belief * states + draw]`: indices of cases.
+    drawn_cases: Vec<u32>,
 }
 
 /// What a press is judged by.
@@ -64,9 +67,11 @@ impl Sampler {
         for (urn, dirichlet) in self.urns.iter_mut().zip(&belief.aspects) {
             urn.fill(dirichlet, states, random);
         }
-        self.drawn.clear();
-        self.likelihoods.clear();
         let mut wanted = judge.inference.beliefs;
+        self.drawn.clear();
+        self.drawn_cases.clear();
+        self.likelihoods.clear();
+        self.cases.clear(states * wanted.max(judge.inference.max_beliefs));
         loop {
             self.draw(judge, cost, button, wanted, random);
             let evidence = self.evidence();
@@ -84,6 +89,7 @@ impl Sampler {
         let (kitchen, states) = (judge.kitchen, judge.inference.states);
         let aspects = self.urns.len();
         let row = aspects * states;
+        let truth = kitchen.true_recipes();
         let old = self.likelihoods.len();
         self.drawn.resize(wanted * row, UNDRAWN);
         let mut firsts = std::mem::take(&mut self.firsts);
@@ -97,9 +103,27 @@ impl Sampler {
         self.firsts = firsts;
         for sample in old..wanted {
             let drawn = &mut self.drawn[sample * row..(sample + 1) * row];
-            draw_cases(kitchen, &self.urns, states, drawn, &mut self.cases, random);
-            let likelihood = press_chance(judge, cost, &self.cases, states, button);
-            self.likelihoods.push(likelihood);
+            draw_on(kitchen, &self.urns, states, drawn, random);
+            for draw in 0..states {
+                let (mut state, mut recipes) = (kitchen.empty_state(), truth);
+                for aspect in 0..aspects {
+                    let value = drawn[aspect * states + draw];
+                    if value != UNDRAWN {
+                        kitchen.set_value(&mut state, &mut recipes, AspectId(aspect as u8), usize::from(value));
+                    }
+                }
+                self.drawn_cases.push(self.cases.count(state, recipes));
+            }
+        }
+        self.cases.rate(cost, wanted * states);
+        for sample in old..wanted {
+            let mut sums = [0u32; MAX_BUTTONS];
+            for &case in &self.drawn_cases[sample * states..(sample + 1) * states] {
+                sums.iter_mut().zip(self.cases.after(case)).for_each(|(sum, &after)| *sum += u32::from(after));
+            }
+            let buttons = kitchen.buttons[Agent::Human.index()].len();
+            let sums = &sums[..buttons];
+            self.likelihoods.push(judge.decision.press_chance(judge.slips, sums, states as f64, button));
         }
     }
 
@@ -126,15 +150,8 @@ impl Sampler {
     }
 }
 
-/// Draws the states and recipes of one belief sample; equal ones are put together, with their number.
-fn draw_cases(
-    kitchen: &Kitchen,
-    urns: &[Urn],
-    states: usize,
-    drawn: &mut [u8],
-    cases: &mut Vec<(State, Recipes, u32)>,
-    random: &mut Stream,
-) {
+/// Draws the values of one belief sample that follow the first ones.
+fn draw_on(kitchen: &Kitchen, urns: &[Urn], states: usize, drawn: &mut [u8], random: &mut Stream) {
     let locations = kitchen.locations.len();
     for location in 0..locations {
         urns[location].draw_on(random, &mut drawn[location * states..(location + 1) * states]);
@@ -153,39 +170,6 @@ fn draw_cases(
             false => of_aspect.fill(UNDRAWN),
         }
     }
-    cases.clear();
-    for draw in 0..states {
-        let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
-        for aspect in 0..kitchen.aspects.len() {
-            let value = drawn[aspect * states + draw];
-            if value != UNDRAWN {
-                kitchen.set_value(&mut state, &mut recipes, AspectId(aspect as u8), usize::from(value));
-            }
-        }
-        match cases.iter_mut().find(|(other, others, _)| *other == state && *others == recipes) {
-            Some((_, _, count)) => *count += 1,
-            None => cases.push((state, recipes, 1)),
-        }
-    }
-}
-
-/// p(a | b) of who presses something, with the cases that stand for b.
-fn press_chance(
-    judge: &Judge,
-    cost: &mut CostToGo,
-    cases: &[(State, Recipes, u32)],
-    states: usize,
-    button: ButtonId,
-) -> f64 {
-    let buttons = judge.kitchen.buttons[Agent::Human.index()].len();
-    let mut sums = [0u32; MAX_BUTTONS];
-    for (state, recipes, count) in cases {
-        let decision = cost.decision(*state, recipes, Agent::Human);
-        for (sum, &after) in sums.iter_mut().zip(&decision.after[..buttons]) {
-            *sum += count * u32::from(after);
-        }
-    }
-    judge.decision.press_chance(judge.slips, &sums[..buttons], states as f64, button)
 }
 
 /// Mean and second moment of a mixture of Dirichlets, from those of the Dirichlet that all of them come from.

@@ -4,6 +4,7 @@
 //! What has a closed form is computed by it: reading, forgetting, signals, own presses that one location decides. Only the
 //! evidence of a press needs samples, and what a press of several locations or of the robot may have done.
 
+mod cases;
 mod evidence;
 mod exchange;
 mod gamma;

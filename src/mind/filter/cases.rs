@@ -1,0 +1,76 @@
+//! The different ways the kitchen may be among all draws of a press, and the costs of the human's decision in each.
+
+use crate::base::rng::mix;
+use crate::kitchen::cost_to_go::{Care, CostToGo, MAX_BUTTONS};
+use crate::kitchen::{Agent, Recipes, State};
+
+/// At least this share of all draws has to be of a case for its costs to be searched for where plans are not surely best.
+const COUNTS: f64 = 0.01;
+
+/// Cases with their numbers of draws.
+#[derive(Clone, Debug, Default)]
+pub struct Cases {
+    known: Vec<Case>,
+    /// Open addressing by hash: index + 1, 0 is free.
+    slots: Vec<u32>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Case {
+    state: State,
+    recipes: Recipes,
+    draws: u32,
+    /// C after each button, once it is known.
+    after: Option<[u8; MAX_BUTTONS]>,
+}
+
+impl Cases {
+    /// Forgets all, and makes room for so many draws.
+    pub fn clear(&mut self, draws: usize) {
+        self.known.clear();
+        self.slots.clear();
+        self.slots.resize((draws * 2).next_power_of_two(), 0);
+    }
+
+    /// The index of a case that was drawn once more.
+    #[inline]
+    pub fn count(&mut self, state: State, recipes: Recipes) -> u32 {
+        let mask = self.slots.len() - 1;
+        let (bits, of_recipes) = (state.bits(), recipes.bits());
+        let folded =
+            mix(bits as u64 ^ mix((bits >> 64) as u64)) ^ mix(of_recipes as u64 ^ mix((of_recipes >> 64) as u64));
+        let mut slot = folded as usize & mask;
+        loop {
+            match self.slots[slot] {
+                0 => {
+                    self.known.push(Case { state, recipes, draws: 1, after: None });
+                    self.slots[slot] = self.known.len() as u32;
+                    return self.known.len() as u32 - 1;
+                }
+                index => {
+                    let case = &mut self.known[index as usize - 1];
+                    if case.state == state && case.recipes == recipes {
+                        case.draws += 1;
+                        return index - 1;
+                    }
+                }
+            }
+            slot = (slot + 1) & mask;
+        }
+    }
+
+    /// Finds the costs of all cases that have none yet, of `draws` draws in all.
+    pub fn rate(&mut self, cost: &mut CostToGo, draws: usize) {
+        for case in self.known.iter_mut().filter(|case| case.after.is_none()) {
+            let care = if f64::from(case.draws) >= COUNTS * draws as f64 { Care::Exact } else { Care::Rough };
+            case.after = Some(cost.decision_with(care, case.state, &case.recipes, Agent::Human).after);
+        }
+    }
+
+    /// C after each button of the human in a case that was rated.
+    #[inline]
+    pub fn after(&self, index: u32) -> &[u8; MAX_BUTTONS] {
+        const UNKNOWN: [u8; MAX_BUTTONS] = [0; MAX_BUTTONS];
+        self.known[index as usize].after.as_ref().unwrap_or(&UNKNOWN)
+    }
+}

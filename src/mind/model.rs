@@ -106,13 +106,14 @@ impl PerceptionModel {
 pub struct TransitionModel {
     /// Half-life of what is remembered of recipes beyond the prior, in seconds.
     pub recipe_half_life_s: f64,
-    /// The share of the robot's unseen presses that the human thinks through.
+    /// The share of the robot's unseen presses that the human thinks through; the others leave its belief as it was.
+    /// Fitted to simulated participants: people keep to what they last saw.
     pub foresight: f64,
 }
 
 impl Default for TransitionModel {
     fn default() -> Self {
-        TransitionModel { recipe_half_life_s: 200.0, foresight: 1.0 }
+        TransitionModel { recipe_half_life_s: 200.0, foresight: 0.2 }
     }
 }
 

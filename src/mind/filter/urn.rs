@@ -38,7 +38,7 @@ impl Urn {
             left -= mean[value];
             left < 0.0
         });
-        self.stand_in = chosen.or(tail().last()).map(|value| value as u8);
+        self.stand_in = chosen.or(tail().next_back()).map(|value| value as u8);
         self.order.extend(self.stand_in.map(|value| (value, of_tail)));
         self.order.sort_unstable_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         let mut sum = 0.0;

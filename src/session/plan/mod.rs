@@ -93,11 +93,17 @@ impl PlanSpec {
     /// The codes of the participants, in the order of the plan.
     pub fn codes(&self) -> Vec<String> {
         match &self.participants {
-            Participants::Count(count) => {
-                let digits = count.to_string().len().max(2);
-                (1..=*count).map(|number| format!("P{number:0digits$}")).collect()
-            }
+            Participants::Count(count) => (1..=*count).map(|number| numbered(number, *count)).collect(),
             Participants::Codes(codes) => codes.clone(),
+        }
+    }
+
+    /// The code of the participant at this place, from 0; empty beyond the last.
+    pub fn code(&self, participant: usize) -> String {
+        match &self.participants {
+            Participants::Count(count) if participant < *count as usize => numbered(participant as u32 + 1, *count),
+            Participants::Count(_) => String::new(),
+            Participants::Codes(codes) => codes.get(participant).cloned().unwrap_or_default(),
         }
     }
 
@@ -122,6 +128,9 @@ impl PlanSpec {
             return wrong("conditions", found, "different conditions: each participant has one trial in each");
         }
         let orders = groups(self.conditions.len()).len() as u32;
+        if let Some(block) = self.block.filter(|&block| block > MAX_PARTICIPANTS) {
+            return wrong("block", format!("block = {block}"), "at most 9999 participants in a block");
+        }
         if let Some(block) = self.block.filter(|&block| block == 0 || block % orders != 0) {
             let found = format!("block = {block}, with {orders} orders of the conditions");
             return wrong("block", found, "a multiple of the number of orders, so that each comes equally often");
@@ -160,6 +169,12 @@ impl PlanSpec {
             }
         }
     }
+}
+
+/// "P07", of up to 99 participants.
+fn numbered(number: u32, count: u32) -> String {
+    let digits = count.to_string().len().max(2);
+    format!("P{number:0digits$}")
 }
 
 impl FamiliarisationSpec {

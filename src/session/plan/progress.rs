@@ -107,7 +107,7 @@ impl Progress {
     /// # Errors
     /// In words: a recording that this plan would not have asked for.
     pub fn of(study: &Study, participant: usize, made: &[Made]) -> Result<Progress, String> {
-        let code = study.plan.codes()[participant].clone();
+        let code = study.plan.code(participant);
         let group = study.group(participant).name;
         let own: Vec<&Made> = made.iter().filter(|made| made.code == code).collect();
         if let Some(other) = own.iter().find(|made| made.step.group != group) {

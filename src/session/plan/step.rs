@@ -153,7 +153,7 @@ impl Study {
         let slots = self.slots(wanted.participant);
         let slot = slots[wanted.slot];
         let mut spec = self.session.clone();
-        spec.participant.code.clone_from(&self.plan.codes()[wanted.participant]);
+        spec.participant.code = self.plan.code(wanted.participant);
         spec.trial.condition = slot.condition;
         let practice = self.plan.familiarisation.as_ref().filter(|_| slot.period.is_none());
         if let Some(practice) = practice {

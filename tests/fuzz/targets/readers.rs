@@ -1,4 +1,4 @@
-//! Everything that reads text which people or other programs wrote: session, layout and recipe files, and logs. Whatever
+//! Everything that reads text which people or other programs wrote: session, layout and recipe files, questionnaires, logs. Whatever
 //! the text, the answer is a value or an error that can be shown; never a panic, a hang or memory without bound.
 #![no_main]
 
@@ -9,6 +9,7 @@ use tomcom::edge::files::{FileResult, compile_kitchen, parse};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::replay::Replay;
 use tomcom::session::SessionSpec;
+use tomcom::session::plan::{Questionnaire, Study};
 
 const LAYOUT: &str = include_str!("../../../layouts/sushi.toml");
 const RECIPES: &str = include_str!("../../../recipes/sushi.toml");
@@ -17,7 +18,7 @@ const RECORDING: &str = include_str!("../../golden/format-1-hand.jsonl");
 fuzz_target!(|data: &[u8]| {
     let Some((kind, rest)) = data.split_first() else { return };
     let text = || String::from_utf8_lossy(rest).into_owned();
-    match kind % 5 {
+    match kind % 6 {
         0 => shown(compile_kitchen((Path::new("layout"), text()), (Path::new("recipes"), RECIPES.to_string())).map(
             |files| {
                 // A kitchen that is accepted can be worked in.
@@ -27,7 +28,12 @@ fuzz_target!(|data: &[u8]| {
         1 => {
             shown(compile_kitchen((Path::new("layout"), LAYOUT.to_string()), (Path::new("recipes"), text())).map(drop))
         }
-        2 => shown(parse::<SessionSpec>(Path::new("session"), &text()).map(|spec| spec.check().is_ok())),
+        2 => shown(parse::<SessionSpec>(Path::new("session"), &text()).map(|spec| {
+            // A plan that is accepted has a series for its participants.
+            let study = spec.check().ok().and_then(|()| Study::new(&spec, Vec::new()));
+            study.is_none_or(|study| !study.slots(0).is_empty())
+        })),
+        4 => shown(parse::<Questionnaire>(Path::new("questionnaire"), &text()).map(|asked| asked.check().is_ok())),
         3 => replay(rest),
         // Broken events after a header that is right.
         _ => {

@@ -416,7 +416,7 @@ fn every_place_of_the_panel_is_its_place_on_the_display_and_back() {
     for name in ["sushi", "burger"] {
         let kitchen = kitchen(name);
         for size in SIZES {
-            let panel = Regions::new(size, Visibility::Recommendation).kitchen_inside();
+            let panel = Regions::new(size, Visibility::Recommendation, None).kitchen_inside();
             let plan = Plan::new(&kitchen, panel, size.0 == 120);
             assert_eq!(plan.spots.len(), kitchen.locations.len() + kitchen.storages.len());
             for spot in &plan.spots {
@@ -596,6 +596,63 @@ fn the_notes_are_those_of_the_session() {
     stage.key(KeyCode::Char('?'));
     let screen = stage.screen((120, 40));
     assert!(screen.contains("asked for help") && !screen.contains("wrong recipe"), "{screen}");
+}
+
+/// The panels that the record says are on the screen.
+fn panels(stage: &Stage) -> Vec<String> {
+    screen(&stage.session, &stage.model).panels
+}
+
+#[test]
+fn each_panel_can_be_looked_at_alone() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.size = (80, 24);
+    let all = panels(&stage);
+    let mut seen = Vec::new();
+    for _ in 0..6 {
+        stage.wait(0.2);
+        assert_eq!(stage.key(KeyCode::Right), None);
+        let screen = stage.screen((80, 24));
+        assert!(screen.contains("STOP ROBOT") && screen.contains("esc all panels"), "{screen}");
+        seen.extend(panels(&stage));
+    }
+    assert_eq!(seen, ["kitchen", "belief", "recommendation", "gaze_map", "events", "timeline"]);
+    stage.wait(0.2);
+    stage.key(KeyCode::Up);
+    assert!(stage.screen((80, 24)).contains("-5 s"), "further back in time: {}", stage.screen((80, 24)));
+    stage.key(KeyCode::Esc);
+    assert_eq!((panels(&stage), stage.model.timeline_back_s), (all, 0));
+    stage.session.spec.console.visibility = Visibility::State;
+    for _ in 0..2 {
+        stage.wait(0.2);
+        stage.key(KeyCode::Right);
+    }
+    assert_eq!(panels(&stage), ["gaze_map"], "what may not be seen is left out");
+}
+
+#[test]
+fn a_click_sends_no_signal_and_the_wheel_goes_back_in_time() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let regions = Regions::new((120, 40), Visibility::Recommendation, None);
+    let plan = Plan::new(&stage.session.kitchen, regions.kitchen_inside(), false);
+    for spot in &plan.spots {
+        let Thing::Location(location) = spot.thing else { continue };
+        let click = Message::Click(spot.cells.x + 1, spot.cells.y);
+        assert_eq!(update(&mut stage.model, &stage.session, click), None);
+        let label = stage.session.kitchen.location(location).label();
+        assert!(stage.notice().contains(&label), "{label}: {}", stage.notice());
+    }
+    let all = panels(&stage);
+    let (column, row) = (regions.belief.x + 1, regions.belief.y);
+    for expected in [vec!["belief".to_string()], all] {
+        assert_eq!(update(&mut stage.model, &stage.session, Message::Click(column, row)), None);
+        assert_eq!(panels(&stage), expected);
+    }
+    let (column, row) = (regions.timeline.x + 1, regions.timeline.y);
+    for (steps, back_s) in [(1, 5), (-3, 0)] {
+        assert_eq!(update(&mut stage.model, &stage.session, Message::Wheel(column, row, steps)), None);
+        assert_eq!(stage.model.timeline_back_s, back_s, "back, and not into the future");
+    }
 }
 
 /// The relative luminance of a colour (WCAG 2.1).

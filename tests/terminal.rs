@@ -112,7 +112,7 @@ fn a_signal_to_the_program_closes_the_recording_and_gives_the_terminal_back() {
 #[test]
 #[ignore = "panics on purpose, inside of the terminal of another test"]
 fn a_program_that_panics() {
-    let _screen = Screen::take(true).expect("a terminal");
+    let _screen = Screen::take().expect("a terminal");
     panic!("on purpose");
 }
 
@@ -133,7 +133,7 @@ fn check_by_hand(session: &str) {
     terminal.start();
     terminal.key("Tab");
     terminal.see("KEYS: PARTICIPANT");
-    let panel = Regions::new(SIZE, Visibility::Recommendation).kitchen_inside();
+    let panel = Regions::new(SIZE, Visibility::Recommendation, None).kitchen_inside();
     let plan = Plan::new(&kitchen, panel, true);
     let mut cost = CostToGo::new(kitchen.clone());
     let mut replay = Replay::open(&terminal.recording()).expect("it opens while it is written");

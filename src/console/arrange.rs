@@ -200,7 +200,12 @@ fn items(kitchen: &Kitchen, with_keys: bool) -> Vec<Item> {
         let owner = if let LocationKind::Hand(agent) = location.kind { Some(agent) } else { None };
         let thing = Thing::Location(LocationId(index as u8));
         // Rule, key and gap beside the name (the own hand is seldom highlighted); orders stand in a strip of their own.
-        let beside = if location.kind == LocationKind::Hand(Agent::Human) { 2 } else { 5 };
+        let beside = match location.kind {
+            LocationKind::Hand(Agent::Human) => 2,
+            // Without brackets around the key there is room for those of the storage.
+            _ if with_keys => 4,
+            _ => 5,
+        };
         let min_columns = (location.label().chars().count() as u16 + beside).max(MIN_CARD);
         Item { thing, area: location.display, owner, min_columns }
     };
@@ -213,7 +218,7 @@ fn items(kitchen: &Kitchen, with_keys: bool) -> Vec<Item> {
             + match storage.agent {
                 Agent::Human if with_keys => 4,
                 Agent::Human => 1,
-                Agent::Robot => 1,
+                Agent::Robot => 2,
             },
     };
     let locations = kitchen.locations.iter().enumerate().map(location);

@@ -9,6 +9,7 @@ use std::ops::Range;
 use super::chord::Chord;
 use super::hands::Hand;
 use super::keymap::KeyMap;
+use super::panels::Look;
 use super::playback::Move;
 use super::table;
 use crate::communication::Signal;
@@ -38,6 +39,7 @@ pub enum Action {
     SwitchLayer,
     Hand(Hand),
     Move(Move),
+    Look(Look),
     Help,
     Quit,
 }

@@ -11,6 +11,10 @@ pub enum Message {
     Key(KeyEvent),
     /// The mouse pointer is over this cell, column and row.
     Pointer(u16, u16),
+    /// The mouse was clicked on this cell.
+    Click(u16, u16),
+    /// The wheel was turned over this cell, by so many steps away from the hand.
+    Wheel(u16, u16, i8),
     /// The terminal has this size now, columns and rows.
     Resized(u16, u16),
     /// The terminal window gained or lost the keyboard.

@@ -10,6 +10,7 @@ pub mod keys;
 pub mod message;
 pub mod model;
 pub mod note;
+pub mod panels;
 pub mod picker;
 pub mod playback;
 pub mod preflight;

@@ -6,6 +6,7 @@ use crossterm::event::KeyCode;
 
 use super::keys::{Keys, Layer};
 use super::note::Line;
+use super::panels::Panel;
 use super::picker::Picker;
 use super::playback::Playback;
 use super::view::theme::Theme;
@@ -82,6 +83,13 @@ pub struct Model {
     pub recording: Recording,
     /// Bytes that are free where the recording is; none: not known.
     pub free_bytes: Option<u64>,
+    /// The panel that is shown alone, if one is.
+    pub alone: Option<Panel>,
+    /// The first column of the help that is shown.
+    pub help_from: usize,
+    /// How far back events (in entries) and timeline (in seconds) are looked at.
+    pub events_back: usize,
+    pub timeline_back_s: u32,
     /// The terminal window has the keyboard.
     pub focused: bool,
     /// The cell under the mouse pointer, as a display point (fractions; outside of 0..1 beside the kitchen).
@@ -114,6 +122,10 @@ impl Model {
             notice: None,
             recording: Recording::Off,
             free_bytes: None,
+            alone: None,
+            help_from: 0,
+            events_back: 0,
+            timeline_back_s: 0,
             focused: true,
             pointer: None,
             trail: VecDeque::with_capacity(TRAIL),

@@ -11,7 +11,7 @@ use crate::session::screen::Screen;
 pub fn screen(session: &Session, model: &Model) -> Screen {
     let visibility = session.spec.console.visibility;
     let fits = model.size.0 >= LEAST.0 && model.size.1 >= LEAST.1;
-    let regions = Regions::new(model.size, visibility);
+    let regions = Regions::new(model.size, visibility, model.alone);
     let room = match regions.room {
         _ if !fits => "too_small",
         Room::Small => "small",

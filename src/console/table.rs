@@ -1,10 +1,13 @@
 //! The lines of the table of keys, as they are before a key file changes them.
 
-use crossterm::event::KeyCode::{self, Backspace, End, Home, Left, PageDown, PageUp, Right, Tab};
+use crossterm::event::KeyCode::{
+    self, BackTab, Backspace, Down, End, Esc, Home, Left, PageDown, PageUp, Right, Tab, Up,
+};
 
 use super::chord::Chord;
 use super::hands::Hand;
 use super::keys::{Action, Binding, Layer, Section};
+use super::panels::Look;
 use super::playback::Move;
 use crate::communication::{self, Signal};
 use crate::kitchen::{Agent, ButtonId, Kitchen};
@@ -92,6 +95,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<Binding> {
         None,
     )));
     lines.extend(buttons(kitchen));
+    lines.extend(looks(Right, Left));
     lines.extend([
         line("help", &[Chord::char('?')], Action::Help, CONSOLE, "this help", Some("help")),
         line("quit", &[Chord::ctrl('c')], Action::Quit, CONSOLE, "quit (asks first)", Some("quit")),
@@ -118,8 +122,21 @@ pub fn replay() -> Vec<Binding> {
         line("quit", &quit, Action::Quit, CONSOLE, "quit", Some("quit")),
         line("help", &[Chord::char('?')], Action::Help, CONSOLE, "this help", Some("help")),
     ];
+    lines.extend(looks(Tab, BackTab));
     lines.extend(moves.map(|(name, keys, to, help, footer)| of_move(name, &keys, to, help, footer)));
     lines.into_iter().map(|line| Binding { section: Section::Replay, ..line }).collect()
+}
+
+/// What is on the screen.
+fn looks(next: KeyCode, last: KeyCode) -> [Binding; 5] {
+    let look = |name, code, look, help, footer| line(name, &plain(code), Action::Look(look), CONSOLE, help, footer);
+    [
+        look("next_panel", next, Look::Next, "the next panel alone", Some("panels")),
+        look("last_panel", last, Look::Last, "the panel before, alone", None),
+        look("all_panels", Esc, Look::All, "all panels, and now again", Some("all panels")),
+        look("back", Up, Look::Back, "further back in events or timeline", None),
+        look("forward", Down, Look::Forward, "forward again", None),
+    ]
 }
 
 fn signals(kitchen: &Kitchen) -> impl Iterator<Item = Binding> {

@@ -9,6 +9,7 @@ use super::hands::{self, Hand};
 use super::keys::{Action, Layer};
 use super::message::{Command, Message};
 use super::model::{Dialog, Level, Model};
+use super::panels::{self, Look};
 use super::preflight;
 use super::view::regions::Regions;
 use super::words;
@@ -31,13 +32,21 @@ pub fn update(model: &mut Model, session: &Session, message: Message) -> Option<
     match message {
         Message::Key(key) => pressed(model, session, &key),
         Message::Pointer(column, row) => {
-            let regions = Regions::new(model.size, session.spec.console.visibility);
+            let regions = Regions::new(model.size, session.spec.console.visibility, model.alone);
             let plan = Plan::new(
                 &session.kitchen,
                 regions.kitchen_inside(),
                 session.spec.participant.kind == ParticipantKind::Keyboard,
             );
             model.pointer = Some(plan.display_point(column, row));
+            None
+        }
+        Message::Click(column, row) => {
+            panels::click(model, session, (column, row));
+            None
+        }
+        Message::Wheel(column, row, steps) => {
+            panels::wheel(model, session, (column, row), i64::from(steps));
             None
         }
         Message::Resized(columns, rows) => {
@@ -174,6 +183,12 @@ fn stop_robot(model: &mut Model, session: &Session) -> Option<Command> {
 
 fn answer(model: &mut Model, chord: Chord, action: Option<Action>, touch: Touch) -> Option<Command> {
     let dialog = model.dialog.clone()?;
+    if let (Dialog::Help, Some(Action::Look(look))) = (&dialog, &action)
+        && *look != Look::All
+    {
+        panels::leaf(model, *look);
+        return None;
+    }
     let again = match dialog {
         Dialog::Quit => Some(Action::Quit),
         Dialog::EndTrial => Some(Action::EndTrial),
@@ -226,8 +241,12 @@ pub(super) fn act(model: &mut Model, session: &Session, action: Action) -> Optio
             model.layer = if model.layer == Layer::Wizard { Layer::Participant } else { Layer::Wizard };
             None
         }
+        Action::Look(at) => {
+            panels::look(model, session, at);
+            None
+        }
         Action::Help => {
-            model.dialog = Some(Dialog::Help);
+            (model.dialog, model.help_from) = (Some(Dialog::Help), 0);
             None
         }
         Action::Quit if model.playback.is_some() || session.phase == Phase::Closed => Some(Command::Quit),

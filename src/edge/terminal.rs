@@ -9,7 +9,8 @@ use std::time::Duration;
 
 use crossterm::event::{
     DisableFocusChange, DisableMouseCapture, EnableFocusChange, EnableMouseCapture, Event, EventStream,
-    KeyboardEnhancementFlags, PopKeyboardEnhancementFlags, PushKeyboardEnhancementFlags,
+    KeyboardEnhancementFlags, MouseButton, MouseEvent, MouseEventKind, PopKeyboardEnhancementFlags,
+    PushKeyboardEnhancementFlags,
 };
 use crossterm::terminal::{
     BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode,
@@ -68,12 +69,11 @@ impl Write for Frame {
 }
 
 impl Screen {
-    /// Takes the terminal over: raw mode, alternate screen, key releases where the terminal knows them, and the mouse
-    /// if `with_mouse`.
+    /// Takes the terminal over: raw mode, alternate screen, key releases where the terminal knows them, and the mouse.
     ///
     /// # Errors
     /// Standard input or output is no terminal, or it cannot be controlled.
-    pub fn take(with_mouse: bool) -> io::Result<Screen> {
+    pub fn take() -> io::Result<Screen> {
         if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
             return Err(io::Error::other("the console needs a terminal for its input and output"));
         }
@@ -94,9 +94,7 @@ impl Screen {
             | KeyboardEnhancementFlags::REPORT_ALTERNATE_KEYS
             | KeyboardEnhancementFlags::REPORT_ALL_KEYS_AS_ESCAPE_CODES;
         execute!(out, EnterAlternateScreen, cursor::Hide, EnableFocusChange, PushKeyboardEnhancementFlags(keys))?;
-        if with_mouse {
-            execute!(out, EnableMouseCapture)?;
-        }
+        execute!(out, EnableMouseCapture)?;
         let (busy, lost) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
         let frames = write_frames(busy.clone(), lost.clone());
         let composed = Frame::default();
@@ -226,7 +224,12 @@ impl Hands {
         loop {
             let message = match self.events.next().await?.ok()? {
                 Event::Key(key) => Message::Key(key),
-                Event::Mouse(mouse) => Message::Pointer(mouse.column, mouse.row),
+                Event::Mouse(MouseEvent { kind, column, row, .. }) => match kind {
+                    MouseEventKind::Down(MouseButton::Left) => Message::Click(column, row),
+                    MouseEventKind::ScrollUp => Message::Wheel(column, row, 1),
+                    MouseEventKind::ScrollDown => Message::Wheel(column, row, -1),
+                    _ => Message::Pointer(column, row),
+                },
                 Event::Resize(columns, rows) => Message::Resized(columns, rows),
                 Event::FocusGained => Message::Focus(true),
                 Event::FocusLost => Message::Focus(false),

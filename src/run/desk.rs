@@ -44,7 +44,7 @@ impl Desk {
             }
             _ => None,
         };
-        let screen = Screen::take(participant.gaze == GazeSource::Mouse).map_err(LiveError::Terminal)?;
+        let screen = Screen::take().map_err(LiveError::Terminal)?;
         let theme = theme(&spec.console, screen.ground);
         Ok(Desk { screen, theme, hands: Hands::default(), end: Box::pin(asked_to_end()), gaze })
     }

@@ -188,7 +188,7 @@ struct Review {
 
 impl Review {
     fn open(film: Film, recording: &Path, follow: bool) -> Result<Review, ReviewError> {
-        let screen = Screen::take(false).map_err(ReviewError::Terminal)?;
+        let screen = Screen::take().map_err(ReviewError::Terminal)?;
         let size = Screen::size().map_err(ReviewError::Terminal)?;
         let keys = film.replay.log().header.keys.as_ref();
         let keys = Keys::replay(&film.session.kitchen, &key_map(keys)?)?;

@@ -71,6 +71,9 @@ fn ask(brush: &mut Brush, screen: Rect, title: &str, lines: &[&str]) {
     brush.parts(inside.x + 2, y, inside.width - 3, &parts);
 }
 
+/// The columns of a line of the help, with its key.
+const HELP_COLUMNS: u16 = 37;
+
 /// A line of the help: a heading, or a key with what it does.
 enum Line<'a> {
     Heading(&'a str),
@@ -89,10 +92,15 @@ fn help(brush: &mut Brush, screen: Rect, model: &Model) {
     let rows = screen.height.saturating_sub(3);
     let columns = columns(&groups, usize::from(rows));
     let tallest = columns.iter().map(Vec::len).max().unwrap_or(0) as u16;
-    let column_width = (screen.width.saturating_sub(4) / columns.len().max(1) as u16).min(46);
-    let size = (column_width * columns.len() as u16 + 4, tallest + 2);
-    let inside = open(brush, screen, size, "Keys", "any key closes");
-    for (index, column) in columns.iter().enumerate() {
+    let fits = usize::from((screen.width.saturating_sub(4) / HELP_COLUMNS).max(1)).min(columns.len());
+    let from = model.help_from.min(columns.len() - fits);
+    let remark = match columns.len() - fits {
+        0 => "any key closes".to_string(),
+        more => format!("arrows: page {} of {}, other keys close", from + 1, more + 1),
+    };
+    let column_width = (screen.width.saturating_sub(4) / fits as u16).min(HELP_COLUMNS + 2);
+    let inside = open(brush, screen, (column_width * fits as u16 + 4, tallest + 2), "Keys", &remark);
+    for (index, column) in columns.iter().skip(from).take(fits).enumerate() {
         let x = inside.x + 1 + index as u16 * column_width;
         for (row, line) in column.iter().take(usize::from(inside.height)).enumerate() {
             help_line(brush, x, inside.y + row as u16, column_width - 1, line);

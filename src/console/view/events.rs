@@ -13,8 +13,12 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     if regions.events.area() == 0 {
         return;
     }
-    let inside = brush.panel(regions.events, "Events", "newest first");
-    let newest = session.timeline.iter().rev();
+    let remark = match model.events_back {
+        0 => "newest first".to_string(),
+        back => format!("{back} newer"),
+    };
+    let inside = brush.panel(regions.events, "Events", &remark);
+    let newest = session.timeline.iter().rev().skip(model.events_back);
     for (row, entry) in newest.take(usize::from(inside.height)).enumerate() {
         let y = inside.y + row as u16;
         let age = session.age(entry.time, model.now).to_string();

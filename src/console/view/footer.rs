@@ -7,6 +7,7 @@ use crate::console::form::sheet;
 use crate::console::hands::Hand;
 use crate::console::keys::{Action, Binding, Layer};
 use crate::console::model::{Dialog, Level, Model};
+use crate::console::panels::Look;
 use crate::console::playback::Move;
 use crate::session::protocol::StudyPhase;
 use crate::session::settings::ParticipantKind;
@@ -40,9 +41,15 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let is_over = is_over(session, model);
     let is_late = |binding: &&Binding| match is_over {
         true => !matches!(binding.action, Action::Advance | Action::Quit | Action::Hand(Hand::Redo)),
-        false => binding.action == Action::EndTrial,
+        false => matches!(binding.action, Action::EndTrial | Action::Look(Look::Next)),
     };
-    let (late, first): (Vec<&Binding>, Vec<&Binding>) = model.keys.bindings.iter().partition(is_late);
+    let (late, mut first): (Vec<&Binding>, Vec<&Binding>) = model.keys.bindings.iter().partition(is_late);
+    // The robot stop is always first; the way back to all panels is next, where one is alone.
+    first.sort_by_key(|binding| match binding.action {
+        Action::StopRobot => 0,
+        Action::Look(Look::All) => 1,
+        _ => 2,
+    });
     for binding in first.into_iter().chain(late) {
         let Some(label) = label(binding, session, model) else { continue };
         let Some(chord) = binding.chords.first() else { continue };
@@ -129,6 +136,9 @@ fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&
         Action::StopRobot => (!session.robot.stopped).then_some(label),
         Action::ResumeRobot => session.robot.stopped.then_some(label),
         Action::TakeBack => session.shown.is_some().then_some(label),
+        Action::Look(Look::All) => {
+            (model.alone.is_some() || model.events_back > 0 || model.timeline_back_s > 0).then_some(label)
+        }
         _ => Some(label),
     }
 }

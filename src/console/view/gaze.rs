@@ -16,6 +16,9 @@ const TRAIL_S: f64 = 2.0;
 /// Draws the gaze panel.
 pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
     let area = regions.gaze;
+    if area.area() == 0 {
+        return;
+    }
     if regions.room == Room::Small {
         brush.parts(area.x, area.y, area.width, &[(" gaze     ", Role::Quiet)]);
         let x = line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
@@ -78,6 +81,14 @@ pub fn draw_map(brush: &mut Brush, regions: &Regions, session: &Session, model: 
         let along = |value: f64, low: u16, length: u16| low + (value.clamp(0.0, 0.999) * f64::from(length)) as u16;
         (along(point[0], inside.x, inside.width), along(point[1], inside.y, inside.height))
     };
+    let signs = brush.theme.signs();
+    for (at, sample) in &model.trail {
+        if model.now.secs_since(*at) < TRAIL_S {
+            let (x, y) = cell([sample.x, sample.y]);
+            let style = brush.style(Role::Gaze);
+            brush.text(x, y, 1, signs.trail, style);
+        }
+    }
     for (index, location) in session.kitchen.locations.iter().enumerate() {
         let (x, y) = cell(location.display.centre());
         let seen = session.gaze.looked_at[index].map(|at| session.age(at, model.now).as_secs_f64());
@@ -93,14 +104,6 @@ pub fn draw_map(brush: &mut Brush, regions: &Regions, session: &Session, model: 
         };
         write_centred(brush, inside, x, y, &label, Role::Quiet);
         write_centred(brush, inside, x, y + 1, &age, role);
-    }
-    let signs = brush.theme.signs();
-    for (at, sample) in &model.trail {
-        if model.now.secs_since(*at) < TRAIL_S {
-            let (x, y) = cell([sample.x, sample.y]);
-            let style = brush.style(Role::Gaze);
-            brush.text(x, y, 1, signs.trail, style);
-        }
     }
     if let Some((_, sample)) = session.gaze.last {
         let (x, y) = cell([sample.x, sample.y]);

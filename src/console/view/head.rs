@@ -1,7 +1,7 @@
 //! The head line: where are we, and is everything alive.
 
 use super::paint::{Brush, width};
-use super::regions::{Regions, Room};
+use super::regions::{ROOMY_COLUMNS, Regions, Room};
 use super::theme::Role;
 use crate::console::model::{Model, Recording};
 use crate::console::words;
@@ -11,10 +11,12 @@ use crate::session::{Phase, Session};
 /// Draws the head line.
 pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
     let area = regions.head;
-    let gap = if regions.room == Room::Small { 1 } else { 3 };
+    // One panel alone is drawn in full, but the head line is as long as it is.
+    let room = if area.width < ROOMY_COLUMNS { Room::Small } else { Room::Medium };
+    let gap = if room == Room::Small { 1 } else { 3 };
     let strong = brush.style(Role::Strong);
     // A small replay, and one of a plan, need the room of the name.
-    let is_tight = (model.playback.is_some() || session.step().is_some()) && regions.room == Room::Small;
+    let is_tight = (model.playback.is_some() || session.step().is_some()) && room == Room::Small;
     let name = if is_tight { "" } else { "tomcom" };
     let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
     let badge = brush.theme.badge(phase_role(session.phase));
@@ -30,7 +32,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         let text = brush.style(Role::Text);
         x = brush.text(x, area.y, 20, &counts, text) + gap;
     }
-    let healths = healths(session, model, regions.room);
+    let healths = healths(session, model, room);
     let needed = healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
     let mut right = area.right().saturating_sub(needed).max(x);
     let quiet = brush.style(Role::Quiet);
@@ -112,7 +114,7 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
         }
         None => healths.push(match &model.recording {
             Recording::Off => ("not recorded".to_string(), Role::Quiet),
-            Recording::On(_) => (format!("{} rec", model.theme.signs().recording), Role::Alarm),
+            Recording::On(_) => (format!("{} rec", model.theme.signs().recording), Role::Text),
             Recording::Lost => (" RECORDING LOST ".to_string(), Role::Alarm),
         }),
     }

@@ -27,6 +27,9 @@ const GAZE_S: f64 = 3.0;
 /// Draws the kitchen panel.
 pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
     let area = regions.kitchen;
+    if area.area() == 0 {
+        return;
+    }
     if regions.room > Room::Small {
         let remark = match model.layer {
             Layer::Wizard if model.playback.is_some() => "",
@@ -56,9 +59,9 @@ fn zones(brush: &mut Brush, plan: &Plan) {
             None => ("SHARED", Role::Quiet),
         };
         let line = zone.cells.width.saturating_sub(1);
-        let quiet = brush.style(Role::Quiet);
+        let thin = brush.style(Role::Frame);
         let rule = brush.theme.signs().frame[4].repeat(usize::from(line));
-        brush.text(zone.cells.x, zone.cells.y, line, &rule, quiet);
+        brush.text(zone.cells.x, zone.cells.y, line, &rule, thin);
         let label = format!(" {name} ");
         let x = zone.cells.x + (line.saturating_sub(width(&label))) / 2;
         let style = brush.style(role).add_modifier(Modifier::BOLD).remove_modifier(Modifier::DIM);

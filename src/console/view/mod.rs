@@ -34,7 +34,7 @@ pub fn view(session: &Session, model: &Model, frame: &mut Frame) {
         too_small(&mut brush, session, model);
         return;
     }
-    let regions = Regions::new((area.width, area.height), session.spec.console.visibility);
+    let regions = Regions::new((area.width, area.height), session.spec.console.visibility, model.alone);
     head::draw(&mut brush, &regions, session, model);
     kitchen::draw(&mut brush, &regions, session, model);
     belief::draw(&mut brush, &regions, session);

@@ -2,10 +2,14 @@
 
 use ratatui::layout::Rect;
 
+use crate::console::panels::Panel;
 use crate::session::settings::Visibility;
 
 /// Below this nothing can be drawn that helps.
 pub const LEAST: (u16, u16) = (72, 22);
+
+/// From so many columns on there is room for panels beside each other.
+pub const ROOMY_COLUMNS: u16 = 112;
 
 /// How much room there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -38,16 +42,16 @@ pub struct Regions {
 }
 
 /// The least columns of the kitchen panel in which names of the usual length are written out.
-const KITCHEN_COLUMNS: u16 = 80;
+const KITCHEN_COLUMNS: u16 = 81;
 /// Rows of the timeline with its title.
 const TIMELINE_ROWS: u16 = 7;
 
 impl Regions {
-    /// Deals out a terminal of `size` columns and rows.
-    pub fn new(size: (u16, u16), visibility: Visibility) -> Regions {
+    /// Deals out a terminal of `size` columns and rows, to all panels or to one alone.
+    pub fn new(size: (u16, u16), visibility: Visibility, alone: Option<Panel>) -> Regions {
         let room = match size {
             (columns, rows) if columns >= 168 && rows >= 46 => Room::Large,
-            (columns, rows) if columns >= 112 && rows >= 34 => Room::Medium,
+            (columns, rows) if columns >= ROOMY_COLUMNS && rows >= 34 => Room::Medium,
             _ => Room::Small,
         };
         let all = Rect::new(0, 0, size.0, size.1);
@@ -69,9 +73,37 @@ impl Regions {
             footer,
         };
         match room {
+            _ if let Some(panel) = alone => bare.alone(panel),
             Room::Small => bare.small(visibility),
             Room::Medium => bare.medium(visibility),
             Room::Large => bare.large(visibility),
+        }
+    }
+
+    fn alone(self, panel: Panel) -> Regions {
+        let blank = Rect::default();
+        let body = self.kitchen;
+        let mut regions = Regions { kitchen: blank, room: self.room.max(Room::Medium), ..self };
+        match panel {
+            Panel::Kitchen => regions.kitchen = body,
+            Panel::Belief => regions.belief = body,
+            Panel::Recommendation => regions.recommendation = body,
+            Panel::GazeMap => regions.gaze_map = body,
+            Panel::Events => regions.events = body,
+            Panel::Timeline => regions.timeline = body,
+        }
+        regions
+    }
+
+    /// Where a panel is.
+    pub fn of(&self, panel: Panel) -> Rect {
+        match panel {
+            Panel::Kitchen => self.kitchen,
+            Panel::Belief => self.belief,
+            Panel::Recommendation => self.recommendation,
+            Panel::GazeMap => self.gaze_map,
+            Panel::Events => self.events,
+            Panel::Timeline => self.timeline,
         }
     }
 
@@ -93,7 +125,7 @@ impl Regions {
         let (kitchen, side) = left(rest, (rest.width * 13 / 20).max(KITCHEN_COLUMNS));
         let (side, robot) = bottom(side, 4);
         let (side, gaze) = bottom(side, 4);
-        let (side, shown) = bottom(side, 4);
+        let (side, shown) = bottom(side, 5);
         Regions { kitchen, shown, robot, gaze, timeline, ..self }.judge(side, visibility)
     }
 

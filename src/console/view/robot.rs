@@ -15,6 +15,9 @@ use crate::session::Session;
 /// Draws the robot panel.
 pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
     let area = regions.robot;
+    if area.area() == 0 {
+        return;
+    }
     if regions.room == Room::Small {
         brush.parts(area.x, area.y, area.width, &[(" robot    ", Role::Quiet)]);
         line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);

@@ -12,6 +12,9 @@ use crate::session::{Phase, Session, ShownSignal};
 /// Draws what the participant is shown.
 pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
     let area = regions.shown;
+    if area.area() == 0 {
+        return;
+    }
     if regions.room == Room::Small {
         brush.parts(area.x, area.y, area.width, &[(" display  ", Role::Quiet)]);
         line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);

@@ -19,6 +19,9 @@ const LABELS: u16 = 10;
 /// Draws the timeline.
 pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
     let area = regions.timeline;
+    if area.area() == 0 {
+        return;
+    }
     let is_small = regions.room == Room::Small;
     let inside = if is_small { area } else { brush.panel(area, "Timeline", &legend(brush)) };
     let rows: &[&str] = match is_small {
@@ -30,11 +33,13 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         brush.text(inside.x + 1, inside.y + row as u16, LABELS, label, quiet);
     }
     let plot = Rect { x: inside.x + LABELS, width: inside.width.saturating_sub(LABELS + 1), ..inside };
-    axis(brush, plot);
-    let now = column(model.now);
+    let back_s = model.timeline_back_s;
+    axis(brush, plot, back_s);
+    let now = column(model.now) - (f64::from(back_s) / COLUMN_S) as i64;
     let newest = session.timeline.iter().rev();
     let entries = newest.map(|entry| (now - column(entry.time), entry));
     let in_view: Vec<Mark> = entries
+        .skip_while(|(age, _)| *age < 0)
         .take_while(|(age, _)| *age < i64::from(plot.width))
         .filter_map(|(age, entry)| {
             let (row, sign, role) = mark(brush, session, model, entry)?;
@@ -90,17 +95,19 @@ fn column(time: SessionTime) -> i64 {
     (time.as_secs_f64() / COLUMN_S) as i64
 }
 
-fn axis(brush: &mut Brush, plot: Rect) {
+fn axis(brush: &mut Brush, plot: Rect, back_s: u32) {
     let quiet = brush.style(Role::Quiet);
     let every = (10.0 / COLUMN_S) as u16;
     let line = brush.theme.signs().frame[4];
+    let thin = brush.style(Role::Frame);
     for x in plot.x..plot.right() {
-        brush.text(x, plot.y, 1, line, quiet);
+        brush.text(x, plot.y, 1, line, thin);
     }
-    brush.text_right(plot.right(), plot.y, 4, " now", quiet);
+    let end = if back_s == 0 { " now".to_string() } else { format!(" -{back_s} s") };
+    brush.text_right(plot.right(), plot.y, 8, &end, quiet);
     let mut tick = 1;
     while tick * every + 4 < plot.width {
-        let label = format!(" -{} s ", u32::from(tick) * 10);
+        let label = format!(" -{} s ", back_s + u32::from(tick) * 10);
         let x = plot.right() - 1 - tick * every;
         brush.text(x.saturating_sub(width(&label) / 2), plot.y, 8, &label, quiet);
         tick += 1;

@@ -1,0 +1,141 @@
+//! Looking at one panel alone, and further back than fits: by keys or with the mouse. Nothing here reaches the
+//! participant; what was on the wizard's screen is recorded by [`super::screen`].
+
+use super::arrange::{Plan, Thing};
+use super::keys::Layer;
+use super::model::{Dialog, Level, Model};
+use super::view::regions::Regions;
+use crate::kitchen::{Action as Use, Agent, ButtonId, LocationId};
+use crate::session::Session;
+use crate::session::settings::{ParticipantKind, Visibility};
+
+/// A panel that may be shown alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Panel {
+    Kitchen,
+    Belief,
+    Recommendation,
+    GazeMap,
+    Events,
+    Timeline,
+}
+
+impl Panel {
+    /// In the order in which the keys go through them.
+    const ALL: [Panel; 6] =
+        [Panel::Kitchen, Panel::Belief, Panel::Recommendation, Panel::GazeMap, Panel::Events, Panel::Timeline];
+
+    /// Whether the wizard may see it.
+    fn may_be_seen(self, visibility: Visibility) -> bool {
+        match self {
+            Panel::Belief => visibility >= Visibility::Belief,
+            Panel::Recommendation => visibility >= Visibility::Recommendation,
+            _ => true,
+        }
+    }
+
+    /// The panel under a cell.
+    fn at(regions: &Regions, cell: (u16, u16)) -> Option<Panel> {
+        Panel::ALL.into_iter().find(|panel| regions.of(*panel).contains(cell.into()))
+    }
+}
+
+/// What a key asks of the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// The next panel alone; after the last all of them.
+    Next,
+    Last,
+    All,
+    /// Further back in time, and forward again.
+    Back,
+    Forward,
+}
+
+/// The help never has more columns.
+const MOST_COLUMNS: usize = 8;
+
+/// How far one step goes back in the timeline, in seconds, and in the list of events, in lines.
+const STEP: (u32, usize) = (5, 1);
+
+/// Looks at what a key asks for.
+pub fn look(model: &mut Model, session: &Session, look: Look) {
+    let visibility = session.spec.console.visibility;
+    let seen: Vec<Panel> = Panel::ALL.into_iter().filter(|panel| panel.may_be_seen(visibility)).collect();
+    let at = model.alone.and_then(|alone| seen.iter().position(|panel| *panel == alone));
+    match look {
+        Look::All => (model.alone, model.events_back, model.timeline_back_s) = (None, 0, 0),
+        Look::Next => model.alone = seen.get(at.map_or(0, |at| at + 1)).copied(),
+        Look::Last => {
+            let before = at.map_or(Some(seen.len() - 1), |at| at.checked_sub(1));
+            model.alone = before.and_then(|before| seen.get(before)).copied();
+        }
+        Look::Back => scroll(model, session, model.alone == Some(Panel::Timeline), 1),
+        Look::Forward => scroll(model, session, model.alone == Some(Panel::Timeline), -1),
+    }
+}
+
+/// Leafs through the help.
+pub fn leaf(model: &mut Model, look: Look) {
+    let is_forward = matches!(look, Look::Next | Look::Forward);
+    model.help_from =
+        if is_forward { (model.help_from + 1).min(MOST_COLUMNS) } else { model.help_from.saturating_sub(1) };
+}
+
+fn scroll(model: &mut Model, session: &Session, timeline: bool, steps: i64) {
+    if timeline {
+        let back_s = i64::from(model.timeline_back_s) + steps * i64::from(STEP.0);
+        let most_s = model.now.secs_since(session.trial_start).max(0.0) as i64;
+        model.timeline_back_s = back_s.clamp(0, most_s) as u32;
+    } else {
+        let back = model.events_back as i64 + steps * STEP.1 as i64;
+        model.events_back = back.clamp(0, session.timeline.len().saturating_sub(1) as i64) as usize;
+    }
+}
+
+/// The wheel was turned over a cell.
+pub fn wheel(model: &mut Model, session: &Session, cell: (u16, u16), steps: i64) {
+    if model.dialog == Some(Dialog::Help) {
+        leaf(model, if steps > 0 { Look::Back } else { Look::Forward });
+        return;
+    }
+    let regions = Regions::new(model.size, session.spec.console.visibility, model.alone);
+    scroll(model, session, Panel::at(&regions, cell) == Some(Panel::Timeline), steps);
+}
+
+/// A click tells what a place's key does, since a signal sent by mistake cannot be unseen; beside the places it shows the
+/// panel alone, or all of them again.
+pub fn click(model: &mut Model, session: &Session, cell: (u16, u16)) {
+    if model.dialog.is_some() {
+        return;
+    }
+    let regions = Regions::new(model.size, session.spec.console.visibility, model.alone);
+    if regions.kitchen_inside().contains(cell.into()) {
+        let with_keys = session.spec.participant.kind == ParticipantKind::Keyboard;
+        let plan = Plan::new(&session.kitchen, regions.kitchen_inside(), with_keys);
+        let thing = plan.spots.iter().find(|spot| spot.cells.contains(cell.into())).map(|spot| spot.thing);
+        if let Some(Thing::Location(location)) = thing {
+            return tell(model, session, location);
+        }
+    }
+    match (model.alone, Panel::at(&regions, cell)) {
+        (Some(_), _) => model.alone = None,
+        (None, panel) => model.alone = panel,
+    }
+}
+
+/// Says which key is about a location, and what it does.
+fn tell(model: &mut Model, session: &Session, location: LocationId) {
+    let is_main = |action| matches!(action, Use::Use(at) | Use::Serve(at) if at == location);
+    let buttons = &session.kitchen.buttons[Agent::Human.index()];
+    let line = model.keys.bindings.iter().find(|line| match (&line.action, model.layer) {
+        (super::keys::Action::Signal(about, _), Layer::Wizard) => *about == location,
+        (super::keys::Action::Press(ButtonId(button)), Layer::Participant) => {
+            is_main(buttons[usize::from(*button)].action)
+        }
+        _ => false,
+    });
+    let told = line.and_then(|line| Some(format!("{}: {}", line.chords.first()?, line.help)));
+    let label = session.kitchen.location(location).label();
+    model.say(Level::Done, told.unwrap_or_else(|| format!("{label}: no key is about it")));
+}

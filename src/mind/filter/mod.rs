@@ -106,6 +106,7 @@ impl BeliefFilter {
             return;
         }
         self.forget(now);
+        self.reader.settle();
         match observation.what {
             Observed::Started { state } => {
                 self.prior = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);

@@ -1,9 +1,11 @@
 //! Reading: what a gaze sample tells the human, in closed form.
 //!
 //! A sample that covers dt reads a location with probability 1 - exp(-rate dt), at a rate that falls with the distance of
-//! the gaze from its area (see [`PerceptionModel`]). One look gives one draw from the confusion matrix: `unread` is the
-//! probability that the location has not been read in this look, and only that much of the belief can change. With
-//! probability q the belief becomes the value read, else it stays: mean and second moment are exact, without samples.
+//! the gaze from its area (see [`PerceptionModel`]). One look gives one draw from the confusion matrix: who has read the
+//! location in this look does not read it again. Of the belief m0 from when the look began (or from the last event that
+//! changed the belief, when a share `unread` had not read it yet), 1 - unread (1 - survived) is left, where `survived` is the
+//! probability of not having read it since; all else is what was read. So a sample takes a further share of m0 to what is
+//! read, and mean and second moment are exact, without samples.
 
 use std::collections::VecDeque;
 
@@ -30,11 +32,24 @@ struct Confusion {
 /// A look at a location.
 #[derive(Clone, Copy, Debug)]
 struct Look {
+    /// The share that had not read it at the last event.
     unread: f64,
+    /// The probability of not having read it since then.
+    survived: f64,
     /// The code that the display showed when it was last looked at.
     code: u8,
     /// When the gaze was last there.
     last: SessionTime,
+}
+
+impl Look {
+    /// The location is read with this probability by who has not read it yet: the share of the present belief that is
+    /// replaced by what is read.
+    fn read(&mut self, chance: f64) -> f64 {
+        let left = 1.0 - self.unread * (1.0 - self.survived);
+        self.survived *= 1.0 - chance;
+        1.0 - (1.0 - self.unread * (1.0 - self.survived)) / left.max(f64::MIN_POSITIVE)
+    }
 }
 
 /// Reads gaze samples.
@@ -56,7 +71,7 @@ impl Reader {
             (0..values).map(|value| confusion(kitchen, model, LocationId(index as u8), value)).collect()
         };
         let confusions: Vec<_> = (0..kitchen.locations.len()).map(of_location).collect();
-        let looks = vec![Look { unread: 1.0, code: 0, last: SessionTime::ZERO }; confusions.len()];
+        let looks = vec![Look { unread: 1.0, survived: 1.0, code: 0, last: SessionTime::ZERO }; confusions.len()];
         Reader { confusions, looks, shown: VecDeque::new(), last: None }
     }
 
@@ -65,6 +80,14 @@ impl Reader {
         self.shown.push_back((now, state));
         while self.shown.len() > 1 && now.secs_since(self.shown[1].0) > history_s {
             self.shown.pop_front();
+        }
+    }
+
+    /// The belief was changed by something else than reading: who has read and who has not is no longer told apart by it.
+    pub fn settle(&mut self) {
+        for look in &mut self.looks {
+            look.unread *= look.survived;
+            look.survived = 1.0;
         }
     }
 
@@ -99,17 +122,16 @@ impl Reader {
             let rate_hz = model.rate_hz(distance_m, confidence);
             let code = state.code(LocationId(index as u8));
             if code != look.code || taken.secs_since(look.last) > model.look_ends_s {
-                look.unread = 1.0;
+                (look.unread, look.survived) = (1.0, 1.0);
                 look.code = code;
             }
             if rate_hz >= ELSEWHERE * full_hz * confidence {
                 look.last = taken;
             }
-            let read = look.unread * -(-rate_hz * covers_s).exp_m1();
+            let read = look.read(-(-rate_hz * covers_s).exp_m1());
             if read < NEGLIGIBLE {
                 continue;
             }
-            look.unread -= read;
             let aspect = AspectId(index as u8);
             let Some(value) = kitchen.aspects[index].index_of(code) else { continue };
             let confusion = &self.confusions[index][value];

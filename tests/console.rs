@@ -6,11 +6,13 @@ use std::sync::Arc;
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
+use ratatui::buffer::Cell;
+use ratatui::style::{Color, Modifier};
 use tomcom::base::time::SessionTime;
 use tomcom::communication::{Sender, Signal};
 use tomcom::console::arrange::{Plan, Thing};
 use tomcom::console::keys::{KeyPlace, Layer};
-use tomcom::console::model::{Dialog, Recording};
+use tomcom::console::model::{Dialog, Level, Recording};
 use tomcom::console::picker::{Picker, Question};
 use tomcom::console::playback::Playback;
 use tomcom::console::screen::screen;
@@ -196,14 +198,81 @@ fn help_and_questions_and_the_ascii_fallback() {
     stage.model.theme = Theme { colour: false, unicode: false, ground: Ground::Dark };
     let screen = stage.screen((120, 40));
     assert!(screen.is_ascii(), "only ASCII");
-    insta::assert_snapshot!("ascii_120x40", screen);
+}
+
+/// Every state that a wizard has to recognise at a glance, at each size.
+#[test]
+fn what_a_wizard_sees_at_each_size() {
+    let mut ready = Stage::new("sushi", ParticipantKind::Simulated);
+    ready.wait(1.0);
+    let mut paused = Stage::sushi(ParticipantKind::Simulated);
+    paused.at(22.6, Event::TrialPaused);
+    let mut stopped = Stage::sushi(ParticipantKind::Simulated);
+    stopped.at(22.6, Event::RobotStopped);
+    let mut highlight = Stage::sushi(ParticipantKind::Simulated);
+    highlight
+        .at(22.6, Event::SignalShown { by: Sender::Wizard, signal: Signal::Highlight("cutting_board".to_string()) });
+    let mut alarm = Stage::sushi(ParticipantKind::Simulated);
+    alarm.at(22.6, Event::RobotStopped);
+    alarm.at(22.6, Event::SessionEnded);
+    alarm.model.recording = Recording::Lost;
+    alarm.model.say(Level::Alarm, "session over, the recording ends here: no space left on the device");
+    let mut away = Stage::sushi(ParticipantKind::Simulated);
+    away.model.focused = false;
+    let mut replay = Stage::sushi(ParticipantKind::Simulated);
+    replay.model.keys = Keys::replay(&replay.session.kitchen, &KeyMap::default()).expect("the keys are free");
+    let mut playback = Playback::new("2026-03-14-P01-1".to_string());
+    (playback.playing, playback.event, playback.events) = (true, 43210, 59289);
+    replay.model.playback = Some(playback);
+    let mut state = Stage::sushi(ParticipantKind::Simulated);
+    state.session.spec.console.visibility = Visibility::State;
+    let mut ascii = Stage::sushi(ParticipantKind::Simulated);
+    ascii.model.theme = Theme { colour: false, unicode: false, ground: Ground::Light };
+    let stages = [
+        ("ready", ready),
+        ("paused", paused),
+        ("robot_stopped", stopped),
+        ("highlight", highlight),
+        ("alarm", alarm),
+        ("away", away),
+        ("replay", replay),
+        ("state", state),
+        ("ascii", ascii),
+    ];
+    for (name, stage) in stages {
+        for size in SIZES {
+            insta::assert_snapshot!(format!("{name}_{}x{}", size.0, size.1), stage.screen(size));
+        }
+    }
+}
+
+/// What the cells look like, a line for each row, a letter for each style: without colour nothing may rest on colour.
+#[test]
+fn without_colour_every_meaning_has_a_sign_or_a_weight() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.theme = Theme { colour: false, unicode: true, ground: Ground::Dark };
+    for (columns, rows) in SIZES {
+        let mut terminal = Terminal::new(TestBackend::new(columns, rows)).expect("a test terminal");
+        terminal.draw(|frame| view(&stage.session, &stage.model, frame)).expect("drawn");
+        let buffer = terminal.backend().buffer();
+        assert!(buffer.content.iter().all(|cell| cell.fg == Color::Reset && cell.bg == Color::Reset));
+        let weights = |cell: &Cell| match cell.modifier {
+            m if m.contains(Modifier::REVERSED) => '#',
+            m if m.contains(Modifier::BOLD) => '*',
+            m if m.contains(Modifier::DIM) => '-',
+            _ if cell.symbol() == " " => ' ',
+            _ => '.',
+        };
+        let lines: Vec<String> =
+            buffer.content.chunks(usize::from(columns)).map(|row| row.iter().map(weights).collect()).collect();
+        insta::assert_snapshot!(format!("no_color_{columns}x{rows}"), lines.join("\n"));
+    }
 }
 
 #[test]
 fn a_stopped_robot_is_seen_and_every_size_can_be_drawn() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.at(22.7, Event::RobotStopped);
-    insta::assert_snapshot!("stopped_120x40", stage.screen((120, 40)));
     for columns in (1..220).step_by(7) {
         for rows in (1..70).step_by(3) {
             stage.screen((columns, rows));

@@ -77,6 +77,11 @@ class Console:
     def key(self, key):
         os.write(self.master, key.encode())
 
+    def trial_s(self):
+        """The trial's clock, as the head line shows it, in seconds."""
+        clock = re.search(r"(\d+):(\d\d) / ", self.text())
+        return 60 * int(clock[1]) + int(clock[2]) if clock else 0
+
     def cpu_s(self):
         """Seconds of processor time so far."""
         fields = Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(")", 1)[1].split()

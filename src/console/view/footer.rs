@@ -21,7 +21,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let area = regions.footer;
     if !model.focused && model.playback.is_none() {
         let alarm = brush.theme.badge(Role::Alarm);
-        let words = " THE KEYBOARD IS ELSEWHERE: no key works here, the robot stop neither: click into this window ";
+        let words = " THE KEYBOARD IS ELSEWHERE, and the robot stop with it: click into this window ";
         brush.text(area.x, area.y, area.width, &format!("{words:<width$}", width = usize::from(area.width)), alarm);
         return;
     }
@@ -35,7 +35,9 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         x = brush.text(x, area.y, area.width, label, badge);
     }
     let notice = model.notice.as_ref().filter(|notice| model.clock.secs_since(notice.at) < NOTICE_S);
-    let said = notice.map_or(0, |notice| width(&notice.text) + 3).min(area.width / 2);
+    // An alarm may take the place of the keys.
+    let most = if notice.is_some_and(|notice| notice.level == Level::Alarm) { area.width } else { area.width / 2 };
+    let said = notice.map_or(0, |notice| width(&notice.text) + 3).min(most);
     let end = area.right().saturating_sub(said);
     // The end of the trial is rare, and gives its room to the others; after it only leaving is left to do.
     let is_over = is_over(session, model);

@@ -32,8 +32,15 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         let text = brush.style(Role::Text);
         x = brush.text(x, area.y, 20, &counts, text) + gap;
     }
-    let healths = healths(session, model, room);
-    let needed = healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
+    let mut healths = healths(session, model, room);
+    let needed = |healths: &[(String, Role)]| healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
+    // Where not all fits, what is as it should be goes first.
+    while needed(&healths) > area.right().saturating_sub(x)
+        && let Some(fine) = healths.iter().position(|(_, role)| matches!(role, Role::Text | Role::Quiet))
+    {
+        healths.remove(fine);
+    }
+    let needed = needed(&healths);
     let mut right = area.right().saturating_sub(needed).max(x);
     let quiet = brush.style(Role::Quiet);
     for text in facts(session, model) {

@@ -145,7 +145,7 @@ impl<'a> Place<'a> {
         let below = Rect { x: cells.x + 2, y: cells.y + 1, width: cells.width - 2, height: cells.height - 1 };
         match (is_order, below.height) {
             (true, 0) => {
-                let x = name_ends + 2;
+                let x = name_ends + 1;
                 self.order(brush, Rect { x, width: cells.right().saturating_sub(x), ..cells });
             }
             (true, _) => self.order(brush, below),
@@ -245,9 +245,13 @@ impl<'a> Place<'a> {
         };
         let end = brush.text(room.x, room.y, room.width.saturating_sub(6), &text, style);
         if is_wanted {
-            let unseen = if words::is_unseen(self.session, self.id) { "  unseen" } else { "" };
-            let left = room.right().saturating_sub(end + 2);
-            brush.parts(end + 2, room.y, left, &[(&age.to_string(), Role::Quiet), (unseen, Role::Gaze)]);
+            let gap = if room.height > 1 { 2 } else { 1 };
+            let unseen = if words::is_unseen(self.session, self.id) { "unseen" } else { "" };
+            let left = |x: u16| room.right().saturating_sub(x);
+            let x = brush.parts(end + gap, room.y, left(end + gap), &[(&age.to_string(), Role::Quiet)]) + gap;
+            if width(unseen) <= left(x) {
+                brush.parts(x, room.y, left(x), &[(unseen, Role::Gaze)]);
+            }
         }
         if let (true, true, Some(recipe)) = (self.is_shown, room.height > 1, words::recipe(self.session, self.id)) {
             let style = brush.style(Role::Signal);

@@ -199,7 +199,7 @@ fn every_path_in_the_architecture_exists() {
         println!("ARCHITECTURE.md is not there yet");
         return;
     };
-    let roots = ["src/", "tests/", "layouts/", "recipes/", "questionnaires/", "sessions/", "benches/", ".ci/"];
+    let roots = ["src/", "tests/", "layouts/", "recipes/", "sessions/", "benches/", ".ci/"];
     let quoted = text.split('`').skip(1).step_by(2);
     for path in quoted.filter(|path| roots.iter().any(|root| path.starts_with(root)) && !path.contains(' ')) {
         for path in braced(path) {

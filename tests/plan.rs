@@ -431,7 +431,7 @@ fn wrong_plans_and_arguments_say_what_would_be_right() {
     refused(&["operate", study, "--code", "P01", "--seed", "2"], "--seed, with a session that has a plan");
     let root = env!("CARGO_MANIFEST_DIR");
     let text = fs::read_to_string(study).expect("the study");
-    let text = text.replace("\"../", &format!("\"{root}/"));
+    let text = text.replace("\"../", &format!("\"{root}/")).replace("\"ques", &format!("\"{root}/sessions/ques"));
     let wrong = folder("wrong").join("study.toml");
     // What is changed, and what is said about it, at the line of the second.
     let cases = [
@@ -448,7 +448,7 @@ fn wrong_plans_and_arguments_say_what_would_be_right() {
         ("acceptance.toml\"", "acceptance.yaml\"", "which cannot be read"),
         ("name = \"study\"", "name = \"the study\"", "a short name"),
         ("presses = 150 ", "presses = 0 ", "a number above 0"),
-        ("questionnaires/acceptance.toml", "layouts/sushi.toml", "a layout file"),
+        ("sessions/questionnaires/acceptance.toml", "layouts/sushi.toml", "a layout file"),
     ];
     for (replace, with, says) in cases {
         assert!(text.contains(replace), "{replace}");
@@ -462,6 +462,7 @@ fn wrong_plans_and_arguments_say_what_would_be_right() {
     // The settings of a recording are no session file: its place in the plan is not for people to write.
     let (spec, _) = self::study(|_| ()).settings(wanted(1, true));
     let spec = toml::to_string(&spec).expect("settings").replace("\"../", &format!("\"{root}/"));
+    let spec = spec.replace("\"questionnaires/", &format!("\"{root}/sessions/questionnaires/"));
     fs::write(&wrong, spec).expect("written");
     refused(&["plan", wrong.to_str().expect("UTF-8")], "the place of a recording in the plan \"study\"");
 }

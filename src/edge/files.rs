@@ -320,7 +320,7 @@ impl Kind {
             Kind::Session => "a session file, like sessions/default.toml",
             Kind::Layout => "a layout file, like layouts/sushi.toml",
             Kind::Recipes => "a recipe file, like recipes/sushi.toml",
-            Kind::Questionnaire => "a questionnaire, like questionnaires/acceptance.toml",
+            Kind::Questionnaire => "a questionnaire, like sessions/questionnaires/acceptance.toml",
             Kind::HumanModel => "parameters of the human model, like those in the header of a recording",
             Kind::Keys => "a key file, as tomcom keys prints it",
         }

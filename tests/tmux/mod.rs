@@ -175,7 +175,7 @@ pub fn tiny_plan(folder: &Path) -> PathBuf {
          [plan]\nname = \"tiny\"\nparticipants = [\"A1\", \"B2\"]\nconditions = [\"none\", \"wizard\"]\n\
          instruction = [\"Show the table.\", \"Show the buttons.\"]\ndebriefing = [\"What did you miss?\"]\n\
          [plan.familiarisation]\npresses = 4\nseconds = 60.0\norders = 1\n\
-         [[plan.questionnaire]]\nfile = \"{root}/questionnaires/acceptance.toml\"\n"
+         [[plan.questionnaire]]\nfile = \"{root}/sessions/questionnaires/acceptance.toml\"\n"
     );
     fs::write(&session, text).expect("written");
     session

@@ -1,14 +1,17 @@
-//! Everything that reads text which people or other programs wrote: session, layout and recipe files, questionnaires, logs. Whatever
-//! the text, the answer is a value or an error that can be shown; never a panic, a hang or memory without bound.
+//! Everything that reads text which people or other programs wrote: session, layout, recipe, key and parameter files,
+//! questionnaires, logs. Whatever the text, the answer is a value or an error that can be shown; never a panic, a hang or
+//! memory without bound.
 #![no_main]
 
 use std::path::{Path, PathBuf};
 
 use libfuzzer_sys::fuzz_target;
-use tomcom::edge::files::{FileResult, compile_kitchen, parse};
+use tomcom::edge::files::{FileResult, compile_kitchen, key_map, parse};
 use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::mind::model::HumanModel;
 use tomcom::run::replay::Replay;
 use tomcom::session::SessionSpec;
+use tomcom::session::header::FileText;
 use tomcom::session::plan::{Questionnaire, Study};
 
 const LAYOUT: &str = include_str!("../../../layouts/sushi.toml");
@@ -18,7 +21,7 @@ const RECORDING: &str = include_str!("../../golden/format-1-hand.jsonl");
 fuzz_target!(|data: &[u8]| {
     let Some((kind, rest)) = data.split_first() else { return };
     let text = || String::from_utf8_lossy(rest).into_owned();
-    match kind % 6 {
+    match kind % 8 {
         0 => shown(compile_kitchen((Path::new("layout"), text()), (Path::new("recipes"), RECIPES.to_string())).map(
             |files| {
                 // A kitchen that is accepted can be worked in.
@@ -33,8 +36,10 @@ fuzz_target!(|data: &[u8]| {
             let study = spec.check().ok().and_then(|()| Study::new(&spec, Vec::new()));
             study.is_none_or(|study| !study.slots(0).is_empty())
         })),
-        4 => shown(parse::<Questionnaire>(Path::new("questionnaire"), &text()).map(|asked| asked.check().is_ok())),
         3 => replay(rest),
+        4 => shown(parse::<Questionnaire>(Path::new("questionnaire"), &text()).map(|asked| asked.check().is_ok())),
+        5 => shown(parse::<HumanModel>(Path::new("parameters"), &text()).map(|model| model.check().is_ok())),
+        6 => shown(key_map(Some(&FileText { path: "keys".to_string(), text: text() })).map(drop)),
         // Broken events after a header that is right.
         _ => {
             let header = RECORDING.split_inclusive('\n').next().unwrap_or_default();

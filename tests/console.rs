@@ -11,6 +11,7 @@ use ratatui::style::{Color, Modifier};
 use tomcom::base::time::SessionTime;
 use tomcom::communication::{Sender, Signal};
 use tomcom::console::arrange::{Plan, Thing};
+use tomcom::console::belief::{self, Moment};
 use tomcom::console::keys::{KeyPlace, Layer};
 use tomcom::console::model::{Dialog, Level, Recording};
 use tomcom::console::picker::{Picker, Question};
@@ -22,6 +23,8 @@ use tomcom::console::{Command, KeyMap, Keys, Message, Model, update, view};
 use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::gaze::GazeSample;
 use tomcom::kitchen::{Agent, Kitchen, LocationKind};
+use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
+use tomcom::mind::model::PriorModel;
 use tomcom::session::event::{EndReason, Event, SignalEnd, Stamped};
 use tomcom::session::plan::Wanted;
 use tomcom::session::preflight::Verdict;
@@ -40,6 +43,7 @@ struct Stage {
     session: Session,
     model: Model,
     seq: u64,
+    belief: DirichletBelief,
 }
 
 impl Stage {
@@ -55,7 +59,8 @@ impl Stage {
         let mut model = Model::new(keys, theme, (120, 40));
         model.recording = Recording::On("sessions/2026-03-14-P01-1".to_string());
         model.free_bytes = Some(1 << 40);
-        Stage { session: Session::new(kitchen, spec), model, seq: 0 }
+        let belief = DirichletBelief::prior(&kitchen, &PriorModel::default(), kitchen.empty_state());
+        Stage { session: Session::new(kitchen, spec), model, seq: 0, belief }
     }
 
     fn at(&mut self, seconds: f64, event: Event) {
@@ -74,6 +79,20 @@ impl Stage {
         self.at(seconds, Event::Gaze(GazeSample { x, y, confidence: 0.97, device_ns: None }));
     }
 
+    /// The estimate from now on: these aspects are held for these values, so surely.
+    fn estimate(&mut self, held: &[(&str, &str, f64)], by_gaze: bool) {
+        let kitchen = self.session.kitchen.clone();
+        for (name, label, p) in held {
+            let index = kitchen.aspects.iter().position(|aspect| aspect.name == *name).expect("an aspect");
+            let labels = &kitchen.aspects[index].labels;
+            let others = (1.0 - p) / (labels.len() - 1) as f64;
+            let mean = labels.iter().map(|other| if other == label { *p } else { others });
+            self.belief.aspects[index] = Dirichlet::new(mean.collect(), 2.0);
+        }
+        let moment = Moment::new(&kitchen, self.session.state, &self.belief, self.model.now, by_gaze);
+        self.model.belief.note(moment);
+    }
+
     /// A sushi kitchen in the middle of a trial: the wizard has just shown a recipe.
     fn sushi(participant: ParticipantKind) -> Stage {
         let mut stage = Stage::new("sushi", participant);
@@ -81,11 +100,13 @@ impl Stage {
         for (order, dish) in [("order_1", "tuna nigiri"), ("order_2", "crab maki")] {
             stage.at(3.0, Event::OrderShown { order: order.to_string(), dish: dish.to_string() });
         }
+        stage.estimate(&[], false);
         stage.press(4.9, Agent::Human, "take rice");
         stage.press(5.4, Agent::Robot, "take tuna");
         stage.press(7.1, Agent::Human, "cooking_pot");
         stage.press(8.0, Agent::Robot, "cutting_board");
         stage.look(9.0, 0.40, 0.64);
+        stage.estimate(&[("order_1", "tuna nigiri", 0.97), ("cooking_pot", "rice raw", 0.99)], true);
         stage.press(9.2, Agent::Human, "cook");
         stage.press(10.3, Agent::Robot, "cut");
         stage.press(11.4, Agent::Human, "take nori");
@@ -95,17 +116,28 @@ impl Stage {
         );
         stage.press(13.2, Agent::Human, "assembly_board");
         stage.at(13.5, Event::SignalEnded { reason: SignalEnd::TakenBack });
+        stage.estimate(&[("recipe of tuna nigiri", "salmon nigiri", 0.61), ("assembly_board", "nori", 0.98)], false);
         stage.press(15.0, Agent::Human, "trash");
         stage.at(15.5, Event::Marker { note: "slip".to_string() });
         stage.press(16.1, Agent::Robot, "cutting_board");
         stage.press(17.0, Agent::Human, "cooking_pot");
         stage.press(19.2, Agent::Human, "assembly_board");
         stage.press(21.0, Agent::Human, "take salmon");
+        stage.estimate(
+            &[
+                ("human_hand", "salmon raw", 0.99),
+                ("recipe of tuna nigiri", "salmon nigiri", 0.83),
+                ("cooking_pot", "empty", 0.97),
+                ("robot_hand", "tuna raw", 0.52),
+            ],
+            false,
+        );
         let until_ns = SessionTime::from_secs_f64(24.0);
         stage.at(21.2, Event::RobotIntends { button: "counter".to_string(), until_ns });
         for step in 0..12 {
             stage.look(21.3 + 0.01 * f64::from(step), 0.36 + 0.004 * f64::from(step), 0.35);
         }
+        stage.estimate(&[("assembly_board", "rice cooked + nori", 0.96)], true);
         stage.at(21.8, Event::SignalShown { by: Sender::Wizard, signal: Signal::ShowRecipe("order_1".to_string()) });
         stage.model.errors = [15.0, 21.0].map(SessionTime::from_secs_f64).to_vec();
         stage.model.now = SessionTime::from_secs_f64(22.6);
@@ -159,6 +191,36 @@ fn a_running_session_at_three_sizes() {
     for size in SIZES {
         insta::assert_snapshot!(format!("running_{}x{}", size.0, size.1), stage.screen(size));
     }
+}
+
+#[test]
+fn one_belief_is_looked_at_over_time_and_then_the_next() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let ranked = belief::ranked(stage.model.belief.until(stage.model.now));
+    let name = |index: usize| stage.session.kitchen.aspects[index].name.clone();
+    let wrong: Vec<String> = ranked.iter().take(3).map(|&index| name(index)).collect();
+    assert_eq!(wrong, ["order_2", "recipe of tuna nigiri", "robot_hand"], "the longest first");
+    stage.control('b');
+    assert_eq!(stage.model.belief.focus.map(|aspect| aspect.index()), ranked.first().copied());
+    stage.wait(1.0);
+    stage.control('b');
+    stage.wait(1.0);
+    stage.control('b');
+    for size in SIZES {
+        insta::assert_snapshot!(format!("belief_over_time_{}x{}", size.0, size.1), stage.screen(size));
+    }
+    for _ in 0..ranked.len() - 2 {
+        stage.wait(1.0);
+        stage.control('b');
+    }
+    assert_eq!(stage.model.belief.focus, None, "after the last one none");
+}
+
+#[test]
+fn the_belief_has_the_room_of_the_recommendation_where_there_is_none() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.console.visibility = Visibility::Belief;
+    insta::assert_snapshot!("belief_120x40", stage.screen((120, 40)));
 }
 
 #[test]

@@ -40,6 +40,8 @@ pub enum Action {
     Hand(Hand),
     Move(Move),
     Look(Look),
+    /// One aspect of the belief over time, then the next one.
+    Belief,
     Help,
     Quit,
 }

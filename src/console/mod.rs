@@ -2,6 +2,7 @@
 //! [`view`] that only reads. What affects participant, robot or analysis leaves as an event; the rest stays in the [`Model`].
 
 pub mod arrange;
+pub mod belief;
 pub mod chord;
 pub mod form;
 pub mod hands;

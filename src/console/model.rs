@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 
 use crossterm::event::KeyCode;
 
+use super::belief::BeliefTrack;
 use super::keys::{Keys, Layer};
 use super::note::Line;
 use super::panels::Panel;
@@ -100,6 +101,8 @@ pub struct Model {
     pub malformed: u64,
     /// The times of the human presses that were errors, in order.
     pub errors: Vec<SessionTime>,
+    /// What is estimated of the participant's belief.
+    pub belief: BeliefTrack,
     /// Set when a recording is replayed.
     pub playback: Option<Playback>,
     /// The terminal tells key repeat from key press.
@@ -131,6 +134,7 @@ impl Model {
             trail: VecDeque::with_capacity(TRAIL),
             malformed: 0,
             errors: Vec::new(),
+            belief: BeliefTrack::default(),
             playback: None,
             exact_keys: false,
             pressed: None,

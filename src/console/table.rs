@@ -21,6 +21,9 @@ const ROBOT: &str = "Robot";
 const BUTTONS: &str = "The participant's buttons";
 const CONSOLE: &str = "Console";
 
+/// What the key does that looks at one aspect of the belief.
+const BELIEF: &str = "one belief over time; again: the next";
+
 /// A line of the console: name in key files, keys, what it does, heading, help, and what the footer says.
 fn line(
     name: &str,
@@ -97,6 +100,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<Binding> {
     lines.extend(buttons(kitchen));
     lines.extend(looks(Right, Left));
     lines.extend([
+        line("belief", &[Chord::ctrl('b')], Action::Belief, CONSOLE, BELIEF, None),
         line("help", &[Chord::char('?')], Action::Help, CONSOLE, "this help", Some("help")),
         line("quit", &[Chord::ctrl('c')], Action::Quit, CONSOLE, "quit (asks first)", Some("quit")),
     ]);
@@ -120,6 +124,7 @@ pub fn replay() -> Vec<Binding> {
     let mut lines = vec![
         of_move("play_pause", &[Chord::char('.')], Move::PlayPause, "play, pause", Some("play/pause")),
         line("quit", &quit, Action::Quit, CONSOLE, "quit", Some("quit")),
+        line("belief", &[Chord::ctrl('b')], Action::Belief, CONSOLE, BELIEF, None),
         line("help", &[Chord::char('?')], Action::Help, CONSOLE, "this help", Some("help")),
     ];
     lines.extend(looks(Tab, BackTab));

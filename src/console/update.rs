@@ -3,6 +3,7 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
 use super::arrange::Plan;
+use super::belief;
 use super::chord::Chord;
 use super::form::{self, sheet};
 use super::hands::{self, Hand};
@@ -243,6 +244,11 @@ pub(super) fn act(model: &mut Model, session: &Session, action: Action) -> Optio
         }
         Action::Look(at) => {
             panels::look(model, session, at);
+            None
+        }
+        Action::Belief => {
+            let ranked = belief::ranked(model.belief.until(model.now));
+            model.belief.focus_next(&ranked);
             None
         }
         Action::Help => {

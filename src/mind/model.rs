@@ -143,11 +143,13 @@ pub struct InferenceModel {
     pub min_effective: f64,
     /// … up to this number.
     pub max_beliefs: usize,
+    /// Ways the kitchen may be from which a press of the robot is predicted.
+    pub predictions: usize,
 }
 
 impl Default for InferenceModel {
     fn default() -> Self {
-        InferenceModel { beliefs: 256, states: 32, min_effective: 32.0, max_beliefs: 1024 }
+        InferenceModel { beliefs: 256, states: 32, min_effective: 32.0, max_beliefs: 1024, predictions: 64 }
     }
 }
 
@@ -205,6 +207,7 @@ impl HumanModel {
             count("states", self.inference.states),
             above("min_effective", self.inference.min_effective),
             count("max_beliefs", self.inference.max_beliefs),
+            count("predictions", self.inference.predictions),
         ];
         let wrong = checks.into_iter().find(|(_, _, is_right, _)| !is_right);
         wrong.map(|(key, value, _, remedy)| (key, format!("{key} = {value}"), remedy))

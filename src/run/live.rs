@@ -14,6 +14,7 @@ use super::options::Beginning;
 use super::resume::ResumeError;
 use super::standing::Standing;
 use crate::base::words::count;
+use crate::console::belief::Moment;
 use crate::console::keys::KeyError;
 use crate::console::model::{Level, Recording};
 use crate::console::screen::screen as on_screen;
@@ -287,6 +288,12 @@ impl Live {
             {
                 self.fail(error);
             }
+        }
+        if let Some(last) = events.last() {
+            let by_gaze = events.iter().all(|stamped| matches!(stamped.event, Event::Gaze(_)));
+            let session = self.engine.session();
+            let moment = Moment::new(&session.kitchen, session.state, self.engine.belief(), last.time, by_gaze);
+            self.model.belief.note(moment);
         }
         let judged = self.engine.judged();
         let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);

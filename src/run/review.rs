@@ -12,6 +12,7 @@ use tokio::time::{Instant, sleep_until};
 use super::replay::Replay;
 use super::standing::Standing;
 use crate::base::time::SessionTime;
+use crate::console::belief::{BeliefTrack, Moment};
 use crate::console::keys::KeyError;
 use crate::console::playback::{Move, Playback, SPEEDS};
 use crate::console::{Command, Keys, Message, Model, update};
@@ -68,6 +69,8 @@ pub struct Film {
     /// Times of the presses that were errors.
     pub errors: Vec<SessionTime>,
     judged: usize,
+    /// What was estimated of the participant's belief.
+    pub beliefs: BeliefTrack,
     /// The session after the first `position` events.
     pub session: Session,
     pub position: usize,
@@ -84,7 +87,16 @@ impl Film {
         let replay = Replay::open(recording)?;
         let session = replay.session().clone();
         let kept = vec![session.clone()];
-        let mut film = Film { replay, events: Vec::new(), errors: Vec::new(), judged: 0, session, position: 0, kept };
+        let mut film = Film {
+            replay,
+            events: Vec::new(),
+            errors: Vec::new(),
+            judged: 0,
+            beliefs: BeliefTrack::default(),
+            session,
+            position: 0,
+            kept,
+        };
         film.read()?;
         Ok(film)
     }
@@ -96,6 +108,9 @@ impl Film {
     pub fn read(&mut self) -> FileResult<bool> {
         let before = self.events.len();
         while let Some(line) = self.replay.step()? {
+            let (session, belief) = (self.replay.session(), self.replay.follower.filter.belief());
+            let by_gaze = is_gaze(&line.stamped);
+            self.beliefs.note(Moment::new(&session.kitchen, session.state, belief, line.stamped.time, by_gaze));
             self.events.push(line.stamped);
         }
         let judged = &self.replay.follower.judged;
@@ -371,6 +386,7 @@ impl Review {
         self.tick();
         self.model.now = self.now;
         self.model.errors.clone_from(&self.film.errors);
+        self.model.belief.catch_up(&self.film.beliefs);
         let (length, events) = self.film.length();
         let (event, cut) = (self.film.position, self.film.is_cut());
         self.playback(|playback| *playback = Playback { length, event, events, cut, ..playback.clone() });

@@ -1,30 +1,284 @@
-//! What the participant believes: the place for the estimate, which says what it waits for until there is one.
+//! What the participant is estimated to believe: false beliefs first, with the truth beside them and since when.
 
-use super::paint::{Brush, wrap};
-use super::regions::{Regions, Room};
+use ratatui::layout::Rect;
+
+use super::paint::{Brush, fit};
+use super::regions::Regions;
 use super::theme::Role;
-use crate::session::Session;
+use crate::base::time::SessionTime;
+use crate::console::belief::{self, Held, Moment};
+use crate::console::model::Model;
+use crate::kitchen::{AspectId, AspectKind, Kitchen};
+use crate::session::{Phase, Session};
+
+/// The chart of one aspect goes back so far, in seconds; the small ones beside each aspect half as far.
+const COURSE_S: f64 = 60.0;
+/// From so many columns on, an aspect with all that is told of it takes one line, and from so many its course too.
+const ONE_LINE: u16 = 46;
+const WITH_COURSE: u16 = 62;
+const COURSE: u16 = 10;
+/// Rows of the chart with its title, at least and at most.
+const CHART_ROWS: [u16; 2] = [3, 10];
+/// Below so many rows there is no frame.
+const FRAMED: u16 = 5;
+
+/// What is drawn of the belief.
+struct Panel<'a> {
+    session: &'a Session,
+    now: SessionTime,
+    moments: &'a [Moment],
+    held: &'a [Held],
+    focus: Option<AspectId>,
+}
 
 /// Draws the belief panel.
-pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session) {
+pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
     let area = regions.belief;
     if area.area() == 0 {
         return;
     }
-    let count = session.kitchen.aspects.len();
-    let waits = format!("No estimate: nothing infers the belief about the {count} aspects of this kitchen yet.");
-    if regions.room == Room::Small {
-        brush.parts(area.x, area.y, area.width, &[(" belief   ", Role::Quiet), ("no estimate yet", Role::Quiet)]);
-        return;
-    }
-    let inside = brush.panel(area, "Belief", "estimated");
-    let quiet = brush.style(Role::Quiet);
-    let head = format!("{:<15} {:<14} {}", "aspect", "believes", "truth");
-    brush.text(inside.x + 1, inside.y, inside.width.saturating_sub(1), &head, quiet);
-    for (row, line) in wrap(&waits, inside.width.saturating_sub(2)).iter().enumerate() {
-        let y = inside.y + 2 + row as u16;
-        if y < inside.bottom() {
-            brush.text(inside.x + 1, y, inside.width.saturating_sub(1), line, quiet);
+    let now = if session.is_running() { model.now } else { model.now.min(session.time) };
+    let moments = model.belief.until(model.now);
+    let last = moments.last().filter(|_| session.phase != Phase::Ready);
+    let Some(last) = last else {
+        let waits = "estimated from the trial's start on";
+        match area.height < FRAMED {
+            true => {
+                brush.parts(area.x, area.y, area.width, &[(" belief   ", Role::Quiet), (waits, Role::Quiet)]);
+            }
+            false => {
+                let inside = brush.panel(area, "Belief", "estimated");
+                let quiet = brush.style(Role::Quiet);
+                brush.text(inside.x + 1, inside.y, inside.width.saturating_sub(1), waits, quiet);
+            }
         }
+        return;
+    };
+    let panel = Panel { session, now, moments, held: &last.held, focus: model.belief.focus };
+    match area.height < FRAMED {
+        true => panel.lines(brush, area.x, area.y, area.width, area.height),
+        false => panel.panel(brush, area),
+    }
+}
+
+impl Panel<'_> {
+    fn kitchen(&self) -> &Kitchen {
+        &self.session.kitchen
+    }
+
+    fn panel(&self, brush: &mut Brush, area: Rect) {
+        let wrong = self.held.iter().filter(|held| held.is_false()).count();
+        let remark = if wrong == 0 { "estimated".to_string() } else { format!("estimated, {wrong} wrong") };
+        let inside = brush.panel(area, "Belief", &remark);
+        let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+        let ranked = belief::ranked(self.moments);
+        let rows_of = |aspect: usize| if columns < ONE_LINE && self.held[aspect].is_false() { 2 } else { 1 };
+        let mut bottom = inside.bottom();
+        if let Some(focus) = self.focus
+            && inside.height > CHART_ROWS[0] + 2
+        {
+            let list: u16 = ranked.iter().map(|&aspect| rows_of(aspect)).sum();
+            let rows = inside.height.saturating_sub(list).clamp(CHART_ROWS[0], CHART_ROWS[1]);
+            bottom -= rows;
+            self.chart(brush, focus, x, bottom, columns, rows);
+        }
+        let mut y = inside.y;
+        for (index, &aspect) in ranked.iter().enumerate() {
+            let rows = rows_of(aspect);
+            let left = ranked.len() - index;
+            // The last line says how many have no room.
+            if y + rows > bottom || (y + rows == bottom && left > 1) {
+                let wrong = ranked[index..].iter().filter(|&&aspect| self.held[aspect].is_false()).count();
+                let more = match wrong {
+                    0 => format!("{} {left} more are as they should be", brush.theme.signs().ellipsis),
+                    _ => format!("{} {left} more, {wrong} of them wrong", brush.theme.signs().ellipsis),
+                };
+                let style = brush.style(if wrong > 0 { Role::FalseBelief } else { Role::Quiet });
+                if y < bottom {
+                    brush.text(x, y, columns, &more, style);
+                }
+                return;
+            }
+            match columns {
+                columns if columns >= ONE_LINE => self.row(brush, aspect, x, y, columns),
+                _ => self.narrow(brush, aspect, x, y, columns),
+            }
+            y += rows;
+        }
+    }
+
+    /// An aspect in one line: name, what is believed, how surely, the truth, since when it is wrong, its course.
+    fn row(&self, brush: &mut Brush, aspect: usize, x: u16, y: u16, columns: u16) {
+        let with_course = columns >= WITH_COURSE;
+        let course = if with_course { COURSE + 1 } else { 0 };
+        let bar = if with_course { 6 } else { 4 };
+        let text = columns - course - bar - 15;
+        let (name, word) = (text * 2 / 5, (text - text * 2 / 5) / 2);
+        let held = self.held[aspect];
+        let (role, quiet) = (self.role(aspect), brush.style(Role::Quiet));
+        let style = brush.style(role);
+        brush.text(x, y, name, &self.name(aspect), if held.is_false() { style } else { quiet });
+        let mut at = x + name + 1;
+        brush.text(at, y, word, self.label(aspect, usize::from(held.believes)), style);
+        at += word + 1;
+        brush.bar(at, y, bar, f64::from(held.p), role);
+        at += bar + 1;
+        brush.text(at, y, 4, &share(held.p), style);
+        at += 4;
+        let truth_style = if held.is_false() { brush.style(Role::Text) } else { quiet };
+        brush.text(at, y, word, self.truth(aspect), truth_style);
+        at += word + 1;
+        self.since(brush, aspect, at, y);
+        if with_course {
+            self.curve(brush, aspect, Rect::new(x + columns - COURSE, y, COURSE, 1), COURSE_S / 2.0);
+        }
+    }
+
+    /// An aspect where there is little room: what is wrong in two lines, else one.
+    fn narrow(&self, brush: &mut Brush, aspect: usize, x: u16, y: u16, columns: u16) {
+        let held = self.held[aspect];
+        let role = self.role(aspect);
+        let style = brush.style(role);
+        let quiet = brush.style(Role::Quiet);
+        let right = x + columns;
+        let bar = right.saturating_sub(15);
+        brush.bar(bar, y, 4, f64::from(held.p), role);
+        brush.text(bar + 5, y, 4, &share(held.p), style);
+        self.since(brush, aspect, bar + 9, y);
+        let room = columns.saturating_sub(16);
+        if !held.is_false() {
+            let name = fit(&self.name(aspect), room / 2, brush.theme.signs().ellipsis);
+            let end = brush.text(x, y, room, &name, quiet) + 1;
+            brush.text(end, y, (x + room).saturating_sub(end), self.label(aspect, usize::from(held.believes)), style);
+            return;
+        }
+        brush.text(x, y, room, &self.name(aspect), style);
+        let said = format!("  {}, is {}", self.label(aspect, usize::from(held.believes)), self.truth(aspect));
+        let text = brush.style(Role::Text);
+        brush.text(x, y + 1, columns, &said, text);
+    }
+
+    /// Since when it is wrong, or that the gaze has just been there.
+    fn since(&self, brush: &mut Brush, aspect: usize, x: u16, y: u16) {
+        if belief::read_at(self.moments, aspect, self.now).is_some() {
+            let style = brush.style(Role::Gaze);
+            let sign = brush.theme.signs().gaze;
+            brush.text(x, y, 1, sign, style);
+        }
+        if let Some(since) = belief::wrong_since(self.moments, aspect) {
+            let style = brush.style(Role::FalseBelief);
+            let age = self.session.age(since, self.now).to_string();
+            brush.text_right(x + 6, y, 5, &age, style);
+        }
+    }
+
+    /// The few lines of a small screen: the worst beliefs, or one over time.
+    fn lines(&self, brush: &mut Brush, x: u16, y: u16, columns: u16, rows: u16) {
+        let quiet = brush.style(Role::Quiet);
+        brush.text(x, y, columns, " belief   ", quiet);
+        let (x, columns) = (x + 10, columns.saturating_sub(11));
+        if let Some(focus) = self.focus {
+            return self.chart(brush, focus, x, y, columns, rows);
+        }
+        let wrong: Vec<usize> =
+            belief::ranked(self.moments).into_iter().filter(|&aspect| self.held[aspect].is_false()).collect();
+        if wrong.is_empty() {
+            brush.text(x, y, columns, "nothing is estimated to be believed wrong", quiet);
+        }
+        for (row, &aspect) in wrong.iter().take(usize::from(rows)).enumerate() {
+            let (held, y) = (self.held[aspect], y + row as u16);
+            let more = wrong.len() - row - 1;
+            let is_last = row as u16 + 1 == rows && more > 0;
+            let note = if is_last { format!("+{more}  ") } else { String::new() };
+            let age = belief::wrong_since(self.moments, aspect).map(|since| self.session.age(since, self.now));
+            let end = format!("{note}{} {:>5}", share(held.p), age.unwrap_or_default().to_string());
+            let style = brush.style(Role::FalseBelief);
+            brush.text_right(x + columns, y, columns, &end, style);
+            let said = format!(
+                "{}: {}, is {}",
+                self.name(aspect),
+                self.label(aspect, usize::from(held.believes)),
+                self.truth(aspect)
+            );
+            brush.text(x, y, columns.saturating_sub(end.len() as u16 + 1), &said, style);
+        }
+    }
+
+    /// P(truth) of one aspect over time.
+    fn chart(&self, brush: &mut Brush, aspect: AspectId, x: u16, y: u16, columns: u16, rows: u16) {
+        let held = self.held[aspect.index()];
+        let quiet = brush.style(Role::Quiet);
+        let p = share(held.p_truth);
+        let title = format!("{} is {}", self.name(aspect.index()), self.truth(aspect.index()));
+        let end = format!("P(truth) {p}, {COURSE_S:.0} s");
+        brush.text_right(x + columns, y, columns, &end, quiet);
+        let style = brush.style(self.role(aspect.index()));
+        brush.text(x, y, columns.saturating_sub(end.len() as u16 + 1), &title, style);
+        if rows > 1 {
+            self.curve(brush, aspect.index(), Rect::new(x, y + 1, columns, rows - 1), COURSE_S);
+        }
+    }
+
+    /// A curve of P(truth) over the last `seconds`, its false stretches in the colour of false beliefs.
+    fn curve(&self, brush: &mut Brush, aspect: usize, area: Rect, seconds: f64) {
+        let Rect { x, y, width: columns, height: rows } = area;
+        let levels = brush.theme.signs().levels;
+        let course = belief::course(self.moments, aspect, self.now, seconds, usize::from(columns));
+        for (column, p) in course.iter().enumerate() {
+            let Some(p) = p else { continue };
+            let is_false = *p < crate::measures::sequences::FALSE_BELOW;
+            let style = brush.style(if is_false { Role::FalseBelief } else { Role::Quiet });
+            // The lowest level is drawn, too: something is known there.
+            let height = (p * f64::from(rows) * levels.len() as f64).ceil().max(1.0) as usize;
+            for row in 0..rows {
+                let below = usize::from(rows - 1 - row) * levels.len();
+                if height > below {
+                    let level = levels[(height - below).min(levels.len()) - 1];
+                    brush.text(x + column as u16, y + row, 1, level, style);
+                }
+            }
+        }
+    }
+
+    fn role(&self, aspect: usize) -> Role {
+        match self.held[aspect] {
+            held if held.is_false() => Role::FalseBelief,
+            held if f64::from(held.p_truth) < DOUBTFUL => Role::Text,
+            _ => Role::Quiet,
+        }
+    }
+
+    /// "cooking pot"; a recipe by its dish, with the order that wants it.
+    fn name(&self, aspect: usize) -> String {
+        let kitchen = self.kitchen();
+        match kitchen.aspects[aspect].kind {
+            AspectKind::Location(location) => kitchen.location(location).label(),
+            AspectKind::Recipe(dish) => {
+                let mut orders = kitchen.wanted(self.session.state).filter(|(_, wanted)| *wanted == dish);
+                match orders.next() {
+                    Some((order, _)) => format!("recipe {}: {}", order.index() + 1, kitchen.dish(dish).name),
+                    None => format!("recipe {}", kitchen.dish(dish).name),
+                }
+            }
+        }
+    }
+
+    fn label(&self, aspect: usize, value: usize) -> &str {
+        &self.kitchen().aspects[aspect].labels[value]
+    }
+
+    fn truth(&self, aspect: usize) -> &str {
+        self.label(aspect, self.kitchen().true_value(self.session.state, AspectId(aspect as u8)))
+    }
+}
+
+/// Below this expected probability of the truth a belief is no longer quiet.
+const DOUBTFUL: f64 = 0.8;
+
+/// A share in three columns: ".83", "1.0".
+fn share(p: f32) -> String {
+    match (p * 100.0).round() as u32 {
+        100.. => "1.0".to_string(),
+        hundredths => format!(".{hundredths:02}"),
     }
 }

@@ -37,7 +37,7 @@ pub fn view(session: &Session, model: &Model, frame: &mut Frame) {
     let regions = Regions::new((area.width, area.height), session.spec.console.visibility, model.alone);
     head::draw(&mut brush, &regions, session, model);
     kitchen::draw(&mut brush, &regions, session, model);
-    belief::draw(&mut brush, &regions, session);
+    belief::draw(&mut brush, &regions, session, model);
     recommendation::draw(&mut brush, &regions);
     gaze::draw_map(&mut brush, &regions, session, model);
     shown::draw(&mut brush, &regions, session, model);

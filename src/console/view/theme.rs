@@ -64,6 +64,8 @@ pub struct Signs {
     pub recording: &'static str,
     pub pause: &'static str,
     pub ellipsis: &'static str,
+    /// From low to full, for curves.
+    pub levels: [&'static str; 8],
     pub dash: &'static str,
 }
 
@@ -86,6 +88,7 @@ const UNICODE: Signs = Signs {
     recording: "●",
     pause: "‖",
     ellipsis: "…",
+    levels: ["▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"],
     dash: "–",
 };
 
@@ -108,6 +111,7 @@ const ASCII: Signs = Signs {
     recording: "*",
     pause: "=",
     ellipsis: "~",
+    levels: ["_", ".", ",", "-", "~", "+", "*", "#"],
     dash: "-",
 };
 

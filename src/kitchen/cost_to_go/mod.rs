@@ -59,7 +59,7 @@ pub struct CostToGo {
 pub enum Care {
     /// Where bound and plans do not agree, it is searched for.
     Exact,
-    /// It is that of the best plan: mostly exact, else a press or two too high. For what hardly counts.
+    /// It is the bound: mostly exact, else a press or two too low. For what hardly counts.
     Rough,
 }
 
@@ -227,8 +227,11 @@ impl CostToGo {
 
     fn solve(&mut self, care: Care, slot: usize, goal: &Goal, state: &Classes) -> u32 {
         let rating = Rating::new(&self.ground, goal, state);
+        if care == Care::Rough {
+            return rating.lower;
+        }
         let upper = rating.upper(&self.ground, goal, state);
-        if upper <= rating.lower || care == Care::Rough {
+        if upper <= rating.lower {
             return upper;
         }
         self.counts.searches += 1;

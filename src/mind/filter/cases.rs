@@ -59,6 +59,13 @@ impl Cases {
         }
     }
 
+    /// The same case once more.
+    #[inline]
+    pub fn count_again(&mut self, index: u32) -> u32 {
+        self.known[index as usize].draws += 1;
+        index
+    }
+
     /// Finds the costs of all cases that have none yet, of `draws` draws in all.
     pub fn rate(&mut self, cost: &mut CostToGo, draws: usize) {
         for case in self.known.iter_mut().filter(|case| case.after.is_none()) {

@@ -8,7 +8,7 @@
 
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
-use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, OrderContent};
+use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, OrderContent, Recipes, State};
 use crate::mind::decision::{DecisionModel, Slips};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::model::InferenceModel;
@@ -42,6 +42,8 @@ pub struct Sampler {
     cases: Cases,
     /// `[belief * states + draw]`: indices of cases.
     drawn_cases: Vec<u32>,
+    /// Aspects of which a belief sample has several values.
+    mixed: Vec<usize>,
 }
 
 /// What a press is judged by.
@@ -103,16 +105,25 @@ impl Sampler {
         self.firsts = firsts;
         for sample in old..wanted {
             let drawn = &mut self.drawn[sample * row..(sample + 1) * row];
-            draw_on(kitchen, &self.urns, states, drawn, random);
+            draw_on(kitchen, &self.urns, states, drawn, random, &mut self.mixed);
+            let (mut state, mut recipes) = (kitchen.empty_state(), truth);
+            for aspect in 0..aspects {
+                set(kitchen, &mut state, &mut recipes, aspect, drawn[aspect * states]);
+            }
+            let mut last = None;
             for draw in 0..states {
-                let (mut state, mut recipes) = (kitchen.empty_state(), truth);
-                for aspect in 0..aspects {
-                    let value = drawn[aspect * states + draw];
-                    if value != UNDRAWN {
-                        kitchen.set_value(&mut state, &mut recipes, AspectId(aspect as u8), usize::from(value));
+                // Where all draws are the same, they are one case.
+                let case = match last {
+                    Some(case) if self.mixed.is_empty() => self.cases.count_again(case),
+                    _ => {
+                        for &aspect in &self.mixed {
+                            set(kitchen, &mut state, &mut recipes, aspect, drawn[aspect * states + draw]);
+                        }
+                        self.cases.count(state, recipes)
                     }
-                }
-                self.drawn_cases.push(self.cases.count(state, recipes));
+                };
+                self.drawn_cases.push(case);
+                last = Some(case);
             }
         }
         self.cases.rate(cost, wanted * states);
@@ -150,11 +161,29 @@ impl Sampler {
     }
 }
 
-/// Draws the values of one belief sample that follow the first ones.
-fn draw_on(kitchen: &Kitchen, urns: &[Urn], states: usize, drawn: &mut [u8], random: &mut Stream) {
+/// Gives an aspect the value that was drawn for it, if one was.
+#[inline]
+fn set(kitchen: &Kitchen, state: &mut State, recipes: &mut Recipes, aspect: usize, value: u8) {
+    if value != UNDRAWN {
+        kitchen.set_value(state, recipes, AspectId(aspect as u8), usize::from(value));
+    }
+}
+
+/// Draws the values of one belief sample that follow the first ones, and tells of which aspects there are several.
+fn draw_on(
+    kitchen: &Kitchen,
+    urns: &[Urn],
+    states: usize,
+    drawn: &mut [u8],
+    random: &mut Stream,
+    mixed: &mut Vec<usize>,
+) {
+    mixed.clear();
     let locations = kitchen.locations.len();
     for location in 0..locations {
-        urns[location].draw_on(random, &mut drawn[location * states..(location + 1) * states]);
+        if !urns[location].draw_on(random, &mut drawn[location * states..(location + 1) * states]) {
+            mixed.push(location);
+        }
     }
     // Recipes count where an order wants the dish; the other first draws are taken back.
     for aspect in locations..kitchen.aspects.len() {
@@ -165,9 +194,10 @@ fn draw_on(kitchen: &Kitchen, urns: &[Urn], states: usize, drawn: &mut [u8], ran
             drawn[order.index() * states..(order.index() + 1) * states].contains(&value)
         });
         let of_aspect = &mut drawn[aspect * states..(aspect + 1) * states];
-        match is_wanted {
-            true => urns[aspect].draw_on(random, of_aspect),
-            false => of_aspect.fill(UNDRAWN),
+        if !is_wanted {
+            of_aspect.fill(UNDRAWN);
+        } else if !urns[aspect].draw_on(random, of_aspect) {
+            mixed.push(aspect);
         }
     }
 }

@@ -120,7 +120,7 @@ impl BeliefFilter {
                 match agent {
                     Agent::Human => self.human_pressed(button, after.is_some(), cost, &mut random),
                     Agent::Robot => {
-                        let (draws, foresight) = (self.model.inference.beliefs, self.model.transition.foresight);
+                        let (draws, foresight) = (self.model.inference.predictions, self.model.transition.foresight);
                         robot_press::predict(&self.kitchen, cost, &mut self.belief, draws, foresight, &mut random);
                     }
                 }

@@ -96,10 +96,14 @@ impl Urn {
         }
     }
 
-    /// The draws that follow `drawn[0]`.
+    /// The draws that follow `drawn[0]`; whether all are the same.
     #[inline]
-    pub fn draw_on(&self, random: &mut Stream, drawn: &mut [u8]) {
+    pub fn draw_on(&self, random: &mut Stream, drawn: &mut [u8]) -> bool {
         let mut next_new = self.next_new(random, 0);
+        if next_new == drawn.len() {
+            drawn.fill(drawn[0]);
+            return true;
+        }
         let mut is_pure = true;
         for index in 1..drawn.len() {
             drawn[index] = if index == next_new {
@@ -113,6 +117,7 @@ impl Urn {
                 drawn[random.random_range(0..index)]
             };
         }
+        is_pure
     }
 
     /// The next draw after this one that repeats none before it.

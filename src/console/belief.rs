@@ -1,0 +1,139 @@
+//! The estimated belief over time, as far as a screen shows it.
+
+use crate::base::time::SessionTime;
+use crate::kitchen::{AspectId, Kitchen, State};
+use crate::measures::sequences::FALSE_BELOW;
+use crate::mind::dirichlet::DirichletBelief;
+
+/// Between two moments that are kept, gaze samples that change little are left out for so long, in seconds.
+const STEP_S: f64 = 0.2;
+/// By so much the probability of a truth changes that is worth a moment of its own.
+const JUMP: f64 = 0.1;
+/// A change by the gaze is shown for so long, in seconds, if it is at least so large.
+const NEWS_S: f64 = 2.0;
+const NEWS: f64 = 0.2;
+
+/// What is estimated of one aspect at a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// The value that is expected to be believed most, by index, and how much.
+    pub believes: u8,
+    pub p: f32,
+    /// The expected probability of the truth.
+    pub p_truth: f32,
+}
+
+impl Held {
+    /// Whether it is believed wrong.
+    pub fn is_false(self) -> bool {
+        f64::from(self.p_truth) < FALSE_BELOW
+    }
+}
+
+/// The estimate at a moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    pub time: SessionTime,
+    /// Nothing but gaze came since the moment before.
+    by_gaze: bool,
+    /// By aspect.
+    pub held: Vec<Held>,
+}
+
+impl Moment {
+    /// The estimate as it is at this time, while the kitchen is in `state`.
+    pub fn new(kitchen: &Kitchen, state: State, belief: &DirichletBelief, time: SessionTime, by_gaze: bool) -> Moment {
+        let held = |index: usize| {
+            let of_aspect = &belief.aspects[index];
+            let believes = of_aspect.most_likely();
+            Held {
+                believes: believes as u8,
+                p: of_aspect.mean()[believes] as f32,
+                p_truth: belief.p_truth(kitchen, state, AspectId(index as u8)) as f32,
+            }
+        };
+        Moment { time, by_gaze, held: (0..kitchen.aspects.len()).map(held).collect() }
+    }
+}
+
+/// The estimate from moment to moment, and the aspect that is looked at more closely.
+#[derive(Clone, Debug, Default)]
+pub struct BeliefTrack {
+    moments: Vec<Moment>,
+    /// Shown over time.
+    pub focus: Option<AspectId>,
+}
+
+impl BeliefTrack {
+    /// Keeps a moment, unless it is one of many gaze samples that change little.
+    pub fn note(&mut self, moment: Moment) {
+        if let Some(last) = self.moments.last().filter(|_| moment.by_gaze) {
+            let pairs = || last.held.iter().zip(&moment.held);
+            let is_news = pairs().any(|(then, now)| f64::from((now.p_truth - then.p_truth).abs()) >= JUMP);
+            if !is_news && moment.time.secs_since(last.time) < STEP_S {
+                return;
+            }
+        }
+        self.moments.push(moment);
+    }
+
+    /// Takes over what another track of the same session has beyond this one.
+    pub fn catch_up(&mut self, other: &BeliefTrack) {
+        let known = self.moments.len().min(other.moments.len());
+        self.moments.extend_from_slice(&other.moments[known..]);
+    }
+
+    /// Looks at the aspect that follows in this order, after the last one at none.
+    pub fn focus_next(&mut self, ranked: &[usize]) {
+        let at = self.focus.and_then(|focus| ranked.iter().position(|&aspect| aspect == focus.index()));
+        let next = match (self.focus, at) {
+            (None, _) => ranked.first(),
+            (Some(_), at) => at.and_then(|at| ranked.get(at + 1)),
+        };
+        self.focus = next.map(|&aspect| AspectId(aspect as u8));
+    }
+
+    /// The moments until and with this time.
+    pub fn until(&self, time: SessionTime) -> &[Moment] {
+        &self.moments[..self.moments.partition_point(|moment| moment.time <= time)]
+    }
+}
+
+/// The aspects in the order in which they matter at the last of these moments: those believed wrong, the longest first,
+/// then the others as they come.
+pub fn ranked(moments: &[Moment]) -> Vec<usize> {
+    let Some(last) = moments.last() else { return Vec::new() };
+    let mut wrong: Vec<(SessionTime, usize)> =
+        (0..last.held.len()).filter_map(|aspect| Some((wrong_since(moments, aspect)?, aspect))).collect();
+    wrong.sort_unstable();
+    let right = (0..last.held.len()).filter(|&aspect| !last.held[aspect].is_false());
+    wrong.iter().map(|&(_, aspect)| aspect).chain(right).collect()
+}
+
+/// Since when an aspect is believed wrong; `None` if it is not.
+pub fn wrong_since(moments: &[Moment], aspect: usize) -> Option<SessionTime> {
+    let wrong = moments.iter().rev().take_while(|moment| moment.held[aspect].is_false());
+    wrong.last().map(|moment| moment.time)
+}
+
+/// When the gaze last changed what is believed of an aspect, if that was a moment ago.
+pub fn read_at(moments: &[Moment], aspect: usize, now: SessionTime) -> Option<SessionTime> {
+    let recent = moments.windows(2).rev().take_while(|pair| now.secs_since(pair[1].time) <= NEWS_S);
+    let is_news = |pair: &&[Moment]| {
+        let [then, at] = [&pair[0].held[aspect], &pair[1].held[aspect]];
+        pair[1].by_gaze && (then.believes != at.believes || f64::from((at.p_truth - then.p_truth).abs()) >= NEWS)
+    };
+    recent.into_iter().find(is_news).map(|pair| pair[1].time)
+}
+
+/// P(truth) of an aspect at so many times, evenly spread over the last `seconds`; nothing before the first moment.
+pub fn course(moments: &[Moment], aspect: usize, now: SessionTime, seconds: f64, columns: usize) -> Vec<Option<f64>> {
+    let at = |column: usize| {
+        let back_s = seconds * (columns - 1 - column) as f64 / columns.max(2) as f64;
+        let time = now - SessionTime::from_secs_f64(back_s);
+        let index = moments.partition_point(|moment| moment.time <= time);
+        let is_there = now.as_secs_f64() >= back_s;
+        moments[..index].last().filter(|_| is_there).map(|moment| f64::from(moment.held[aspect].p_truth))
+    };
+    (0..columns).map(at).collect()
+}

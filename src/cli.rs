@@ -14,6 +14,7 @@ use miette::MietteHandlerOpts;
 use serde::Serialize;
 
 use self::args::*;
+use crate::communication::settings::Shadow;
 use crate::console;
 use crate::edge::doctor;
 use crate::edge::files::{self, FileError};
@@ -173,6 +174,7 @@ fn new_session(args: &OperateArgs) -> Result<Sitting, Failure> {
         condition: flags.condition.map(|condition| match condition {
             ConditionArg::None => Condition::None,
             ConditionArg::Wizard => Condition::Wizard,
+            ConditionArg::Assistant => Condition::Assistant,
         }),
         seed: flags.seed,
         code: flags.code.clone(),
@@ -283,6 +285,12 @@ fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
             trials.unwrap_or(most)
         }
     };
+    // With a plan it says the conditions.
+    files.spec.trial.condition = match args.condition {
+        SimulatedCondition::None => Condition::None,
+        SimulatedCondition::Assistant => Condition::Assistant,
+    };
+    files.spec.assistant.shadow = if args.shadow { Shadow::On } else { Shadow::Off };
     let simulation = simulate::Simulation { files, trials, out: args.out.clone() };
     let bar = progress(trials, "trials");
     let figures = simulate::simulate(&simulation, || bar.inc(1))?;

@@ -188,7 +188,7 @@ fn the_printed_keys_are_a_key_file_that_changes_nothing_until_it_is_changed() {
     assert_eq!(keys(&session_with_keys("same-keys", &printed)), printed);
     let changes = [
         ("stop_robot = \"space\"", "stop_robot = [\"space\", \"f12\"]"),
-        ("start_pause = \".\"", "start_pause = \"enter\""),
+        ("start_pause = \".\"", "start_pause = \"f10\""),
         ("note_5 = \"5\"", "note_5 = []"),
         ("assembly_board = \"a\"  # highlight", "assembly_board = \"5\"  # highlight"),
         ("trash = \"x\"", "trash = \"f9\""),

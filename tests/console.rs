@@ -9,6 +9,8 @@ use ratatui::backend::TestBackend;
 use ratatui::buffer::Cell;
 use ratatui::style::{Color, Modifier};
 use tomcom::base::time::SessionTime;
+use tomcom::communication::recommendation::{Reason, Recommendation, SignalOption};
+use tomcom::communication::settings::Shadow;
 use tomcom::communication::{Sender, Signal};
 use tomcom::console::arrange::{Plan, Thing};
 use tomcom::console::belief::{self, Moment};
@@ -112,7 +114,11 @@ impl Stage {
         stage.press(11.4, Agent::Human, "take nori");
         stage.at(
             12.0,
-            Event::SignalShown { by: Sender::Wizard, signal: Signal::Highlight("cutting_board".to_string()) },
+            Event::SignalShown {
+                by: Sender::Wizard,
+                signal: Signal::Highlight("cutting_board".to_string()),
+                accepted: None,
+            },
         );
         stage.press(13.2, Agent::Human, "assembly_board");
         stage.at(13.5, Event::SignalEnded { reason: SignalEnd::TakenBack });
@@ -138,7 +144,14 @@ impl Stage {
             stage.look(21.3 + 0.01 * f64::from(step), 0.36 + 0.004 * f64::from(step), 0.35);
         }
         stage.estimate(&[("assembly_board", "rice cooked + nori", 0.96)], true);
-        stage.at(21.8, Event::SignalShown { by: Sender::Wizard, signal: Signal::ShowRecipe("order_1".to_string()) });
+        stage.at(
+            21.8,
+            Event::SignalShown {
+                by: Sender::Wizard,
+                signal: Signal::ShowRecipe("order_1".to_string()),
+                accepted: None,
+            },
+        );
         stage.model.errors = [15.0, 21.0].map(SessionTime::from_secs_f64).to_vec();
         stage.model.now = SessionTime::from_secs_f64(22.6);
         stage
@@ -272,8 +285,14 @@ fn what_a_wizard_sees_at_each_size() {
     let mut stopped = Stage::sushi(ParticipantKind::Simulated);
     stopped.at(22.6, Event::RobotStopped);
     let mut highlight = Stage::sushi(ParticipantKind::Simulated);
-    highlight
-        .at(22.6, Event::SignalShown { by: Sender::Wizard, signal: Signal::Highlight("cutting_board".to_string()) });
+    highlight.at(
+        22.6,
+        Event::SignalShown {
+            by: Sender::Wizard,
+            signal: Signal::Highlight("cutting_board".to_string()),
+            accepted: None,
+        },
+    );
     let mut alarm = Stage::sushi(ParticipantKind::Simulated);
     alarm.at(22.6, Event::RobotStopped);
     alarm.at(22.6, Event::SessionEnded);
@@ -1007,4 +1026,64 @@ fn the_keys_of_a_sheet_make_events_and_a_held_one_answers_once() {
     assert_eq!(stage.key(KeyCode::Char('q')), None);
     assert_eq!(stage.key(KeyCode::Char('1')), None);
     assert_eq!(stage.key(KeyCode::Char(' ')), Some(Command::Input(Event::RobotStopped)));
+}
+
+/// The sushi kitchen with an assistant that advises beside the wizard, and its advice.
+fn advised(best: bool) -> Stage {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.assistant.shadow = Shadow::On;
+    stage.at(21.85, Event::SignalEnded { reason: SignalEnd::TakenBack });
+    let option = |signal, benefit: f64, standard_error| SignalOption {
+        signal,
+        benefit,
+        standard_error,
+        net: benefit - 1.5,
+        rollouts: 256,
+    };
+    let recipe = |order: &str| Signal::ShowRecipe(order.to_string());
+    let highlight = |place: &str| Signal::Highlight(place.to_string());
+    let options = vec![
+        option(recipe("order_1"), if best { 4.2 } else { 1.2 }, 0.2),
+        option(highlight("cooking_pot"), 1.1, 0.15),
+        option(recipe("order_2"), 0.3, 0.1),
+        option(highlight("robot_hand"), 0.0, 0.0),
+    ];
+    let reason = Reason {
+        aspect: "recipe of tuna nigiri".to_string(),
+        believes: "salmon nigiri".to_string(),
+        truth: "tuna nigiri".to_string(),
+        p_wrong: 0.83,
+        prevents: Some("take salmon".to_string()),
+        instead: None,
+    };
+    let best = best.then(|| recipe("order_1"));
+    let for_ns = SessionTime::from_secs_f64(21.9);
+    let advice = Recommendation { for_seq: 17, for_ns, options, best, reason: Some(reason) };
+    stage.at(21.9, Event::Advised(advice));
+    stage.model.now = SessionTime::from_secs_f64(22.6);
+    stage
+}
+
+#[test]
+fn advice_is_ranked_with_its_errors_against_the_cost_of_a_signal() {
+    insta::assert_snapshot!("advised_80x24", advised(true).screen((80, 24)));
+    insta::assert_snapshot!("advised_120x40", advised(true).screen((120, 40)));
+    insta::assert_snapshot!("advised_200x60", advised(true).screen((200, 60)));
+    insta::assert_snapshot!("advised_silence_120x40", advised(false).screen((120, 40)));
+}
+
+#[test]
+fn enter_accepts_what_is_recommended_and_says_so() {
+    let mut seen = advised(true);
+    // Signals keep apart.
+    seen.model.now = SessionTime::from_secs_f64(30.0);
+    let accepted = input(seen.key(KeyCode::Enter));
+    let Some(Event::SignalShown { by: Sender::Wizard, signal, accepted: Some(17) }) = accepted else {
+        panic!("not accepted: {accepted:?}");
+    };
+    assert_eq!(signal, Signal::ShowRecipe("order_1".to_string()));
+    assert_eq!(input(advised(false).key(KeyCode::Enter)), None, "there is nothing to accept");
+    let mut unseen = advised(true);
+    unseen.session.spec.console.visibility = Visibility::State;
+    assert_eq!(input(unseen.key(KeyCode::Enter)), None, "what is not shown is not accepted");
 }

@@ -34,7 +34,9 @@ fn kitchen(name: &str) -> Arc<Kitchen> {
 }
 
 fn settings(participant: &str) -> SessionSpec {
-    let text = format!("layout = \"\"\nseed = 5\n[trial]\ncondition = \"none\"\n[participant]\n{participant}\n");
+    let text = format!(
+        "layout = \"\"\nseed = 5\n[trial]\ncondition = \"none\"\n[assistant]\nshadow = \"off\"\n[participant]\n{participant}\n"
+    );
     toml::from_str(&text).expect("settings of a session")
 }
 

@@ -27,7 +27,7 @@ fn kitchen(name: &str) -> Arc<Kitchen> {
 }
 
 fn settings(seed: u64) -> SessionSpec {
-    let text = format!("layout = \"\"\nseed = {seed}\n[trial]\ncondition = \"none\"\n");
+    let text = format!("layout = \"\"\nseed = {seed}\n[trial]\ncondition = \"none\"\n[assistant]\nshadow = \"off\"\n");
     toml::from_str(&text).expect("settings of a session")
 }
 

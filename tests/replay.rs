@@ -20,7 +20,7 @@ use tomcom::run::simulate::{Simulation, simulate};
 use tomcom::run::verify::verify;
 use tomcom::session::event::{EndReason, SignalEnd};
 use tomcom::session::header::VERSION;
-use tomcom::session::settings::{GazeSource, ParticipantKind};
+use tomcom::session::settings::{Condition, GazeSource, ParticipantKind};
 use tomcom::session::{Event, Header, Phase};
 
 /// One session for each kitchen.
@@ -80,7 +80,7 @@ fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
         }
         11..14 => {
             let (_, signal) = &signals[random.random_range(0..signals.len())];
-            Event::SignalShown { by: Sender::Wizard, signal: signal.clone() }
+            Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None }
         }
         14..24 => {
             let [x, y, confidence] = [1.2, 1.2, 1.0].map(|scale| scale * random.random::<f64>());
@@ -339,4 +339,48 @@ fn a_recording_can_be_wound_forward_and_back() {
         }
         assert_eq!(film.position, 0, "as many steps back as forward");
     }
+}
+
+/// Two trials in which the assistant acts, quickly and for little reason.
+fn assisted(name: &str, out: &str) -> PathBuf {
+    let mut files = session(name);
+    files.spec.trial.condition = Condition::Assistant;
+    files.spec.trial.seconds = 45.0;
+    files.spec.assistant.cost_of_communication = 0.3;
+    files.spec.assistant.rollout.rollouts = 8;
+    files.spec.assistant.rollout.states = 8;
+    let out = folder(out);
+    simulate(&Simulation { files, trials: 2, out: out.clone() }, || ()).expect("the folder can be written");
+    out
+}
+
+#[test]
+fn what_the_assistant_does_comes_out_the_same_again() {
+    for name in SESSIONS {
+        let [a, b] = ["assisted", "assisted-again"].map(|out| assisted(name, out));
+        let mut signals = 0;
+        for trial in ["seed1-S001", "seed1-S002"] {
+            let [log, other] = [&a, &b].map(|out| out.join(trial).join(LOG_NAME));
+            same(&log, &other);
+            let found = verify(&log).expect("a recording");
+            assert!(found.verified, "{name}: {:?}", found.difference);
+            let text = fs::read_to_string(&log).expect("a recording");
+            signals += text.lines().filter(|line| line.contains(r#""signal_shown","by":"assistant""#)).count();
+        }
+        assert!(signals > 0, "{name}: the assistant said nothing");
+    }
+}
+
+#[test]
+fn advice_that_was_not_given_is_no_verified_advice() {
+    let log = assisted("default.toml", "assisted-changed").join("seed1-S001").join(LOG_NAME);
+    let text = fs::read_to_string(&log).expect("a recording");
+    let number = 1 + text.lines().position(|line| line.contains(r#""kind":"advised""#)).expect("advice");
+    let change = |(index, line): (usize, &str)| match index + 1 == number {
+        true => line.replacen(r#""rollouts":8"#, r#""rollouts":9"#, 1) + "\n",
+        false => line.to_string() + "\n",
+    };
+    fs::write(&log, text.lines().enumerate().map(change).collect::<String>()).expect("the folder can be written");
+    let found = verify(&log).expect("a recording");
+    assert_eq!(found.difference.map(|difference| difference.line), Some(number));
 }

@@ -59,7 +59,7 @@ fn press(button: &str) -> Event {
 }
 
 fn highlight(location: &str) -> Event {
-    Event::SignalShown { by: Sender::Wizard, signal: Signal::Highlight(location.to_string()) }
+    Event::SignalShown { by: Sender::Wizard, signal: Signal::Highlight(location.to_string()), accepted: None }
 }
 
 /// Gives the inputs in turn; the kinds of all events with their seconds.

@@ -104,6 +104,17 @@ pub(super) enum ConditionArg {
     None,
     /// The wizard.
     Wizard,
+    /// The assistant, by itself.
+    Assistant,
+}
+
+/// Who sends signals in simulated trials.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum SimulatedCondition {
+    /// Nobody.
+    None,
+    /// The assistant, by itself.
+    Assistant,
 }
 
 /// Opens the console over a recording. Through a pipe: what happened, line by line. Or checks that it comes out the same.
@@ -144,7 +155,7 @@ pub(super) struct PlanArgs {
     pub(super) format: Format,
 }
 
-/// Simulates whole trials, faster than real time. Participants are simulated and unassisted: nobody is there to signal.
+/// Simulates whole trials, faster than real time. Participants are simulated; nobody signals, or the assistant does.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom simulate sessions/default.toml --trials 20 --seed 7 --out recordings")]
 pub(super) struct SimulateArgs {
@@ -157,6 +168,12 @@ pub(super) struct SimulateArgs {
     /// Everything random follows from it; by default the session file's.
     #[arg(long)]
     pub(super) seed: Option<u64>,
+    /// Who sends signals.
+    #[arg(long, value_enum, default_value = "none")]
+    pub(super) condition: SimulatedCondition,
+    /// Let the assistant advise in unassisted trials too; its advice is recorded and shown to nobody.
+    #[arg(long)]
+    pub(super) shadow: bool,
     /// Where the recordings go, one folder a trial.
     #[arg(long, default_value = "sessions/simulated")]
     pub(super) out: PathBuf,

@@ -1,4 +1,10 @@
-//! Communication: the signals that wizard and assistant can send to the participant.
+//! Communication: the signals that wizard and assistant can send to the participant, and which of them to send when.
+
+pub mod planner;
+pub mod recommendation;
+pub mod repeats;
+pub mod settings;
+pub mod situation;
 
 use serde::{Deserialize, Serialize};
 

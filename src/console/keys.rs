@@ -28,6 +28,8 @@ pub enum Layer {
 pub enum Action {
     Signal(LocationId, Signal),
     Press(ButtonId),
+    /// Send the signal that is recommended most.
+    Accept,
     TakeBack,
     /// A marker with this note of the session's.
     Note(usize),

@@ -1,7 +1,7 @@
 //! The lines of the table of keys, as they are before a key file changes them.
 
 use crossterm::event::KeyCode::{
-    self, BackTab, Backspace, Down, End, Esc, Home, Left, PageDown, PageUp, Right, Tab, Up,
+    self, BackTab, Backspace, Down, End, Enter, Esc, Home, Left, PageDown, PageUp, Right, Tab, Up,
 };
 
 use super::chord::Chord;
@@ -79,6 +79,8 @@ pub fn live(kitchen: &Kitchen) -> Vec<Binding> {
         ),
     ];
     lines.extend(signals(kitchen));
+    let accept = "accept the top recommendation";
+    lines.push(wizards(line("accept", &plain(Enter), Action::Accept, SIGNALS, accept, Some("accept"))));
     let take_back = "take the shown signal back";
     lines.push(wizards(line("take_back", &plain(Backspace), Action::TakeBack, SIGNALS, take_back, Some("take back"))));
     for index in 0..MAX_NOTES {

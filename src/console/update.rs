@@ -18,7 +18,7 @@ use crate::communication::Sender;
 use crate::kitchen::Agent;
 use crate::session::admit::{admit, hygiene};
 use crate::session::event::{EndReason, SignalEnd};
-use crate::session::settings::ParticipantKind;
+use crate::session::settings::{ParticipantKind, Visibility};
 use crate::session::{Event, Phase, Session};
 
 /// A key that the terminal reports again within this time is held down, not pressed again: terminals repeat a held key
@@ -207,12 +207,25 @@ fn answer(model: &mut Model, chord: Chord, action: Option<Action>, touch: Touch)
     }
 }
 
+/// Sends the signal that the assistant recommends, if the wizard sees it.
+fn accept(model: &mut Model, session: &Session) -> Option<Command> {
+    let seen = session.advice.as_ref().filter(|_| session.spec.console.visibility == Visibility::Recommendation);
+    let Some((advice, signal)) = seen.and_then(|advice| Some((advice, advice.best.clone()?))) else {
+        model.say(Level::Refused, "not accepted: nothing is recommended");
+        return None;
+    };
+    let words = format!("accepted: {}", words::signal(&signal));
+    let event = Event::SignalShown { by: Sender::Wizard, signal, accepted: Some(advice.for_seq) };
+    send(model, session, event, Level::Done, &words)
+}
+
 pub(super) fn act(model: &mut Model, session: &Session, action: Action) -> Option<Command> {
     match action {
         Action::Signal(_, signal) => {
             let words = format!("shown: {}", words::signal(&signal));
-            send(model, session, Event::SignalShown { by: Sender::Wizard, signal }, Level::Done, &words)
+            send(model, session, Event::SignalShown { by: Sender::Wizard, signal, accepted: None }, Level::Done, &words)
         }
+        Action::Accept => accept(model, session),
         Action::Press(button) => {
             let button = session.kitchen.button(Agent::Human, button).name.clone();
             send(model, session, Event::Press { agent: Agent::Human, button }, Level::Done, "")

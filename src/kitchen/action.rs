@@ -76,6 +76,17 @@ pub struct Button {
 }
 
 impl Kitchen {
+    /// The places whose contents decide what a press does; where items are moved, the place comes before the hand.
+    pub fn involved(&self, agent: Agent, button: ButtonId) -> Vec<LocationId> {
+        let hand = self.hands[agent.index()];
+        match self.button(agent, button).action {
+            Action::Take(_) | Action::Trash => vec![hand],
+            Action::Use(location) => vec![location, hand],
+            Action::Process(process) => vec![self.processes[usize::from(process)].place.unwrap_or(hand)],
+            Action::Serve(order) => vec![self.plate, order],
+        }
+    }
+
     /// The agent's button nearest to another one of its buttons on the table.
     pub fn nearest_button(&self, agent: Agent, button: ButtonId) -> Option<ButtonId> {
         let buttons = &self.buttons[agent.index()];

@@ -59,6 +59,11 @@ impl Slips {
         });
         Slips { to: to.collect() }
     }
+
+    /// Where a press that is meant for this button slips to, either as likely.
+    pub fn of_button(&self, button: ButtonId) -> [ButtonId; 2] {
+        self.to[button.index()]
+    }
 }
 
 impl DecisionModel {

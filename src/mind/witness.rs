@@ -66,6 +66,6 @@ impl EstimateWitness {
 }
 
 /// Four digits are enough for an estimate.
-fn rounded(value: f64) -> f64 {
+pub fn rounded(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }

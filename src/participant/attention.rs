@@ -7,7 +7,6 @@ use rand::RngExt;
 use super::SimulatedParticipant;
 use super::beliefs::wanted_dish;
 use super::eyes::Glance;
-use super::learning::involved;
 use super::population::chance;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
@@ -147,7 +146,8 @@ impl SimulatedParticipant {
     /// The places of the next press and of the one after it, but not the own hand, which one feels.
     pub(super) fn needed(&self) -> Vec<LocationId> {
         let next = self.intent.plan.iter().take(LOOKS_AHEAD);
-        let mut places: Vec<LocationId> = next.flat_map(|&button| involved(&self.kitchen, button)).collect();
+        let mut places: Vec<LocationId> =
+            next.flat_map(|&button| self.kitchen.involved(Agent::Human, button)).collect();
         places.retain(|&place| place != self.kitchen.hands[Agent::Human.index()]);
         places
     }

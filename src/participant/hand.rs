@@ -4,7 +4,7 @@ use rand::RngExt;
 
 use super::beliefs::wanted_dish;
 use super::population::{chance, normal};
-use super::{Deed, SimulatedParticipant, decision, learning, witness};
+use super::{Deed, SimulatedParticipant, decision, witness};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Action, Agent, AspectId, ButtonId, DishId, LocationId, State};
@@ -54,7 +54,7 @@ impl SimulatedParticipant {
     fn worth_a_look(&mut self, now: SessionTime, button: ButtonId) -> Option<LocationId> {
         let kitchen = self.kitchen.clone();
         let own = kitchen.hands[Agent::Human.index()];
-        let mut places = learning::involved(&kitchen, button);
+        let mut places = kitchen.involved(Agent::Human, button);
         let unsure = places.iter().find(|&&place| self.beliefs.certainty(AspectId::of_location(place)) < UNSURE);
         if unsure.is_some() {
             return unsure.copied();

@@ -10,17 +10,6 @@ const FELT: f64 = 0.3;
 /// What is left of values that an outcome speaks against.
 const SPOKEN_AGAINST: f64 = 0.04;
 
-/// The places whose contents decide what a press of the human does.
-pub fn involved(kitchen: &Kitchen, button: ButtonId) -> Vec<LocationId> {
-    let hand = kitchen.hands[Agent::Human.index()];
-    match kitchen.button(Agent::Human, button).action {
-        Action::Take(_) | Action::Trash => vec![hand],
-        Action::Use(location) => vec![location, hand],
-        Action::Process(process) => vec![kitchen.processes[usize::from(process)].place.unwrap_or(hand)],
-        Action::Serve(order) => vec![kitchen.plate, order],
-    }
-}
-
 /// The press that the person means to have made had an effect, or none. True if that was a surprise.
 pub fn learn(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId, effective: bool) -> bool {
     let (state, recipes) = beliefs.point(kitchen);
@@ -36,7 +25,7 @@ pub fn learn(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId, effecti
 
 /// It went as expected: everything involved is as the rules say, as surely as it was known before.
 fn carry_out(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId, next: State) {
-    let places = involved(kitchen, button);
+    let places = kitchen.involved(Agent::Human, button);
     let sure = places.iter().map(|&place| beliefs.certainty(AspectId::of_location(place))).fold(DONE, f64::min);
     for place in places {
         settle(kitchen, beliefs, place, next, sure);
@@ -70,7 +59,7 @@ fn make_sense(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId) {
             settle(kitchen, beliefs, order, state, DONE);
         }
         Action::Use(_) | Action::Process(_) => {
-            for place in involved(kitchen, button) {
+            for place in kitchen.involved(Agent::Human, button) {
                 let aspect = AspectId::of_location(place);
                 let open = vec![1.0; beliefs.distribution(aspect).len()];
                 beliefs.mix(aspect, &open, 0.6);
@@ -86,7 +75,7 @@ fn blame(kitchen: &Kitchen, beliefs: &mut Beliefs, state: State, button: ButtonI
         return;
     }
     let recipes = kitchen.true_recipes();
-    let mut places = involved(kitchen, button);
+    let mut places = kitchen.involved(Agent::Human, button);
     // What one holds one feels.
     let hand = kitchen.hands[Agent::Human.index()];
     let trust = |place| beliefs.certainty(AspectId::of_location(place)) + if place == hand { FELT } else { 0.0 };

@@ -272,7 +272,7 @@ impl SimulatedParticipant {
         let action = kitchen.button(Agent::Human, button).action;
         let (state, recipes) = self.beliefs.point(&kitchen);
         let is_surprised = learning::learn(&kitchen, &mut self.beliefs, button, effective);
-        for place in learning::involved(&kitchen, button) {
+        for place in kitchen.involved(Agent::Human, button) {
             if is_surprised {
                 self.attention.first(place);
             } else if chance(&mut self.mind, LOOKS_AT_RESULT) {

@@ -6,8 +6,11 @@
 
 use std::sync::Arc;
 
+use super::advisor::{Advisor, Question};
 use super::follower::Follower;
 use crate::base::time::SessionTime;
+use crate::communication::Sender;
+use crate::communication::recommendation::Recommendation;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonId, Kitchen, State};
 use crate::measures::JudgedPress;
@@ -34,6 +37,10 @@ pub struct Engine {
     next_seq: u64,
     /// Stamped events that were not handed out yet.
     out: Vec<Stamped>,
+    /// The newest event after which the assistant is to be asked, when everything that follows from it has happened.
+    to_ask: Option<(u64, SessionTime)>,
+    /// Questions that were not handed out yet.
+    questions: Vec<Question>,
 }
 
 /// What came of an input.
@@ -65,7 +72,20 @@ impl Engine {
         let person = spec.step.as_ref().map_or(trial, |step| u64::from(step.participant));
         let participant = is_simulated.then(|| SimulatedParticipant::new(kitchen.clone(), spec.seed, person, trial));
         let follower = Follower::new(kitchen, spec, cost);
-        Engine { follower, timers: TimerQueue::default(), orders, robot, participant, next_seq: 0, out: Vec::new() }
+        let timers = TimerQueue::default();
+        let (out, questions) = (Vec::new(), Vec::new());
+        Engine { follower, timers, orders, robot, participant, next_seq: 0, out, to_ask: None, questions }
+    }
+
+    /// The assistant of this session; its answers come back as [`Event::Advised`].
+    pub fn advisor(&self) -> Advisor {
+        let session = self.session();
+        Advisor::new(session.kitchen.clone(), &session.spec, self.follower.cost.clone())
+    }
+
+    /// What the assistant is asked since this was called last, oldest first.
+    pub fn take_questions(&mut self) -> Vec<Question> {
+        std::mem::take(&mut self.questions)
     }
 
     /// The same engine without looking for the causes of errors, which takes longer than a running session can wait.
@@ -183,8 +203,19 @@ impl Engine {
         self.record_own(now, event);
     }
 
-    /// What follows at once: timers that are due now, then what the robot makes of the state.
+    /// What follows at once, and then the question to the assistant.
     fn settle(&mut self, now: SessionTime) {
+        self.let_follow(now);
+        if let Some((seq, time)) = self.to_ask.take().filter(|_| self.session().is_running()) {
+            let own_hand = self.session().spec.signals.own_hand;
+            let signals = self.follower.repeats.allowed(&self.session().kitchen, own_hand);
+            let question = Question::of(self.session(), self.follower.filter.belief(), signals, seq, time);
+            self.questions.push(question);
+        }
+    }
+
+    /// Timers that are due now, then what the robot makes of the state.
+    fn let_follow(&mut self, now: SessionTime) {
         while self.session().is_running() {
             if self.timers.next_due().is_some_and(|due| due <= now) {
                 self.fire_timer(now);
@@ -229,9 +260,19 @@ impl Engine {
         effects.into_iter().for_each(|effect| self.perform(effect));
         self.tell_participant(&stamped, before);
         let given_up = self.tell_robot(&stamped);
+        if self.session().is_running() && self.session().spec.asks_assistant() && changes_task(&stamped.event) {
+            self.to_ask = Some((stamped.seq, now));
+        }
+        let advice = match &stamped.event {
+            Event::Advised(advice) => self.acted_on(advice),
+            _ => None,
+        };
         let estimated = self.follower.estimated.as_ref().filter(|estimated| estimated.press == stamped.seq);
         let estimate = estimated.map(|estimated| estimated.witness(&self.session().kitchen));
         self.out.push(stamped);
+        if let Some(signal) = advice {
+            self.record_own(now, signal);
+        }
         if let Some(estimate) = estimate {
             self.record_own(now, Event::BeliefEstimated(estimate));
         }
@@ -277,6 +318,13 @@ impl Engine {
         self.record_own(now, Event::Protocol(ProtocolEvent::CriterionChecked { met, orders, presses, errors }));
     }
 
+    /// What the assistant does about its own advice, if it can and may.
+    fn acted_on(&self, advice: &Recommendation) -> Option<Event> {
+        let signal = advice.best.clone()?;
+        let event = Event::SignalShown { by: Sender::Assistant, signal, accepted: None };
+        admit(self.session(), &event).is_ok().then_some(event)
+    }
+
     fn perform(&mut self, effect: Effect) {
         match effect {
             Effect::At { time, timer } => self.timers.set(time, timer),
@@ -318,4 +366,12 @@ impl Engine {
             _ => {}
         }
     }
+}
+
+/// Whether the assistant is asked after such an event: a press of either agent, and what changes the task without one.
+fn changes_task(event: &Event) -> bool {
+    matches!(
+        event,
+        Event::Press { .. } | Event::OrderShown { .. } | Event::OrderCleared { .. } | Event::KitchenCorrected { .. }
+    )
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::communication::repeats::Repeats;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonId, Kitchen, State};
 use crate::measures::JudgedPress;
@@ -27,6 +28,8 @@ pub struct Follower {
     pub episodes: Episodes,
     /// The estimate of what the human believes.
     pub filter: BeliefFilter,
+    /// What was said already.
+    pub repeats: Repeats,
     /// How long the estimate took, where that is measured.
     pub timing: Option<Timing>,
     pub(super) cost: CostToGo,
@@ -74,7 +77,21 @@ impl Follower {
         let session = Session::new(kitchen, spec);
         let (judged, episodes) = (Vec::new(), Episodes::default());
         let (timing, belief, estimated, finds_causes) = (None, None, None, true);
-        Follower { session, judged, episodes, filter, timing, cost, judge, attributor, belief, finds_causes, estimated }
+        let repeats = Repeats::default();
+        Follower {
+            session,
+            judged,
+            episodes,
+            filter,
+            repeats,
+            timing,
+            cost,
+            judge,
+            attributor,
+            belief,
+            finds_causes,
+            estimated,
+        }
     }
 
     /// Moves on by one event.
@@ -125,9 +142,22 @@ impl Follower {
                 _ => {}
             }
         }
+        self.remember(stamped);
         if let (Some(belief), Some(evidence)) = (belief, self.filter.evidence()) {
             self.estimated = Some(Estimated { press: stamped.seq, state: before, belief, evidence });
         }
+    }
+
+    /// Keeps in mind what was said, and what is known of it. Gaze alone ends no silence: nobody is asked after it.
+    fn remember(&mut self, stamped: &Stamped) {
+        let (kitchen, state) = (&self.session.kitchen, self.session.state);
+        match &stamped.event {
+            Event::Gaze(_) => return,
+            Event::TrialStarted => self.repeats = Repeats::default(),
+            Event::SignalShown { signal, .. } => self.repeats.shown(kitchen, state, signal),
+            _ => {}
+        }
+        self.repeats.update(kitchen, state, self.filter.belief());
     }
 
     /// What an event tells about the human's belief.

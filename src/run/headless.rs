@@ -10,6 +10,7 @@ use crate::session::{Event, Phase, Stamped};
 /// # Errors
 /// The first error of `record`; the session stops there.
 pub fn run<E>(engine: &mut Engine, mut record: impl FnMut(&Stamped) -> Result<(), E>) -> Result<(), E> {
+    let mut advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
     if let Some(phase) = engine.session().next_phase() {
         let event = Event::Protocol(ProtocolEvent::PhaseStarted { phase, number: 1 });
         engine.input(SessionTime::ZERO, event).events.iter().try_for_each(&mut record)?;
@@ -17,6 +18,12 @@ pub fn run<E>(engine: &mut Engine, mut record: impl FnMut(&Stamped) -> Result<()
     engine.input(SessionTime::ZERO, Event::TrialStarted).events.iter().try_for_each(&mut record)?;
     // The trial's time is always pending while it runs, so there is a next event until it is over.
     while engine.session().phase == Phase::Running {
+        for question in engine.take_questions() {
+            if let Some(advisor) = &mut advisor {
+                let advice = Event::Advised(advisor.answer(&question));
+                engine.input(engine.session().time, advice).events.iter().try_for_each(&mut record)?;
+            }
+        }
         engine.fire().iter().try_for_each(&mut record)?;
     }
     let end = engine.session().time;

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
+use super::advisor::{AdvisorDesk, next_advice};
 use super::begun::{Begun, Place};
 use super::desk::{Arrival, Desk};
 use super::engine::Engine;
@@ -14,6 +15,7 @@ use super::options::Beginning;
 use super::resume::ResumeError;
 use super::standing::Standing;
 use crate::base::words::count;
+use crate::communication::recommendation::Recommendation;
 use crate::console::belief::Moment;
 use crate::console::keys::KeyError;
 use crate::console::model::{Level, Recording};
@@ -123,6 +125,8 @@ impl LiveEnd {
 /// A recording that is run at the desk.
 struct Live {
     engine: Engine,
+    /// The assistant, if this session asks it.
+    advisor: Option<AdvisorDesk>,
     model: Model,
     /// Of this recording.
     header: Header,
@@ -163,8 +167,10 @@ impl Live {
         let mut model = Model::new(keys, theme(&spec.console, ground), size);
         model.recording = Recording::On(log.folder().display().to_string());
         let clock = SessionClock::start(time);
+        let advisor = spec.asks_assistant().then(|| engine.advisor().on_thread());
         let mut live = Live {
             engine,
+            advisor,
             model,
             header,
             log,
@@ -208,6 +214,7 @@ impl Live {
                     let events = self.engine.fire();
                     self.record(&events);
                 }
+                Some(advice) = next_advice(&mut self.advisor) => self.advise(advice),
                 _ = pointer.tick(), if with_pointer => self.look(),
                 _ = flush.tick() => self.flush(),
                 _ = watch.tick() => self.watch(),
@@ -276,6 +283,12 @@ impl Live {
         }
     }
 
+    /// Takes the assistant's answer; one that comes when the trial is over is of no use any more.
+    fn advise(&mut self, advice: Recommendation) {
+        let outcome = self.engine.input(self.clock.now(), Event::Advised(advice));
+        self.record(&outcome.events);
+    }
+
     /// Writes events to the log; the session ends where that fails, since what is not recorded did not happen.
     fn record(&mut self, events: &[Stamped]) {
         self.dirty = true;
@@ -294,6 +307,11 @@ impl Live {
             let session = self.engine.session();
             let moment = Moment::new(&session.kitchen, session.state, self.engine.belief(), last.time, by_gaze);
             self.model.belief.note(moment);
+        }
+        for question in self.engine.take_questions() {
+            if let Some(advisor) = &self.advisor {
+                advisor.ask(question);
+            }
         }
         let judged = self.engine.judged();
         let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);

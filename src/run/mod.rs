@@ -1,5 +1,6 @@
 //! The composers: they bring session, robot, participant, files and clock together. Nothing else does.
 
+pub mod advisor;
 mod begun;
 pub mod check_beliefs;
 mod desk;

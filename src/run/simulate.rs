@@ -10,6 +10,7 @@ use super::figures::{SimulationFigures, TrialFigures};
 use super::follower::Follower;
 use super::{headless, kitchen};
 use crate::base::words::count;
+use crate::communication::settings::Shadow;
 use crate::edge::files::{FileError, SessionFiles};
 use crate::edge::log::{LogWriter, WriteError, check_simulated, ruling};
 use crate::kitchen::Kitchen;
@@ -37,11 +38,14 @@ pub struct Simulation {
     pub out: PathBuf,
 }
 
-/// The settings of a simulated trial without a plan. Nobody is there to send signals, so the condition is the unassisted
-/// one; every trial has a participant of its own, with a code of its own.
+/// The settings of a simulated trial without a plan. No wizard is there, so without the assistant it is
+/// unassisted; every trial has a participant of its own, with a code of its own.
 pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
     let mut spec = spec.clone();
-    spec.trial.condition = Condition::None;
+    if spec.trial.condition == Condition::Wizard {
+        // Whose shadow the assistant would be.
+        (spec.trial.condition, spec.assistant.shadow) = (Condition::None, Shadow::Off);
+    }
     spec.participant.code = format!("S{:03}", trial + 1);
     spec
 }
@@ -152,7 +156,7 @@ pub fn describe(figures: &SimulationFigures) -> String {
     };
     let share = 100.0 * figures.errors as f64 / figures.human_actions.max(1) as f64;
     format!(
-        "{} of unassisted simulated participants, {:.0} s simulated in {:.1} s\n\
+        "{} of simulated participants, {:.0} s simulated in {:.1} s\n\
          presses: {} of the human, {} of the robot\n\
          errors: {} ({share:.1} % of the human's presses)\n\
          {}\n\

@@ -7,6 +7,7 @@ use super::follower::Follower;
 use super::standing::Standing;
 use crate::base::words::count;
 use crate::communication::Signal;
+use crate::communication::recommendation::Recommendation;
 use crate::console::words;
 use crate::kitchen::{Agent, Kitchen};
 use crate::measures::attribution::Cause;
@@ -123,6 +124,8 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::KitchenCorrected { location, content } => format!("corrected by hand: {location} holds {content}"),
         Event::RobotStopped => "robot stopped by the wizard".to_string(),
         Event::RobotResumed => "robot goes on".to_string(),
+        // Advice is worth a line where something should be said.
+        Event::Advised(advice) => advised(advice)?,
         Event::SignalShown { signal: Signal::ShowRecipe(order), .. } => format!("signal: recipe of {order}"),
         Event::SignalShown { signal: Signal::Highlight(place), .. } => format!("signal: highlight {place}"),
         Event::SignalEnded { reason: SignalEnd::Elapsed } => "signal ends".to_string(),
@@ -191,4 +194,14 @@ fn estimated(estimate: &EstimateWitness) -> Option<String> {
     let wrong: Vec<String> =
         wrong.map(|aspect| format!("{} = {} ({:.2})", aspect.aspect, aspect.believes, 1.0 - aspect.p_truth)).collect();
     (!wrong.is_empty()).then(|| format!("estimated: participant believes {}", wrong.join(", ")))
+}
+
+fn advised(advice: &Recommendation) -> Option<String> {
+    let best = advice.top().filter(|option| Some(&option.signal) == advice.best.as_ref())?;
+    let what = match &best.signal {
+        Signal::ShowRecipe(order) => format!("recipe of {order}"),
+        Signal::Highlight(place) => format!("highlight {place}"),
+    };
+    let reason = advice.reason.as_ref().map_or(String::new(), |reason| format!(": {}", reason.words()));
+    Some(format!("advised: {what}, saves {:.1} presses (±{:.1}){reason}", best.benefit, best.standard_error))
 }

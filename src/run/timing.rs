@@ -1,14 +1,18 @@
-//! `tomcom replay RECORDING --timing`: how long the inference takes, event by event, on this machine.
+//! `tomcom replay RECORDING --timing`: how long inference and planning take, event by event, on this machine.
 
 use std::path::Path;
+use std::time::Instant;
 
 use serde::Serialize;
 
+use super::advisor::{Advisor, Question};
 use super::follower::Timing;
 use super::replay::Replay;
 use crate::edge::files::FileResult;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::session::Event;
 
-/// What `--timing` prints, in microseconds. Null is what does not exist yet.
+/// What `--timing` prints, in microseconds. Null is what the recording does not have.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TimingFigures {
     pub gaze_us: Option<Spread>,
@@ -49,15 +53,38 @@ impl Spread {
 pub fn measure(recording: &Path) -> FileResult<TimingFigures> {
     let mut replay = Replay::open(recording)?;
     replay.follower.timing = Some(Timing::default());
-    let began = std::time::Instant::now();
-    replay.run()?;
+    let session = replay.session();
+    let (kitchen, spec) = (session.kitchen.clone(), session.spec.clone());
+    let mut advisor = Advisor::new(kitchen.clone(), &spec, CostToGo::new(kitchen));
+    let began = Instant::now();
+    let (mut plan_ns, mut step_ns) = (Vec::new(), Vec::new());
+    let mut asked = None;
+    while let Some(event) = replay.step()? {
+        let follower = &replay.follower;
+        match event.stamped.event {
+            Event::Press { .. } if follower.session.is_running() => asked = Some(event.stamped.seq),
+            // By now the robot has made up its mind.
+            Event::Gaze(_) => {
+                let Some(seq) = asked.take() else { continue };
+                let began = Instant::now();
+                let signals = follower.repeats.allowed(&follower.session.kitchen, spec.signals.own_hand);
+                let belief = follower.filter.belief();
+                advisor.answer(&Question::of(&follower.session, belief, signals, seq, event.stamped.time));
+                let took_ns = began.elapsed().as_nanos() as u64;
+                plan_ns.push(took_ns);
+                let inference = follower.timing.as_ref().and_then(|timing| timing.action_ns.last());
+                step_ns.extend(inference.map(|inference| inference + took_ns));
+            }
+            _ => {}
+        }
+    }
     let wall_s = began.elapsed().as_secs_f64();
     let timing = replay.follower.timing.take().unwrap_or_default();
     Ok(TimingFigures {
         gaze_us: Spread::of(timing.gaze_ns),
         action_us: Spread::of(timing.action_ns),
-        plan_us: None,
-        step_us: None,
+        plan_us: Spread::of(plan_ns),
+        step_us: Spread::of(step_ns),
         session_s: replay.session().time.as_secs_f64(),
         wall_s,
     })

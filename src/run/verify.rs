@@ -7,14 +7,16 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::advisor::{Advisor, Question};
 use super::engine::Engine;
 use super::follower::Follower;
 use crate::base::words::count;
+use crate::communication::recommendation::Recommendation;
 use crate::edge::files::FileResult;
 use crate::edge::log::{LogLine, LogReader, at_line, event_line};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::session::Stamped;
 use crate::session::admit::is_external;
+use crate::session::{Event, Stamped};
 
 /// What `tomcom replay RECORDING --verify` found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -74,7 +76,8 @@ impl Rerun {
         let cost = CostToGo::new(kitchen.clone());
         let mut replayed = Follower::new(kitchen.clone(), header.session.clone(), cost.clone());
         let engine = Engine::new(kitchen, header.session, header.trial, cost);
-        let mut again = Again { engine, produced: VecDeque::new() };
+        let advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
+        let mut again = Again { engine, produced: VecDeque::new(), advisor, questions: VecDeque::new() };
         let mut difference = None;
         while let Some(line) = log.next_line()? {
             replayed
@@ -93,6 +96,9 @@ pub(super) struct Again {
     pub engine: Engine,
     /// What came out of it and was not compared yet; at the end of a cut recording, what it lacks.
     pub produced: VecDeque<Stamped>,
+    /// The assistant, and what it was asked and has not answered.
+    advisor: Option<Advisor>,
+    questions: VecDeque<Question>,
 }
 
 impl Again {
@@ -101,7 +107,8 @@ impl Again {
         let recorded = &line.stamped;
         if self.produced.is_empty() {
             if is_external(self.engine.session(), &recorded.event) {
-                let outcome = self.engine.input(recorded.time, recorded.event.clone());
+                let event = self.computed_again(&recorded.event);
+                let outcome = self.engine.input(recorded.time, event);
                 self.produced.extend(outcome.events);
             } else {
                 // A participant may also act without anything to record.
@@ -110,10 +117,22 @@ impl Again {
                 }
             }
         }
+        self.questions.extend(self.engine.take_questions());
         let again = self.produced.pop_front().map(|stamped| event_line(&stamped));
         let same = again.as_deref() == Some(line.text.as_str());
         let log = log.to_path_buf();
         (!same).then(|| Difference { seq: recorded.seq, log, line: line.number, recorded: line.text.clone(), again })
+    }
+
+    /// An event from outside; advice is computed again, for the event that it was computed for.
+    fn computed_again(&mut self, event: &Event) -> Event {
+        let (Event::Advised(advice), Some(advisor)) = (event, &mut self.advisor) else { return event.clone() };
+        self.questions.retain(|question| question.seq >= advice.for_seq);
+        match self.questions.front().filter(|question| question.seq == advice.for_seq) {
+            Some(question) => Event::Advised(advisor.answer(question)),
+            // Nobody asked: it stays, and is compared with nothing that could have come out.
+            None => Event::Advised(Recommendation { options: Vec::new(), best: None, reason: None, ..advice.clone() }),
+        }
     }
 
     /// Whether the re-run stands where applying the recorded events leads, with nothing left over.

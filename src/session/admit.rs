@@ -35,7 +35,11 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         }
         Event::RobotStopped => refuse_if(session.robot.stopped, "the robot is stopped already"),
         Event::RobotResumed => refuse_if(!session.robot.stopped, "the robot is not stopped"),
-        Event::SignalShown { by, signal } => admit_signal(session, *by, signal),
+        Event::SignalShown { by, signal, .. } => admit_signal(session, *by, signal),
+        Event::Advised(_) => {
+            refuse_if(phase != Phase::Running, "no trial runs")?;
+            refuse_if(!session.spec.asks_assistant(), "nobody asks the assistant in this session")
+        }
         Event::SignalEnded { .. } => refuse_if(session.shown.is_none(), "no signal is shown"),
         Event::Protocol(event) => protocol::admit(session, event),
         other => hands::admit(session, other),
@@ -46,8 +50,11 @@ fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'
     if session.phase != Phase::Running {
         return Err("signals are sent while the trial runs");
     }
-    if session.spec.trial.condition == Condition::None && by == Sender::Wizard {
-        return Err("nobody sends signals in the unassisted condition");
+    match (session.spec.trial.condition, by) {
+        (Condition::None, _) => return Err("nobody sends signals in the unassisted condition"),
+        (Condition::Wizard, Sender::Assistant) => return Err("the wizard sends the signals in this condition"),
+        (Condition::Assistant, Sender::Wizard) => return Err("the assistant sends the signals in this condition"),
+        _ => {}
     }
     let target = session.kitchen.location_named(signal.target()).map(|id| session.kitchen.location(id).kind);
     if target == Some(LocationKind::Hand(Agent::Human)) && !session.spec.signals.own_hand {
@@ -64,7 +71,7 @@ fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'
 /// # Errors
 /// The reason why not, in words for the wizard.
 pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(), String> {
-    let Event::SignalShown { by: Sender::Wizard, signal } = event else { return Ok(()) };
+    let Event::SignalShown { by: Sender::Wizard, signal, .. } = event else { return Ok(()) };
     if session.shown.as_ref().is_some_and(|shown| shown.by == Sender::Wizard && shown.signal == *signal) {
         return Err("that signal is shown already".to_string());
     }
@@ -98,6 +105,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::FocusRegained
         | Event::Marker { .. }
         | Event::ClockJumped { .. }
+        | Event::Advised(_)
         | Event::SessionEnded => true,
         Event::TrialEnded { reason } => *reason == EndReason::Wizard,
         Event::Protocol(event) => !matches!(event, ProtocolEvent::CriterionChecked { .. }),

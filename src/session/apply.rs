@@ -130,7 +130,8 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
             change(session, now, |state| state.set_content(location, content));
             note(session, now, Happening::Corrected { location });
         }
-        Event::SignalShown { by, signal } => {
+        Event::Advised(advice) => session.advice = Some(advice.clone()),
+        Event::SignalShown { by, signal, .. } => {
             named.location(signal.target())?;
             show(session, now, *by, signal, &mut effects);
         }
@@ -275,6 +276,7 @@ fn end_trial(session: &mut Session, now: SessionTime, reason: EndReason, effects
     session.phase = Phase::Over(reason);
     session.robot = RobotStatus { stopped: session.robot.stopped, held: session.robot.held, ..RobotStatus::default() };
     session.shown = None;
+    session.advice = None;
     effects.push(Effect::CancelAll);
     note(session, now, Happening::Trial(session.phase));
 }
@@ -284,6 +286,7 @@ fn close(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
     session.phase = Phase::Closed;
     session.robot.intention = None;
     session.shown = None;
+    session.advice = None;
     effects.push(Effect::CancelAll);
     effects.push(Effect::Close);
 }

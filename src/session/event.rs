@@ -9,6 +9,7 @@ use super::preflight::Check;
 use super::protocol::ProtocolEvent;
 use super::screen::Screen;
 use crate::base::time::SessionTime;
+use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
@@ -113,7 +114,12 @@ pub enum Event {
     SignalShown {
         by: Sender,
         signal: Signal,
+        /// The wizard accepted the recommendation for the event of this number.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        accepted: Option<u64>,
     },
+    /// What the assistant advises, for an event that is some time ago where it was computed while the session went on.
+    Advised(Recommendation),
     /// The signal vanishes.
     SignalEnded {
         reason: SignalEnd,
@@ -168,6 +174,7 @@ impl Event {
             Event::RobotSkipped { .. } => "robot_skipped",
             Event::RobotDriven { .. } => "robot_driven",
             Event::KitchenCorrected { .. } => "kitchen_corrected",
+            Event::Advised(_) => "advised",
             Event::SignalShown { .. } => "signal_shown",
             Event::SignalEnded { .. } => "signal_ended",
             Event::Marker { .. } => "marker",

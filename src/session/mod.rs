@@ -17,6 +17,7 @@ pub mod timers;
 use std::sync::Arc;
 
 use crate::base::time::SessionTime;
+use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::gaze::GazeSample;
 use crate::kitchen::state::MAX_LOCATIONS;
@@ -67,6 +68,8 @@ pub struct Session {
     pub robot: RobotStatus,
     /// The signal that the participant sees now.
     pub shown: Option<ShownSignal>,
+    /// The newest advice of the assistant in the running trial.
+    pub advice: Option<Recommendation>,
     /// When the wizard last sent a signal.
     pub signalled_at: Option<SessionTime>,
     /// Why the trial was aborted, if it was.
@@ -193,6 +196,7 @@ impl Session {
             served: Vec::new(),
             robot: RobotStatus::default(),
             shown: None,
+            advice: None,
             signalled_at: None,
             aborted: None,
             excluded: None,

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::plan::{PlanSpec, StepSpec};
+use crate::communication::settings::{AssistantSpec, Shadow};
 use crate::mind::model::HumanModel;
 
 /// A session file: who takes part, under which condition, and for how long.
@@ -22,6 +23,8 @@ pub struct SessionSpec {
     pub robot: RobotSpec,
     #[serde(default)]
     pub signals: SignalSpec,
+    #[serde(default)]
+    pub assistant: AssistantSpec,
     #[serde(default)]
     pub console: ConsoleSpec,
     /// The file with the parameters of the human model, relative to the session file; none: those in [`Self::human`].
@@ -101,7 +104,7 @@ impl SessionSpec {
             return Err(SettingError { key: "cool_down_s", found, remedy: "seconds from 0 (none) to 60" });
         }
         self.console.check()?;
-        match self.human.fault() {
+        match self.human.fault().or_else(|| self.assistant.fault()) {
             Some((key, found, remedy)) => Err(SettingError { key, found, remedy }),
             None => Ok(()),
         }
@@ -112,6 +115,13 @@ impl SessionSpec {
 pub fn is_code(text: &str) -> bool {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     !text.is_empty() && text.len() <= 32 && text.chars().all(is_plain)
+}
+
+impl SessionSpec {
+    /// Whether the assistant is asked: where it acts, and as a shadow beside whoever does.
+    pub fn asks_assistant(&self) -> bool {
+        self.trial.condition == Condition::Assistant || self.assistant.shadow == Shadow::On
+    }
 }
 
 /// When a trial ends, and who sends signals in it.
@@ -141,6 +151,8 @@ pub enum Condition {
     None,
     /// The person at the console.
     Wizard,
+    /// The assistant by itself.
+    Assistant,
 }
 
 impl Condition {
@@ -149,6 +161,7 @@ impl Condition {
         match self {
             Condition::None => "none",
             Condition::Wizard => "wizard",
+            Condition::Assistant => "assistant",
         }
     }
 }

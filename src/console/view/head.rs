@@ -71,6 +71,7 @@ fn clock(brush: &mut Brush, x: u16, y: u16, session: &Session, model: &Model) ->
 fn condition(session: &Session) -> &'static str {
     match session.spec.trial.condition {
         Condition::None => "unassisted",
+        Condition::Assistant => "assistant",
         Condition::Wizard => "wizard",
     }
 }

@@ -38,7 +38,7 @@ pub fn view(session: &Session, model: &Model, frame: &mut Frame) {
     head::draw(&mut brush, &regions, session, model);
     kitchen::draw(&mut brush, &regions, session, model);
     belief::draw(&mut brush, &regions, session, model);
-    recommendation::draw(&mut brush, &regions);
+    recommendation::draw(&mut brush, &regions, session, model);
     gaze::draw_map(&mut brush, &regions, session, model);
     shown::draw(&mut brush, &regions, session, model);
     robot::draw(&mut brush, &regions, session, model);

@@ -1,26 +1,161 @@
-//! What one could tell the participant: the place for the ranked signals, which says what it waits for.
+//! What one could tell the participant: the signals by what they are worth, against what a signal costs, and why.
+
+use ratatui::layout::Rect;
 
 use super::paint::{Brush, wrap};
 use super::regions::{Regions, Room};
 use super::theme::Role;
+use crate::communication::recommendation::{Recommendation, SignalOption};
+use crate::console::keys::Action;
+use crate::console::model::Model;
+use crate::console::words;
+use crate::session::Session;
+
+/// Columns of a gauge; each stands for half a press that is saved.
+const GAUGE: u16 = 12;
+const PRESSES_A_COLUMN: f64 = 0.5;
 
 /// Draws the recommendation panel.
-pub fn draw(brush: &mut Brush, regions: &Regions) {
+pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
     let area = regions.recommendation;
     if area.area() == 0 {
         return;
     }
-    let quiet = brush.style(Role::Quiet);
     if regions.room == Room::Small {
-        brush.text(area.x, area.y, area.width, " advice   none: it waits for the estimate of the belief", quiet);
-        return;
+        return line(brush, area, session, model);
     }
-    let inside = brush.panel(area, "Recommendation", "net benefit");
-    let waits = "None: a recommendation waits for the estimate of the belief. The signals are yours.";
-    for (row, line) in wrap(waits, inside.width.saturating_sub(2)).iter().enumerate() {
-        let y = inside.y + row as u16;
-        if y < inside.bottom() {
-            brush.text(inside.x + 1, y, inside.width.saturating_sub(1), line, quiet);
+    let inside = brush.panel(area, "Recommendation", "ToM-Com, net presses saved");
+    let Some(advice) = &session.advice else {
+        let quiet = brush.style(Role::Quiet);
+        for (row, line) in wrap(silence(session), inside.width).iter().enumerate() {
+            brush.text(inside.x, inside.y + row as u16, inside.width, line, quiet);
+        }
+        return;
+    };
+    let mut y = inside.y;
+    let mut is_above = true;
+    for option in &advice.options {
+        // The line between what is worth a signal and what is not.
+        if is_above && option.net <= 0.0 {
+            is_above = false;
+            y = cost_line(brush, inside, y, session, advice, model);
+        }
+        if y >= inside.bottom() {
+            return;
+        }
+        y = option_line(brush, inside, y, option, session, model, advice);
+        if Some(&option.signal) == advice.best.as_ref() {
+            y = reason(brush, inside, y, advice);
         }
     }
+    if is_above && y < inside.bottom() {
+        cost_line(brush, inside, y, session, advice, model);
+    }
+}
+
+/// Why there is no advice.
+fn silence(session: &Session) -> &'static str {
+    match (session.spec.asks_assistant(), session.is_running()) {
+        (false, _) => "None: nobody asks the assistant in this session (shadow = \"off\"). The signals are yours.",
+        (true, true) => "None yet: it comes after the first order or press.",
+        (true, false) => "None: the assistant advises while the trial runs.",
+    }
+}
+
+/// The best advice in one line.
+fn line(brush: &mut Brush, area: Rect, session: &Session, model: &Model) {
+    let mut parts = vec![(" advice   ".to_string(), Role::Quiet)];
+    match session.advice.as_ref().map(|advice| (advice, advice.best.as_ref().and(advice.top()))) {
+        None => parts.push((silence(session).to_string(), Role::Quiet)),
+        Some((_, None)) => parts.push(("say nothing".to_string(), Role::Quiet)),
+        Some((advice, Some(option))) => {
+            parts.push((format!("{:+.1} ±{:.1} ", option.net, option.standard_error), Role::Strong));
+            parts.push((key(option, session, model), Role::Signal));
+            parts.push((words::signal(&option.signal), Role::Strong));
+            if let Some(reason) = &advice.reason {
+                parts.push((format!(": {}", reason.words()), Role::Quiet));
+            }
+        }
+    }
+    let parts: Vec<(&str, Role)> = parts.iter().map(|(text, role)| (text.as_str(), *role)).collect();
+    brush.parts(area.x, area.y, area.width, &parts);
+}
+
+/// The key of an option's signal, if it has one: "[q] ".
+fn key(option: &SignalOption, session: &Session, model: &Model) -> String {
+    let location = session.kitchen.location_named(option.signal.target());
+    let chord = location.and_then(|location| model.keys.mark(location));
+    chord.map_or(String::new(), |chord| format!("[{}] ", chord.name()))
+}
+
+fn option_line(
+    brush: &mut Brush,
+    inside: Rect,
+    y: u16,
+    option: &SignalOption,
+    session: &Session,
+    model: &Model,
+    advice: &Recommendation,
+) -> u16 {
+    let is_best = Some(&option.signal) == advice.best.as_ref();
+    let role = if is_best { Role::Strong } else { Role::Quiet };
+    let worth = format!("{:+.1} ±{:.1} ", option.net, option.standard_error);
+    let x = brush.parts(inside.x, y, inside.width, &[(worth.as_str(), role)]);
+    let x = gauge(brush, x, y, option, session.spec.assistant.cost_of_communication, role);
+    let key = key(option, session, model);
+    let words = words::signal(&option.signal);
+    brush.parts(x, y, inside.right().saturating_sub(x), &[(key.as_str(), Role::Signal), (words.as_str(), role)]);
+    y + 1
+}
+
+/// The benefit as a bar: full up to one standard error below it, open to one above; a line where the cost is.
+fn gauge(brush: &mut Brush, x: u16, y: u16, option: &SignalOption, cost: f64, role: Role) -> u16 {
+    let signs = brush.theme.signs();
+    let (full, open, line) = (signs.bar_full, signs.bar_empty, signs.frame[5]);
+    let column = |presses: f64| presses / PRESSES_A_COLUMN;
+    let (least, most) = (option.benefit - option.standard_error, option.benefit + option.standard_error);
+    for index in 0..GAUGE {
+        let at = f64::from(index) + 0.5;
+        let (sign, role) = match () {
+            () if column(cost).floor() == f64::from(index) => (line, Role::Frame),
+            () if at <= column(least) => (full, role),
+            () if at <= column(most) => (open, role),
+            () => (" ", role),
+        };
+        let style = brush.style(role);
+        brush.text(x + index, y, 1, sign, style);
+    }
+    x + GAUGE + 1
+}
+
+fn reason(brush: &mut Brush, inside: Rect, y: u16, advice: &Recommendation) -> u16 {
+    let (Some(reason), Some(option)) = (&advice.reason, advice.top()) else { return y };
+    let words = format!("{}; saves {:.1} presses", reason.words(), option.benefit);
+    let style = brush.style(Role::Text);
+    let lines = wrap(&words, inside.width.saturating_sub(2));
+    for (row, line) in lines.iter().enumerate().filter(|(row, _)| y + (*row as u16) < inside.bottom()) {
+        brush.text(inside.x + 2, y + row as u16, inside.width.saturating_sub(2), line, style);
+    }
+    y + lines.len() as u16
+}
+
+/// What a signal costs, and how old the advice is.
+fn cost_line(
+    brush: &mut Brush,
+    inside: Rect,
+    y: u16,
+    session: &Session,
+    advice: &Recommendation,
+    model: &Model,
+) -> u16 {
+    let said = if advice.best.is_none() { "say nothing; a signal" } else { "a signal" };
+    let left = format!("{said} costs {:.1}", session.spec.assistant.cost_of_communication);
+    let age = session.age(advice.for_ns, model.now).as_secs_f64();
+    let role = if advice.best.is_none() { Role::Strong } else { Role::Quiet };
+    let accept = model.keys.of(&Action::Accept).filter(|_| advice.best.is_some());
+    let accept = accept.map_or(String::new(), |chord| format!("  [{}] accepts", chord.name()));
+    brush.parts(inside.x, y, inside.width, &[(left.as_str(), role), (accept.as_str(), Role::Signal)]);
+    let style = brush.style(Role::Quiet);
+    brush.text_right(inside.right(), y, inside.width, &format!("  {age:.1} s old"), style);
+    y + 1
 }

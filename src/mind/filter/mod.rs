@@ -12,7 +12,7 @@ mod own_press;
 mod reading;
 mod robot_press;
 mod serving;
-mod urn;
+pub mod urn;
 
 use std::sync::Arc;
 

@@ -1,0 +1,207 @@
+//! ToM-Com: says what is expected to save more presses than it costs (paper, section "Planning communication").
+//!
+//! For every signal, rollouts over some decisions of the human, each paired with one in which nothing is said: the same
+//! sample of the belief, the same random numbers. The benefit of a signal is the mean of what the silent rollout takes more,
+//! presses of both plus the cost to go at its end. A signal that changes nothing of what a sample holds for possible makes
+//! no difference in its rollout, exactly, and is not tried out.
+
+pub mod human;
+mod robot;
+mod rollout;
+mod sample;
+mod tally;
+
+use std::sync::Arc;
+
+use rand::RngExt;
+
+use self::human::{Cases, Decider};
+use self::robot::RobotPolicy;
+use self::rollout::{Draws, Moment, Rollout, Stage, Trace};
+use self::sample::Samples;
+use self::tally::Tally;
+use super::recommendation::{Reason, Recommendation, SignalOption, aspects_told};
+use super::settings::AssistantSpec;
+use super::situation::Situation;
+use super::{Signal, unavailable};
+use crate::base::rng::{Stream, stream};
+use crate::base::time::SessionTime;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen};
+use crate::mind::model::HumanModel;
+use crate::mind::witness::rounded;
+
+/// After so many rollouts it is looked at which signals are decided.
+const BATCH: usize = 32;
+
+/// Plans communication. What it remembers from one question to the next changes the time that an answer takes, never the
+/// answer.
+#[derive(Clone, Debug)]
+pub struct Planner {
+    kitchen: Arc<Kitchen>,
+    spec: AssistantSpec,
+    seed: u64,
+    decider: Decider,
+    foresight: f64,
+    involved: Vec<Vec<AspectId>>,
+    policy: RobotPolicy,
+    samples: Samples,
+    trace: Trace,
+    moment: Moment,
+    silent: Cases,
+    told: Cases,
+    draws: Vec<Draws>,
+}
+
+/// A signal that is tried out.
+#[derive(Clone, Debug)]
+struct Arm {
+    signal: Signal,
+    aspects: Vec<AspectId>,
+    tally: Tally,
+    is_decided: bool,
+}
+
+impl Planner {
+    /// A planner for people as `human` says. Its chances follow from `seed` and the number of an event.
+    pub fn new(kitchen: Arc<Kitchen>, human: &HumanModel, spec: AssistantSpec, seed: u64) -> Planner {
+        let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+        let aspects = |button| kitchen.involved(Agent::Human, button).into_iter().map(AspectId::of_location).collect();
+        Planner {
+            decider: Decider::new(&kitchen, &human.decision, spec.rollout.states),
+            foresight: human.transition.foresight,
+            involved: buttons.map(aspects).collect(),
+            policy: RobotPolicy::default(),
+            samples: Samples::default(),
+            trace: Trace::default(),
+            moment: Moment::default(),
+            silent: Cases::default(),
+            told: Cases::default(),
+            draws: Vec::new(),
+            kitchen,
+            spec,
+            seed,
+        }
+    }
+
+    /// What the signals are worth now. The answer follows from the situation, the signals, and the number of the event that
+    /// it is asked after (`time` is only noted); signals that cannot be sent are left out.
+    pub fn advise(
+        &mut self,
+        cost: &mut CostToGo,
+        situation: &Situation,
+        signals: &[Signal],
+        seq: u64,
+        time: SessionTime,
+    ) -> Recommendation {
+        let mut random = stream(self.seed, "communication", seq);
+        let mut arms = self.arms(situation, signals);
+        let rollouts = self.spec.rollout.rollouts;
+        self.samples.prepare(situation.belief, rollouts, self.spec.rollout.states, &mut random);
+        for number in 0..rollouts {
+            self.roll_out(cost, situation, &mut arms, number, &mut random);
+            if (number + 1) % BATCH == 0 && self.is_decided(&mut arms, number + 1) {
+                break;
+            }
+        }
+        self.recommendation(situation, arms, seq, time)
+    }
+
+    fn arms(&self, situation: &Situation, signals: &[Signal]) -> Vec<Arm> {
+        let possible = signals.iter().filter(|signal| unavailable(&self.kitchen, situation.state, signal).is_none());
+        let arm = |signal: &Signal| Arm {
+            signal: signal.clone(),
+            aspects: aspects_told(&self.kitchen, situation.state, signal),
+            tally: Tally::default(),
+            is_decided: false,
+        };
+        possible.map(arm).collect()
+    }
+
+    /// One rollout without a signal, and one for each signal that changes something.
+    fn roll_out(
+        &mut self,
+        cost: &mut CostToGo,
+        situation: &Situation,
+        arms: &mut [Arm],
+        number: usize,
+        random: &mut Stream,
+    ) {
+        let model = &self.spec.rollout;
+        self.samples.draw(&self.kitchen, situation.state, number, random, &mut self.silent);
+        let first_s = random.random::<f64>() * model.human_press_s;
+        self.draws.clear();
+        self.draws.extend((0..model.horizon).map(|_| Draws::draw(random)));
+        let stage = Stage {
+            kitchen: &self.kitchen,
+            recipes: self.kitchen.true_recipes(),
+            decider: &self.decider,
+            involved: &self.involved,
+            model,
+            robot_press_s: situation.robot_press_s,
+            foresight: self.foresight,
+            looks: -(-model.looks_hz * model.human_press_s).exp_m1(),
+        };
+        let mut rollout = Rollout { stage: &stage, cost, policy: &mut self.policy, draws: &self.draws, first_s };
+        let mut is_silent_known = false;
+        for arm in arms.iter_mut().filter(|arm| !arm.is_decided) {
+            self.told.copy_from(&self.silent);
+            let mut changed = false;
+            for &aspect in &arm.aspects {
+                changed |= self.told.learn(&self.kitchen, aspect, situation.state);
+            }
+            if !changed {
+                arm.tally.add(0.0, None);
+                continue;
+            }
+            if !is_silent_known {
+                self.moment.begin(situation, &self.silent);
+                rollout.silent(&mut self.moment, &mut self.trace);
+                is_silent_known = true;
+            }
+            self.moment.begin(situation, &self.told);
+            let outcome = rollout.told(&mut self.moment, &self.trace);
+            arm.tally.add(f64::from(self.trace.value - outcome.value), outcome.parted);
+        }
+    }
+
+    /// Whether it is clear what every signal is worth.
+    fn is_decided(&self, arms: &mut [Arm], rollouts: usize) -> bool {
+        let model = &self.spec.rollout;
+        if rollouts < model.least_rollouts {
+            return false;
+        }
+        for arm in arms.iter_mut() {
+            let error = arm.tally.cautious_error();
+            let is_hopeless = arm.tally.mean() + 3.0 * error < self.spec.cost_of_communication;
+            arm.is_decided |= error <= model.enough_error || is_hopeless && error <= 2.0 * model.enough_error;
+        }
+        arms.iter().all(|arm| arm.is_decided)
+    }
+
+    fn recommendation(&self, situation: &Situation, arms: Vec<Arm>, seq: u64, time: SessionTime) -> Recommendation {
+        let price = self.spec.cost_of_communication;
+        let mut arms = arms;
+        // The first of equals is the first in the layout.
+        arms.sort_by(|a, b| b.tally.mean().total_cmp(&a.tally.mean()));
+        let option = |arm: &Arm| SignalOption {
+            signal: arm.signal.clone(),
+            benefit: rounded(arm.tally.mean()),
+            standard_error: rounded(arm.tally.standard_error()),
+            net: rounded(arm.tally.mean() - price),
+            rollouts: arm.tally.count(),
+        };
+        let reason = arms.first().filter(|arm| arm.tally.mean() > 0.0).and_then(|arm| {
+            let mut reason = Reason::of(&self.kitchen, situation.state, situation.belief, &arm.signal)?;
+            if let Some((prevents, instead)) = arm.tally.turning_point() {
+                let name = |button: ButtonId| self.kitchen.button(Agent::Human, button).name.clone();
+                reason.prevents = Some(name(prevents));
+                reason.instead = instead.map(name);
+            }
+            Some(reason)
+        });
+        let options: Vec<SignalOption> = arms.iter().map(option).collect();
+        let best = options.first().filter(|option| option.net > 0.0).map(|option| option.signal.clone());
+        Recommendation { for_seq: seq, for_ns: time, options, best, reason }
+    }
+}

@@ -1,0 +1,102 @@
+//! The robot in a rollout: its task policy, remembered by state, and its arm in time.
+
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, ButtonId, Kitchen, OrderContent, Recipes, State};
+use crate::robot::policy;
+
+/// 2^15 answers of the policy.
+const BITS: u32 = 15;
+
+/// What the robot may press in a state, each as likely, and what it goes on with if its arm is on its way already. One bit
+/// a button.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choices {
+    pub choices: u64,
+    pub useful: u64,
+}
+
+impl Choices {
+    pub fn count(self) -> u32 {
+        self.choices.count_ones()
+    }
+
+    /// The n-th of the choices, counted from 0.
+    pub fn nth(self, n: u32) -> ButtonId {
+        let mut left = self.choices;
+        for _ in 0..n {
+            left &= left - 1;
+        }
+        ButtonId(left.trailing_zeros() as u8)
+    }
+}
+
+/// The robot's task policy, remembered by state and wanted recipes: what was asked before changes the time it takes and
+/// never the answer.
+#[derive(Clone, Debug)]
+pub struct RobotPolicy {
+    known: Vec<Option<(State, Recipes, Choices)>>,
+}
+
+impl Default for RobotPolicy {
+    fn default() -> Self {
+        RobotPolicy { known: vec![None; 1 << BITS] }
+    }
+}
+
+impl RobotPolicy {
+    /// What the policy says to a state and recipes.
+    #[inline]
+    pub fn choices(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes) -> Choices {
+        let wanted = wanted_recipes(kitchen, state, recipes);
+        let place = (crate::base::rng::mix(hash(state, &wanted)) >> (64 - BITS)) as usize;
+        if let Some((known, of, choices)) = self.known[place]
+            && known == state
+            && of == wanted
+        {
+            return choices;
+        }
+        let bits = |buttons: Vec<ButtonId>| buttons.iter().fold(0, |bits, button| bits | 1u64 << button.0);
+        let useful = bits(policy::best_presses(kitchen, cost, state, recipes));
+        let choices = Choices { choices: bits(policy::choices(kitchen, cost, state, recipes)), useful };
+        self.known[place] = Some((state, wanted, choices));
+        choices
+    }
+}
+
+/// The recipes of the dishes that the state's orders want; nothing else matters to a decision.
+fn wanted_recipes(kitchen: &Kitchen, state: State, recipes: &Recipes) -> Recipes {
+    let mut wanted = Recipes::default();
+    for &order in &kitchen.orders {
+        if let OrderContent::Dish(dish) = state.order(order) {
+            wanted.set(dish, recipes.get(dish));
+        }
+    }
+    wanted
+}
+
+fn hash(state: State, recipes: &Recipes) -> u64 {
+    let (state, recipes) = (state.bits(), recipes.bits());
+    let mix = crate::base::rng::mix;
+    mix(mix(state as u64 ^ mix((state >> 64) as u64)) ^ mix(recipes as u64 ^ mix((recipes >> 64) as u64)))
+}
+
+/// A press that the arm is on its way to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Errand {
+    pub button: ButtonId,
+    /// When it touches the button, in seconds since the rollout's start.
+    pub due_s: f64,
+    pub driven: bool,
+}
+
+impl Errand {
+    /// Whether the press is still made when the arm is there.
+    pub fn holds(&self, choices: Choices) -> bool {
+        self.driven || choices.useful >> self.button.0 & 1 == 1
+    }
+}
+
+/// The effect of a press of the robot.
+pub fn press(kitchen: &Kitchen, state: State, recipes: &Recipes, button: ButtonId) -> State {
+    kitchen.press(state, recipes, Agent::Robot, button).unwrap_or(state)
+}

@@ -1,0 +1,63 @@
+//! Samples of the belief for rollouts: states and recipes, drawn from one belief that is drawn from the Dirichlets.
+
+use super::human::Cases;
+use crate::base::rng::Stream;
+use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, State};
+use crate::mind::dirichlet::DirichletBelief;
+use crate::mind::filter::urn::Urn;
+
+/// Samples of a belief. Over all samples every aspect has each of its values as often first as its mean says, to a sample.
+#[derive(Clone, Debug, Default)]
+pub struct Samples {
+    urns: Vec<Urn>,
+    /// `[aspect * samples + sample]`: the first draws.
+    firsts: Vec<u8>,
+    /// `[aspect * states + draw]`: the draws of one sample.
+    drawn: Vec<u8>,
+    samples: usize,
+    states: usize,
+}
+
+impl Samples {
+    /// Gets ready for so many samples of so many states each.
+    pub fn prepare(&mut self, belief: &DirichletBelief, samples: usize, states: usize, random: &mut Stream) {
+        (self.samples, self.states) = (samples, states);
+        let aspects = belief.aspects.len();
+        self.urns.resize(aspects, Urn::default());
+        self.firsts.resize(aspects * samples, 0);
+        self.drawn.resize(aspects * states, 0);
+        for (index, dirichlet) in belief.aspects.iter().enumerate() {
+            self.urns[index].fill(dirichlet, states, random);
+            self.urns[index].first_draws(random, &mut self.firsts[index * samples..(index + 1) * samples]);
+        }
+    }
+
+    /// Draws one sample. Recipes count in cases whose orders want the dish, and where the true orders do.
+    pub fn draw(&mut self, kitchen: &Kitchen, truth: State, sample: usize, random: &mut Stream, cases: &mut Cases) {
+        let states = self.states;
+        for (index, urn) in self.urns.iter().enumerate() {
+            let drawn = &mut self.drawn[index * states..(index + 1) * states];
+            drawn[0] = self.firsts[index * self.samples + sample];
+            urn.draw_on(random, drawn);
+        }
+        cases.all.clear();
+        for draw in 0..states {
+            let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
+            for (index, aspect) in kitchen.aspects.iter().enumerate() {
+                let counts = match aspect.kind {
+                    AspectKind::Location(_) => true,
+                    AspectKind::Recipe(dish) => {
+                        let wanted = OrderContent::Dish(dish);
+                        let is_wanted = |&order| state.order(order) == wanted || truth.order(order) == wanted;
+                        kitchen.orders.iter().any(is_wanted)
+                    }
+                };
+                if counts {
+                    let value = usize::from(self.drawn[index * states + draw]);
+                    kitchen.set_value(&mut state, &mut recipes, AspectId(index as u8), value);
+                }
+            }
+            cases.add(state, recipes, 1);
+        }
+    }
+}

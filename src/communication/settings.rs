@@ -1,0 +1,84 @@
+//! What a session file asks of the assistant.
+
+use serde::{Deserialize, Serialize};
+
+/// The assistant: what it advises by, how carefully, and whether it does so beside a wizard.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AssistantSpec {
+    pub shadow: Shadow,
+    /// What a signal costs, in presses: a signal has to save more than that (1.5 in the paper).
+    pub cost_of_communication: f64,
+    pub rollout: RolloutModel,
+}
+
+/// Whether the assistant advises where it does not act.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shadow {
+    #[default]
+    On,
+    Off,
+}
+
+impl Default for AssistantSpec {
+    fn default() -> Self {
+        AssistantSpec { shadow: Shadow::On, cost_of_communication: 1.5, rollout: RolloutModel::default() }
+    }
+}
+
+/// How far and how often the future is tried out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RolloutModel {
+    /// Decisions of the human in a rollout.
+    pub horizon: usize,
+    /// Rollouts of each signal and of saying nothing, paired by their random numbers; at most so many.
+    pub rollouts: usize,
+    /// States and recipes drawn from each sample of the belief.
+    pub states: usize,
+    /// From one press of the human to the next, in seconds.
+    pub human_press_s: f64,
+    /// Looks a second at each place that the next press needs.
+    pub looks_hz: f64,
+    /// No more rollouts of a signal are made when the standard error of its benefit is at most this, in presses, …
+    pub enough_error: f64,
+    /// … or at most twice this, if the net benefit is below zero by three standard errors.
+    pub least_rollouts: usize,
+}
+
+impl Default for RolloutModel {
+    fn default() -> Self {
+        RolloutModel {
+            horizon: 8,
+            rollouts: 256,
+            states: 32,
+            human_press_s: 2.0,
+            looks_hz: 0.3,
+            enough_error: 0.07,
+            least_rollouts: 32,
+        }
+    }
+}
+
+impl AssistantSpec {
+    /// The first setting that cannot be: its name, what it is, and what would be right.
+    pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
+        let rollout = &self.rollout;
+        let not_below = |key, value: f64| (key, value, value.is_finite() && value >= 0.0, "a number not below 0");
+        let above = |key, value: f64| (key, value, value.is_finite() && value > 0.0, "a number above 0");
+        let count = |key, value: usize, most: usize, right| (key, value as f64, (1..=most).contains(&value), right);
+        let checks = [
+            not_below("cost_of_communication", self.cost_of_communication),
+            count("horizon", rollout.horizon, 64, "a whole number from 1 to 64"),
+            count("rollouts", rollout.rollouts, 65_536, "a whole number from 1 to 65536"),
+            count("states", rollout.states, 256, "a whole number from 1 to 256"),
+            above("human_press_s", rollout.human_press_s),
+            not_below("looks_hz", rollout.looks_hz),
+            not_below("enough_error", rollout.enough_error),
+            count("least_rollouts", rollout.least_rollouts, 65_536, "a whole number from 1 to 65536"),
+        ];
+        let wrong = checks.into_iter().find(|(_, _, is_right, _)| !is_right);
+        wrong.map(|(key, value, _, remedy)| (key, format!("{key} = {value}"), remedy))
+    }
+}

@@ -1,0 +1,25 @@
+//! What there is to decide about: the situation in which something could be said.
+
+use crate::kitchen::{ButtonId, State};
+use crate::mind::dirichlet::DirichletBelief;
+
+/// A moment of a trial, as the assistant knows it: the true state, the arm's errand, and the estimate of the belief.
+#[derive(Clone, Copy, Debug)]
+pub struct Situation<'a> {
+    pub state: State,
+    pub belief: &'a DirichletBelief,
+    pub robot: RobotOutlook,
+    /// How long a press of the robot takes, in seconds.
+    pub robot_press_s: f64,
+}
+
+/// What the robot is about to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RobotOutlook {
+    /// Its arm is on its way to a button, which it will touch in so many seconds; `driven`: useful or not.
+    Busy { button: ButtonId, remaining_s: f64, driven: bool },
+    /// It follows its policy.
+    Free,
+    /// It is stopped or held.
+    Still,
+}

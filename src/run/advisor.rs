@@ -1,0 +1,113 @@
+//! The assistant beside a session: gets a question after every press and every order change, and answers it. Headless in
+//! place, live on a thread of its own, where the newest question goes first.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Sender, channel};
+use std::thread;
+
+use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
+
+use crate::base::time::SessionTime;
+use crate::communication::Signal;
+use crate::communication::planner::Planner;
+use crate::communication::recommendation::Recommendation;
+use crate::communication::situation::{RobotOutlook, Situation};
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Kitchen, State};
+use crate::mind::dirichlet::DirichletBelief;
+use crate::session::{Session, SessionSpec};
+
+/// What the assistant is asked: the session as it was after an event and all that followed from it at once.
+#[derive(Clone, Debug)]
+pub struct Question {
+    /// The number and the time of the event.
+    pub seq: u64,
+    pub time: SessionTime,
+    state: State,
+    belief: DirichletBelief,
+    robot: RobotOutlook,
+    robot_press_s: f64,
+    /// What may be said.
+    signals: Vec<Signal>,
+}
+
+impl Question {
+    /// The question after an event of this number and time.
+    pub fn of(
+        session: &Session,
+        belief: &DirichletBelief,
+        signals: Vec<Signal>,
+        seq: u64,
+        time: SessionTime,
+    ) -> Question {
+        let robot = match session.robot.intention {
+            _ if session.robot.stopped || session.robot.held && !session.robot.driven => RobotOutlook::Still,
+            Some((button, _, until)) => {
+                let remaining_s = until.secs_since(time).max(0.0);
+                RobotOutlook::Busy { button, remaining_s, driven: session.robot.driven }
+            }
+            None => RobotOutlook::Free,
+        };
+        let (state, belief, robot_press_s) = (session.state, belief.clone(), session.spec.robot.press_s);
+        Question { seq, time, state, belief, robot, robot_press_s, signals }
+    }
+}
+
+/// Answers questions about one session.
+#[derive(Clone, Debug)]
+pub struct Advisor {
+    planner: Planner,
+    cost: CostToGo,
+}
+
+impl Advisor {
+    /// The assistant of a session.
+    pub fn new(kitchen: Arc<Kitchen>, spec: &SessionSpec, cost: CostToGo) -> Advisor {
+        Advisor { planner: Planner::new(kitchen, &spec.human, spec.assistant.clone(), spec.seed), cost }
+    }
+
+    pub fn answer(&mut self, question: &Question) -> Recommendation {
+        let Question { state, ref belief, robot, robot_press_s, .. } = *question;
+        let situation = Situation { state, belief, robot, robot_press_s };
+        self.planner.advise(&mut self.cost, &situation, &question.signals, question.seq, question.time)
+    }
+
+    /// Answers on a thread of its own, which ends with the desk that asks.
+    pub fn on_thread(mut self) -> AdvisorDesk {
+        let (ask, questions) = channel::<Question>();
+        let (answer, answers) = unbounded_channel();
+        thread::spawn(move || {
+            while let Ok(question) = questions.recv() {
+                // What was asked meanwhile is newer.
+                let newest = questions.try_iter().last().unwrap_or(question);
+                if answer.send(self.answer(&newest)).is_err() {
+                    return;
+                }
+            }
+        });
+        AdvisorDesk { ask, answers }
+    }
+}
+
+/// Where a live session asks, and where the answers come.
+#[derive(Debug)]
+pub struct AdvisorDesk {
+    ask: Sender<Question>,
+    pub answers: UnboundedReceiver<Recommendation>,
+}
+
+impl AdvisorDesk {
+    /// Asks; the answer comes when it is there, or is overtaken by a newer question.
+    pub fn ask(&self, question: Question) {
+        // A thread that is gone answers nothing more, and the session goes on without advice.
+        let _ = self.ask.send(question);
+    }
+}
+
+/// The assistant's next answer; never, if nobody asks it.
+pub async fn next_advice(advisor: &mut Option<AdvisorDesk>) -> Option<Recommendation> {
+    match advisor {
+        Some(desk) => desk.answers.recv().await,
+        None => std::future::pending().await,
+    }
+}

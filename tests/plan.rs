@@ -440,7 +440,7 @@ fn wrong_plans_and_arguments_say_what_would_be_right() {
         ("participants = 14", "participants = [\"Anna Meier\"]", "never names"),
         ("[\"none\", \"wizard\"]", "[\"none\", \"none\"]", "the condition \"none\" twice"),
         ("[\"none\", \"wizard\"]", "[]", "0 conditions"),
-        ("[\"none\", \"wizard\"]", "[\"assistant\"]", "unknown variant `assistant`"),
+        ("[\"none\", \"wizard\"]", "[\"nobody\"]", "unknown variant `nobody`"),
         ("block = 2", "block = 3", "a multiple of the number of orders"),
         ("after = [1, 2]", "after = [3]", "with 2 trials"),
         ("orders = 2", "orders = 0", "a number above 0"),

@@ -16,6 +16,9 @@ use crate::mind::model::InferenceModel;
 use super::cases::Cases;
 use super::urn::Urn;
 
+/// This share of the first draws of a recipe is spread evenly over its variants: false recipes show in presses alone, and
+/// a few samples of them would leave it to chance whether they do.
+const SPREAD: f64 = 0.4;
 /// What is not drawn, since nothing depends on it.
 const UNDRAWN: u8 = u8::MAX;
 
@@ -37,8 +40,11 @@ pub struct Sampler {
     /// `[(belief * aspects + aspect) * states + draw]`: value indices.
     drawn: Vec<u8>,
     firsts: Vec<u8>,
-    /// p(a | belief), by belief sample.
-    likelihoods: Vec<f64>,
+    /// By aspect and value, how much a first draw counts; nothing where they come from the mean.
+    counts: Vec<Vec<f64>>,
+    /// How much each belief sample counts, before its likelihood p(a | belief) and with it.
+    priors: Vec<f64>,
+    posteriors: Vec<f64>,
     cases: Cases,
     /// `[belief * states + draw]`: indices of cases.
     drawn_cases: Vec<u32>,
@@ -66,13 +72,17 @@ impl Sampler {
     ) -> Evidence {
         let states = judge.inference.states;
         self.urns.resize(belief.aspects.len(), Urn::default());
-        for (urn, dirichlet) in self.urns.iter_mut().zip(&belief.aspects) {
+        self.counts.clear();
+        for ((urn, dirichlet), aspect) in self.urns.iter_mut().zip(&belief.aspects).zip(&judge.kitchen.aspects) {
             urn.fill(dirichlet, states, random);
+            let is_recipe = matches!(aspect.kind, AspectKind::Recipe(_));
+            self.counts.push(if is_recipe { urn.spread(SPREAD) } else { Vec::new() });
         }
         let mut wanted = judge.inference.beliefs;
         self.drawn.clear();
         self.drawn_cases.clear();
-        self.likelihoods.clear();
+        self.priors.clear();
+        self.posteriors.clear();
         self.cases.clear(states * wanted.max(judge.inference.max_beliefs));
         loop {
             self.draw(judge, cost, button, wanted, random);
@@ -92,7 +102,7 @@ impl Sampler {
         let aspects = self.urns.len();
         let row = aspects * states;
         let truth = kitchen.true_recipes();
-        let old = self.likelihoods.len();
+        let old = self.posteriors.len();
         self.drawn.resize(wanted * row, UNDRAWN);
         let mut firsts = std::mem::take(&mut self.firsts);
         firsts.resize(wanted - old, 0);
@@ -106,6 +116,12 @@ impl Sampler {
         for sample in old..wanted {
             let drawn = &mut self.drawn[sample * row..(sample + 1) * row];
             draw_on(kitchen, &self.urns, states, drawn, random, &mut self.mixed);
+            let counts = self.counts.iter().enumerate().filter(|(_, counts)| !counts.is_empty());
+            let count = counts.map(|(aspect, counts)| match drawn[aspect * states] {
+                UNDRAWN => 1.0,
+                value => counts[usize::from(value)],
+            });
+            self.priors.push(count.product());
             let (mut state, mut recipes) = (kitchen.empty_state(), truth);
             for aspect in 0..aspects {
                 set(kitchen, &mut state, &mut recipes, aspect, drawn[aspect * states]);
@@ -134,27 +150,26 @@ impl Sampler {
             }
             let buttons = kitchen.buttons[Agent::Human.index()].len();
             let sums = &sums[..buttons];
-            self.likelihoods.push(judge.decision.press_chance(judge.slips, sums, states as f64, button));
+            let likelihood = judge.decision.press_chance(judge.slips, sums, states as f64, button);
+            self.posteriors.push(self.priors[sample] * likelihood);
         }
     }
 
     fn evidence(&self) -> Evidence {
-        let beliefs = self.likelihoods.len();
-        let total: f64 = self.likelihoods.iter().sum();
-        let squares: f64 = self.likelihoods.iter().map(|p| p * p).sum();
-        Evidence { log_p: (total / beliefs as f64).ln(), beliefs, effective: total * total / squares }
+        let (before, total): (f64, f64) = (self.priors.iter().sum(), self.posteriors.iter().sum());
+        let squares: f64 = self.posteriors.iter().map(|p| p * p).sum();
+        Evidence { log_p: (total / before).ln(), beliefs: self.posteriors.len(), effective: total * total / squares }
     }
 
     /// Maps the weighted samples back to Dirichlets.
     fn collapse(&self, belief: &mut DirichletBelief, states: usize) {
-        let beliefs = self.likelihoods.len();
-        let total: f64 = self.likelihoods.iter().sum();
+        let (before, total): (f64, f64) = (self.priors.iter().sum(), self.posteriors.iter().sum());
         let row = belief.aspects.len() * states;
         for (aspect, dirichlet) in belief.aspects.iter_mut().enumerate() {
             let mut moments = Moments::of(dirichlet);
-            for (sample, likelihood) in self.likelihoods.iter().enumerate() {
+            for (sample, (posterior, prior)) in self.posteriors.iter().zip(&self.priors).enumerate() {
                 let start = sample * row + aspect * states;
-                moments.add(&self.drawn[start..start + states], likelihood / total - 1.0 / beliefs as f64);
+                moments.add(&self.drawn[start..start + states], posterior / total - prior / before);
             }
             *dirichlet = moments.collapsed(self.urns[aspect].stand_in());
         }
@@ -259,7 +274,7 @@ impl Moments<'_> {
         if let Some(value) = stand_in
             && self.mean[value] < prior[value]
         {
-            let tail = || (0..prior.len()).filter(|&value| Urn::is_tail(prior[value]));
+            let tail = || (0..prior.len()).filter(|&value| Urn::is_tail(prior, value));
             let of_tail: f64 = tail().map(|value| prior[value]).sum();
             let left = (1.0 + (self.mean[value] - prior[value]) / of_tail).max(0.0);
             tail().for_each(|value| self.mean[value] = left * prior[value]);

@@ -8,8 +8,9 @@ use rand::RngExt;
 use crate::base::rng::Stream;
 use crate::mind::dirichlet::Dirichlet;
 
-/// Values with a smaller expected probability are the tail: one of them stands for all.
+/// Values with a smaller expected probability are the tail, where there are so many values: one of them stands for all.
 const TAIL: f64 = 0.004;
+const MANY: usize = 8;
 
 /// The urn of one aspect. The values of its tail are drawn as one, which is chosen anew for every urn by their shares: so
 /// each of them has its turn, and few strange states have to be thought through at a time.
@@ -19,6 +20,8 @@ pub struct Urn {
     stand_in: Option<u8>,
     /// Values, the likeliest first, and the chance that a draw is one of those up to it.
     order: Vec<(u8, f64)>,
+    /// The same for first draws, where they do not come from the mean.
+    proposal: Vec<(u8, f64)>,
     /// `stays[k]`: the chance that none of the draws 1 to k (the first is 0) is a new one.
     stays: Vec<f64>,
 }
@@ -28,10 +31,11 @@ impl Urn {
     pub fn fill(&mut self, dirichlet: &Dirichlet, draws: usize, random: &mut Stream) {
         let mean = dirichlet.mean();
         self.order.clear();
+        self.proposal.clear();
         self.order.extend(
-            (0..mean.len()).filter(|&value| !Urn::is_tail(mean[value])).map(|value| (value as u8, mean[value])),
+            (0..mean.len()).filter(|&value| !Urn::is_tail(mean, value)).map(|value| (value as u8, mean[value])),
         );
-        let tail = || (0..mean.len()).filter(|&value| Urn::is_tail(mean[value]));
+        let tail = || (0..mean.len()).filter(|&value| Urn::is_tail(mean, value));
         let of_tail: f64 = tail().map(|value| mean[value]).sum();
         let mut left = random.random::<f64>() * of_tail;
         let chosen = tail().find(|&value| {
@@ -61,9 +65,9 @@ impl Urn {
         self.stand_in.map(usize::from)
     }
 
-    /// Whether a value of this expected probability belongs to the tail.
-    pub fn is_tail(mean: f64) -> bool {
-        mean < TAIL
+    /// Whether a value belongs to the tail of the distribution with these expected probabilities.
+    pub fn is_tail(mean: &[f64], value: usize) -> bool {
+        mean.len() > MANY && mean[value] < TAIL
     }
 
     /// The value at this point of the cumulated mean, 0 to 1.
@@ -79,17 +83,35 @@ impl Urn {
         self.value_at(random.random::<f64>())
     }
 
-    /// First draws for many urns, each value as often as its mean says, to a draw, in random order.
+    /// Lets first draws come from the mean and, with probability `share`, evenly from all values: rare ones are drawn more
+    /// often then, and count the less. By value, how much a draw counts.
+    pub fn spread(&mut self, share: f64) -> Vec<f64> {
+        let values = self.order.iter().map(|(value, _)| usize::from(*value) + 1).max().unwrap_or(0);
+        let mut counts = vec![1.0; values];
+        let (even, mut last, mut sum) = (1.0 / self.order.len() as f64, 0.0, 0.0);
+        self.proposal.clear();
+        for &(value, cumulated) in &self.order {
+            let p = cumulated - last;
+            let drawn = (1.0 - share) * p + share * even;
+            (last, sum) = (cumulated, sum + drawn);
+            counts[usize::from(value)] = p / drawn;
+            self.proposal.push((value, sum));
+        }
+        counts
+    }
+
+    /// First draws for many urns, each value as often as its mean (or [`Urn::spread`]) says, to a draw, in random order.
     pub fn first_draws(&self, random: &mut Stream, out: &mut [u8]) {
+        let from = if self.proposal.is_empty() { &self.order } else { &self.proposal };
         let step = 1.0 / out.len() as f64;
         let offset = random.random::<f64>();
         let mut at = 0;
         for (index, first) in out.iter_mut().enumerate() {
             let point = (index as f64 + offset) * step;
-            while at + 1 < self.order.len() && point >= self.order[at].1 {
+            while at + 1 < from.len() && point >= from[at].1 {
                 at += 1;
             }
-            *first = self.order[at].0;
+            *first = from[at].0;
         }
         for last in (1..out.len()).rev() {
             out.swap(last, random.random_range(0..=last));

@@ -95,10 +95,11 @@ fn measure(size: (u16, u16)) {
     let at = |share: f64| times[((REDRAWS as f64 * share) as usize).min(REDRAWS - 1)].as_secs_f64() * 1e3;
     let bytes = written.0.get() / REDRAWS;
     println!(
-        "redraw at {}x{}: p50 {:.2} ms, p99 {:.2} ms, max {:.2} ms; {bytes} bytes each",
+        "redraw at {}x{}: p50 {:.2} ms, p90 {:.2} ms, p99 {:.2} ms, max {:.2} ms; {bytes} bytes each",
         size.0,
         size.1,
         at(0.5),
+        at(0.9),
         at(0.99),
         at(1.0)
     );

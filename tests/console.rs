@@ -479,7 +479,7 @@ fn the_rate_of_the_gaze_begins_anew_after_a_gap() {
         stage.wait(1.5);
         assert_eq!(stage.session.gaze_hz(stage.model.now), None);
         let screen = stage.screen((120, 40));
-        assert!(screen.contains("NO GAZE") && screen.contains("0 Hz, confidence -"), "{screen}");
+        assert!(screen.contains("NO GAZE") && screen.contains("0 Hz, conf -"), "{screen}");
     }
 }
 

@@ -1,7 +1,7 @@
 """Key to effect in the real program: a key is written to its terminal, the signal's event is looked for in the log and
 its words on the screen, while gaze comes in at full rate. And what an idle console costs.
 
-    tests/outside/latency.py TOMCOM FOLDER [--signals 1000] [--gap 0.6]
+    tests/outside/latency.py TOMCOM FOLDER [--signals 1000] [--gap 0.6] [--rates 0 120 1000]
 """
 
 import argparse
@@ -58,7 +58,7 @@ def send(console, log, key, name):
 
 
 def begin(tomcom, folder, hz):
-    gaze = {"gaze": "json", "gaze_port": PORT} if hz else {}
+    gaze = {"gaze": "json", "gaze_port": PORT + hz} if hz else {}
     console = Console(tomcom, [session_file(folder, **gaze), "--out", folder / "recordings"])
     console.wait_for("READY")
     (recording,) = (folder / "recordings").iterdir()
@@ -71,7 +71,7 @@ def measure(tomcom, folder, signals, gap_s, hz):
     sender = None
     with console:
         if hz:
-            sender = subprocess.Popen([sys.executable, "-c", SENDER, str(PORT), str(hz)])
+            sender = subprocess.Popen([sys.executable, "-c", SENDER, str(PORT + hz), str(hz)])
             # Without gaze that arrives the trial would not start at once.
             console.wait_for("confidence 0.9")
             time.sleep(0.5)
@@ -118,8 +118,9 @@ if __name__ == "__main__":
     parser.add_argument("folder", type=Path)
     parser.add_argument("--signals", type=int, default=1000)
     parser.add_argument("--gap", type=float, default=0.6, help="seconds between signals")
+    parser.add_argument("--rates", type=int, nargs="*", default=[0, 120, 1000], help="of the gaze in Hz; 0: simulated")
     arguments = parser.parse_args()
     idle(arguments.tomcom, arguments.folder / f"idle-{os.getpid()}", 10)
-    for rate in [0, 120, 1000]:
+    for rate in arguments.rates:
         folder = arguments.folder / f"gaze-{rate}-{os.getpid()}"
         measure(arguments.tomcom, folder, arguments.signals, arguments.gap, rate)

@@ -63,10 +63,10 @@ fn quality(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, m
     let unusable = 100.0 * gaze.unusable as f64 / gaze.samples.max(1) as f64;
     let text = match (session.gaze_hz(model.now), gaze.last) {
         (Some(hz), Some((_, sample))) => {
-            format!("{hz:.0} Hz, confidence {:.2}, {unusable:.0}% unusable", sample.confidence)
+            format!("{hz:.0} Hz, conf {:.2}, {unusable:.0}% unusable", sample.confidence)
         }
-        (Some(hz), None) => format!("{hz:.0} Hz, confidence -, {unusable:.0}% unusable"),
-        (None, _) => "0 Hz, confidence -, -% unusable".to_string(),
+        (Some(hz), None) => format!("{hz:.0} Hz, conf -, {unusable:.0}% unusable"),
+        (None, _) => "0 Hz, conf -, -% unusable".to_string(),
     };
     brush.parts(x, y, columns, &[(&text, Role::Quiet)]);
 }

@@ -11,6 +11,7 @@ use ratatui::backend::CrosstermBackend;
 use ratatui::layout::Rect;
 use ratatui::{Terminal, TerminalOptions, Viewport};
 use tomcom::base::time::SessionTime;
+use tomcom::console::belief::Moment;
 use tomcom::console::model::Recording;
 use tomcom::console::view::theme::{Ground, Theme};
 use tomcom::console::{KeyMap, Keys, Model, view};
@@ -62,10 +63,17 @@ impl Stage {
     /// Lets everything happen until then, and tells the console as a live session does.
     fn run_until(&mut self, now: SessionTime) {
         while self.engine.next_due().is_some_and(|due| due <= now) {
-            for stamped in self.engine.fire() {
+            let events = self.engine.fire();
+            for stamped in &events {
                 if let Event::Gaze(sample) = stamped.event {
                     self.model.see(stamped.time, sample);
                 }
+            }
+            if let Some(last) = events.last() {
+                let by_gaze = matches!(last.event, Event::Gaze(_));
+                let session = self.engine.session();
+                let belief = self.engine.belief();
+                self.model.belief.note(Moment::new(&session.kitchen, session.state, belief, last.time, by_gaze));
             }
         }
         let judged = self.engine.judged();

@@ -53,7 +53,7 @@ def send(console, log, key, name):
             logged = time.monotonic()
         told = f"{key}: in the log: {logged is not None}, on the screen: {console.drawn is not None}"
         assert time.monotonic() < pressed + 10, f"{told}\n{console.text()}"
-        time.sleep(0.0002)
+        time.sleep(0.001)
     return logged - pressed, console.drawn - pressed
 
 

@@ -132,8 +132,8 @@ impl Regions {
     /// Three columns: what is, what is believed and could be said, what happened.
     fn large(self, visibility: Visibility) -> Regions {
         let (rest, timeline) = bottom(self.kitchen, TIMELINE_ROWS);
-        let (rest, events) = right(rest, 44);
-        let (kitchen, side) = left(rest, rest.width * 11 / 20);
+        let (rest, events) = right(rest, 36);
+        let (kitchen, side) = left(rest, (rest.width / 2).max(KITCHEN_COLUMNS));
         let (kitchen, below) = bottom(kitchen, kitchen.height * 3 / 10);
         let (participant, map) = left(below, below.width / 2);
         let (shown, gaze) = top(participant, 5);

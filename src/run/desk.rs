@@ -24,11 +24,18 @@ const REDRAW: Duration = Duration::from_millis(100);
 pub(super) struct Desk {
     pub screen: Screen,
     theme: Theme,
+    pub seat: Seat,
+    pub tracker: Tracker,
+}
+
+/// Whoever sits there, and what asks the program to end.
+pub(super) struct Seat {
     hands: Hands,
     end: Pin<Box<dyn Future<Output = io::Result<()>>>>,
-    /// Lines of the tracker's program, if the gaze comes from one.
-    gaze: Option<Receiver<GazeLine>>,
 }
+
+/// Lines of the tracker's program, if the gaze comes from one.
+pub(super) struct Tracker(Option<Receiver<GazeLine>>);
 
 impl Desk {
     /// Opens the devices that these settings need, and takes the terminal.
@@ -46,17 +53,8 @@ impl Desk {
         };
         let screen = Screen::take().map_err(LiveError::Terminal)?;
         let theme = theme(&spec.console, screen.ground);
-        Ok(Desk { screen, theme, hands: Hands::default(), end: Box::pin(asked_to_end()), gaze })
-    }
-
-    /// What comes in next; nothing if the program has to end, because it is asked to or because the terminal is gone.
-    pub async fn next(&mut self) -> Option<Arrival> {
-        tokio::select! {
-            biased;
-            _ = &mut self.end => None,
-            message = self.hands.next() => message.map(Arrival::Message),
-            Some(line) = receive(&mut self.gaze) => Some(Arrival::Gaze(line)),
-        }
+        let seat = Seat { hands: Hands::default(), end: Box::pin(asked_to_end()) };
+        Ok(Desk { screen, theme, seat, tracker: Tracker(gaze) })
     }
 
     /// Asks before a recording begins; the place of the answer, nothing if the program is to be left.
@@ -66,13 +64,16 @@ impl Desk {
     pub async fn ask(&mut self, question: &Question) -> Result<Option<usize>, LiveError> {
         loop {
             self.screen.ask(question, self.theme).map_err(LiveError::Terminal)?;
-            let arrival = tokio::select! {
-                arrival = self.next() => arrival,
+            let message = tokio::select! {
+                biased;
+                message = self.seat.next() => message,
+                // Read all the same, or it would be read later as if it had just come.
+                Some(_) = self.tracker.next() => continue,
                 // A terminal that was still busy with a frame gets the question now.
                 () = sleep(REDRAW) => continue,
             };
-            match arrival {
-                Some(Arrival::Message(Message::Key(key))) => match question.reply(&key) {
+            match message {
+                Some(Message::Key(key)) => match question.reply(&key) {
                     Some(Reply::Answer(index)) => return Ok(Some(index)),
                     Some(Reply::Leave) => return Ok(None),
                     None => {}
@@ -87,16 +88,23 @@ impl Desk {
     }
 }
 
-/// Something that comes in at the desk.
-pub(super) enum Arrival {
-    Message(Message),
-    Gaze(GazeLine),
+impl Seat {
+    /// What comes in next; nothing if the program has to end, because it is asked to or because the terminal is gone.
+    pub async fn next(&mut self) -> Option<Message> {
+        tokio::select! {
+            biased;
+            _ = &mut self.end => None,
+            message = self.hands.next() => message,
+        }
+    }
 }
 
-/// The next line of the gaze input; never, if there is none.
-async fn receive(gaze: &mut Option<Receiver<GazeLine>>) -> Option<GazeLine> {
-    match gaze {
-        Some(lines) => lines.recv().await,
-        None => std::future::pending().await,
+impl Tracker {
+    /// The next line of the gaze input; never, if there is none.
+    pub async fn next(&mut self) -> Option<GazeLine> {
+        match &mut self.0 {
+            Some(lines) => lines.recv().await,
+            None => std::future::pending().await,
+        }
     }
 }

@@ -8,7 +8,7 @@ use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
 use super::advisor::{AdvisorDesk, next_advice};
 use super::begun::{Begun, Place};
-use super::desk::{Arrival, Desk};
+use super::desk::Desk;
 use super::engine::Engine;
 use super::figures::TrialFigures;
 use super::options::Beginning;
@@ -202,12 +202,11 @@ impl Live {
             let due = self.engine.next_due().map(|due| Instant::from_std(self.clock.instant_of(due)));
             tokio::select! {
                 biased;
-                arrival = desk.next() => match arrival {
-                    Some(Arrival::Message(message)) => if let Some(how) = self.take(message) {
+                message = desk.seat.next() => match message {
+                    Some(message) => if let Some(how) = self.take(message) {
                         leaving = how;
                         break;
                     },
-                    Some(Arrival::Gaze(line)) => self.gaze(line),
                     None => break,
                 },
                 () = sleep_until(due.unwrap_or_else(Instant::now)), if due.is_some() => {
@@ -224,6 +223,8 @@ impl Live {
                     next_move = Instant::now() + if self.engine.session().is_running() { RUNNING } else { RESTING };
                     self.draw(&mut desk.screen).map_err(LiveError::Terminal)?;
                 }
+                // Last: a tracker that sends more than can be read delays itself, and neither robot, log nor screen.
+                Some(line) = desk.tracker.next() => self.gaze(line),
             }
         }
         self.close(leaving)

@@ -397,8 +397,8 @@ fn a_signal_makes_certain_what_it_is_about_as_often_as_it_is_noticed() {
 
 #[test]
 fn too_few_effective_samples_are_met_with_more() {
-    let mut model = HumanModel::default();
-    model.inference = InferenceModel { beliefs: 32, states: 8, min_effective: 30.0, max_beliefs: 256, predictions: 8 };
+    let inference = InferenceModel { beliefs: 32, states: 8, min_effective: 30.0, max_beliefs: 256, predictions: 8 };
+    let model = HumanModel { inference, ..HumanModel::default() };
     let mut bench = Bench::new("sushi", model);
     bench.order(0.5, "order_1", "salmon nigiri");
     bench.look(1.0, 6.0, "order_1", 120.0);

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use serde::Deserialize;
 use serde_json::Value;
 
 /// Runs the program with these arguments and demands the exit code.
@@ -136,30 +137,11 @@ fn a_kitchen_takes_no_key_from_the_console() {
 
 #[test]
 fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
-    let folder = folder("wrong");
-    let session = |name: &str, text: &str| {
-        let path = folder.join(name);
-        fs::write(&path, text).expect("a file");
-        path.to_str().expect("a path in UTF-8").to_string()
-    };
+    let session = folder("wrong").join("keyboard.toml");
     let sushi = fs::canonicalize("layouts/sushi.toml").expect("the layout");
-    let layout = format!("layout = \"{}\"\n", sushi.display());
-    let cases = [
-        ("no-layout.toml", "seed = 1\n\nlayout = \"nowhere.toml\"\n".to_string(), 3, "nowhere.toml"),
-        ("minus.toml", format!("{layout}[robot]\npress_s = -1.0\n"), 3, "a number above 0"),
-        ("name.toml", format!("{layout}[participant]\ncode = \"Jane Doe\"\n"), 3, "never a name"),
-        ("gaze.toml", format!("{layout}[participant]\nkind = \"keyboard\"\ngaze = \"simulated\"\n"), 4, "mouse"),
-        ("unknown.toml", format!("{layout}[trial]\nlength = 3\n"), 3, "unknown field"),
-        ("condition.toml", format!("{layout}[trial]\ncondition = \"both\"\n"), 3, "wizard"),
-        ("broken.toml", format!("{layout}[trial\n"), 2, "found"),
-    ];
-    for (name, text, line, says) in cases {
-        let told = complaint(&["simulate", &session(name, &text)]);
-        assert!(told.contains(&format!("{name}:{line}:")), "{name}:{line} is not named in\n{told}");
-        assert!(told.contains(says), "{says:?} is not in\n{told}");
-    }
-    let keyboard = format!("{layout}[participant]\nkind = \"keyboard\"\ngaze = \"none\"\n");
-    assert!(complaint(&["simulate", &session("keyboard.toml", &keyboard)]).contains("simulated"));
+    let keyboard = "[participant]\nkind = \"keyboard\"\ngaze = \"none\"\n";
+    fs::write(&session, format!("layout = \"{}\"\n{keyboard}", sushi.display())).expect("a file");
+    assert!(complaint(&["simulate", &session.display().to_string()]).contains("simulated"));
     assert!(complaint(&["replay", "nowhere", "--verify"]).contains("nowhere"));
     assert!(complaint(&["replay", "Cargo.toml", "--verify"]).contains("Cargo.toml:1:"));
     assert!(complaint(&["replay", "Cargo.toml"]).contains("no log of a session"));
@@ -168,6 +150,113 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     assert!(complaint(&["simulate", "layouts/sushi.toml"]).contains("found a layout file"));
     complaint(&["simulate", "sessions/default.toml", "--trials", "0"]);
     complaint(&["dance"]);
+}
+
+/// An edit of a file that makes it wrong, or a wrong file, and the message that it has to give.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Bad {
+    /// What kind of file it is.
+    file: String,
+    replace: Option<String>,
+    with: Option<String>,
+    text: Option<String>,
+    /// Where the message points: the line with this text, the `nth` one; the whole file without it.
+    at: Option<String>,
+    nth: Option<usize>,
+    found: String,
+    remedy: String,
+}
+
+#[test]
+fn each_bad_file_has_its_own_message_with_file_line_and_remedy() {
+    let mut paths: Vec<PathBuf> =
+        fs::read_dir("tests/bad").expect("tests/bad").map(|entry| entry.expect("an entry").path()).collect();
+    paths.sort();
+    let mut messages: Vec<String> = Vec::new();
+    for path in &paths {
+        let text = fs::read_to_string(path).expect("a case");
+        let bad: Bad = toml::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let name = path.file_stem().expect("a name").to_string_lossy();
+        assert!(name.starts_with(&format!("{}-", bad.file)), "{name} is not named after its kind");
+        let message = told_about(&name, &bad);
+        assert!(!messages.contains(&message), "{name}: said before: {message}");
+        messages.push(message);
+    }
+    let of_kind = |kind: &str| {
+        let names = paths.iter().filter_map(|path| path.file_name()).map(|name| name.to_string_lossy());
+        names.filter(|name| name.starts_with(kind)).count()
+    };
+    let kinds = ["layout", "recipes", "session", "plan", "keys", "parameters", "questionnaire", "log"];
+    let counts: Vec<String> = kinds.iter().map(|kind| format!("{} {kind}", of_kind(kind))).collect();
+    assert!(kinds.iter().all(|kind| of_kind(kind) >= 5), "{counts:?}");
+    println!("{} bad files, each with its own message: {}", messages.len(), counts.join(", "));
+}
+
+/// The message of the program about such a file among others that are right: what was found, and what would be right.
+fn told_about(name: &str, bad: &Bad) -> String {
+    let folder = folder(&format!("bad/{name}"));
+    let (file, command): (&str, &[&str]) = match bad.file.as_str() {
+        "layout" => ("layouts/sushi.toml", &["kitchen", "layouts/sushi.toml"]),
+        "recipes" => ("recipes/sushi.toml", &["kitchen", "layouts/sushi.toml"]),
+        "session" => ("sessions/default.toml", &["keys", "sessions/default.toml"]),
+        "plan" => ("sessions/study.toml", &["plan", "sessions/study.toml"]),
+        "keys" => ("sessions/keys.toml", &["keys", "sessions/default.toml"]),
+        "parameters" => ("sessions/parameters.toml", &["keys", "sessions/parameterised.toml"]),
+        "questionnaire" => ("sessions/questionnaires/acceptance.toml", &["plan", "sessions/study.toml"]),
+        "log" => ("recording/events.jsonl", &["replay", "recording", "--format", "json"]),
+        other => panic!("{name}: the kind {other}"),
+    };
+    let session = fs::read_to_string("sessions/default.toml").expect("the default session");
+    let with_keys = session.replacen("# keys = ", "keys = ", 1);
+    assert_ne!(session, with_keys, "the default session shows how a key file is named");
+    let read = |path: &str| fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let files = [
+        ("layouts/sushi.toml", read("layouts/sushi.toml")),
+        ("recipes/sushi.toml", read("recipes/sushi.toml")),
+        ("sessions/default.toml", with_keys),
+        ("sessions/keys.toml", String::new()),
+        ("sessions/parameterised.toml", format!("human_model = \"parameters.toml\"\n{session}")),
+        ("sessions/parameters.toml", String::new()),
+        ("sessions/study.toml", read("sessions/study.toml")),
+        ("sessions/questionnaires/acceptance.toml", read("sessions/questionnaires/acceptance.toml")),
+        ("recording/events.jsonl", read("tests/golden/format-1-hand.jsonl")),
+    ];
+    let mut edited = String::new();
+    for (path, text) in files {
+        let text = if path == file { edit(name, bad, &text) } else { text };
+        fs::create_dir_all(folder.join(path).parent().expect("a folder")).expect("a folder");
+        fs::write(folder.join(path), &text).expect("a file");
+        edited = if path == file { text } else { edited };
+    }
+    let lines = || edited.lines().enumerate();
+    let line = bad.at.as_ref().map_or(1, |at| {
+        let found = lines().filter(|(_, line)| line.contains(at.as_str())).nth(bad.nth.unwrap_or(1) - 1);
+        found.map_or_else(|| panic!("{name}: no line with {at}"), |(index, _)| index + 1)
+    });
+    let mut program = Command::new(env!("CARGO_BIN_EXE_tomcom"));
+    let output = program.args(command).current_dir(&folder).output().expect("the program starts");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{name}: {told}");
+    assert!(output.stdout.is_empty() && !told.contains("panicked"), "{name}: {told}");
+    let said = |text: &str| told.lines().find_map(|line| Some(line.split_once(text)?.1.to_string()));
+    let found = said(&format!("{file}:{line}: found ")).unwrap_or_else(|| panic!("{name}: not of line {line}: {told}"));
+    let remedy = said("  help: ").unwrap_or_else(|| panic!("{name}: no remedy: {told}"));
+    assert!(!bad.found.is_empty() && found.contains(&bad.found), "{name}: found {found}");
+    assert!(!bad.remedy.is_empty() && remedy.contains(&bad.remedy), "{name}: remedy {remedy}");
+    format!("{found}; {remedy}")
+}
+
+/// The wrong text of a file that was right.
+fn edit(name: &str, bad: &Bad, right: &str) -> String {
+    match (&bad.replace, &bad.with, &bad.text) {
+        (Some(replace), Some(with), None) => {
+            assert!(right.contains(replace.as_str()), "{name}: nothing to replace");
+            right.replacen(replace.as_str(), with, 1)
+        }
+        (None, None, Some(text)) => text.clone(),
+        _ => panic!("{name}: either an edit or a text"),
+    }
 }
 
 /// A session of the sushi kitchen with this key file, in a folder of its own; the path of the session file.
@@ -207,46 +296,7 @@ fn the_printed_keys_are_a_key_file_that_changes_nothing_until_it_is_changed() {
 }
 
 #[test]
-fn each_wrong_key_file_is_told_with_its_line_and_what_would_be_right() {
-    let cases = [
-        ("[console]\nstop = \"f1\"\n", 2, "\"stop\", which nothing in [console] is called", "one of stop_robot"),
-        ("[signals]\npot = \"p\"\n", 2, "nothing in [signals] is called", "cooking_pot"),
-        ("[buttons]\n\n\"take tuna\" = \"t\"\n", 3, "nothing in [buttons] is called", "take salmon"),
-        ("[console]\nhelp = \"hyper+x\"\n", 2, "help = \"hyper+x\", which is no key", "f1 to f12"),
-        ("[console]\nhelp = \"f13\"\n", 2, "help = \"f13\", which is no key", "f1 to f12"),
-        ("[console]\nhelp = \"K\"\n", 2, "a capital counts as its small letter", "a character such as"),
-        ("[console]\nhelp = \"ctrl+i\"\n", 2, "which most terminals send as tab", "ctrl+k"),
-        ("[console]\nhelp = \"ctrl+1\"\n", 2, "ctrl goes with a letter", "ctrl+k"),
-        ("[console]\nhelp = \"\"\n", 2, "help = \"\", which is no key", "a character such as"),
-        ("[console]\nhelp = [\"f1\", \"f1\"]\n", 2, "help = \"f1\" twice", "each key once"),
-        ("[console]\nhelp = 1\n", 2, "integer `1`", "a key file, as tomcom keys prints it"),
-        ("[console]\nquit = \"space\"\n", 2, "which is the robot stop, always", "another key"),
-        ("[signals]\norder_1 = \"space\"\n", 2, "which is the robot stop, always", "another key"),
-        ("[console]\nstop_robot = \"f1\"\n", 2, "without the space bar", "a list with \"space\""),
-        ("[console]\nstop_robot = []\n", 2, "without the space bar", "a list with \"space\""),
-        ("[console]\nquit = []\n", 2, "quit = []", "without one nobody gets out"),
-        (
-            "[console]\nhelp = \"f1\"\nquit = \"f1\"\n",
-            3,
-            "the key \"f1\" for quit, which is taken by help",
-            "another key",
-        ),
-        ("[console]\nhelp = \"q\"\n", 2, "for help, which is taken by order_1", "order_1 has its own in [signals]"),
-        ("[buttons]\ntrash = \"c\"\n", 2, "for trash, which is taken by cut", "cut has its own in [buttons]"),
-        ("[replay]\nfaster = \"-\"\n", 2, "for faster, which is taken by slower", "another key"),
-        ("[keys]\nhelp = \"f1\"\n", 1, "unknown field `keys`", "as tomcom keys prints it"),
-        ("[console]\nhelp = \"f1\"\nhelp = \"f2\"\n", 3, "duplicate key", "as tomcom keys prints it"),
-        ("[console\n", 1, "found", "as tomcom keys prints it"),
-        ("layout = \"x\"\n", 1, "found a session file", "a key file, as tomcom keys prints it"),
-    ];
-    let mut told_before: Vec<String> = Vec::new();
-    for (index, (text, line, found, remedy)) in cases.into_iter().enumerate() {
-        let told = complaint(&["keys", &session_with_keys("wrong-keys", text)]);
-        assert!(told.contains(&format!("keys.toml:{line}: found ")), "{index}: line {line} is not named in\n{told}");
-        assert!(told.contains(found) && told.contains(remedy), "{index}: {found:?} or {remedy:?} is not in\n{told}");
-        assert!(!told_before.contains(&told), "{index}: said before:\n{told}");
-        told_before.push(told);
-    }
+fn a_key_file_that_is_not_there_is_told() {
     let session = session_with_keys("no-keys", "");
     fs::remove_file(Path::new(&session).with_file_name("keys.toml")).expect("a file");
     let told = complaint(&["keys", &session]);

@@ -3,9 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use rand::RngExt;
-use serde::Deserialize;
 use tomcom::base::rng::stream;
-use tomcom::edge::files::{FileError, compile_kitchen, read_kitchen};
+use tomcom::edge::files::{compile_kitchen, read_kitchen};
 use tomcom::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationKind, OrderContent, State};
 
 fn load(layout: &str) -> Kitchen {
@@ -258,78 +257,6 @@ fn every_layout_has_what_a_kitchen_needs() {
         }
         let keys: Vec<Option<char>> = kitchen.buttons[0].iter().map(|button| button.key).collect();
         assert!(keys.iter().all(Option::is_some), "every button of the human has a key");
-    }
-}
-
-/// An edit of the sushi kitchen that makes it wrong, and the message that it has to give.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Bad {
-    file: String,
-    replace: String,
-    with: String,
-    /// Where the message points: the line with this text, the `nth` one; the whole file without it.
-    at: Option<String>,
-    nth: Option<usize>,
-    found: String,
-    remedy: String,
-}
-
-#[test]
-fn each_bad_file_has_its_own_message() {
-    let mut paths: Vec<PathBuf> =
-        std::fs::read_dir("tests/bad").expect("tests/bad").map(|entry| entry.expect("an entry").path()).collect();
-    paths.sort();
-    assert!(paths.len() >= 12);
-    let mut messages: Vec<String> = Vec::new();
-    for path in paths {
-        let text = std::fs::read_to_string(&path).expect("a case");
-        let bad: Bad = toml::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        let message = check_bad(&path, &bad);
-        assert!(!messages.contains(&message), "{}: said before: {message}", path.display());
-        messages.push(message);
-    }
-}
-
-fn check_bad(case: &Path, bad: &Bad) -> String {
-    let names = [("layout", "layouts/sushi.toml"), ("recipes", "recipes/sushi.toml")];
-    let texts = names.map(|(kind, name)| {
-        let text = std::fs::read_to_string(name).expect("a file of the sushi kitchen");
-        assert!(bad.file != kind || text.contains(&bad.replace), "{}: nothing to replace", case.display());
-        if bad.file == kind { text.replacen(&bad.replace, &bad.with, 1) } else { text }
-    });
-    let edited = &texts[usize::from(bad.file == "recipes")];
-    let nth = bad.nth.unwrap_or(1) - 1;
-    let line = bad.at.as_ref().map(|at| {
-        let found = edited.lines().enumerate().filter(|(_, line)| line.contains(at.as_str())).nth(nth);
-        found.map_or_else(|| panic!("{}: no line with {at}", case.display()), |(index, _)| index + 1)
-    });
-    let name = names[usize::from(bad.file == "recipes")].1;
-    let error = match bad.with.contains("../recipes/") {
-        true => {
-            let folder = std::env::temp_dir().join(format!("tomcom-bad-{}", std::process::id()));
-            std::fs::create_dir_all(folder.join("layouts")).expect("a folder");
-            let file = folder.join("layouts/sushi.toml");
-            std::fs::write(&file, edited).expect("a file");
-            let error = read_kitchen(&file).err();
-            std::fs::remove_dir_all(folder).expect("an own folder");
-            error
-        }
-        false => {
-            let [layout, recipes] = texts.clone();
-            compile_kitchen((Path::new(names[0].1), layout), (Path::new(names[1].1), recipes)).err()
-        }
-    };
-    match error {
-        Some(FileError::Wrong { name: file, line: at, found, remedy, .. }) => {
-            assert!(file.ends_with(name), "{}: {file}", case.display());
-            assert!(found.contains(&bad.found), "{}: found {found}", case.display());
-            assert!(remedy.contains(&bad.remedy), "{}: remedy {remedy}", case.display());
-            assert_eq!(at, line.unwrap_or(1), "{}: line", case.display());
-            format!("{found}; {remedy}")
-        }
-        Some(other) => panic!("{}: {other}", case.display()),
-        None => panic!("{}: no error", case.display()),
     }
 }
 

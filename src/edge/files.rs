@@ -1,5 +1,6 @@
 //! Reads session, layout and recipe files. Every error names the file, the line, what was found and what would be right.
 
+use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -29,7 +30,7 @@ pub enum FileError {
     #[error("{}: cannot be read: {reason}", path.display())]
     Unreadable {
         path: PathBuf,
-        reason: std::io::Error,
+        reason: io::Error,
         #[help]
         remedy: String,
     },
@@ -58,7 +59,7 @@ impl FileError {
     }
 
     /// An error of a file that cannot be read or written.
-    pub fn unreadable(path: &Path, reason: std::io::Error, remedy: &str) -> FileError {
+    pub fn unreadable(path: &Path, reason: io::Error, remedy: &str) -> FileError {
         FileError::Unreadable { path: path.to_path_buf(), reason, remedy: remedy.to_string() }
     }
 }
@@ -89,15 +90,20 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
         if spec.human != HumanModel::default() {
             let found = "human_model, beside parameters of the human model in the session file".to_string();
             let remedy = "one of the two".to_string();
-            return Err(FileError::at(path, &text, line_of(&text, "human_model"), found, remedy));
+            return Err(FileError::at(path, &text, line_of(&text, "human_model", 0), found, remedy));
         }
-        spec.human = read_human_model(&folder.join(file))?;
+        let model = folder.join(file);
+        if let Err(reason) = std::fs::metadata(&model) {
+            let remedy = "the path of a file with parameters of the human model, relative to the session file";
+            return Err(missing(path, &text, ("human_model", file), reason, remedy));
+        }
+        spec.human = read_human_model(&model)?;
     }
     spec.check().map_err(|error| wrong_setting(path, &text, error))?;
     if let Some(step) = &spec.step {
         let found = format!("the place of a recording in the plan \"{}\"", step.plan);
         let remedy = "no [step]: the program finds it out from the plan and its recordings".to_string();
-        return Err(FileError::at(path, &text, line_of(&text, "digest"), found, remedy));
+        return Err(FileError::at(path, &text, line_of(&text, "digest", 0), found, remedy));
     }
     let questionnaires = match &spec.plan {
         Some(plan) => read_questionnaires(path, &text, plan)?,
@@ -105,17 +111,15 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     };
     let layout_path = folder.join(&spec.layout);
     if let Err(reason) = std::fs::metadata(&layout_path) {
-        let found = format!("layout = \"{}\", which cannot be read: {reason}", spec.layout);
-        let remedy = "the path of a layout file, relative to the session file".to_string();
-        return Err(FileError::at(path, &text, line_of(&text, "layout"), found, remedy));
+        let remedy = "the path of a layout file, relative to the session file";
+        return Err(missing(path, &text, ("layout", &spec.layout), reason, remedy));
     }
     let keys = match &spec.console.keys {
         Some(name) => {
             let keys_path = path.parent().unwrap_or(Path::new(".")).join(name);
             let text = std::fs::read_to_string(&keys_path).map_err(|reason| {
-                let found = format!("keys = \"{name}\", which cannot be read: {reason}");
                 let remedy = "the path of a key file, relative to the session file; tomcom keys prints one";
-                FileError::at(path, &text, line_of(&text, "keys"), found, remedy.to_string())
+                missing(path, &text, ("keys", name), reason, remedy)
             })?;
             Some(FileText { path: keys_path.display().to_string(), text })
         }
@@ -126,15 +130,20 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     Ok(SessionFiles { spec, kitchen, keys, questionnaires })
 }
 
+/// The error about a file that a session file names and that cannot be read.
+fn missing(session: &Path, text: &str, (key, name): (&str, &str), reason: io::Error, remedy: &str) -> FileError {
+    let found = format!("{key} = \"{name}\", which cannot be read: {reason}");
+    FileError::at(session, text, line_of(text, key, 0), found, remedy.to_string())
+}
+
 /// Reads the questionnaires of a plan, in its order.
 fn read_questionnaires(session: &Path, text: &str, plan: &PlanSpec) -> FileResult<Vec<Questionnaire>> {
     let folder = session.parent().unwrap_or(Path::new("."));
     let read = |asked: &QuestionnaireSpec| {
         let path = folder.join(&asked.file);
         if let Err(reason) = std::fs::metadata(&path) {
-            let found = format!("file = \"{}\", which cannot be read: {reason}", asked.file);
-            let remedy = "the path of a questionnaire, relative to the session file".to_string();
-            return Err(FileError::at(session, text, line_of(text, "file"), found, remedy));
+            let remedy = "the path of a questionnaire, relative to the session file";
+            return Err(missing(session, text, ("file", &asked.file), reason, remedy));
         }
         let text = read_text(&path)?;
         let questionnaire: Questionnaire = parse(&path, &text)?;
@@ -146,7 +155,7 @@ fn read_questionnaires(session: &Path, text: &str, plan: &PlanSpec) -> FileResul
 
 /// The error of a setting in a file's text.
 fn wrong_setting(path: &Path, text: &str, error: SettingError) -> FileError {
-    FileError::at(path, text, line_of(text, error.key), error.found, error.remedy.to_string())
+    FileError::at(path, text, line_of(text, error.key, error.nth), error.found, error.remedy.to_string())
 }
 
 /// Reads a file with parameters of the human model; those that it does not name have their defaults.
@@ -157,7 +166,9 @@ pub fn read_human_model(path: &Path) -> FileResult<HumanModel> {
     let text = read_text(path)?;
     let model: HumanModel = parse(path, &text)?;
     match model.fault() {
-        Some((key, found, remedy)) => Err(FileError::at(path, &text, line_of(&text, key), found, remedy.to_string())),
+        Some((key, found, remedy)) => {
+            Err(FileError::at(path, &text, line_of(&text, key, 0), found, remedy.to_string()))
+        }
         None => Ok(model),
     }
 }
@@ -174,8 +185,8 @@ pub fn built_in_session() -> FileResult<SessionFiles> {
     Ok(SessionFiles { spec, kitchen, keys: None, questionnaires: Vec::new() })
 }
 
-/// Where the line with `key = …` is in a TOML text; of `table.key` the one below the header of that table.
-fn line_of(text: &str, key: &str) -> Option<Range<usize>> {
+/// Where the `nth` line with `key = …` is in a TOML text, 0 the first; of `table.key` those below the header of that table.
+fn line_of(text: &str, key: &str, mut nth: usize) -> Option<Range<usize>> {
     let (table, key) = key.rsplit_once('.').unwrap_or(("", key));
     let mut is_table = table.is_empty();
     let mut start = 0;
@@ -187,7 +198,10 @@ fn line_of(text: &str, key: &str) -> Option<Range<usize>> {
         }
         let rest = trimmed.strip_prefix(key);
         if is_table && rest.is_some_and(|rest| rest.trim_start().starts_with('=')) {
-            return Some(start..start + line.trim_end().len());
+            if nth == 0 {
+                return Some(start..start + line.trim_end().len());
+            }
+            nth -= 1;
         }
         start += line.len();
     }
@@ -321,7 +335,7 @@ impl Kind {
             Kind::Layout => "a layout file, like layouts/sushi.toml",
             Kind::Recipes => "a recipe file, like recipes/sushi.toml",
             Kind::Questionnaire => "a questionnaire, like sessions/questionnaires/acceptance.toml",
-            Kind::HumanModel => "parameters of the human model, like those in the header of a recording",
+            Kind::HumanModel => "parameters of the human model, like those that tomcom fit writes",
             Kind::Keys => "a key file, as tomcom keys prints it",
         }
     }
@@ -361,12 +375,6 @@ impl OfKind for KeyMap {
 pub fn parse<T: OfKind>(path: &Path, text: &str) -> FileResult<T> {
     toml::from_str(text).map_err(|error| match Kind::of(text).filter(|kind| *kind != T::KIND) {
         Some(other) => FileError::at(path, text, None, other.name().to_string(), T::KIND.remedy().to_string()),
-        None => {
-            let remedy = match T::KIND {
-                Kind::Keys => T::KIND.remedy(),
-                _ => "a file like those in layouts/, recipes/ and sessions/",
-            };
-            FileError::at(path, text, error.span(), error.message().to_string(), remedy.to_string())
-        }
+        None => FileError::at(path, text, error.span(), error.message().to_string(), T::KIND.remedy().to_string()),
     })
 }

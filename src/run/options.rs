@@ -52,11 +52,8 @@ impl Overrides {
         let decided = [("--condition", self.condition.is_some()), ("--seed", self.seed.is_some())];
         if let Some((key, _)) = decided.into_iter().find(|(_, is_given)| *is_given && spec.plan.is_some()) {
             let found = format!("{key}, with a session that has a plan");
-            return Err(SettingError {
-                key,
-                found,
-                remedy: "the plan decides it: groups and conditions follow from it",
-            });
+            let remedy = "the plan decides it: groups and conditions follow from it";
+            return Err(SettingError::new(key, found, remedy));
         }
         spec.seed = self.seed.unwrap_or(spec.seed);
         spec.trial.condition = self.condition.unwrap_or(spec.trial.condition);
@@ -78,7 +75,7 @@ impl Overrides {
 /// No code, or one that is not in the plan.
 pub fn participant_of_plan(plan: &PlanSpec, code: Option<&str>) -> Result<usize, SettingError> {
     let remedy = "--code with one of the codes that tomcom plan SESSION lists";
-    let wrong = |found: String| SettingError { key: "code", found, remedy };
+    let wrong = |found: String| SettingError::new("code", found, remedy);
     let code = code.ok_or_else(|| wrong(format!("the plan \"{}\", and no participant", plan.name)))?;
     let place = plan.codes().iter().position(|one| one == code);
     place.ok_or_else(|| wrong(format!("--code {code}, who is not in the plan \"{}\"", plan.name)))

@@ -57,6 +57,15 @@ pub struct SettingError {
     pub found: String,
     /// What would be right.
     pub remedy: &'static str,
+    /// Which of the settings of that name it is; 0 is the first.
+    pub nth: usize,
+}
+
+impl SettingError {
+    /// An error about the first setting of that name.
+    pub fn new(key: &'static str, found: String, remedy: &'static str) -> SettingError {
+        SettingError { key, found, remedy, nth: 0 }
+    }
 }
 
 impl SessionSpec {
@@ -67,23 +76,23 @@ impl SessionSpec {
     pub fn check(&self) -> Result<(), SettingError> {
         let above_0 = |key: &'static str, value: f64| match value.is_finite() && value > 0.0 {
             true => Ok(()),
-            false => Err(SettingError { key, found: format!("{key} = {value}"), remedy: "a number above 0" }),
+            false => Err(SettingError::new(key, format!("{key} = {value}"), "a number above 0")),
         };
         above_0("presses", f64::from(self.trial.presses))?;
         above_0("seconds", self.trial.seconds)?;
         if self.trial.seconds > MAX_TRIAL_S {
             let found = format!("seconds = {}", self.trial.seconds);
-            return Err(SettingError { key: "seconds", found, remedy: "at most 86400, a day" });
+            return Err(SettingError::new("seconds", found, "at most 86400, a day"));
         }
         above_0("press_s", self.robot.press_s)?;
         above_0("shown_s", self.signals.shown_s)?;
         if !(0.0..=2.0).contains(&self.robot.press_spread) {
             let found = format!("press_spread = {}", self.robot.press_spread);
-            return Err(SettingError { key: "press_spread", found, remedy: "a number from 0 to 2" });
+            return Err(SettingError::new("press_spread", found, "a number from 0 to 2"));
         }
         if self.trial.orders == Some(0) {
             let found = "orders = 0".to_string();
-            return Err(SettingError { key: "orders", found, remedy: "a number above 0" });
+            return Err(SettingError::new("orders", found, "a number above 0"));
         }
         if let Some(plan) = &self.plan {
             plan.check()?;
@@ -92,20 +101,20 @@ impl SessionSpec {
         if !is_code(code) {
             let found = format!("code = \"{code}\"");
             let remedy = "a code of 1 to 32 letters, digits, - and _, such as \"P07\"; never a name";
-            return Err(SettingError { key: "code", found, remedy });
+            return Err(SettingError::new("code", found, remedy));
         }
         if self.participant.gaze == GazeSource::Simulated && self.participant.kind != ParticipantKind::Simulated {
             let found = "gaze = \"simulated\" of a participant who is not simulated".to_string();
             let remedy = "gaze = \"mouse\", \"json\" or \"none\"";
-            return Err(SettingError { key: "gaze", found, remedy });
+            return Err(SettingError::new("gaze", found, remedy));
         }
         if !(0.0..=60.0).contains(&self.signals.cool_down_s) {
             let found = format!("cool_down_s = {}", self.signals.cool_down_s);
-            return Err(SettingError { key: "cool_down_s", found, remedy: "seconds from 0 (none) to 60" });
+            return Err(SettingError::new("cool_down_s", found, "seconds from 0 (none) to 60"));
         }
         self.console.check()?;
         match self.human.fault().or_else(|| self.assistant.fault()) {
-            Some((key, found, remedy)) => Err(SettingError { key, found, remedy }),
+            Some((key, found, remedy)) => Err(SettingError::new(key, found, remedy)),
             None => Ok(()),
         }
     }
@@ -301,7 +310,7 @@ impl ConsoleSpec {
                 (1..=MAX_PRESET).contains(&length) && text.trim() == text && !text.chars().any(char::is_control)
             };
             let is_wrong = texts.is_empty() || texts.len() > most || !texts.iter().all(is_text);
-            is_wrong.then(|| SettingError { key, found: format!("{key} = {texts:?}"), remedy })
+            is_wrong.then(|| SettingError::new(key, format!("{key} = {texts:?}"), remedy))
         };
         let notes = "1 to 5 texts of 1 to 40 characters, each on one line";
         let reasons = "1 to 20 texts of 1 to 40 characters, each on one line";

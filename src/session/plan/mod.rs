@@ -112,7 +112,7 @@ impl PlanSpec {
     /// # Errors
     /// The first setting that cannot be.
     pub fn check(&self) -> Result<(), SettingError> {
-        let wrong = |key: &'static str, found: String, remedy: &'static str| Err(SettingError { key, found, remedy });
+        let wrong = |key: &'static str, found: String, remedy: &'static str| Err(SettingError::new(key, found, remedy));
         if !is_code(&self.name) {
             let remedy = "a short name of letters, digits, - and _, such as \"main-study\"";
             return wrong("plan.name", format!("name = \"{}\"", self.name), remedy);
@@ -148,7 +148,7 @@ impl PlanSpec {
     }
 
     fn check_participants(&self) -> Result<(), SettingError> {
-        let wrong = |found: String, remedy| Err(SettingError { key: "participants", found, remedy });
+        let wrong = |found: String, remedy| Err(SettingError::new("participants", found, remedy));
         match &self.participants {
             Participants::Count(count) if *count == 0 || *count > MAX_PARTICIPANTS => {
                 wrong(format!("participants = {count}"), "1 to 9999 participants, or a list of their codes")
@@ -179,7 +179,7 @@ fn numbered(number: u32, count: u32) -> String {
 
 impl FamiliarisationSpec {
     fn check(&self) -> Result<(), SettingError> {
-        let wrong = |key, found, remedy| Err(SettingError { key, found, remedy });
+        let wrong = |key, found, remedy| Err(SettingError::new(key, found, remedy));
         let above_0 = "a number above 0";
         if self.orders == 0 {
             return wrong("familiarisation.orders", "orders = 0".to_string(), above_0);

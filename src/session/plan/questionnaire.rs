@@ -64,7 +64,7 @@ impl Questionnaire {
     /// # Errors
     /// The first setting that cannot be.
     pub fn check(&self) -> Result<(), SettingError> {
-        let wrong = |key, found, remedy| Err(SettingError { key, found, remedy });
+        let wrong = |key, found, remedy| Err(SettingError::new(key, found, remedy));
         if !is_code(&self.name) {
             let remedy = "a short name of letters, digits, - and _, such as \"acceptance\"";
             return wrong("name", format!("name = \"{}\"", self.name), remedy);
@@ -76,12 +76,13 @@ impl Questionnaire {
         if self.items.is_empty() {
             return wrong("item", "a questionnaire without items".to_string(), "at least one [[item]]");
         }
-        if let Some(item) = self.items.iter().find(|item| !is_code(&item.id)) {
+        let wrong_id = |nth, found, remedy| Err(SettingError { nth, ..SettingError::new("id", found, remedy) });
+        if let Some(nth) = self.items.iter().position(|item| !is_code(&item.id)) {
             let remedy = "a short id of letters, digits, - and _, such as \"too_often\"";
-            return wrong("id", format!("id = \"{}\"", item.id), remedy);
+            return wrong_id(nth, format!("id = \"{}\"", self.items[nth].id), remedy);
         }
-        match (1..self.items.len()).find(|&index| self.items[..index].iter().any(|i| i.id == self.items[index].id)) {
-            Some(index) => wrong("id", format!("the id \"{}\" twice", self.items[index].id), "each id once"),
+        match (1..self.items.len()).find(|&nth| self.items[..nth].iter().any(|item| item.id == self.items[nth].id)) {
+            Some(nth) => wrong_id(nth, format!("the id \"{}\" twice", self.items[nth].id), "each id once"),
             None => Ok(()),
         }
     }

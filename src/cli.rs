@@ -14,6 +14,7 @@ use miette::MietteHandlerOpts;
 use serde::Serialize;
 
 use self::args::*;
+use crate::communication::concept::ConceptName;
 use crate::communication::settings::Shadow;
 use crate::console;
 use crate::edge::doctor;
@@ -176,6 +177,7 @@ fn new_session(args: &OperateArgs) -> Result<Sitting, Failure> {
             ConditionArg::Wizard => Condition::Wizard,
             ConditionArg::Assistant => Condition::Assistant,
         }),
+        concept: flags.concept.map(ConceptName::from),
         seed: flags.seed,
         code: flags.code.clone(),
     };
@@ -290,6 +292,7 @@ fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         SimulatedCondition::None => Condition::None,
         SimulatedCondition::Assistant => Condition::Assistant,
     };
+    files.spec.assistant.concept = args.concept.map_or(files.spec.assistant.concept, ConceptName::from);
     files.spec.assistant.shadow = if args.shadow { Shadow::On } else { Shadow::Off };
     let simulation = simulate::Simulation { files, trials, out: args.out.clone() };
     let bar = progress(trials, "trials");

@@ -1058,7 +1058,7 @@ fn advised(best: bool) -> Stage {
     };
     let best = best.then(|| recipe("order_1"));
     let for_ns = SessionTime::from_secs_f64(21.9);
-    let advice = Recommendation { for_seq: 17, for_ns, options, best, reason: Some(reason) };
+    let advice = Recommendation { options, best, reason: Some(reason), ..Recommendation::silent(17, for_ns) };
     stage.at(21.9, Event::Advised(advice));
     stage.model.now = SessionTime::from_secs_f64(22.6);
     stage

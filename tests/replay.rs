@@ -7,6 +7,7 @@ use std::sync::Arc;
 use rand::RngExt;
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
+use tomcom::communication::concept::ConceptName;
 use tomcom::communication::{Sender, signals};
 use tomcom::edge::files::{SessionFiles, read_session};
 use tomcom::edge::log::{LOG_NAME, LogWriter};
@@ -341,10 +342,11 @@ fn a_recording_can_be_wound_forward_and_back() {
     }
 }
 
-/// Two trials in which the assistant acts, quickly and for little reason.
-fn assisted(name: &str, out: &str) -> PathBuf {
+/// Two trials in which the assistant acts by this concept, quickly and for little reason.
+fn assisted(name: &str, out: &str, by: ConceptName) -> PathBuf {
     let mut files = session(name);
     files.spec.trial.condition = Condition::Assistant;
+    files.spec.assistant.concept = by;
     files.spec.trial.seconds = 45.0;
     files.spec.assistant.cost_of_communication = 0.3;
     files.spec.assistant.rollout.rollouts = 8;
@@ -357,7 +359,7 @@ fn assisted(name: &str, out: &str) -> PathBuf {
 #[test]
 fn what_the_assistant_does_comes_out_the_same_again() {
     for name in SESSIONS {
-        let [a, b] = ["assisted", "assisted-again"].map(|out| assisted(name, out));
+        let [a, b] = ["assisted", "assisted-again"].map(|out| assisted(name, out, ConceptName::TomCom));
         let mut signals = 0;
         for trial in ["seed1-S001", "seed1-S002"] {
             let [log, other] = [&a, &b].map(|out| out.join(trial).join(LOG_NAME));
@@ -372,8 +374,28 @@ fn what_the_assistant_does_comes_out_the_same_again() {
 }
 
 #[test]
+fn each_concept_acts_by_itself_and_comes_out_the_same_again() {
+    for name in SESSIONS {
+        for (by, acts, proposes) in
+            [(ConceptName::Tom, true, false), (ConceptName::Dev, false, true), (ConceptName::None, false, false)]
+        {
+            let out = assisted(name, &format!("acts-{}-{name}", by.name()), by);
+            let mut log = String::new();
+            for trial in ["seed1-S001", "seed1-S002"] {
+                let found = verify(&out.join(trial)).expect("a recording");
+                assert!(found.verified, "{name}, {by:?}: {:?}", found.difference);
+                log += &fs::read_to_string(out.join(trial).join(LOG_NAME)).expect("a recording");
+            }
+            assert!(log.contains(r#""kind":"advised""#), "{name}, {by:?}");
+            assert_eq!(log.contains(r#""signal_shown","by":"assistant""#), acts, "{name}, {by:?}: signals");
+            assert_eq!(log.contains(r#""proposal":{"error":"#), proposes, "{name}, {by:?}: proposals");
+        }
+    }
+}
+
+#[test]
 fn advice_that_was_not_given_is_no_verified_advice() {
-    let log = assisted("default.toml", "assisted-changed").join("seed1-S001").join(LOG_NAME);
+    let log = assisted("default.toml", "assisted-changed", ConceptName::TomCom).join("seed1-S001").join(LOG_NAME);
     let text = fs::read_to_string(&log).expect("a recording");
     let number = 1 + text.lines().position(|line| line.contains(r#""kind":"advised""#)).expect("advice");
     let change = |(index, line): (usize, &str)| match index + 1 == number {

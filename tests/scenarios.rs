@@ -8,14 +8,17 @@ use std::sync::Arc;
 
 use serde::Deserialize;
 use tomcom::base::time::SessionTime;
+use tomcom::communication::concept::{Concept, ConceptName, Moment, Silent, concept};
+use tomcom::communication::dev::Dev;
 use tomcom::communication::planner::Planner;
 use tomcom::communication::recommendation::Recommendation;
 use tomcom::communication::settings::AssistantSpec;
 use tomcom::communication::situation::{RobotOutlook, Situation};
+use tomcom::communication::tom::Tom;
 use tomcom::communication::{Signal, signals};
 use tomcom::edge::files;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, AspectId, AspectKind, Kitchen, State};
+use tomcom::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, State};
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom::mind::model::HumanModel;
 
@@ -125,20 +128,20 @@ impl Scenario {
 
     fn answer(&self, seed: u64) -> Recommendation {
         let kitchen = self.kitchen();
+        let spec = AssistantSpec::default();
+        let spec = AssistantSpec { cost_of_communication: self.cost.unwrap_or(spec.cost_of_communication), ..spec };
+        self.ask(&mut *concept(ConceptName::TomCom, kitchen, &HumanModel::default(), &spec, seed), None)
+    }
+
+    /// What a concept says; `error`: the human's last press was one, and has this number.
+    fn ask(&self, concept: &mut dyn Concept, error: Option<u64>) -> Recommendation {
+        let kitchen = self.kitchen();
         let state = self.state(&kitchen);
         let belief = self.belief(&kitchen, state);
         let situation = Situation { state, belief: &belief, robot: self.outlook(&kitchen), robot_press_s: 2.4 };
-        let spec = AssistantSpec::default();
-        let spec = AssistantSpec { cost_of_communication: self.cost.unwrap_or(spec.cost_of_communication), ..spec };
         let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
-        let mut cost = CostToGo::new(kitchen.clone());
-        Planner::new(kitchen, &HumanModel::default(), spec, seed).advise(
-            &mut cost,
-            &situation,
-            &signals,
-            0,
-            SessionTime::ZERO,
-        )
+        let moment = Moment { seq: 0, time: SessionTime::ZERO, situation, signals: &signals, error };
+        concept.advise(&mut CostToGo::new(kitchen), &moment)
     }
 }
 
@@ -238,5 +241,80 @@ fn an_answer_depends_on_nothing_that_was_asked_before() {
                 scenario.about
             );
         }
+    }
+}
+
+fn named(name: &str) -> Scenario {
+    Scenario::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/scenarios/{name}.toml")))
+}
+
+/// What ToM says at a threshold, in words.
+fn tom(name: &str, threshold: f64) -> String {
+    let scenario = named(name);
+    let answer = scenario.ask(&mut Tom::new(scenario.kitchen(), threshold), None);
+    assert!(answer.options.windows(2).all(|pair| pair[0].benefit >= pair[1].benefit), "{name}: ranked");
+    answer.best.as_ref().map_or("silence".to_string(), words)
+}
+
+#[test]
+fn tom_tells_what_deviates_most_whether_it_matters_or_not() {
+    // Where ToM-Com is silent, or says something else.
+    for name in ["does_not_matter_now", "not_the_largest_deviation"] {
+        let said = tom(name, 0.5);
+        assert_ne!(said, "silence", "{name}");
+        assert!(!named(name).expect.says.contains(&said), "{name}: {said}");
+    }
+    assert_eq!(tom("certain_human", 0.5), "silence");
+    assert_eq!(tom("wrong_shellfish", 0.5), named("wrong_shellfish").expect.says[0]);
+}
+
+#[test]
+fn tom_is_silent_where_nothing_deviates_beyond_its_threshold() {
+    for path in scenarios() {
+        let scenario = Scenario::read(&path);
+        let ask = |threshold| scenario.ask(&mut Tom::new(scenario.kitchen(), threshold), None);
+        let Some(most) = ask(0.0).top().map(|option| option.benefit) else { continue };
+        for threshold in [0.4, 0.6, 0.8, 0.99] {
+            let answer = ask(threshold);
+            // The options' figures have four digits.
+            if (most - threshold).abs() > 1e-4 {
+                assert_eq!(answer.best.is_some(), most > threshold, "{}: {most} at {threshold}", path.display());
+            }
+            assert!(answer.proposal.is_none());
+        }
+    }
+}
+
+#[test]
+fn dev_proposes_after_an_error_presses_that_each_bring_the_orders_nearer() {
+    for name in ["wrong_fish", "ready_to_serve_unseen", "cheap_signals"] {
+        let scenario = named(name);
+        let kitchen = scenario.kitchen();
+        let mut cost = CostToGo::new(kitchen.clone());
+        let recipes = kitchen.true_recipes();
+        assert_eq!(scenario.ask(&mut Dev::new(kitchen.clone(), 3), None), scenario.ask(&mut Silent, None), "{name}");
+        let proposed = |presses: usize| {
+            let answer = scenario.ask(&mut Dev::new(kitchen.clone(), presses), Some(7));
+            assert!(answer.best.is_none() && answer.options.is_empty(), "{name}: no signal says a press");
+            let proposal = answer.proposal.unwrap_or_else(|| panic!("{name}: nothing is proposed"));
+            assert_eq!(proposal.error, 7);
+            proposal.presses
+        };
+        let most = proposed(5);
+        for presses in 1..=5 {
+            assert_eq!(proposed(presses), most[..presses.min(most.len())], "{name}: the first {presses}");
+        }
+        let state = scenario.state(&kitchen);
+        let first = kitchen.button_named(Agent::Human, &most[0]).expect("a button of the human");
+        let here = cost.all_orders(state, &recipes);
+        // Either it helps at once, or something of the robot's has to come first.
+        let robots = (0..kitchen.buttons[Agent::Robot.index()].len()).map(|index| ButtonId(index as u8));
+        let mut helps = |state: State, than: u32| {
+            let after = kitchen.press(state, &recipes, Agent::Human, first);
+            after.is_some_and(|after| cost.all_orders(after, &recipes) < than)
+        };
+        let robots: Vec<State> =
+            robots.filter_map(|button| kitchen.press(state, &recipes, Agent::Robot, button)).collect();
+        assert!(helps(state, here) || robots.iter().any(|after| helps(*after, here - 1)), "{name}: {}", most[0]);
     }
 }

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::communication::concept::ConceptName;
+
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
 #[derive(Debug, Parser)]
 #[command(name = "tomcom", version, args_conflicts_with_subcommands = true)]
@@ -50,7 +52,7 @@ pub(super) struct OperateArgs {
     /// The session file; by default sessions/default.toml, or the one that the program carries.
     pub(super) session: Option<PathBuf>,
     /// Take up this recording, which was cut, in a new part beside it; its session is the same, a running trial is paused.
-    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "condition", "seed", "out"])]
+    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "condition", "concept", "seed", "out"])]
     pub(super) recording: Option<PathBuf>,
     #[command(flatten)]
     pub(super) flags: OperateFlags,
@@ -70,6 +72,9 @@ pub(super) struct OperateFlags {
     /// Who sends signals, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) condition: Option<ConditionArg>,
+    /// By what the assistant decides, instead of the session file's concept.
+    #[arg(long, value_enum)]
+    pub(super) concept: Option<ConceptArg>,
     /// Everything random follows from it; by default the session file's.
     #[arg(long)]
     pub(super) seed: Option<u64>,
@@ -106,6 +111,30 @@ pub(super) enum ConditionArg {
     Wizard,
     /// The assistant, by itself.
     Assistant,
+}
+
+/// By what an assistant decides what to say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ConceptArg {
+    /// What saves more presses than a signal costs.
+    TomCom,
+    /// What is believed wrong surely enough.
+    Tom,
+    /// After an error, the next good presses; they are advice, since no signal says them.
+    Dev,
+    /// Nothing is said.
+    None,
+}
+
+impl From<ConceptArg> for ConceptName {
+    fn from(concept: ConceptArg) -> ConceptName {
+        match concept {
+            ConceptArg::TomCom => ConceptName::TomCom,
+            ConceptArg::Tom => ConceptName::Tom,
+            ConceptArg::Dev => ConceptName::Dev,
+            ConceptArg::None => ConceptName::None,
+        }
+    }
 }
 
 /// Who sends signals in simulated trials.
@@ -171,6 +200,9 @@ pub(super) struct SimulateArgs {
     /// Who sends signals.
     #[arg(long, value_enum, default_value = "none")]
     pub(super) condition: SimulatedCondition,
+    /// By what the assistant decides, instead of the session file's concept.
+    #[arg(long, value_enum)]
+    pub(super) concept: Option<ConceptArg>,
     /// Let the assistant advise in unassisted trials too; its advice is recorded and shown to nobody.
     #[arg(long)]
     pub(super) shadow: bool,

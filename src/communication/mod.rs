@@ -1,10 +1,13 @@
 //! Communication: the signals that wizard and assistant can send to the participant, and which of them to send when.
 
+pub mod concept;
+pub mod dev;
 pub mod planner;
 pub mod recommendation;
 pub mod repeats;
 pub mod settings;
 pub mod situation;
+pub mod tom;
 
 use serde::{Deserialize, Serialize};
 

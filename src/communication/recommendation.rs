@@ -23,18 +23,30 @@ pub struct Recommendation {
     /// Why the first option would help.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<Reason>,
+    /// Presses that are proposed, by a concept that proposes presses.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub proposal: Option<Proposal>,
+}
+
+/// Good presses, proposed after an error.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Proposal {
+    /// The number of the press that was the error.
+    pub error: u64,
+    /// The human's next presses, by the names of their buttons.
+    pub presses: Vec<String>,
 }
 
 /// One thing that could be said.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SignalOption {
     pub signal: Signal,
-    /// Expected presses of both agents that it saves.
+    /// Expected presses of both agents that it saves; of ToM, the expected deviation of the belief.
     pub benefit: f64,
     pub standard_error: f64,
-    /// The benefit without the cost of communication.
+    /// The benefit without the cost of communication; of ToM, the deviation above the threshold.
     pub net: f64,
-    /// How many pairs of rollouts that is the mean of.
+    /// How many pairs of rollouts that is the mean of; of ToM none.
     pub rollouts: u32,
 }
 
@@ -57,6 +69,11 @@ pub struct Reason {
 }
 
 impl Recommendation {
+    /// The advice to say nothing, after the event of this number and time.
+    pub fn silent(seq: u64, time: SessionTime) -> Recommendation {
+        Recommendation { for_seq: seq, for_ns: time, options: Vec::new(), best: None, reason: None, proposal: None }
+    }
+
     /// The option that is worth most.
     pub fn top(&self) -> Option<&SignalOption> {
         self.options.first()

@@ -2,13 +2,20 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::concept::ConceptName;
+
 /// The assistant: what it advises by, how carefully, and whether it does so beside a wizard.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AssistantSpec {
     pub shadow: Shadow,
+    pub concept: ConceptName,
     /// What a signal costs, in presses: a signal has to save more than that (1.5 in the paper).
     pub cost_of_communication: f64,
+    /// The expected deviation of a belief, as a probability, above which ToM tells the truth.
+    pub belief_threshold: f64,
+    /// How many presses DEV proposes after an error.
+    pub proposed_presses: usize,
     pub rollout: RolloutModel,
 }
 
@@ -23,7 +30,15 @@ pub enum Shadow {
 
 impl Default for AssistantSpec {
     fn default() -> Self {
-        AssistantSpec { shadow: Shadow::On, cost_of_communication: 1.5, rollout: RolloutModel::default() }
+        AssistantSpec {
+            shadow: Shadow::On,
+            concept: ConceptName::TomCom,
+            cost_of_communication: 1.5,
+            // Believed wrong, as false belief episodes are defined.
+            belief_threshold: 0.5,
+            proposed_presses: 1,
+            rollout: RolloutModel::default(),
+        }
     }
 }
 
@@ -62,14 +77,25 @@ impl Default for RolloutModel {
 }
 
 impl AssistantSpec {
+    /// What the worth of an option has to exceed to be said, in the concept's unit: presses, of ToM a deviation.
+    pub fn price(&self) -> f64 {
+        match self.concept {
+            ConceptName::Tom => self.belief_threshold,
+            ConceptName::TomCom | ConceptName::Dev | ConceptName::None => self.cost_of_communication,
+        }
+    }
+
     /// The first setting that cannot be: its name, what it is, and what would be right.
     pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
         let rollout = &self.rollout;
         let not_below = |key, value: f64| (key, value, value.is_finite() && value >= 0.0, "a number not below 0");
         let above = |key, value: f64| (key, value, value.is_finite() && value > 0.0, "a number above 0");
         let count = |key, value: usize, most: usize, right| (key, value as f64, (1..=most).contains(&value), right);
+        let threshold = self.belief_threshold;
         let checks = [
             not_below("cost_of_communication", self.cost_of_communication),
+            ("belief_threshold", threshold, (0.0..1.0).contains(&threshold), "a number from 0 to below 1"),
+            count("proposed_presses", self.proposed_presses, 5, "a whole number from 1 to 5"),
             count("horizon", rollout.horizon, 64, "a whole number from 1 to 64"),
             count("rollouts", rollout.rollouts, 65_536, "a whole number from 1 to 65536"),
             count("states", rollout.states, 256, "a whole number from 1 to 256"),

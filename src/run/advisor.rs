@@ -7,15 +7,16 @@ use std::thread;
 
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
+use super::follower::Follower;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
-use crate::communication::planner::Planner;
+use crate::communication::concept::{Concept, ConceptName, Moment, concept};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::situation::{RobotOutlook, Situation};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Kitchen, State};
 use crate::mind::dirichlet::DirichletBelief;
-use crate::session::{Session, SessionSpec};
+use crate::session::SessionSpec;
 
 /// What the assistant is asked: the session as it was after an event and all that followed from it at once.
 #[derive(Clone, Debug)]
@@ -28,18 +29,15 @@ pub struct Question {
     robot: RobotOutlook,
     robot_press_s: f64,
     /// What may be said.
-    signals: Vec<Signal>,
+    pub signals: Vec<Signal>,
+    /// The number of the human's last press, if that was an error.
+    error: Option<u64>,
 }
 
 impl Question {
     /// The question after an event of this number and time.
-    pub fn of(
-        session: &Session,
-        belief: &DirichletBelief,
-        signals: Vec<Signal>,
-        seq: u64,
-        time: SessionTime,
-    ) -> Question {
+    pub fn of(follower: &Follower, seq: u64, time: SessionTime) -> Question {
+        let session = &follower.session;
         let robot = match session.robot.intention {
             _ if session.robot.stopped || session.robot.held && !session.robot.driven => RobotOutlook::Still,
             Some((button, _, until)) => {
@@ -48,28 +46,36 @@ impl Question {
             }
             None => RobotOutlook::Free,
         };
-        let (state, belief, robot_press_s) = (session.state, belief.clone(), session.spec.robot.press_s);
-        Question { seq, time, state, belief, robot, robot_press_s, signals }
+        let (state, robot_press_s) = (session.state, session.spec.robot.press_s);
+        let belief = follower.filter.belief().clone();
+        let signals = follower.repeats.allowed(&session.kitchen, session.spec.signals.own_hand);
+        let error = follower.judged.last().filter(|press| press.verdict.error).map(|press| press.seq);
+        Question { seq, time, state, belief, robot, robot_press_s, signals, error }
     }
 }
 
 /// Answers questions about one session.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Advisor {
-    planner: Planner,
+    concept: Box<dyn Concept>,
     cost: CostToGo,
 }
 
 impl Advisor {
-    /// The assistant of a session.
+    /// The assistant of a session, by the concept that its settings name.
     pub fn new(kitchen: Arc<Kitchen>, spec: &SessionSpec, cost: CostToGo) -> Advisor {
-        Advisor { planner: Planner::new(kitchen, &spec.human, spec.assistant.clone(), spec.seed), cost }
+        Advisor::by(spec.assistant.concept, kitchen, spec, cost)
+    }
+
+    /// One that advises by this concept.
+    pub fn by(name: ConceptName, kitchen: Arc<Kitchen>, spec: &SessionSpec, cost: CostToGo) -> Advisor {
+        Advisor { concept: concept(name, kitchen, &spec.human, &spec.assistant, spec.seed), cost }
     }
 
     pub fn answer(&mut self, question: &Question) -> Recommendation {
-        let Question { state, ref belief, robot, robot_press_s, .. } = *question;
+        let Question { seq, time, state, ref belief, robot, robot_press_s, ref signals, error } = *question;
         let situation = Situation { state, belief, robot, robot_press_s };
-        self.planner.advise(&mut self.cost, &situation, &question.signals, question.seq, question.time)
+        self.concept.advise(&mut self.cost, &Moment { seq, time, situation, signals, error })
     }
 
     /// Answers on a thread of its own, which ends with the desk that asks.

@@ -207,10 +207,7 @@ impl Engine {
     fn settle(&mut self, now: SessionTime) {
         self.let_follow(now);
         if let Some((seq, time)) = self.to_ask.take().filter(|_| self.session().is_running()) {
-            let own_hand = self.session().spec.signals.own_hand;
-            let signals = self.follower.repeats.allowed(&self.session().kitchen, own_hand);
-            let question = Question::of(self.session(), self.follower.filter.belief(), signals, seq, time);
-            self.questions.push(question);
+            self.questions.push(Question::of(&self.follower, seq, time));
         }
     }
 

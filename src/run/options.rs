@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::communication::concept::ConceptName;
 use crate::edge::files::{self, FileResult, SessionFiles};
 use crate::kitchen::Kitchen;
 use crate::session::Header;
@@ -37,6 +38,7 @@ pub struct Overrides {
     pub participant: Option<ParticipantKind>,
     pub gaze: Option<GazeSource>,
     pub condition: Option<Condition>,
+    pub concept: Option<ConceptName>,
     pub seed: Option<u64>,
     pub code: Option<String>,
 }
@@ -57,6 +59,7 @@ impl Overrides {
         }
         spec.seed = self.seed.unwrap_or(spec.seed);
         spec.trial.condition = self.condition.unwrap_or(spec.trial.condition);
+        spec.assistant.concept = self.concept.unwrap_or(spec.assistant.concept);
         let participant = &mut spec.participant;
         participant.code = self.code.unwrap_or(std::mem::take(&mut participant.code));
         participant.kind = self.participant.unwrap_or(participant.kind);

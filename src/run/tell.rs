@@ -7,6 +7,7 @@ use super::follower::Follower;
 use super::standing::Standing;
 use crate::base::words::count;
 use crate::communication::Signal;
+use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
 use crate::console::words;
 use crate::kitchen::{Agent, Kitchen};
@@ -125,7 +126,7 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::RobotStopped => "robot stopped by the wizard".to_string(),
         Event::RobotResumed => "robot goes on".to_string(),
         // Advice is worth a line where something should be said.
-        Event::Advised(advice) => advised(advice)?,
+        Event::Advised(advice) => advised(advice, follower.session.spec.assistant.concept)?,
         Event::SignalShown { signal: Signal::ShowRecipe(order), .. } => format!("signal: recipe of {order}"),
         Event::SignalShown { signal: Signal::Highlight(place), .. } => format!("signal: highlight {place}"),
         Event::SignalEnded { reason: SignalEnd::Elapsed } => "signal ends".to_string(),
@@ -196,12 +197,19 @@ fn estimated(estimate: &EstimateWitness) -> Option<String> {
     (!wrong.is_empty()).then(|| format!("estimated: participant believes {}", wrong.join(", ")))
 }
 
-fn advised(advice: &Recommendation) -> Option<String> {
+fn advised(advice: &Recommendation, by: ConceptName) -> Option<String> {
+    if let Some(proposal) = &advice.proposal {
+        return Some(format!("proposed after the error: {}", proposal.presses.join(", ")));
+    }
     let best = advice.top().filter(|option| Some(&option.signal) == advice.best.as_ref())?;
     let what = match &best.signal {
         Signal::ShowRecipe(order) => format!("recipe of {order}"),
         Signal::Highlight(place) => format!("highlight {place}"),
     };
+    let worth = match by {
+        ConceptName::Tom => format!("belief off by {:.2}", best.benefit),
+        _ => format!("saves {:.1} presses (±{:.1})", best.benefit, best.standard_error),
+    };
     let reason = advice.reason.as_ref().map_or(String::new(), |reason| format!(": {}", reason.words()));
-    Some(format!("advised: {what}, saves {:.1} presses (±{:.1}){reason}", best.benefit, best.standard_error))
+    Some(format!("advised: {what}, {worth}{reason}"))
 }

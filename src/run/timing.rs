@@ -67,9 +67,7 @@ pub fn measure(recording: &Path) -> FileResult<TimingFigures> {
             Event::Gaze(_) => {
                 let Some(seq) = asked.take() else { continue };
                 let began = Instant::now();
-                let signals = follower.repeats.allowed(&follower.session.kitchen, spec.signals.own_hand);
-                let belief = follower.filter.belief();
-                advisor.answer(&Question::of(&follower.session, belief, signals, seq, event.stamped.time));
+                advisor.answer(&Question::of(follower, seq, event.stamped.time));
                 let took_ns = began.elapsed().as_nanos() as u64;
                 plan_ns.push(took_ns);
                 let inference = follower.timing.as_ref().and_then(|timing| timing.action_ns.last());

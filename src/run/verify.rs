@@ -131,7 +131,7 @@ impl Again {
         match self.questions.front().filter(|question| question.seq == advice.for_seq) {
             Some(question) => Event::Advised(advisor.answer(question)),
             // Nobody asked: it stays, and is compared with nothing that could have come out.
-            None => Event::Advised(Recommendation { options: Vec::new(), best: None, reason: None, ..advice.clone() }),
+            None => Event::Advised(Recommendation::silent(advice.for_seq, advice.for_ns)),
         }
     }
 

@@ -202,6 +202,6 @@ impl Planner {
         });
         let options: Vec<SignalOption> = arms.iter().map(option).collect();
         let best = options.first().filter(|option| option.net > 0.0).map(|option| option.signal.clone());
-        Recommendation { for_seq: seq, for_ns: time, options, best, reason }
+        Recommendation { options, best, reason, ..Recommendation::silent(seq, time) }
     }
 }

@@ -5,13 +5,14 @@ use ratatui::layout::Rect;
 use super::paint::{Brush, wrap};
 use super::regions::{Regions, Room};
 use super::theme::Role;
-use crate::communication::recommendation::{Recommendation, SignalOption};
+use crate::communication::concept::ConceptName;
+use crate::communication::recommendation::{Proposal, Recommendation, SignalOption};
 use crate::console::keys::Action;
 use crate::console::model::Model;
 use crate::console::words;
 use crate::session::Session;
 
-/// Columns of a gauge; each stands for half a press that is saved.
+/// Columns of a gauge; each stands for half a press that is saved, of ToM for a twelfth of a whole belief.
 const GAUGE: u16 = 12;
 const PRESSES_A_COLUMN: f64 = 0.5;
 
@@ -24,7 +25,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     if regions.room == Room::Small {
         return line(brush, area, session, model);
     }
-    let inside = brush.panel(area, "Recommendation", "ToM-Com, net presses saved");
+    let inside = brush.panel(area, "Recommendation", remark(session));
     let Some(advice) = &session.advice else {
         let quiet = brush.style(Role::Quiet);
         for (row, line) in wrap(silence(session), inside.width).iter().enumerate() {
@@ -32,7 +33,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         }
         return;
     };
-    let mut y = inside.y;
+    let mut y = proposal(brush, inside, advice);
     let mut is_above = true;
     for option in &advice.options {
         // The line between what is worth a signal and what is not.
@@ -45,12 +46,38 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         }
         y = option_line(brush, inside, y, option, session, model, advice);
         if Some(&option.signal) == advice.best.as_ref() {
-            y = reason(brush, inside, y, advice);
+            y = reason(brush, inside, y, advice, session);
         }
     }
     if is_above && y < inside.bottom() {
         cost_line(brush, inside, y, session, advice, model);
     }
+}
+
+/// What decides, and what its figures are.
+fn remark(session: &Session) -> &'static str {
+    match session.spec.assistant.concept {
+        ConceptName::TomCom => "ToM-Com, net presses saved",
+        ConceptName::Tom => "ToM, belief off above threshold",
+        ConceptName::Dev => "DEV, presses after an error",
+        ConceptName::None => "no concept",
+    }
+}
+
+/// The presses that are proposed, and that only words can tell them to the participant; returns the row below.
+fn proposal(brush: &mut Brush, inside: Rect, advice: &Recommendation) -> u16 {
+    let Some(proposal) = &advice.proposal else { return inside.y };
+    let lines = wrap(&proposed(proposal), inside.width);
+    for (row, line) in lines.iter().enumerate().take(usize::from(inside.height)) {
+        let style = brush.style(Role::Strong);
+        brush.text(inside.x, inside.y + row as u16, inside.width, line, style);
+    }
+    inside.y + lines.len() as u16
+}
+
+fn proposed(proposal: &Proposal) -> String {
+    let presses: Vec<String> = proposal.presses.iter().map(|press| words::location(press)).collect();
+    format!("error: next would be good {} (no signal says so)", presses.join(", then "))
 }
 
 /// Why there is no advice.
@@ -67,9 +94,12 @@ fn line(brush: &mut Brush, area: Rect, session: &Session, model: &Model) {
     let mut parts = vec![(" advice   ".to_string(), Role::Quiet)];
     match session.advice.as_ref().map(|advice| (advice, advice.best.as_ref().and(advice.top()))) {
         None => parts.push((silence(session).to_string(), Role::Quiet)),
+        Some((Recommendation { proposal: Some(proposal), .. }, None)) => {
+            parts.push((proposed(proposal), Role::Strong));
+        }
         Some((_, None)) => parts.push(("say nothing".to_string(), Role::Quiet)),
         Some((advice, Some(option))) => {
-            parts.push((format!("{:+.1} ±{:.1} ", option.net, option.standard_error), Role::Strong));
+            parts.push((worth(option, session), Role::Strong));
             parts.push((key(option, session, model), Role::Signal));
             parts.push((words::signal(&option.signal), Role::Strong));
             if let Some(reason) = &advice.reason {
@@ -79,6 +109,14 @@ fn line(brush: &mut Brush, area: Rect, session: &Session, model: &Model) {
     }
     let parts: Vec<(&str, Role)> = parts.iter().map(|(text, role)| (text.as_str(), *role)).collect();
     brush.parts(area.x, area.y, area.width, &parts);
+}
+
+/// What an option is worth beyond its price, in the concept's unit.
+fn worth(option: &SignalOption, session: &Session) -> String {
+    match session.spec.assistant.concept {
+        ConceptName::Tom => format!("{:+.2} ", option.net),
+        _ => format!("{:+.1} ±{:.1} ", option.net, option.standard_error),
+    }
 }
 
 /// The key of an option's signal, if it has one: "[q] ".
@@ -99,9 +137,9 @@ fn option_line(
 ) -> u16 {
     let is_best = Some(&option.signal) == advice.best.as_ref();
     let role = if is_best { Role::Strong } else { Role::Quiet };
-    let worth = format!("{:+.1} ±{:.1} ", option.net, option.standard_error);
+    let worth = worth(option, session);
     let x = brush.parts(inside.x, y, inside.width, &[(worth.as_str(), role)]);
-    let x = gauge(brush, x, y, option, session.spec.assistant.cost_of_communication, role);
+    let x = gauge(brush, x, y, option, session, role);
     let key = key(option, session, model);
     let words = words::signal(&option.signal);
     brush.parts(x, y, inside.right().saturating_sub(x), &[(key.as_str(), Role::Signal), (words.as_str(), role)]);
@@ -109,10 +147,12 @@ fn option_line(
 }
 
 /// The benefit as a bar: full up to one standard error below it, open to one above; a line where the cost is.
-fn gauge(brush: &mut Brush, x: u16, y: u16, option: &SignalOption, cost: f64, role: Role) -> u16 {
+fn gauge(brush: &mut Brush, x: u16, y: u16, option: &SignalOption, session: &Session, role: Role) -> u16 {
     let signs = brush.theme.signs();
+    let (cost, of_tom) = (session.spec.assistant.price(), session.spec.assistant.concept == ConceptName::Tom);
+    let a_column = if of_tom { 1.0 / f64::from(GAUGE) } else { PRESSES_A_COLUMN };
     let (full, open, line) = (signs.bar_full, signs.bar_empty, signs.frame[5]);
-    let column = |presses: f64| presses / PRESSES_A_COLUMN;
+    let column = |worth: f64| worth / a_column;
     let (least, most) = (option.benefit - option.standard_error, option.benefit + option.standard_error);
     for index in 0..GAUGE {
         let at = f64::from(index) + 0.5;
@@ -128,9 +168,12 @@ fn gauge(brush: &mut Brush, x: u16, y: u16, option: &SignalOption, cost: f64, ro
     x + GAUGE + 1
 }
 
-fn reason(brush: &mut Brush, inside: Rect, y: u16, advice: &Recommendation) -> u16 {
+fn reason(brush: &mut Brush, inside: Rect, y: u16, advice: &Recommendation, session: &Session) -> u16 {
     let (Some(reason), Some(option)) = (&advice.reason, advice.top()) else { return y };
-    let words = format!("{}; saves {:.1} presses", reason.words(), option.benefit);
+    let words = match session.spec.assistant.concept {
+        ConceptName::Tom => reason.words(),
+        _ => format!("{}; saves {:.1} presses", reason.words(), option.benefit),
+    };
     let style = brush.style(Role::Text);
     let lines = wrap(&words, inside.width.saturating_sub(2));
     for (row, line) in lines.iter().enumerate().filter(|(row, _)| y + (*row as u16) < inside.bottom()) {
@@ -148,8 +191,13 @@ fn cost_line(
     advice: &Recommendation,
     model: &Model,
 ) -> u16 {
-    let said = if advice.best.is_none() { "say nothing; a signal" } else { "a signal" };
-    let left = format!("{said} costs {:.1}", session.spec.assistant.cost_of_communication);
+    let silence = if advice.best.is_none() && advice.proposal.is_none() { "say nothing; " } else { "" };
+    let price = session.spec.assistant.price();
+    let left = match session.spec.assistant.concept {
+        ConceptName::Tom => format!("{silence}threshold {price:.2}"),
+        ConceptName::Dev | ConceptName::None => silence.trim_end_matches("; ").to_string(),
+        ConceptName::TomCom => format!("{silence}a signal costs {price:.1}"),
+    };
     let age = session.age(advice.for_ns, model.now).as_secs_f64();
     let role = if advice.best.is_none() { Role::Strong } else { Role::Quiet };
     let accept = model.keys.of(&Action::Accept).filter(|_| advice.best.is_some());

@@ -73,7 +73,7 @@ def measure(tomcom, folder, signals, gap_s, hz):
         if hz:
             sender = subprocess.Popen([sys.executable, "-c", SENDER, str(PORT + hz), str(hz)])
             # Without gaze that arrives the trial would not start at once.
-            console.wait_for("confidence 0.9")
+            console.wait_for(r"conf\w* 0.9")
             time.sleep(0.5)
         console.key(".")
         console.wait_for("RUNNING")

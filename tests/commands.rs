@@ -7,6 +7,9 @@ use std::process::{Command, Output};
 use serde::Deserialize;
 use serde_json::Value;
 
+#[path = "fuzz/targets/read/mod.rs"]
+mod read;
+
 /// Runs the program with these arguments and demands the exit code.
 fn check(arguments: &[&str], code: i32) -> Output {
     let output = Command::new(env!("CARGO_BIN_EXE_tomcom")).args(arguments).output().expect("the program starts");
@@ -367,4 +370,34 @@ fn a_closed_recording_is_excluded_and_taken_back_and_the_figures_say_so() {
     fs::write(format!("{recording}/exclusion.toml"), "[[ruling]]\nexcluded = 1\n").expect("written");
     let told = complaint(&["replay", &recording, "--format", "json"]);
     assert!(told.contains("exclusion.toml:2") && told.contains("[[ruling]]"), "{told}");
+}
+
+/// What fuzzing does with the readers, with what it begins with, and with every file cut and changed at many places.
+#[test]
+fn the_readers_survive_cut_and_changed_files() {
+    let seeds = [
+        (0, "layouts/sushi.toml"),
+        (0, "layouts/burger.toml"),
+        (1, "recipes/sushi.toml"),
+        (2, "sessions/default.toml"),
+        (2, "sessions/study.toml"),
+        (4, "sessions/questionnaires/acceptance.toml"),
+    ];
+    for (kind, path) in seeds {
+        let text = fs::read(path).unwrap_or_else(|error| panic!("{path}: {error}"));
+        for at in (0..text.len()).step_by(text.len().div_ceil(10)) {
+            let mut changed = [&[kind], &text[..]].concat();
+            read::read(&changed[..=at]);
+            changed[at + 1] = changed[at + 1].wrapping_add(1) | 1;
+            read::read(&changed);
+        }
+    }
+    let log = fs::read("tests/golden/format-1-hand.jsonl").expect("a log");
+    let events = log.splitn(2, |byte| *byte == b'\n').nth(1).expect("events after the header");
+    for (kind, text) in [(3, &log[..]), (7, events)] {
+        let text = &text[..text.len().min(60_000)];
+        for at in (0..text.len()).step_by(text.len() / 10) {
+            read::read(&[&[kind], &text[..at], b"\xff\x00}", &text[at..]].concat());
+        }
+    }
 }

@@ -4,7 +4,8 @@ use crate::base::rng::mix;
 use crate::kitchen::cost_to_go::{Care, CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, Recipes, State};
 
-/// At least this share of all draws has to be of a case for its costs to be searched for where plans are not surely best.
+/// At least this share of all draws, or of the weight that they have after the press, has to be of a case for its costs to
+/// be searched for where plans are not surely best.
 const COUNTS: f64 = 0.01;
 
 /// Cases with their numbers of draws.
@@ -20,8 +21,8 @@ struct Case {
     state: State,
     recipes: Recipes,
     draws: u32,
-    /// C after each button, once it is known.
-    after: Option<[u8; MAX_BUTTONS]>,
+    /// C after each button, once it is known, and with how much care.
+    after: Option<([u8; MAX_BUTTONS], Care)>,
 }
 
 impl Cases {
@@ -70,14 +71,38 @@ impl Cases {
     pub fn rate(&mut self, cost: &mut CostToGo, draws: usize) {
         for case in self.known.iter_mut().filter(|case| case.after.is_none()) {
             let care = if f64::from(case.draws) >= COUNTS * draws as f64 { Care::Exact } else { Care::Rough };
-            case.after = Some(cost.decision_with(care, case.state, &case.recipes, Agent::Human).after);
+            case.rate(cost, care);
         }
+    }
+
+    /// Searches for the costs of those cases that hardly counted before the press, and do now: `weights` by case, of this
+    /// sum. A bound that is a press too low is strong evidence, and wrong. Tells whether there were any.
+    pub fn rate_again(&mut self, cost: &mut CostToGo, weights: &[f64], sum: f64) -> bool {
+        let mut any = false;
+        for (case, &weight) in self.known.iter_mut().zip(weights) {
+            if weight >= COUNTS * sum && case.after.is_some_and(|(_, care)| care == Care::Rough) {
+                case.rate(cost, Care::Exact);
+                any = true;
+            }
+        }
+        any
+    }
+
+    /// How many different cases there are.
+    pub fn len(&self) -> usize {
+        self.known.len()
     }
 
     /// C after each button of the human in a case that was rated.
     #[inline]
     pub fn after(&self, index: u32) -> &[u8; MAX_BUTTONS] {
         const UNKNOWN: [u8; MAX_BUTTONS] = [0; MAX_BUTTONS];
-        self.known[index as usize].after.as_ref().unwrap_or(&UNKNOWN)
+        self.known[index as usize].after.as_ref().map_or(&UNKNOWN, |(after, _)| after)
+    }
+}
+
+impl Case {
+    fn rate(&mut self, cost: &mut CostToGo, care: Care) {
+        self.after = Some((cost.decision_with(care, self.state, &self.recipes, Agent::Human).after, care));
     }
 }

@@ -48,6 +48,8 @@ pub struct Sampler {
     cases: Cases,
     /// `[belief * states + draw]`: indices of cases.
     drawn_cases: Vec<u32>,
+    /// By case, the weight of its draws after the press.
+    case_weights: Vec<f64>,
     /// Aspects of which a belief sample has several values.
     mixed: Vec<usize>,
 }
@@ -143,16 +145,37 @@ impl Sampler {
             }
         }
         self.cases.rate(cost, wanted * states);
-        for sample in old..wanted {
+        self.press_chances(judge, button, old);
+        while self.rate_again(cost, states) {
+            self.press_chances(judge, button, 0);
+        }
+    }
+
+    /// Weighs the belief samples from this one on by p(a | belief).
+    fn press_chances(&mut self, judge: &Judge, button: ButtonId, from: usize) {
+        let states = judge.inference.states;
+        let buttons = judge.kitchen.buttons[Agent::Human.index()].len();
+        self.posteriors.truncate(from);
+        for (of_sample, prior) in self.drawn_cases.chunks(states).zip(&self.priors).skip(from) {
             let mut sums = [0u32; MAX_BUTTONS];
-            for &case in &self.drawn_cases[sample * states..(sample + 1) * states] {
+            for &case in of_sample {
                 sums.iter_mut().zip(self.cases.after(case)).for_each(|(sum, &after)| *sum += u32::from(after));
             }
-            let buttons = kitchen.buttons[Agent::Human.index()].len();
             let sums = &sums[..buttons];
             let likelihood = judge.decision.press_chance(judge.slips, sums, states as f64, button);
-            self.posteriors.push(self.priors[sample] * likelihood);
+            self.posteriors.push(prior * likelihood);
         }
+    }
+
+    /// Takes more care of the cases that hardly counted before the press, and do now; whether there were any.
+    fn rate_again(&mut self, cost: &mut CostToGo, states: usize) -> bool {
+        self.case_weights.clear();
+        self.case_weights.resize(self.cases.len(), 0.0);
+        for (of_sample, weight) in self.drawn_cases.chunks(states).zip(&self.posteriors) {
+            of_sample.iter().for_each(|&case| self.case_weights[case as usize] += weight);
+        }
+        let sum = self.posteriors.iter().sum::<f64>() * states as f64;
+        self.cases.rate_again(cost, &self.case_weights, sum)
     }
 
     fn evidence(&self) -> Evidence {

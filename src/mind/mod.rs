@@ -6,6 +6,7 @@ pub mod dirichlet;
 pub mod filter;
 pub mod model;
 pub mod observation;
+pub mod reference;
 pub mod witness;
 
 use std::collections::BTreeMap;

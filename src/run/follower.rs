@@ -161,7 +161,7 @@ impl Follower {
     }
 
     /// What an event tells about the human's belief.
-    fn observed(&self, stamped: &Stamped, before: State, counts: bool) -> Option<Observed> {
+    pub fn observed(&self, stamped: &Stamped, before: State, counts: bool) -> Option<Observed> {
         let (kitchen, state) = (&self.session.kitchen, self.session.state);
         match &stamped.event {
             Event::TrialStarted => Some(Observed::Started { state }),

@@ -1,0 +1,109 @@
+//! The reference: inference of the human's belief in its plainest form, straight from the equations, for tests and
+//! benchmarks. It shares nothing with [`super::filter`] but the parameters, the kitchen's rules, the robot's policy and the
+//! cost to go.
+//!
+//! A set of explicit beliefs is drawn from the Dirichlets, every component by a gamma draw. Each event moves every one of
+//! them on by the human model ([`person`]); a press of the human weighs them by p(a | b). Then they are mapped back to
+//! Dirichlets by moment matching, and drawn anew. Gaze samples move the explicit beliefs, too; those of one look after the
+//! other are mapped back together: they change first and second moments linearly, so it makes no difference.
+
+pub mod people;
+pub mod person;
+pub mod sight;
+
+use std::sync::Arc;
+
+use rand::RngExt;
+
+use self::people::People;
+use self::person::Person;
+use super::dirichlet::DirichletBelief;
+use super::model::HumanModel;
+use super::observation::{Observation, Observed};
+use crate::base::rng::{Stream, stream};
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, Kitchen};
+
+/// The estimate in its plainest form.
+#[derive(Clone, Debug)]
+pub struct ReferenceFilter {
+    kitchen: Arc<Kitchen>,
+    /// Belief samples.
+    beliefs: usize,
+    seed: u64,
+    people: People,
+    /// Gaze has moved them on since they were last drawn.
+    looked: bool,
+    log_p: Option<f64>,
+}
+
+impl ReferenceFilter {
+    /// An estimate before the trial's start.
+    pub fn new(kitchen: Arc<Kitchen>, model: HumanModel, seed: u64) -> ReferenceFilter {
+        let beliefs = model.inference.beliefs;
+        ReferenceFilter {
+            people: People::new(kitchen.clone(), model),
+            kitchen,
+            beliefs,
+            seed,
+            looked: false,
+            log_p: None,
+        }
+    }
+
+    /// The estimate.
+    pub fn belief(&self) -> DirichletBelief {
+        match self.people.of.is_empty() {
+            true => self.people.prior.clone(),
+            false => self.people.projected(&vec![1.0; self.people.of.len()]),
+        }
+    }
+
+    /// ln p of the last press of the human under the estimate before it, in nats.
+    pub fn log_p(&self) -> Option<f64> {
+        self.log_p
+    }
+
+    /// Moves the estimate on by one observation. Chance follows from seed and the observation's number alone.
+    pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
+        let mut random = stream(self.seed, "reference", observation.number);
+        if let Observed::Started { state } = observation.what {
+            self.people.start(observation.time, state, self.beliefs, &mut random);
+            return;
+        }
+        let is_gaze = matches!(observation.what, Observed::Gaze { .. });
+        if self.looked && !is_gaze {
+            self.project(&vec![1.0; self.people.of.len()], &mut random);
+        }
+        let weights = self.people.experience(observation, cost, &mut random);
+        self.looked = is_gaze;
+        if let Observed::Pressed { agent: Agent::Human, .. } = observation.what {
+            self.log_p = Some((weights.iter().sum::<f64>() / weights.len() as f64).ln());
+        }
+        if !is_gaze {
+            self.project(&weights, &mut random);
+        }
+    }
+
+    /// Maps the explicit beliefs back to Dirichlets.
+    fn project(&mut self, weights: &[f64], random: &mut Stream) {
+        if !self.people.of.is_empty() {
+            let estimate = self.people.projected(weights);
+            self.draw(&estimate, random);
+            self.people.doubt = estimate;
+        }
+    }
+
+    /// Draws all explicit beliefs anew. As many as before have read what they look at.
+    fn draw(&mut self, estimate: &DirichletBelief, random: &mut Stream) {
+        let count = self.people.of.len() as f64;
+        let read = |index: usize| self.people.of.iter().filter(|person| person.read[index]).count() as f64 / count;
+        let read: Vec<f64> = (0..self.kitchen.locations.len()).map(read).collect();
+        let person = |random: &mut Stream| {
+            let mut person = Person::draw(&self.kitchen, estimate, random);
+            person.read = read.iter().map(|&share| random.random::<f64>() < share).collect();
+            person
+        };
+        self.people.of = (0..self.beliefs).map(|_| person(random)).collect();
+    }
+}

@@ -1,0 +1,175 @@
+//! Explicit beliefs that experience the same events: the samples of the reference filter, particles that are kept, or one
+//! human who is simulated from the model.
+
+use std::sync::Arc;
+
+use rand::RngExt;
+
+use super::person::Person;
+use super::sight::Sight;
+use crate::base::rng::Stream;
+use crate::base::time::SessionTime;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
+use crate::mind::model::HumanModel;
+use crate::mind::observation::{Observation, Observed};
+
+/// Explicit beliefs, and all that they have in common.
+#[derive(Clone, Debug)]
+pub struct People {
+    kitchen: Arc<Kitchen>,
+    model: HumanModel,
+    /// What is believed at the start, and what recipes are forgotten to.
+    pub prior: DirichletBelief,
+    /// What is believed in doubt: where something happens that was held impossible.
+    pub doubt: DirichletBelief,
+    pub of: Vec<Person>,
+    sight: Sight,
+    shown: State,
+    /// When it was last forgotten; nothing while the trial stands still.
+    forgot: Option<SessionTime>,
+}
+
+impl People {
+    /// Nobody, before the trial's start.
+    pub fn new(kitchen: Arc<Kitchen>, model: HumanModel) -> People {
+        let shown = kitchen.empty_state();
+        let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
+        let (doubt, sight) = (prior.clone(), Sight::default());
+        People { kitchen, model, prior, doubt, of: Vec::new(), sight, shown, forgot: None }
+    }
+
+    /// The trial starts in this state, with so many beliefs drawn from the prior.
+    pub fn start(&mut self, now: SessionTime, state: State, count: usize, random: &mut Stream) {
+        self.prior = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);
+        self.doubt.clone_from(&self.prior);
+        self.of = (0..count).map(|_| Person::draw(&self.kitchen, &self.prior, random)).collect();
+        self.forgot = Some(now);
+        self.show(now, state);
+    }
+
+    /// Everybody experiences an event. Gives p(a | b) of each belief before a press of the human, else 1.
+    pub fn experience(&mut self, observation: &Observation, cost: &mut CostToGo, random: &mut Stream) -> Vec<f64> {
+        let now = observation.time;
+        if let Observed::Gaze { sample, taken } = observation.what {
+            if self.forgot.is_some() {
+                let glances = self.sight.glances(&self.kitchen, &self.model.perception, &sample, taken);
+                self.of.iter_mut().for_each(|person| person.look(&glances, random));
+            }
+            return vec![1.0; self.of.len()];
+        }
+        self.forget(now, random);
+        match observation.what {
+            Observed::Started { state } => self.start(now, state, self.of.len(), random),
+            Observed::Gaze { .. } => {}
+            Observed::Pressed { agent, button, before, after } => {
+                let weights = match agent {
+                    Agent::Human => Some(self.human_pressed(button, after.is_some(), cost, random)),
+                    Agent::Robot => None,
+                };
+                if agent == Agent::Robot {
+                    self.robot_pressed(cost, random);
+                }
+                self.show(now, after.unwrap_or(before));
+                if let Some(weights) = weights {
+                    return weights;
+                }
+            }
+            Observed::Displayed { state } => {
+                self.expect_cleared(state);
+                self.show(now, state);
+            }
+            Observed::Told { location } => self.told(location, random),
+            Observed::Paused => self.forgot = None,
+            Observed::Resumed => {
+                self.forgot = Some(now);
+                self.sight.rest();
+            }
+        }
+        vec![1.0; self.of.len()]
+    }
+
+    /// The Dirichlets whose means and pooled second moments are those of the beliefs, with these weights.
+    pub fn projected(&self, weights: &[f64]) -> DirichletBelief {
+        let total: f64 = weights.iter().sum();
+        let of_aspect = |index: usize| {
+            let mut mean = vec![0.0; self.kitchen.aspects[index].values.len()];
+            let mut second = 0.0;
+            for (person, weight) in self.of.iter().zip(weights) {
+                for (sum, p) in mean.iter_mut().zip(&person.of[index]) {
+                    *sum += weight / total * p;
+                    second += weight / total * p * p;
+                }
+            }
+            Dirichlet::of_moments(mean, second)
+        };
+        DirichletBelief { aspects: (0..self.kitchen.aspects.len()).map(of_aspect).collect() }
+    }
+
+    fn show(&mut self, now: SessionTime, state: State) {
+        self.shown = state;
+        self.sight.show(now, state);
+    }
+
+    fn forget(&mut self, now: SessionTime, random: &mut Stream) {
+        let Some(last) = self.forgot else { return };
+        self.forgot = Some(now.max(last));
+        let lost = 1.0 - 0.5_f64.powf(now.secs_since(last) / self.model.transition.recipe_half_life_s);
+        self.of.iter_mut().for_each(|person| person.forget(&self.kitchen, &self.prior, lost, random));
+    }
+
+    fn human_pressed(
+        &mut self,
+        button: ButtonId,
+        effective: bool,
+        cost: &mut CostToGo,
+        random: &mut Stream,
+    ) -> Vec<f64> {
+        let doubt: Vec<Vec<f64>> = self.doubt.aspects.iter().map(|aspect| aspect.mean().to_vec()).collect();
+        let (decision, states) = (&self.model.decision, self.model.inference.states);
+        let mut weights = Vec::with_capacity(self.of.len());
+        for person in &mut self.of {
+            let chances = person.press_chances(&self.kitchen, cost, decision, states, random);
+            weights.push(chances[button.index()]);
+            person.pressed(&self.kitchen, &doubt, button, effective);
+        }
+        weights
+    }
+
+    fn robot_pressed(&mut self, cost: &mut CostToGo, random: &mut Stream) {
+        let (states, foresight) = (self.model.inference.states, self.model.transition.foresight);
+        for person in &mut self.of {
+            if random.random::<f64>() < foresight {
+                person.robot_pressed(&self.kitchen, cost, states, random);
+            }
+        }
+    }
+
+    /// Who knows that an order was served expects that it does not show it for long.
+    fn expect_cleared(&mut self, state: State) {
+        for &order in &self.kitchen.orders {
+            let was_served = self.shown.order(order) == OrderContent::Served;
+            if was_served && state.order(order) != OrderContent::Served {
+                self.of.iter_mut().for_each(|person| person.expect_cleared(&self.kitchen, order));
+            }
+        }
+    }
+
+    fn told(&mut self, location: LocationId, random: &mut Stream) {
+        let kitchen = &self.kitchen;
+        let mut aspects = vec![AspectId::of_location(location)];
+        if let (LocationKind::Order, OrderContent::Dish(dish)) =
+            (kitchen.location(location).kind, self.shown.order(location))
+        {
+            aspects.push(kitchen.aspect_of_dish(dish));
+        }
+        for person in &mut self.of {
+            for &aspect in &aspects {
+                if random.random::<f64>() < self.model.signal.noticed {
+                    person.settle(aspect, kitchen.true_value(self.shown, aspect));
+                }
+            }
+        }
+    }
+}

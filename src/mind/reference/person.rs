@@ -1,0 +1,333 @@
+//! One explicit belief of a human, and how the human model moves it on: the equations as they stand, for one categorical
+//! distribution per aspect.
+//!
+//! The same code stands for a belief sample of the reference filter, for a particle that is kept without projection, and
+//! for a human who is simulated from the model itself.
+
+use rand::RngExt;
+use rand_distr::{Distribution, Gamma};
+
+use super::sight::Glance;
+use crate::base::rng::Stream;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Action, Agent, AspectId, AspectKind, ButtonId, ContentId, DishId, Kitchen, LocationId};
+use crate::kitchen::{OrderContent, Recipes, State};
+use crate::mind::decision::DecisionModel;
+use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
+use crate::robot::policy;
+
+/// So much of every belief is doubt: what is left when something happens that was held impossible.
+pub const DOUBT: f64 = 1e-6;
+/// Where all ways the kitchen may be are gone through, values with less probability are left out.
+const NEGLIGIBLE: f64 = 1e-4;
+
+/// A belief: for every aspect the probabilities of its values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Person {
+    pub of: Vec<Vec<f64>>,
+    /// By location, whether it was read in the present look.
+    pub read: Vec<bool>,
+}
+
+/// A way the kitchen may be, and its probability.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    pub state: State,
+    pub recipes: Recipes,
+    pub p: f64,
+}
+
+impl Person {
+    /// A belief drawn from an estimate, every component by a gamma draw.
+    pub fn draw(kitchen: &Kitchen, estimate: &DirichletBelief, random: &mut Stream) -> Person {
+        let of = estimate.aspects.iter().map(|dirichlet| draw(dirichlet, random)).collect();
+        Person { of, read: vec![false; kitchen.locations.len()] }
+    }
+
+    /// Looks: what was not read yet in this look is read by chance, and believed as it was read.
+    pub fn look(&mut self, glances: &[Glance], random: &mut Stream) {
+        for glance in glances {
+            let location = glance.location.index();
+            if glance.begins {
+                self.read[location] = false;
+            }
+            if !self.read[location] && random.random::<f64>() < glance.chance {
+                self.read[location] = true;
+                let value = pick(&glance.reading, random);
+                self.settle(AspectId::of_location(glance.location), value);
+            }
+        }
+    }
+
+    /// Is certain of a value from now on.
+    pub fn settle(&mut self, aspect: AspectId, value: usize) {
+        let of = &mut self.of[aspect.index()];
+        of.fill(0.0);
+        of[value] = 1.0;
+    }
+
+    /// Time passes: with probability `lost` a recipe is remembered anew, as at the start.
+    pub fn forget(&mut self, kitchen: &Kitchen, prior: &DirichletBelief, lost: f64, random: &mut Stream) {
+        for (index, aspect) in kitchen.aspects.iter().enumerate() {
+            if matches!(aspect.kind, AspectKind::Recipe(_)) && random.random::<f64>() < lost {
+                self.of[index] = draw(&prior.aspects[index], random);
+            }
+        }
+    }
+
+    /// An order that was believed to show "served" is believed to show nothing.
+    pub fn expect_cleared(&mut self, kitchen: &Kitchen, order: LocationId) {
+        let aspect = &kitchen.aspects[order.index()];
+        let [served, none] = [OrderContent::Served, OrderContent::None].map(|what| aspect.index_of(what.code()));
+        if let (Some(served), Some(none)) = (served, none) {
+            let of = &mut self.of[order.index()];
+            of[none] += std::mem::take(&mut of[served]);
+        }
+    }
+
+    /// p(a | b) of every button of the human, given that one is pressed: Q over so many states and recipes drawn from the
+    /// belief, or over all of them where they are few.
+    pub fn press_chances(
+        &self,
+        kitchen: &Kitchen,
+        cost: &mut CostToGo,
+        model: &DecisionModel,
+        states: usize,
+        random: &mut Stream,
+    ) -> Vec<f64> {
+        let buttons = kitchen.buttons[Agent::Human.index()].len();
+        let mut expected = vec![0.0; buttons];
+        for way in self.ways(kitchen, states, random) {
+            let decision = cost.decision(way.state, &way.recipes, Agent::Human);
+            for (sum, &after) in expected.iter_mut().zip(&decision.after[..buttons]) {
+                *sum += way.p * f64::from(after);
+            }
+        }
+        press_chances(kitchen, model, &expected)
+    }
+
+    /// Knows that it pressed a button, and whether that had an effect: Bayes' rule over what the press depends on, and the
+    /// rules of the kitchen. `expected`: what is believed in doubt.
+    pub fn pressed(&mut self, kitchen: &Kitchen, expected: &[Vec<f64>], button: ButtonId, effective: bool) {
+        let action = kitchen.button(Agent::Human, button).action;
+        let hand = kitchen.hands[Agent::Human.index()];
+        let places = match action {
+            Action::Take(_) | Action::Trash => vec![hand],
+            Action::Use(location) => vec![hand, location],
+            Action::Process(process) => vec![kitchen.processes[usize::from(process)].place.unwrap_or(hand)],
+            Action::Serve(order) => vec![order, kitchen.plate],
+        };
+        // What a hand holds is empty after "trash" either way, and full of something after "take".
+        let doubtful = |index: usize| -> Vec<f64> {
+            self.of[index].iter().zip(&expected[index]).map(|(p, m)| (1.0 - DOUBT) * p + DOUBT * m).collect()
+        };
+        let before: Vec<Vec<f64>> = (0..self.of.len()).map(doubtful).collect();
+        let mut after: Vec<Vec<f64>> = before.iter().map(|values| vec![0.0; values.len()]).collect();
+        let mut total = 0.0;
+        let mut outcome = |way: Way, dish: Option<(AspectId, usize)>| {
+            let next = kitchen.act(way.state, &way.recipes, Agent::Human, action);
+            let is_possible = match (action, effective) {
+                (Action::Trash, _) | (Action::Take(_), true) => true,
+                _ => next.is_some() == effective,
+            };
+            if !is_possible {
+                return;
+            }
+            total += way.p;
+            let mut state = next.unwrap_or(way.state);
+            if let (Action::Take(item), true) = (action, effective) {
+                state.set_content(hand, item);
+            }
+            for &place in &places {
+                if let Some(value) = kitchen.aspects[place.index()].index_of(state.code(place)) {
+                    after[place.index()][value] += way.p;
+                }
+            }
+            for recipe in kitchen.locations.len()..kitchen.aspects.len() {
+                match dish.filter(|(aspect, _)| aspect.index() == recipe) {
+                    Some((_, variant)) => after[recipe][variant] += way.p,
+                    // Where another dish is wanted, nothing is learned of this recipe.
+                    None => after[recipe].iter_mut().zip(&before[recipe]).for_each(|(sum, p)| *sum += way.p * p),
+                }
+            }
+        };
+        match action {
+            Action::Serve(order) => each_serving(kitchen, &before, order, &mut outcome),
+            _ => each_exchange(kitchen, &before, &places, &mut outcome),
+        }
+        let changed = places.iter().map(|place| place.index()).chain(kitchen.locations.len()..kitchen.aspects.len());
+        if total > 0.0 {
+            for index in changed {
+                self.of[index] = after[index].iter().map(|p| p / total).collect();
+            }
+        }
+    }
+
+    /// Notices that the robot pressed something: what the robot may have done under each way the kitchen may be turns
+    /// values of each aspect into others.
+    pub fn robot_pressed(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, states: usize, random: &mut Stream) {
+        let locations = kitchen.locations.len();
+        let square = |index: usize| vec![vec![0.0; self.of[index].len()]; self.of[index].len()];
+        let mut turned: Vec<Vec<Vec<f64>>> = (0..locations).map(square).collect();
+        for way in self.ways(kitchen, states, random) {
+            let choices = policy::choices(kitchen, cost, way.state, &way.recipes);
+            let after: Vec<State> = choices
+                .iter()
+                .map(|&button| kitchen.press(way.state, &way.recipes, Agent::Robot, button).unwrap_or(way.state))
+                .collect();
+            let after = if after.is_empty() { vec![way.state] } else { after };
+            for next in &after {
+                for (index, turned) in turned.iter_mut().enumerate() {
+                    let value_in = |state: &State| kitchen.aspects[index].index_of(state.code(LocationId(index as u8)));
+                    if let (Some(from), Some(to)) = (value_in(&way.state), value_in(next)) {
+                        turned[from][to] += way.p / after.len() as f64;
+                    }
+                }
+            }
+        }
+        for (index, turned) in turned.iter().enumerate() {
+            let mut next = vec![0.0; self.of[index].len()];
+            for (from, to) in turned.iter().enumerate() {
+                let occurred: f64 = to.iter().sum();
+                match occurred > 0.0 {
+                    true => next.iter_mut().zip(to).for_each(|(sum, p)| *sum += self.of[index][from] * p / occurred),
+                    false => next[from] += self.of[index][from],
+                }
+            }
+            self.of[index] = next;
+        }
+    }
+
+    /// The ways the kitchen may be under this belief: all of them if they are not more than `draws`, else so many draws.
+    pub fn ways(&self, kitchen: &Kitchen, draws: usize, random: &mut Stream) -> Vec<Way> {
+        let count = self.of.iter().map(|values| values.iter().filter(|p| **p > NEGLIGIBLE).count());
+        let count = count.fold(1usize, |product, values| product.saturating_mul(values));
+        let start = Way { state: kitchen.empty_state(), recipes: kitchen.true_recipes(), p: 1.0 };
+        if count > draws {
+            let p = 1.0 / draws as f64;
+            return (0..draws).map(|_| Way { p, ..self.draw_way(kitchen, start, random) }).collect();
+        }
+        let mut ways = vec![start];
+        for (index, values) in self.of.iter().enumerate() {
+            let likely = || values.iter().enumerate().filter(|(_, p)| **p > NEGLIGIBLE);
+            let with = |way: &Way, value: usize, p: f64| {
+                let mut way = Way { p: way.p * p, ..*way };
+                kitchen.set_value(&mut way.state, &mut way.recipes, AspectId(index as u8), value);
+                way
+            };
+            let total: f64 = likely().map(|(_, p)| p).sum();
+            ways = ways.iter().flat_map(|way| likely().map(move |(value, p)| with(way, value, p / total))).collect();
+        }
+        ways
+    }
+
+    fn draw_way(&self, kitchen: &Kitchen, mut way: Way, random: &mut Stream) -> Way {
+        for (index, values) in self.of.iter().enumerate() {
+            let value = pick(values, random);
+            kitchen.set_value(&mut way.state, &mut way.recipes, AspectId(index as u8), value);
+        }
+        way
+    }
+}
+
+/// Goes through all contents of these places.
+fn each_exchange(
+    kitchen: &Kitchen,
+    belief: &[Vec<f64>],
+    places: &[LocationId],
+    outcome: &mut impl FnMut(Way, Option<(AspectId, usize)>),
+) {
+    let start = Way { state: kitchen.empty_state(), recipes: kitchen.true_recipes(), p: 1.0 };
+    let mut ways = vec![start];
+    for place in places {
+        let aspect = &kitchen.aspects[place.index()];
+        let with = |way: &Way, value: usize| {
+            let mut way = Way { p: way.p * belief[place.index()][value], ..*way };
+            way.state.set_code(*place, aspect.values[value]);
+            way
+        };
+        ways = ways.iter().flat_map(|way| (0..aspect.values.len()).map(move |value| with(way, value))).collect();
+    }
+    ways.into_iter().for_each(|way| outcome(way, None));
+}
+
+/// Goes through all that the order may want, the plate may hold, and the wanted dish may be made of.
+fn each_serving(
+    kitchen: &Kitchen,
+    belief: &[Vec<f64>],
+    order: LocationId,
+    outcome: &mut impl FnMut(Way, Option<(AspectId, usize)>),
+) {
+    let (orders, plates) = (&kitchen.aspects[order.index()], &kitchen.aspects[kitchen.plate.index()]);
+    for (wanted, &code) in orders.values.iter().enumerate() {
+        for (held, &content) in plates.values.iter().enumerate() {
+            let p = belief[order.index()][wanted] * belief[kitchen.plate.index()][held];
+            let mut way = Way { state: kitchen.empty_state(), recipes: kitchen.true_recipes(), p };
+            way.state.set_code(order, code);
+            way.state.set_content(kitchen.plate, ContentId(content));
+            let OrderContent::Dish(dish) = OrderContent::from_code(code) else {
+                outcome(way, None);
+                continue;
+            };
+            each_recipe(kitchen, belief, way, dish, outcome);
+        }
+    }
+}
+
+fn each_recipe(
+    kitchen: &Kitchen,
+    belief: &[Vec<f64>],
+    way: Way,
+    dish: DishId,
+    outcome: &mut impl FnMut(Way, Option<(AspectId, usize)>),
+) {
+    let recipe = kitchen.aspect_of_dish(dish);
+    for (variant, p) in belief[recipe.index()].iter().enumerate() {
+        let mut way = Way { p: way.p * p, ..way };
+        way.recipes.set(dish, ContentId(kitchen.aspects[recipe.index()].values[variant]));
+        outcome(way, Some((recipe, variant)));
+    }
+}
+
+/// p(a | b) by button, given that one is pressed, from the expected cost to go after each.
+pub fn press_chances(kitchen: &Kitchen, model: &DecisionModel, expected: &[f64]) -> Vec<f64> {
+    let least = expected.iter().copied().fold(f64::INFINITY, f64::min);
+    let weights: Vec<f64> = expected.iter().map(|after| (-model.tau * (after - least)).exp()).collect();
+    let total: f64 = weights.iter().sum();
+    let anywhere = model.lapse * model.lapse_anywhere / expected.len() as f64;
+    let mut chances: Vec<f64> = weights.iter().map(|weight| (1.0 - model.lapse) * weight / total + anywhere).collect();
+    for (index, weight) in weights.iter().enumerate() {
+        let meant = ButtonId(index as u8);
+        let next = kitchen.nearest_button(Agent::Human, meant).unwrap_or(meant);
+        let alike = kitchen.look_alike_button(Agent::Human, meant).unwrap_or(next);
+        for slipped in [next, alike] {
+            chances[slipped.index()] += model.lapse * (1.0 - model.lapse_anywhere) / 2.0 * weight / total;
+        }
+    }
+    chances
+}
+
+/// A value drawn from weights that sum to about 1.
+pub fn pick(weights: &[f64], random: &mut Stream) -> usize {
+    let mut left = random.random::<f64>() * weights.iter().sum::<f64>();
+    let reached = weights.iter().position(|weight| {
+        left -= weight;
+        left < 0.0
+    });
+    reached.unwrap_or(weights.len() - 1)
+}
+
+/// A draw from a Dirichlet by gamma draws; as logarithms (Gamma(a) = Gamma(a + 1) U^(1/a)), since those of small alphas
+/// vanish otherwise.
+pub fn draw(dirichlet: &Dirichlet, random: &mut Stream) -> Vec<f64> {
+    let log = |value: usize, random: &mut Stream| {
+        let alpha = dirichlet.alpha(value);
+        let gamma = Gamma::new(alpha + 1.0, 1.0).map_or(1.0, |gamma| gamma.sample(random));
+        gamma.ln() + (1.0 - random.random::<f64>()).ln() / alpha
+    };
+    let logs: Vec<f64> = (0..dirichlet.mean().len()).map(|value| log(value, random)).collect();
+    let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let weights: Vec<f64> = logs.iter().map(|log| (log - most).exp()).collect();
+    let total: f64 = weights.iter().sum();
+    weights.iter().map(|weight| weight / total).collect()
+}

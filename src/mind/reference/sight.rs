@@ -1,0 +1,118 @@
+//! What a gaze sample may tell: for every location, how likely it is read by this sample, and as what.
+
+use crate::base::time::SessionTime;
+use crate::gaze::GazeSample;
+use crate::kitchen::{ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::mind::model::PerceptionModel;
+
+/// Where reading is slower than this share of the full rate, the gaze is elsewhere.
+const ELSEWHERE: f64 = 0.1;
+
+/// What a sample does at one location.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Glance {
+    pub location: LocationId,
+    /// A new look begins: it can be read anew.
+    pub begins: bool,
+    /// Probability that it is read now, if it was not yet in this look.
+    pub chance: f64,
+    /// As what it is read, by value.
+    pub reading: Vec<f64>,
+}
+
+/// Follows gaze and display.
+#[derive(Clone, Debug, Default)]
+pub struct Sight {
+    /// What the display showed, and since when.
+    shown: Vec<(SessionTime, State)>,
+    /// By location, what it showed in the present look, and when the gaze was last there.
+    looks: Vec<(u8, SessionTime)>,
+    last: Option<SessionTime>,
+}
+
+impl Sight {
+    /// The display shows this from now on.
+    pub fn show(&mut self, now: SessionTime, state: State) {
+        self.shown.push((now, state));
+    }
+
+    /// Time stood still.
+    pub fn rest(&mut self) {
+        self.last = None;
+    }
+
+    /// What a sample does that was taken at this time.
+    pub fn glances(
+        &mut self,
+        kitchen: &Kitchen,
+        model: &PerceptionModel,
+        sample: &GazeSample,
+        taken: SessionTime,
+    ) -> Vec<Glance> {
+        let covers_s = self.last.map_or(model.max_sample_s, |last| taken.secs_since(last)).min(model.max_sample_s);
+        self.last = Some(self.last.map_or(taken, |last| last.max(taken)));
+        let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
+        if !on_display || sample.confidence.is_nan() || sample.confidence < model.min_confidence || covers_s <= 0.0 {
+            return Vec::new();
+        }
+        let Some(state) = self.shown_at(taken, model.history_s) else { return Vec::new() };
+        let confidence = sample.confidence.min(1.0);
+        self.looks.resize(kitchen.locations.len(), (0, SessionTime::ZERO));
+        let mut glances = Vec::new();
+        for index in 0..kitchen.locations.len() {
+            let location = LocationId(index as u8);
+            let distance_m = kitchen.locations[index].display.distance_m([sample.x, sample.y], kitchen.display_m);
+            let rate_hz = model.rate_hz(distance_m, confidence);
+            let code = state.code(location);
+            let (of_look, last) = &mut self.looks[index];
+            let begins = code != *of_look || taken.secs_since(*last) > model.look_ends_s;
+            *of_look = code;
+            if rate_hz >= ELSEWHERE * model.reading_rate_hz * confidence {
+                *last = taken;
+            }
+            let Some(value) = kitchen.aspects[index].index_of(code) else { continue };
+            let chance = 1.0 - (-rate_hz * covers_s).exp();
+            glances.push(Glance { location, begins, chance, reading: reading(kitchen, model, location, value) });
+        }
+        glances
+    }
+
+    /// What the display showed at a time; nothing if that is too long ago.
+    fn shown_at(&self, time: SessionTime, history_s: f64) -> Option<State> {
+        let newest = self.shown.last().map(|(since, _)| *since)?;
+        let (at, (_, state)) = self.shown.iter().enumerate().rev().find(|(_, (since, _))| *since <= time)?;
+        // A state is known for as long as the one after it is not older than the history.
+        let is_known = self.shown.get(at + 1).is_none_or(|(until, _)| newest.secs_since(*until) <= history_s);
+        is_known.then_some(*state)
+    }
+}
+
+/// The confusion matrix's row for a value of a location.
+fn reading(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, value: usize) -> Vec<f64> {
+    let aspect = &kitchen.aspects[location.index()];
+    let alike: Vec<bool> =
+        aspect.values.iter().map(|&other| is_alike(kitchen, location, aspect.values[value], other)).collect();
+    let count = alike.iter().filter(|alike| **alike).count();
+    let others = aspect.values.len() - 1 - count;
+    let to_alike = if count == 0 { 0.0 } else { model.look_alike };
+    let to_others = if others == 0 { 0.0 } else { model.anything };
+    let chance = |other: usize| match alike[other] {
+        _ if other == value => 1.0 - to_alike - to_others,
+        true => to_alike / count as f64,
+        false => to_others / others as f64,
+    };
+    (0..aspect.values.len()).map(chance).collect()
+}
+
+/// Whether one code of a location looks like another one.
+fn is_alike(kitchen: &Kitchen, location: LocationId, code: u8, other: u8) -> bool {
+    let stack = |dish: DishId| kitchen.dish(dish).stack();
+    let (one, another) = match kitchen.location(location).kind {
+        LocationKind::Order => match (OrderContent::from_code(code), OrderContent::from_code(other)) {
+            (OrderContent::Dish(one), OrderContent::Dish(another)) => (stack(one), stack(another)),
+            _ => return false,
+        },
+        _ => (ContentId(code), ContentId(other)),
+    };
+    kitchen.content(one).look_alikes.contains(&another)
+}

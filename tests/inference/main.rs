@@ -1,0 +1,11 @@
+//! Inference of the human's belief against exact computation, against humans who are simulated from the model itself, against
+//! its own plain reference, and under whatever may come.
+
+mod calibration;
+mod exact;
+mod grid;
+mod laws;
+mod observed;
+mod particles;
+mod recorded;
+mod world;

@@ -1,0 +1,37 @@
+//! What is observed in a session with a simulated participant.
+
+use std::sync::Arc;
+
+use tomcom::base::time::SessionTime;
+use tomcom::kitchen::Kitchen;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::mind::observation::Observation;
+use tomcom::run::engine::Engine;
+use tomcom::run::follower::Follower;
+use tomcom::session::{Event, SessionSpec};
+
+/// All observations of an unassisted trial, until so many presses of both agents.
+pub fn recorded(kitchen: &Arc<Kitchen>, seed: u64, presses: u32) -> Vec<Observation> {
+    let text = format!("layout = \"\"\nseed = {seed}\n[trial]\ncondition = \"none\"\npresses = {presses}\n");
+    let mut spec: SessionSpec = toml::from_str(&text).expect("settings of a session");
+    // The estimate of the session itself is of no interest here.
+    (spec.human.inference.beliefs, spec.human.inference.states, spec.human.inference.max_beliefs) = (1, 1, 1);
+    let cost = CostToGo::new(kitchen.clone());
+    let mut engine = Engine::new(kitchen.clone(), spec.clone(), 0, cost.clone());
+    let mut follower = Follower::new(kitchen.clone(), spec, cost);
+    let mut observations = Vec::new();
+    let mut events = engine.input(SessionTime::ZERO, Event::TrialStarted).events;
+    loop {
+        for stamped in &events {
+            let (before, counts) = (follower.session.state, follower.session.is_running());
+            follower.apply(stamped).expect("an event of the session");
+            if let Some(what) = follower.observed(stamped, before, counts) {
+                observations.push(Observation { number: stamped.seq, time: stamped.time, what });
+            }
+        }
+        if !engine.session().is_running() {
+            return observations;
+        }
+        events = engine.fire();
+    }
+}

@@ -1,0 +1,58 @@
+//! The fast filter against the plain reference on recorded steps.
+
+use tomcom::kitchen::Agent;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::mind::dirichlet::DirichletBelief;
+use tomcom::mind::filter::BeliefFilter;
+use tomcom::mind::model::HumanModel;
+use tomcom::mind::observation::Observed;
+use tomcom::mind::reference::ReferenceFilter;
+
+use crate::observed::recorded;
+use crate::world::{distance, kitchen};
+
+fn means(belief: &DirichletBelief) -> Vec<Vec<f64>> {
+    belief.aspects.iter().map(|aspect| aspect.mean().to_vec()).collect()
+}
+
+/// The mean over the aspects of the total variation between two estimates' means.
+fn mean_distance(one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
+    let each = one.iter().zip(other).map(|(a, b)| distance(std::slice::from_ref(a), std::slice::from_ref(b)));
+    each.sum::<f64>() / one.len() as f64
+}
+
+#[test]
+fn the_fast_filter_and_the_reference_agree_on_recorded_steps() {
+    for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
+        let kitchen = kitchen(layout);
+        let observations = recorded(&kitchen, 21, 45);
+        let mut cost = CostToGo::new(kitchen.clone());
+        // Many samples, so that the two are compared and not their chances.
+        let mut model = HumanModel::default();
+        (model.inference.beliefs, model.inference.predictions) = (1024, 256);
+        let mut fast = BeliefFilter::new(kitchen.clone(), model.clone(), 1);
+        let mut reference = ReferenceFilter::new(kitchen.clone(), model, 1);
+        let (mut sum, mut most, mut steps) = (0.0, 0.0_f64, 0);
+        let (mut log_p, mut presses) = ([0.0; 2], 0);
+        for observation in &observations {
+            fast.observe(observation, &mut cost);
+            reference.observe(observation, &mut cost);
+            if let Observed::Pressed { agent, .. } = observation.what {
+                let apart = mean_distance(&means(fast.belief()), &means(&reference.belief()));
+                (sum, most, steps) = (sum + apart, most.max(apart), steps + 1);
+                if let (Agent::Human, Some(evidence), Some(plain)) = (agent, fast.evidence(), reference.log_p()) {
+                    log_p = [log_p[0] + evidence.log_p, log_p[1] + plain];
+                    presses += 1;
+                }
+            }
+        }
+        let mean = sum / f64::from(steps);
+        let [of_fast, of_reference] = log_p.map(|sum| sum / f64::from(presses));
+        println!(
+            "{layout}: {steps} presses, total variation between fast and reference {mean:.4} in the mean over aspects \
+             and presses, at most {most:.4}; log likelihood per press {of_fast:.3} and {of_reference:.3}"
+        );
+        assert!(mean <= 0.05, "{layout}: {mean}");
+        assert!((of_fast - of_reference).abs() <= 0.15, "{layout}: {log_p:?}");
+    }
+}

@@ -20,12 +20,14 @@ use crate::console;
 use crate::edge::doctor;
 use crate::edge::files::{self, FileError};
 use crate::edge::log::{self, RulingError, WriteError};
+use crate::run::compare::Request;
 use crate::run::live::LiveError;
 use crate::run::options::{self, Beginning, Overrides, Series};
 use crate::run::plan::{self, Overview};
 use crate::run::replay::Replay;
 use crate::run::review::{self, ReviewError};
 use crate::run::series::{self, Sitting};
+use crate::run::similarity::{self, CompareFigures};
 use crate::run::simulate::SimulateError;
 use crate::run::standing::Standing;
 use crate::run::{check_beliefs, kitchen, simulate, tell, timing, verify};
@@ -120,6 +122,7 @@ pub fn main() -> ExitCode {
         cli.command.unwrap_or(Command::Operate(OperateArgs { session: None, recording: None, flags: cli.operate }));
     let done = match command {
         Command::Operate(args) => operate(&args),
+        Command::Compare(args) => compare(&args),
         Command::Replay(args) => replay(&args),
         Command::Simulate(args) => simulate(&args),
         Command::Plan(args) => show_plan(&args),
@@ -248,6 +251,24 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     let standing = Standing::of(replay.session(), replay.log())?;
     let figures = tell::RecordingFigures::of(&replay.follower, events, replay.log().is_cut(), standing);
     print(args.format, &figures, || figures.describe())
+}
+
+fn compare(args: &CompareArgs) -> Result<(), Failure> {
+    let with: Vec<ConceptName> = args.with.iter().map(|&concept| concept.into()).collect();
+    let request = |window: u32| Request { with: with.clone(), window };
+    let windows: Vec<u32> = if args.sweep { similarity::SWEEP.collect() } else { vec![args.window] };
+    let bar = progress((args.recordings.len() * windows.len()) as u64, "recordings");
+    let watch = |window: u32| similarity::watch(&args.recordings, &request(window), || bar.inc(1));
+    let first = watch(windows[0])?;
+    let mut figures = CompareFigures::of(&first);
+    for &window in &windows[1..] {
+        figures.pairs.extend(CompareFigures::of(&watch(window)?).pairs);
+    }
+    bar.finish_and_clear();
+    match args.open {
+        Some(number) => Ok(write!(std::io::stdout(), "{}", similarity::open(&first, number)?)?),
+        None => print(args.format, &figures, || similarity::describe(&figures)),
+    }
 }
 
 fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {

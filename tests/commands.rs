@@ -401,3 +401,47 @@ fn the_readers_survive_cut_and_changed_files() {
         }
     }
 }
+
+#[test]
+fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
+    let out = folder("compare");
+    let session = out.join("short.toml");
+    let layout = Path::new(env!("CARGO_MANIFEST_DIR")).join("layouts/sushi.toml");
+    let text = format!(
+        "layout = \"{}\"\n[trial]\nseconds = 60.0\n[assistant]\nconcept = \"tom\"\n[human.inference]\nbeliefs = 32\nstates = 8\n",
+        layout.display()
+    );
+    fs::write(&session, text).expect("a session file");
+    let [session, out] = [&session, &out].map(|path| path.to_str().expect("a path in UTF-8"));
+    let arguments =
+        ["simulate", session, "--trials", "2", "--condition", "assistant", "--out", out, "--format", "json"];
+    let recordings = figures(&arguments, 0);
+    let recordings: Vec<&str> =
+        recordings["recordings"].as_array().expect("recordings").iter().filter_map(Value::as_str).collect();
+    let found = figures(&[&["compare"], &recordings[..], &["--with", "dev", "--format", "json"]].concat(), 0);
+    let pairs = found["pairs"].as_array().expect("pairs");
+    let names: Vec<[&str; 2]> =
+        pairs.iter().map(|pair| ["of", "with"].map(|key| pair[key].as_str().unwrap_or_default())).collect();
+    assert_eq!(names, [["assistant", "tom"], ["assistant", "dev"], ["tom", "dev"]]);
+    for key in ["recall", "precision", "f1", "kappa", "median_lead_s", "chance_recall", "window_actions"] {
+        assert!(pairs[0][key].is_number(), "{key} in {}", pairs[0]);
+    }
+    assert!(pairs[0]["recall"].as_f64() > pairs[0]["chance_recall"].as_f64(), "{}", pairs[0]);
+    let one = &found["recordings"][0];
+    let differences = one["differences"].as_array().expect("differences");
+    assert!(!differences.is_empty());
+    let knew = &differences[differences.len() - 1]["knew"];
+    assert_eq!(knew["beliefs"].as_array().map(Vec::len), Some(16), "every aspect");
+    assert!(knew["advice"].is_object(), "{knew}");
+    let opened = check(&["compare", recordings[0], "--with", "dev", "--open", "1"], 0);
+    let opened = String::from_utf8_lossy(&opened.stdout).into_owned();
+    for told in ["not said by", "believed, by the estimate", "truly: ", "on the wizard's screen: "] {
+        assert!(opened.contains(told), "{told} in\n{opened}");
+    }
+    assert!(complaint(&["compare", recordings[0], "--open", "999"]).contains("a number of the list of differences"));
+    assert!(complaint(&["compare", "tests/golden"]).contains("events.jsonl"));
+    let swept = figures(&["compare", recordings[0], "--sweep", "--format", "json"], 0);
+    let swept: Vec<u64> =
+        swept["pairs"].as_array().expect("pairs").iter().filter_map(|pair| pair["window_actions"].as_u64()).collect();
+    assert_eq!(swept, (0..=10).collect::<Vec<u64>>());
+}

@@ -8,12 +8,15 @@ use rand::RngExt;
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
-use tomcom::communication::{Sender, signals};
+use tomcom::communication::recommendation::Recommendation;
+use tomcom::communication::{Sender, Signal, signals};
+use tomcom::console::comparison::Known;
 use tomcom::edge::files::{SessionFiles, read_session};
-use tomcom::edge::log::{LOG_NAME, LogWriter};
+use tomcom::edge::log::{LOG_NAME, LogReader, LogWriter};
 use tomcom::gaze::GazeSample;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen, LocationId};
+use tomcom::run::compare::{Request, Watcher};
 use tomcom::run::engine::Engine;
 use tomcom::run::replay::Replay;
 use tomcom::run::review::Film;
@@ -22,7 +25,7 @@ use tomcom::run::verify::verify;
 use tomcom::session::event::{EndReason, SignalEnd};
 use tomcom::session::header::VERSION;
 use tomcom::session::settings::{Condition, GazeSource, ParticipantKind};
-use tomcom::session::{Event, Header, Phase};
+use tomcom::session::{Event, Header, Phase, Stamped};
 
 /// One session for each kitchen.
 const SESSIONS: [&str; 2] = ["default.toml", "burger.toml"];
@@ -405,4 +408,118 @@ fn advice_that_was_not_given_is_no_verified_advice() {
     fs::write(&log, text.lines().enumerate().map(change).collect::<String>()).expect("the folder can be written");
     let found = verify(&log).expect("a recording");
     assert_eq!(found.difference.map(|difference| difference.line), Some(number));
+}
+
+/// The events of a trial in which somebody presses buttons every two seconds, whatever is shown, and a wizard sends these
+/// signals, each so many seconds after the beginning.
+fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionFiles, Vec<Stamped>) {
+    let mut files = session(name);
+    (files.spec.participant.kind, files.spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::None);
+    files.spec.assistant.concept = ConceptName::Tom;
+    let kitchen = Arc::new(files.kitchen.kitchen.clone());
+    let mut engine = Engine::new(kitchen.clone(), files.spec.clone(), 0, CostToGo::new(kitchen.clone()));
+    let mut random = stream(4, "presses", 0);
+    let mut inputs = vec![(0.0, Event::TrialStarted)];
+    let buttons = &kitchen.buttons[Agent::Human.index()];
+    inputs.extend((1..40).map(|number| {
+        let button = buttons[random.random_range(0..buttons.len())].name.clone();
+        (2.0 * f64::from(number), Event::Press { agent: Agent::Human, button })
+    }));
+    inputs.extend(sent.iter().map(|(time_s, signal)| {
+        (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None })
+    }));
+    inputs.push((80.0, Event::TrialEnded { reason: EndReason::Wizard }));
+    inputs.push((81.0, Event::SessionEnded));
+    inputs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let take = |(time_s, event): (f64, Event)| {
+        let outcome = engine.input(SessionTime::from_secs_f64(time_s), event);
+        assert_eq!(outcome.refused, None);
+        outcome.events
+    };
+    let events = inputs.into_iter().flat_map(take).collect();
+    (files, events)
+}
+
+/// What was known at every moment at which the concepts were asked, with the presses of the human until then.
+fn asked(files: &SessionFiles, events: &[Stamped], window: u32) -> (Vec<(u32, Arc<Known>)>, Watcher) {
+    let request = Request { with: vec![ConceptName::Dev], window };
+    let mut watcher = Watcher::new(Arc::new(files.kitchen.kitchen.clone()), &files.spec, &request);
+    let mut known: Vec<(u32, Arc<Known>)> = Vec::new();
+    for stamped in events {
+        let press = watcher.presses();
+        watcher.apply(stamped).expect("events of a session");
+        let newest = watcher.known().filter(|newest| known.last().is_none_or(|(_, last)| last.seq != newest.seq));
+        known.extend(newest.map(|newest| (press, newest.clone())));
+    }
+    watcher.finish();
+    (known, watcher)
+}
+
+#[test]
+fn what_the_wizard_said_is_left_out_of_the_estimate_for_the_window_and_no_longer() {
+    for name in SESSIONS {
+        let window = 3;
+        let (files, silent) = pressed_on(name, &[]);
+        let (known_silent, _) = asked(&files, &silent, window);
+        let kitchen = &files.kitchen.kitchen;
+        let place = |signal: &Signal| kitchen.location_named(signal.target()).expect("a location");
+        // Nobody looks at the order, so what it wants stays unknown.
+        let (press, signal) = (5, Signal::ShowRecipe(kitchen.location(kitchen.orders[0]).name.clone()));
+        let (files, told) = pressed_on(name, &[(2.0 * f64::from(press) + 1.9, signal.clone())]);
+        let (known_told, _) = asked(&files, &told, window);
+        let thought = |known: &[(u32, Arc<Known>)], until: u32| -> Vec<_> {
+            let until = known.iter().filter(|(press, _)| *press <= until);
+            // Numbers of events differ by the signal's own.
+            let advice = |advice: &Recommendation| (advice.best.clone(), advice.options.clone());
+            until
+                .map(|(_, one)| (one.state, one.held.clone(), one.advice.iter().map(advice).collect::<Vec<_>>()))
+                .collect()
+        };
+        let [with, without] = [&known_told, &known_silent].map(|known| thought(known, press - 1));
+        assert!(with.len() > 4 && with == without, "{name}: until it was said");
+        let p_truth = |known: &[(u32, Arc<Known>)], at: u32| {
+            let (_, known) = known.iter().rfind(|(press, _)| *press == at).expect("asked there");
+            known.held[place(&signal).index()].p_truth
+        };
+        // Chances follow from the numbers of events, which differ by one: the estimates are alike, and no more.
+        for at in press + 1..=press + window {
+            let [with, without] = [&known_told, &known_silent].map(|known| p_truth(known, at));
+            assert!(with < 0.6 && (with - without).abs() < 0.2, "{name}: at press {at}: {with} and {without}");
+        }
+        let later = p_truth(&known_told, press + window + 1);
+        assert!(later > 0.9, "{name}: after the window it counts: {later}");
+        let (known_at_once, _) = asked(&files, &told, 0);
+        let at_once = p_truth(&known_at_once, press + 1);
+        assert!(at_once > 0.9, "{name}: without a window it counts at once: {at_once}");
+    }
+}
+
+#[test]
+fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
+    let mut files = session("default.toml");
+    files.spec.trial.condition = Condition::None;
+    files.spec.trial.seconds = 45.0;
+    files.spec.assistant.concept = ConceptName::Tom;
+    let out = folder("shadow");
+    simulate(&Simulation { files, trials: 1, out: out.clone() }, || ()).expect("the folder can be written");
+    let mut log = LogReader::open(&out.join("seed1-S001")).expect("a recording");
+    let request = Request { with: vec![ConceptName::Dev], window: 3 };
+    let watcher = || Watcher::new(log.kitchen.clone(), &log.header.session, &request);
+    let (mut here, there) = (watcher(), watcher().on_thread());
+    let mut compared = 0;
+    while let Some(line) = log.next_line().expect("an event") {
+        here.apply(&line.stamped).expect("an event of the session");
+        there.tell(&line.stamped);
+        let Event::Advised(recorded) = line.stamped.event else { continue };
+        let known = here.known().expect("it was asked");
+        assert_eq!((known.seq, known.advice[0].for_ns), (recorded.for_seq, recorded.for_ns));
+        // In the session nobody shows its advice, so that it may say it again; here it is silent about what it has said.
+        for option in &known.advice[0].options {
+            assert!(recorded.options.contains(option), "{option:?} at event {}", line.stamped.seq);
+            compared += 1;
+        }
+    }
+    assert!(compared > 50, "{compared} options");
+    here.finish();
+    assert_eq!(there.last(), Some(here.comparison(true)));
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::communication::concept::ConceptName;
+use crate::run::compare;
 
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
 #[derive(Debug, Parser)]
@@ -22,6 +23,7 @@ pub(super) struct Cli {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     Operate(OperateArgs),
+    Compare(CompareArgs),
     Replay(ReplayArgs),
     Simulate(SimulateArgs),
     Plan(PlanArgs),
@@ -144,6 +146,30 @@ pub(super) enum SimulatedCondition {
     None,
     /// The assistant, by itself.
     Assistant,
+}
+
+/// Sets wizard and assistants side by side: what each said, what of it matches, and what each knew where they differ.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom compare sessions/2026-03-14-P07-1 --with tom,dev --window 3")]
+pub(super) struct CompareArgs {
+    /// Folders of recordings, or their events.jsonl.
+    #[arg(required = true, value_name = "RECORDING")]
+    pub(super) recordings: Vec<PathBuf>,
+    /// Further concepts beside the session's own, with commas between them.
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(super) with: Vec<ConceptArg>,
+    /// Communications match within so many presses of the human.
+    #[arg(long, default_value_t = compare::WINDOW, value_parser = clap::value_parser!(u32).range(0..=100))]
+    pub(super) window: u32,
+    /// The figures for every window from 0 to 10.
+    #[arg(long, conflicts_with_all = ["open", "window"])]
+    pub(super) sweep: bool,
+    /// What each knew at the difference with this number.
+    #[arg(long, value_name = "NUMBER", conflicts_with = "format")]
+    pub(super) open: Option<usize>,
+    /// How to print the figures.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(super) format: Format,
 }
 
 /// Opens the console over a recording. Through a pipe: what happened, line by line. Or checks that it comes out the same.

@@ -4,6 +4,7 @@
 pub mod arrange;
 pub mod belief;
 pub mod chord;
+pub mod comparison;
 pub mod form;
 pub mod hands;
 pub mod keymap;

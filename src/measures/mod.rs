@@ -6,6 +6,7 @@ pub mod detection;
 pub mod errors;
 pub mod flags;
 pub mod likelihood;
+pub mod matching;
 pub mod sequences;
 
 use crate::base::time::SessionTime;
@@ -21,4 +22,15 @@ pub struct JudgedPress {
     pub belief_known: bool,
     /// Why it was an error; `None` for what was none, and where the belief is not known.
     pub cause: Option<attribution::Cause>,
+}
+
+/// The median; of an even number the mean of the middle two; none of nothing.
+pub fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() {
+        0 => None,
+        length if length % 2 == 1 => Some(values[middle]),
+        _ => Some((values[middle - 1] + values[middle]) / 2.0),
+    }
 }

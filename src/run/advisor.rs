@@ -29,7 +29,7 @@ pub struct Question {
     robot: RobotOutlook,
     robot_press_s: f64,
     /// What may be said.
-    pub signals: Vec<Signal>,
+    signals: Vec<Signal>,
     /// The number of the human's last press, if that was an error.
     error: Option<u64>,
 }
@@ -51,6 +51,11 @@ impl Question {
         let signals = follower.repeats.allowed(&session.kitchen, session.spec.signals.own_hand);
         let error = follower.judged.last().filter(|press| press.verdict.error).map(|press| press.seq);
         Question { seq, time, state, belief, robot, robot_press_s, signals, error }
+    }
+
+    /// The same question about another estimate, and with other things that may be said.
+    pub fn about(&self, belief: &DirichletBelief, signals: Vec<Signal>) -> Question {
+        Question { belief: belief.clone(), signals, ..self.clone() }
     }
 }
 

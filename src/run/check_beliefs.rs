@@ -2,10 +2,11 @@
 //! believed, and against what it pressed.
 
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::parallel;
 use super::replay::Replay;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
@@ -73,28 +74,10 @@ pub struct Views {
 /// # Errors
 /// Those of [`check`].
 pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Views> {
-    let left = Mutex::new(recordings.iter().enumerate());
-    let results = Mutex::new(Vec::new());
-    let work = || {
-        loop {
-            let one = left.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).next();
-            let Some((index, recording)) = one else { return };
-            let result = view(recording);
-            results.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push((index, result));
-            done();
-        }
-    };
-    let threads = std::thread::available_parallelism().map_or(1, |count| count.get()).min(recordings.len());
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(work);
-        }
-    });
-    let mut results = results.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
-    results.sort_by_key(|(index, _)| *index);
+    let results = parallel::each(recordings, |recording| view(recording), done);
     let mut first: Option<(&Path, Arc<Kitchen>)> = None;
     let mut trials = Vec::new();
-    for ((_, result), recording) in results.into_iter().zip(recordings) {
+    for (result, recording) in results.into_iter().zip(recordings) {
         let (kitchen, trial) = result?;
         let (path, of_first) = first.get_or_insert_with(|| (recording, kitchen.clone()));
         if of_first.aspects != kitchen.aspects || of_first.buttons != kitchen.buttons {

@@ -366,7 +366,7 @@ impl Engine {
 }
 
 /// Whether the assistant is asked after such an event: a press of either agent, and what changes the task without one.
-fn changes_task(event: &Event) -> bool {
+pub(super) fn changes_task(event: &Event) -> bool {
     matches!(
         event,
         Event::Press { .. } | Event::OrderShown { .. } | Event::OrderCleared { .. } | Event::KitchenCorrected { .. }

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::follower::Follower;
 use crate::kitchen::{Agent, DishId};
 use crate::measures::attribution::Cause;
+use crate::measures::median;
 use crate::measures::sequences::{Sequence, sequences, sequences_by_target};
 use crate::session::Happening;
 use crate::session::settings::ParticipantKind;
@@ -192,15 +193,4 @@ impl SimulationFigures {
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
     (count > 0).then(|| sum / f64::from(count))
-}
-
-/// The median; of an even number the mean of the middle two; none of nothing.
-pub fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    match values.len() {
-        0 => None,
-        length if length % 2 == 1 => Some(values[middle]),
-        _ => Some((values[middle - 1] + values[middle]) / 2.0),
-    }
 }

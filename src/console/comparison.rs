@@ -1,0 +1,268 @@
+//! Wizard and assistants side by side: what each said, what of it matches, and where they differ with what was known then.
+
+use std::sync::Arc;
+
+use super::belief::Held;
+use super::words;
+use crate::base::time::SessionTime;
+use crate::communication::Signal;
+use crate::communication::concept::ConceptName;
+use crate::communication::recommendation::Recommendation;
+use crate::kitchen::{AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::measures::matching::{Content, Kind, Likeness, Said, Similarity, Tally, matched};
+use crate::session::screen::Screen;
+
+/// What was known when something could be said.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Known {
+    /// The number of the event that brought it about.
+    pub seq: u64,
+    pub state: State,
+    /// By aspect; the estimate leaves out what was sent within the window.
+    pub held: Vec<Held>,
+    /// Of each assistant, in the order of their lanes.
+    pub advice: Vec<Recommendation>,
+    /// What was on the wizard's screen; none before the first frame, and without a wizard.
+    pub screen: Option<Screen>,
+}
+
+/// What was said.
+#[derive(Clone, Debug, PartialEq)]
+pub enum What {
+    Signal(Signal),
+    /// Presses by the names of their buttons.
+    Proposal(Vec<String>),
+}
+
+impl What {
+    /// For the matching.
+    pub fn content(&self, kitchen: &Kitchen) -> Content {
+        let kind = match self {
+            What::Signal(Signal::ShowRecipe(_)) => Kind::Recipe,
+            What::Signal(Signal::Highlight(_)) => Kind::Highlight,
+            What::Proposal(_) => Kind::Proposal,
+        };
+        Content { kind, target: self.target(kitchen) }
+    }
+
+    fn target(&self, kitchen: &Kitchen) -> Option<LocationId> {
+        match self {
+            What::Signal(signal) => kitchen.location_named(signal.target()),
+            What::Proposal(_) => None,
+        }
+    }
+
+    /// In words.
+    pub fn words(&self) -> String {
+        match self {
+            What::Signal(signal) => words::signal(signal),
+            What::Proposal(presses) => {
+                let presses: Vec<String> = presses.iter().map(|press| words::location(press)).collect();
+                format!("press {}", presses.join(", then "))
+            }
+        }
+    }
+}
+
+/// A communication in its lane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spoken {
+    pub said: Said,
+    /// In the session's time.
+    pub time: SessionTime,
+    pub what: What,
+    /// The last moment until then at which the assistants were asked.
+    pub known: Option<Arc<Known>>,
+}
+
+/// Everything that one side said in a trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lane {
+    /// "wizard", "tom-com".
+    pub name: String,
+    /// What decides; none: who sent the signals that the participant saw.
+    pub concept: Option<ConceptName>,
+    pub spoken: Vec<Spoken>,
+}
+
+impl Lane {
+    pub fn said(&self) -> Vec<Said> {
+        self.spoken.iter().map(|spoken| spoken.said).collect()
+    }
+}
+
+/// A communication that has no match in another lane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// The lane and its communication.
+    pub lane: usize,
+    pub index: usize,
+    /// The lane that did not say it.
+    pub not: usize,
+}
+
+/// The first lane against another one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pair {
+    /// Strict pairs, as indices into both lanes.
+    pub matched: Vec<(usize, usize)>,
+    pub similarity: Similarity,
+}
+
+/// A comparison, as far as it has come.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Presses of the human within which communications match.
+    pub window: u32,
+    /// The first is what the participant was shown.
+    pub lanes: Vec<Lane>,
+    /// The first lane with each of the others.
+    pub pairs: Vec<Pair>,
+    /// In the order of time. What may still be matched is none.
+    pub differences: Vec<Difference>,
+}
+
+impl Comparison {
+    /// Compares lanes of a trial that has had so many presses of the human; `over`: there will be no more.
+    pub fn new(lanes: Vec<Lane>, window: u32, presses: u32, over: bool) -> Comparison {
+        let said: Vec<Vec<Said>> = lanes.iter().map(Lane::said).collect();
+        let pair = |with: &Vec<Said>| {
+            let mut tally = Tally::default();
+            tally.add(&said[0], with, presses, window);
+            let matched = matched(&said[0], with, window, Likeness::Strict);
+            Pair { matched, similarity: tally.similarity() }
+        };
+        let pairs: Vec<Pair> = said.iter().skip(1).map(pair).collect();
+        let mut differences = Vec::new();
+        for (not, pair) in pairs.iter().enumerate() {
+            let other = not + 1;
+            let alone = |lane: usize, index: usize| {
+                !pair.matched.iter().any(|&(a, b)| if lane == 0 { a == index } else { b == index })
+            };
+            for (lane, not) in [(0, other), (other, 0)] {
+                let settled = |index: &usize| over || said[lane][*index].press + window < presses;
+                let indices = (0..said[lane].len()).filter(|&index| alone(lane, index)).filter(settled);
+                differences.extend(indices.map(|index| Difference { lane, index, not }));
+            }
+        }
+        let time = |one: &Difference| lanes[one.lane].spoken[one.index].time;
+        differences.sort_by_key(|one| (time(one), one.lane, one.not));
+        Comparison { window, lanes, pairs, differences }
+    }
+
+    /// What was said in a difference.
+    pub fn spoken(&self, difference: &Difference) -> &Spoken {
+        &self.lanes[difference.lane].spoken[difference.index]
+    }
+
+    /// The assistant's lane that a difference is about.
+    fn assistant(&self, difference: &Difference) -> usize {
+        difference.lane.max(difference.not)
+    }
+
+    /// What that assistant thought then.
+    pub fn advice(&self, difference: &Difference) -> Option<&Recommendation> {
+        self.spoken(difference).known.as_ref()?.advice.get(self.assistant(difference) - 1)
+    }
+
+    /// A difference in one line: "4:32  only tom-com: recipe of order 1".
+    pub fn headline(&self, difference: &Difference) -> String {
+        let (spoken, by) = (self.spoken(difference), &self.lanes[difference.lane].name);
+        let not = match self.lanes.len() {
+            0..=2 => String::new(),
+            _ => format!(", not {}", self.lanes[difference.not].name),
+        };
+        let only = if not.is_empty() { "only " } else { "" };
+        format!("{}  {only}{by}{not}: {}", spoken.said.clock, spoken.what.words())
+    }
+
+    /// What each knew then, in lines.
+    pub fn opened(&self, kitchen: &Kitchen, difference: &Difference) -> Vec<String> {
+        let spoken = self.spoken(difference);
+        let other = &self.lanes[difference.not];
+        let apart = |near: &&Spoken| near.said.press.abs_diff(spoken.said.press);
+        let near = match other.spoken.iter().min_by_key(apart) {
+            Some(near) => {
+                let presses = apart(&near);
+                format!(
+                    "{}; next to it {} at {}, {presses} presses away",
+                    other.name,
+                    near.what.words(),
+                    near.said.clock
+                )
+            }
+            None => format!("{} said nothing in this trial", other.name),
+        };
+        let mut lines = vec![self.headline(difference), format!("press {}, not said by {near}", spoken.said.press)];
+        let Some(known) = &spoken.known else {
+            lines.push("nothing was asked yet: before the first press or order".to_string());
+            return lines;
+        };
+        if let Some(advice) = self.advice(difference) {
+            lines.push(format!("{} then: {}", self.lanes[self.assistant(difference)].name, thought(advice)));
+        }
+        lines.push(format!("believed, by the estimate without what was just sent: {}", believed(kitchen, known)));
+        lines.push(format!("truly: {}", truly(kitchen, known.state)));
+        lines.push(format!("on the wizard's screen: {}", seen(known.screen.as_ref())));
+        lines
+    }
+}
+
+/// What an assistant thought, in words.
+fn thought(advice: &Recommendation) -> String {
+    if let Some(proposal) = &advice.proposal {
+        return What::Proposal(proposal.presses.clone()).words();
+    }
+    let option = |option: &crate::communication::recommendation::SignalOption| {
+        let signal = words::signal(&option.signal);
+        format!("{signal} {:.2} ±{:.2} (net {:+.2})", option.benefit, option.standard_error, option.net)
+    };
+    let options: Vec<String> = advice.options.iter().take(3).map(option).collect();
+    let best = advice.best.as_ref().map_or("say nothing".to_string(), words::signal);
+    let reason = advice.reason.as_ref().map_or(String::new(), |reason| format!(", since it {}", reason.words()));
+    match options.is_empty() {
+        true => best,
+        false => format!("{best}{reason}; benefits: {}", options.join(", ")),
+    }
+}
+
+/// What is believed, the most doubtful first.
+fn believed(kitchen: &Kitchen, known: &Known) -> String {
+    let mut doubtful: Vec<(usize, &Held)> =
+        known.held.iter().enumerate().filter(|(_, held)| held.p_truth < 0.9).collect();
+    doubtful.sort_by(|a, b| a.1.p_truth.total_cmp(&b.1.p_truth));
+    let told = |&(index, held): &(usize, &Held)| {
+        let aspect = &kitchen.aspects[index];
+        let truth = &aspect.labels[kitchen.true_value(known.state, AspectId(index as u8))];
+        let believes = &aspect.labels[usize::from(held.believes)];
+        format!("{} = {believes} {:.2} (truly {truth} {:.2})", aspect.name, held.p, held.p_truth)
+    };
+    match doubtful.is_empty() {
+        true => "everything as it is (above 0.9)".to_string(),
+        false => doubtful.iter().take(4).map(told).collect::<Vec<_>>().join("; "),
+    }
+}
+
+/// What lay where, without what is empty.
+fn truly(kitchen: &Kitchen, state: State) -> String {
+    let location = |index: usize| {
+        let (id, location) = (LocationId(index as u8), &kitchen.locations[index]);
+        let is_there = match location.kind {
+            LocationKind::Order => matches!(state.order(id), OrderContent::Dish(_)),
+            _ => state.content(id) != crate::kitchen::ContentId::EMPTY,
+        };
+        is_there.then(|| format!("{} {}", location.label(), kitchen.content_label(state, id)))
+    };
+    let there: Vec<String> = (0..kitchen.locations.len()).filter_map(location).collect();
+    if there.is_empty() { "an empty kitchen".to_string() } else { there.join(", ") }
+}
+
+fn seen(screen: Option<&Screen>) -> String {
+    match screen {
+        Some(screen) => {
+            let dialog = screen.dialog.as_ref().map_or(String::new(), |dialog| format!(", {dialog} open"));
+            format!("{} ({}{dialog})", screen.panels.join(", "), screen.room)
+        }
+        None => "not known: no console was open".to_string(),
+    }
+}

@@ -1,0 +1,260 @@
+//! How alike two lanes of communications are, a wizard's and an assistant's: one-to-one matching in time, and what follows
+//! from it.
+//!
+//! Two communications can match if at most a window of human presses lies between them and they say the same: the same
+//! signal and target (strict), the same kind of signal (lenient), or anything at all (timing alone). Of all one-to-one
+//! matchings one with most pairs is taken, of those one with the least presses between the pairs.
+//!
+//! Kappa (Cohen 1960) is over human presses and {none, each signal and target}. A strictly matched pair counts as agreement
+//! at the press of its first lane, as when events are aligned within a tolerance (Quera, Bakeman and Gnisci 2007); all else
+//! counts at its own press. The chance level is the mean over all circular shifts of the second lane by more than the window.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::median;
+use crate::base::time::SessionTime;
+use crate::kitchen::LocationId;
+
+/// What kind of communication something is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    Recipe,
+    Highlight,
+    /// Of presses, after an error: no signal.
+    Proposal,
+}
+
+/// What is said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Content {
+    pub kind: Kind,
+    /// What a signal is about.
+    pub target: Option<LocationId>,
+}
+
+/// A communication.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Said {
+    /// How many presses of the human came before it in the trial.
+    pub press: u32,
+    /// On the trial's clock.
+    pub clock: SessionTime,
+    pub content: Content,
+}
+
+/// What has to be the same of two communications that match.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Likeness {
+    /// Signal and target.
+    Strict,
+    /// The kind of signal.
+    Lenient,
+    /// Nothing but the time.
+    Timing,
+}
+
+impl Likeness {
+    /// What communications have in common that can match.
+    fn class(self, content: Content) -> Option<Content> {
+        match self {
+            Likeness::Strict => Some(content),
+            Likeness::Lenient => Some(Content { target: None, ..content }),
+            Likeness::Timing => None,
+        }
+    }
+}
+
+/// The pairs of a best one-to-one matching, as indices into both lanes, in the order of the first. Both lanes are in the
+/// order of time.
+pub fn matched(of: &[Said], with: &[Said], window: u32, likeness: Likeness) -> Vec<(usize, usize)> {
+    let mut classes: BTreeMap<Option<Content>, [Vec<usize>; 2]> = BTreeMap::new();
+    for (lane, said) in [of, with].into_iter().enumerate() {
+        for (index, said) in said.iter().enumerate() {
+            classes.entry(likeness.class(said.content)).or_default()[lane].push(index);
+        }
+    }
+    let mut pairs: Vec<(usize, usize)> = classes.values().flat_map(|[a, b]| aligned(of, with, a, b, window)).collect();
+    pairs.sort_unstable();
+    pairs
+}
+
+/// The best matching of communications of one class. Where only distances on a line count, some best matching crosses
+/// nowhere, so that it is found as an alignment of two sequences.
+fn aligned(of: &[Said], with: &[Said], a: &[usize], b: &[usize], window: u32) -> Vec<(usize, usize)> {
+    // Pairs, and presses between them counted down: the most is the best.
+    let mut best = vec![vec![(0i64, 0i64); b.len() + 1]; a.len() + 1];
+    let apart = |i: usize, j: usize| of[a[i]].press.abs_diff(with[b[j]].press);
+    for i in (0..a.len()).rev() {
+        for j in (0..b.len()).rev() {
+            let (pairs, nearness) = best[i + 1][j + 1];
+            let taken = (apart(i, j) <= window).then(|| (pairs + 1, nearness - i64::from(apart(i, j))));
+            best[i][j] = best[i + 1][j].max(best[i][j + 1]).max(taken.unwrap_or((0, i64::MIN)));
+        }
+    }
+    let (mut i, mut j) = (0, 0);
+    let mut pairs = Vec::new();
+    while i < a.len() && j < b.len() {
+        if best[i][j] == best[i + 1][j] {
+            i += 1;
+        } else if best[i][j] == best[i][j + 1] {
+            j += 1;
+        } else {
+            pairs.push((a[i], b[j]));
+            (i, j) = (i + 1, j + 1);
+        }
+    }
+    pairs
+}
+
+/// What two lanes have in common, in one trial or several.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tally {
+    of: u64,
+    with: u64,
+    /// Pairs: strict, lenient, by time alone.
+    pairs: [u64; 3],
+    /// Strict pairs that circular shifts leave, in the mean, and the communications of the first lane in those trials.
+    chance: (f64, u64),
+    /// Seconds from the second lane's communication to the first's.
+    leads_s: Vec<f64>,
+    /// How often a press has this content in the first lane and that in the second.
+    units: BTreeMap<(Option<Content>, Option<Content>), u64>,
+}
+
+impl Tally {
+    /// Adds a trial of so many presses of the human.
+    pub fn add(&mut self, of: &[Said], with: &[Said], presses: u32, window: u32) {
+        self.of += of.len() as u64;
+        self.with += with.len() as u64;
+        let strict = matched(of, with, window, Likeness::Strict);
+        let number = |likeness| matched(of, with, window, likeness).len() as u64;
+        self.pairs[0] += strict.len() as u64;
+        self.pairs[1] += number(Likeness::Lenient);
+        self.pairs[2] += number(Likeness::Timing);
+        let lead = |&(a, b): &(usize, usize)| of[a].clock.as_secs_f64() - with[b].clock.as_secs_f64();
+        self.leads_s.extend(strict.iter().map(lead));
+        if let Some(chance) = chance(of, with, presses, window) {
+            self.chance.0 += chance;
+            self.chance.1 += of.len() as u64;
+        }
+        for (unit, number) in units(of, with, &strict, presses) {
+            *self.units.entry(unit).or_default() += number;
+        }
+    }
+
+    /// The figures.
+    pub fn similarity(&self) -> Similarity {
+        let share = |part: f64, all: u64| (all > 0).then(|| part / all as f64);
+        let level = |pairs: u64| Level {
+            recall: share(pairs as f64, self.of),
+            precision: share(pairs as f64, self.with),
+            f1: share(2.0 * pairs as f64, self.of + self.with),
+        };
+        Similarity {
+            strict: level(self.pairs[0]),
+            kappa: kappa(&self.units),
+            median_lead_s: median(self.leads_s.clone()),
+            chance_recall: share(self.chance.0, self.chance.1),
+            of_n: self.of,
+            with_n: self.with,
+            matched: self.pairs[0],
+            lenient: level(self.pairs[1]),
+            timing: level(self.pairs[2]),
+        }
+    }
+}
+
+/// Shares of matched communications; null of nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Level {
+    /// Of the first lane's.
+    pub recall: Option<f64>,
+    /// Of the second lane's.
+    pub precision: Option<f64>,
+    pub f1: Option<f64>,
+}
+
+/// How alike two lanes are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Similarity {
+    /// The same signal and target.
+    #[serde(flatten)]
+    pub strict: Level,
+    /// Null where nothing but chance could be.
+    pub kappa: Option<f64>,
+    /// By how much the second lane is earlier than the first, in seconds; negative: later.
+    pub median_lead_s: Option<f64>,
+    /// The recall that circular shifts of the second lane leave.
+    pub chance_recall: Option<f64>,
+    /// Communications of the first lane, of the second, and strict pairs.
+    pub of_n: u64,
+    pub with_n: u64,
+    pub matched: u64,
+    /// The same kind of signal.
+    pub lenient: Level,
+    /// Anything, at about the same time.
+    pub timing: Level,
+}
+
+/// The mean number of strict pairs over the circular shifts of the second lane by more than the window; none if the trial is
+/// too short for one.
+fn chance(of: &[Said], with: &[Said], presses: u32, window: u32) -> Option<f64> {
+    // Before, between and after the presses.
+    let places = presses + 1;
+    let shifts = window + 1..places.saturating_sub(window);
+    let pairs = |shift: u32| {
+        let shifted = |said: &Said| Said { press: (said.press + shift) % places, ..*said };
+        let mut shifted: Vec<Said> = with.iter().map(shifted).collect();
+        shifted.sort_by_key(|said| said.press);
+        matched(of, &shifted, window, Likeness::Strict).len()
+    };
+    let (count, sum) = shifts.fold((0u32, 0), |(count, sum), shift| (count + 1, sum + pairs(shift)));
+    (count > 0).then(|| sum as f64 / f64::from(count))
+}
+
+type Units = BTreeMap<(Option<Content>, Option<Content>), u64>;
+
+/// The contents of both lanes press by press; where a lane has several at a press, there are several units.
+fn units(of: &[Said], with: &[Said], pairs: &[(usize, usize)], presses: u32) -> Units {
+    let mut units = Units::new();
+    let mut spoken = vec![[Vec::new(), Vec::new()]; presses as usize + 1];
+    let mut is_silent = vec![true; presses as usize + 1];
+    let place = |said: &Said| said.press.min(presses) as usize;
+    for &(a, _) in pairs {
+        *units.entry((Some(of[a].content), Some(of[a].content))).or_default() += 1;
+        is_silent[place(&of[a])] = false;
+    }
+    let is_paired = |lane: usize, index: usize| pairs.iter().any(|&(a, b)| [a, b][lane] == index);
+    for (lane, said) in [of, with].into_iter().enumerate() {
+        for (_, said) in said.iter().enumerate().filter(|(index, _)| !is_paired(lane, *index)) {
+            spoken[place(said)][lane].push(said.content);
+            is_silent[place(said)] = false;
+        }
+    }
+    for [a, b] in &spoken {
+        for index in 0..a.len().max(b.len()) {
+            *units.entry((a.get(index).copied(), b.get(index).copied())).or_default() += 1;
+        }
+    }
+    let silent = is_silent.iter().filter(|&&silent| silent).count() as u64;
+    if silent > 0 {
+        *units.entry((None, None)).or_default() += silent;
+    }
+    units
+}
+
+/// Cohen's kappa of a table of agreements.
+pub fn kappa<T: Ord + Copy>(units: &BTreeMap<(T, T), u64>) -> Option<f64> {
+    let all: u64 = units.values().sum();
+    let mut margins: BTreeMap<T, [u64; 2]> = BTreeMap::new();
+    for (&(a, b), &number) in units {
+        margins.entry(a).or_default()[0] += number;
+        margins.entry(b).or_default()[1] += number;
+    }
+    let squared = (all as f64) * (all as f64);
+    let expected: f64 = margins.values().map(|[a, b]| *a as f64 * *b as f64 / squared).sum();
+    let agreed: u64 = units.iter().filter(|((a, b), _)| a == b).map(|(_, number)| number).sum();
+    (all > 0 && expected < 1.0).then(|| (agreed as f64 / all as f64 - expected) / (1.0 - expected))
+}

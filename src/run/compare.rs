@@ -1,0 +1,326 @@
+//! Sets assistants beside what was sent: asks them after every press and order change of a session, as the engine does, and
+//! keeps what they would have said.
+//!
+//! An assistant is asked about an estimate that leaves out every signal that was sent within the window; else a wizard who is
+//! quick and right would silence it, and count as unmatched. What a concept has said it does not say again, as if it had been
+//! shown, although it was not.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread;
+
+use super::advisor::{Advisor, Question};
+use super::engine::changes_task;
+use super::follower::Follower;
+use crate::base::time::SessionTime;
+use crate::communication::concept::ConceptName;
+use crate::communication::recommendation::Recommendation;
+use crate::communication::repeats::Repeats;
+use crate::console::belief::Moment;
+use crate::console::comparison::{Comparison, Known, Lane, Spoken, What};
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, Kitchen};
+use crate::measures::matching::Said;
+use crate::mind::dirichlet::DirichletBelief;
+use crate::mind::filter::BeliefFilter;
+use crate::mind::observation::{Observation, Observed};
+use crate::session::apply::ApplyError;
+use crate::session::screen::Screen;
+use crate::session::settings::Condition;
+use crate::session::{Event, SessionSpec, Stamped};
+
+/// The window that communications match within, in presses of the human.
+pub const WINDOW: u32 = 3;
+
+/// What is compared.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Request {
+    /// Beside the session's own concept.
+    pub with: Vec<ConceptName>,
+    pub window: u32,
+}
+
+impl Request {
+    /// The concepts that are asked: the session's own, or ToM-Com where it has none, and those that were asked for.
+    fn concepts(&self, spec: &SessionSpec) -> Vec<ConceptName> {
+        let own = match spec.assistant.concept {
+            ConceptName::None => ConceptName::TomCom,
+            own => own,
+        };
+        let mut concepts = vec![own];
+        for &name in &self.with {
+            if !concepts.contains(&name) {
+                concepts.push(name);
+            }
+        }
+        concepts
+    }
+}
+
+/// A concept and its lane.
+#[derive(Debug)]
+struct Voice {
+    name: ConceptName,
+    advisor: Advisor,
+    /// What it has said.
+    repeats: Repeats,
+    /// The error that it has proposed presses for.
+    proposed: Option<u64>,
+    spoken: Vec<Spoken>,
+}
+
+/// The estimate without a signal, and without those after it.
+#[derive(Debug)]
+struct Without {
+    /// Presses of the human before the signal.
+    press: u32,
+    filter: BeliefFilter,
+}
+
+/// Follows a session, event by event, and asks.
+#[derive(Debug)]
+pub struct Watcher {
+    pub follower: Follower,
+    window: u32,
+    voices: Vec<Voice>,
+    /// Of the signals that were sent within the window, the oldest first.
+    without: VecDeque<Without>,
+    sent: Vec<Spoken>,
+    /// The newest event after which is asked, when all that follows at once has happened.
+    to_ask: Option<(u64, SessionTime)>,
+    known: Option<Arc<Known>>,
+    screen: Option<Screen>,
+    /// How often was asked.
+    asked: u64,
+}
+
+impl Watcher {
+    /// A watcher before the first event of a session.
+    pub fn new(kitchen: Arc<Kitchen>, spec: &SessionSpec, request: &Request) -> Watcher {
+        let cost = CostToGo::new(kitchen.clone());
+        let voice = |name: ConceptName| Voice {
+            name,
+            advisor: Advisor::by(name, kitchen.clone(), spec, cost.clone()),
+            repeats: Repeats::default(),
+            proposed: None,
+            spoken: Vec::new(),
+        };
+        let voices = request.concepts(spec).into_iter().map(voice).collect();
+        Watcher {
+            follower: Follower::new(kitchen, spec.clone(), cost),
+            window: request.window,
+            voices,
+            without: VecDeque::new(),
+            sent: Vec::new(),
+            to_ask: None,
+            known: None,
+            screen: None,
+            asked: 0,
+        }
+    }
+
+    /// The same without looking for the causes of errors, which takes longer than a running session can wait.
+    pub fn without_causes(self) -> Watcher {
+        Watcher { follower: self.follower.without_causes(), ..self }
+    }
+
+    /// Moves on by one event.
+    ///
+    /// # Errors
+    /// Those of [`Follower::apply`].
+    pub fn apply(&mut self, stamped: &Stamped) -> Result<(), ApplyError> {
+        if self.to_ask.is_some_and(|(_, time)| !follows_at_once(stamped, time)) {
+            self.ask();
+        }
+        let is_sent = matches!(stamped.event, Event::SignalShown { .. });
+        let before = (self.follower.session.state, self.follower.session.is_running());
+        let filter = is_sent.then(|| self.follower.filter.clone());
+        self.follower.apply(stamped)?;
+        self.estimate_without(stamped, before);
+        if let (Some(filter), Event::SignalShown { signal, .. }) = (filter, &stamped.event) {
+            let press = self.presses();
+            self.without.push_back(Without { press, filter });
+            let spoken = self.spoken(What::Signal(signal.clone()), stamped.time);
+            self.sent.push(spoken);
+        }
+        match &stamped.event {
+            Event::Gaze(_) => return Ok(()),
+            Event::Screen(screen) => self.screen = Some(screen.clone()),
+            Event::TrialStarted => self.voices.iter_mut().for_each(|voice| voice.repeats = Repeats::default()),
+            _ => {}
+        }
+        self.forget_what_was_said();
+        if self.follower.session.is_running() && changes_task(&stamped.event) {
+            self.to_ask = Some((stamped.seq, stamped.time));
+        }
+        Ok(())
+    }
+
+    /// Asks what is still to be asked: there will be no more events.
+    pub fn finish(&mut self) {
+        self.ask();
+    }
+
+    /// What was known when the concepts were asked last.
+    pub fn known(&self) -> Option<&Arc<Known>> {
+        self.known.as_ref()
+    }
+
+    /// Presses of the human so far.
+    pub fn presses(&self) -> u32 {
+        self.follower.session.presses[Agent::Human.index()]
+    }
+
+    /// Moves the estimates on that leave signals out. They learn all but signals.
+    fn estimate_without(&mut self, stamped: &Stamped, (before, counts): (crate::kitchen::State, bool)) {
+        let press = self.presses();
+        while self.without.front().is_some_and(|oldest| press > oldest.press + self.window) {
+            self.without.pop_front();
+        }
+        if self.without.is_empty() {
+            return;
+        }
+        let Some(what) = self.follower.observed(stamped, before, counts) else { return };
+        if matches!(what, Observed::Told { .. }) {
+            return;
+        }
+        let observation = Observation { number: stamped.seq, time: stamped.time, what };
+        for one in &mut self.without {
+            one.filter.observe(&observation, &mut self.follower.cost);
+        }
+    }
+
+    fn forget_what_was_said(&mut self) {
+        let session = &self.follower.session;
+        let belief = estimate(&self.follower, &self.without);
+        for voice in &mut self.voices {
+            voice.repeats.update(&session.kitchen, session.state, belief);
+        }
+    }
+
+    fn spoken(&self, what: What, time: SessionTime) -> Spoken {
+        let session = &self.follower.session;
+        let (press, content) = (self.presses(), what.content(&session.kitchen));
+        let said = Said { press, clock: session.trial_clock(time), content };
+        Spoken { said, time, what, known: self.known.clone() }
+    }
+
+    /// Asks every concept what it would say now.
+    fn ask(&mut self) {
+        let Some((seq, time)) = self.to_ask.take().filter(|_| self.follower.session.is_running()) else { return };
+        self.asked += 1;
+        let session = &self.follower.session;
+        let (kitchen, own_hand) = (session.kitchen.clone(), session.spec.signals.own_hand);
+        let question = Question::of(&self.follower, seq, time);
+        let belief = estimate(&self.follower, &self.without);
+        let answer = |voice: &mut Voice| {
+            let signals = voice.repeats.allowed(&kitchen, own_hand);
+            voice.advisor.answer(&question.about(belief, signals))
+        };
+        let advice: Vec<Recommendation> = self.voices.iter_mut().map(answer).collect();
+        let held = Moment::new(&kitchen, session.state, belief, time, false).held;
+        let (state, screen) = (session.state, self.screen.clone());
+        let known = Arc::new(Known { seq, state, held, advice, screen });
+        self.known = Some(known.clone());
+        for (index, advice) in known.advice.iter().enumerate() {
+            let what = self.says(index, advice);
+            let spoken = what.map(|what| self.spoken(what, time));
+            self.voices[index].spoken.extend(spoken);
+        }
+    }
+
+    /// What a concept says by its advice; it is remembered that it was said.
+    fn says(&mut self, index: usize, advice: &Recommendation) -> Option<What> {
+        let session = &self.follower.session;
+        let voice = &mut self.voices[index];
+        if let Some(signal) = &advice.best {
+            voice.repeats.shown(&session.kitchen, session.state, signal);
+            return Some(What::Signal(signal.clone()));
+        }
+        // One proposal for an error, however long it stands.
+        let proposal = advice.proposal.as_ref().filter(|proposal| voice.proposed != Some(proposal.error))?;
+        voice.proposed = Some(proposal.error);
+        Some(What::Proposal(proposal.presses.clone()))
+    }
+
+    /// What was said so far, and how alike it is; `over`: nothing more will come.
+    pub fn comparison(&self, over: bool) -> Comparison {
+        let sender = match self.follower.session.spec.trial.condition {
+            Condition::Assistant => "assistant",
+            Condition::Wizard | Condition::None => "wizard",
+        };
+        let mut lanes = vec![Lane { name: sender.to_string(), concept: None, spoken: self.sent.clone() }];
+        lanes.extend(self.voices.iter().map(|voice| Lane {
+            name: voice.name.name().to_string(),
+            concept: Some(voice.name),
+            spoken: voice.spoken.clone(),
+        }));
+        Comparison::new(lanes, self.window, self.presses(), over)
+    }
+
+    /// Follows on a thread of its own, which ends with the desk that tells it the events.
+    pub fn on_thread(mut self) -> WatchDesk {
+        let (tell, events) = channel::<Stamped>();
+        let (show, views) = channel();
+        thread::spawn(move || {
+            while let Ok(stamped) = events.recv() {
+                let (asked, sent) = (self.asked, self.sent.len());
+                // The session took this event, so it fits; if it does not, there is nothing to compare any more.
+                if self.apply(&stamped).is_err() {
+                    return;
+                }
+                let is_over = matches!(stamped.event, Event::TrialEnded { .. } | Event::TrialAborted { .. });
+                let is_news = is_over || self.asked > asked || self.sent.len() > sent;
+                if is_news && show.send(self.comparison(is_over)).is_err() {
+                    return;
+                }
+            }
+        });
+        WatchDesk { tell, views }
+    }
+}
+
+/// The estimate without what was sent within the window.
+fn estimate<'a>(follower: &'a Follower, without: &'a VecDeque<Without>) -> &'a DirichletBelief {
+    without.front().map_or(follower.filter.belief(), |oldest| oldest.filter.belief())
+}
+
+/// Whether an event belongs to what the event at `time` led to at once.
+fn follows_at_once(stamped: &Stamped, time: SessionTime) -> bool {
+    let is_new = matches!(
+        stamped.event,
+        Event::Gaze(_)
+            | Event::ParticipantBelieves(_)
+            | Event::Advised(_)
+            | Event::SignalShown { .. }
+            | Event::Screen(_)
+    );
+    stamped.time == time && !is_new
+}
+
+/// Where a running console tells events, and where the comparisons come.
+#[derive(Debug)]
+pub struct WatchDesk {
+    tell: Sender<Stamped>,
+    views: Receiver<Comparison>,
+}
+
+impl WatchDesk {
+    /// Tells an event.
+    pub fn tell(&self, stamped: &Stamped) {
+        // A thread that is gone compares nothing more, and the session goes on.
+        let _ = self.tell.send(stamped.clone());
+    }
+
+    /// The last comparison, when all that was told is taken in; no more can be told.
+    pub fn last(self) -> Option<Comparison> {
+        drop(self.tell);
+        self.views.into_iter().last()
+    }
+
+    /// The newest comparison since this was called last.
+    pub fn newest(&self) -> Option<Comparison> {
+        self.views.try_iter().last()
+    }
+}

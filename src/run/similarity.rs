@@ -1,0 +1,283 @@
+//! `tomcom compare RECORDING...`: how alike wizard and assistants are, over recordings, and where they differ.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::compare::{Request, Watcher};
+use super::parallel;
+use super::standing::Standing;
+use crate::base::words::count;
+use crate::communication::recommendation::Recommendation;
+use crate::console::comparison::{Comparison, Difference};
+use crate::edge::files::{FileError, FileResult};
+use crate::edge::log::{LogReader, at_line};
+use crate::kitchen::{AspectId, Kitchen};
+use crate::measures::matching::{Level, Said, Similarity, Tally};
+use crate::session::screen::Screen;
+
+/// The windows of `--sweep`.
+pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;
+
+/// What `tomcom compare` prints.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CompareFigures {
+    /// Over all recordings that count.
+    pub pairs: Vec<PairFigures>,
+    pub recordings: Vec<RecordingComparison>,
+}
+
+/// Two lanes against each other.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PairFigures {
+    pub of: String,
+    pub with: String,
+    /// Presses of the human within which communications match, and for which the estimate leaves out what was sent.
+    pub window_actions: u32,
+    #[serde(flatten)]
+    pub similarity: Similarity,
+}
+
+/// One recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RecordingComparison {
+    pub recording: String,
+    #[serde(flatten)]
+    pub standing: Standing,
+    pub human_actions: u64,
+    pub lanes: Vec<LaneFigures>,
+    pub differences: Vec<DifferenceFigures>,
+}
+
+/// What one side said.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LaneFigures {
+    pub name: String,
+    pub communications: Vec<SpokenFigures>,
+}
+
+/// A communication.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SpokenFigures {
+    /// Presses of the human before it.
+    pub press: u32,
+    /// On the trial's clock.
+    pub clock_s: f64,
+    pub says: String,
+}
+
+/// A communication without a match, and what was known then.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DifferenceFigures {
+    /// As `--open` takes it, from 1.
+    pub number: usize,
+    /// In words.
+    pub headline: String,
+    pub by: String,
+    pub not_by: String,
+    #[serde(flatten)]
+    pub spoken: SpokenFigures,
+    pub knew: Option<KnownFigures>,
+}
+
+/// What was known.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct KnownFigures {
+    /// Of every aspect, by the estimate that leaves out what was sent within the window.
+    pub beliefs: Vec<AspectKnown>,
+    /// What the assistant thought.
+    pub advice: Option<Recommendation>,
+    pub screen: Option<Screen>,
+}
+
+/// An aspect of the belief.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AspectKnown {
+    pub aspect: String,
+    pub truth: String,
+    pub believes: String,
+    pub p_truth: f64,
+}
+
+/// A recording that was followed to its end.
+pub struct Watched {
+    pub recording: PathBuf,
+    pub watcher: Watcher,
+    pub standing: Standing,
+    pub comparison: Comparison,
+}
+
+impl Watched {
+    /// Follows a recording to its end.
+    ///
+    /// # Errors
+    /// It cannot be read or applied.
+    pub fn new(recording: &Path, request: &Request) -> FileResult<Watched> {
+        let mut log = LogReader::open(recording)?;
+        let mut watcher = Watcher::new(log.kitchen.clone(), &log.header.session, request);
+        while let Some(line) = log.next_line()? {
+            let applied = watcher.apply(&line.stamped);
+            applied.map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
+        }
+        watcher.finish();
+        let standing = Standing::of(&watcher.follower.session, &log)?;
+        let comparison = watcher.comparison(true);
+        Ok(Watched { recording: recording.to_path_buf(), watcher, standing, comparison })
+    }
+
+    fn kitchen(&self) -> &Kitchen {
+        &self.watcher.follower.session.kitchen
+    }
+}
+
+/// Follows recordings on all processors. `done` is called after each.
+///
+/// # Errors
+/// Those of [`Watched::new`].
+pub fn watch(recordings: &[PathBuf], request: &Request, done: impl Fn() + Sync) -> FileResult<Vec<Watched>> {
+    parallel::each(recordings, |recording| Watched::new(recording, request), done).into_iter().collect()
+}
+
+impl CompareFigures {
+    /// Sums recordings up. Of several, those that are excluded are left out of the pairs.
+    pub fn of(watched: &[Watched]) -> CompareFigures {
+        let counting: Vec<&Watched> =
+            watched.iter().filter(|one| watched.len() == 1 || one.standing.counts()).collect();
+        let mut pairs: Vec<(PairFigures, Tally)> = Vec::new();
+        for one in counting {
+            let said: Vec<Vec<Said>> = one.comparison.lanes.iter().map(|lane| lane.said()).collect();
+            for (a, b) in (0..said.len()).flat_map(|a| (a + 1..said.len()).map(move |b| (a, b))) {
+                let [of, with] = [a, b].map(|lane| one.comparison.lanes[lane].name.clone());
+                let is_it = |(pair, _): &&mut (PairFigures, Tally)| pair.of == of && pair.with == with;
+                let window = one.comparison.window;
+                let add = |tally: &mut Tally| tally.add(&said[a], &said[b], one.watcher.presses(), window);
+                match pairs.iter_mut().find(is_it) {
+                    Some((_, tally)) => add(tally),
+                    None => {
+                        let mut tally = Tally::default();
+                        add(&mut tally);
+                        let similarity = Similarity::default();
+                        pairs.push((PairFigures { of, with, window_actions: window, similarity }, tally));
+                    }
+                }
+            }
+        }
+        let pairs = pairs.into_iter().map(|(pair, tally)| PairFigures { similarity: tally.similarity(), ..pair });
+        CompareFigures { pairs: pairs.collect(), recordings: watched.iter().map(RecordingComparison::of).collect() }
+    }
+}
+
+impl RecordingComparison {
+    fn of(watched: &Watched) -> RecordingComparison {
+        let comparison = &watched.comparison;
+        let lanes = comparison.lanes.iter().map(|lane| LaneFigures {
+            name: lane.name.clone(),
+            communications: lane.spoken.iter().map(SpokenFigures::of).collect(),
+        });
+        let differences = comparison.differences.iter().enumerate();
+        RecordingComparison {
+            recording: watched.recording.display().to_string(),
+            standing: watched.standing.clone(),
+            human_actions: u64::from(watched.watcher.presses()),
+            lanes: lanes.collect(),
+            differences: differences.map(|(index, one)| DifferenceFigures::of(watched, index, one)).collect(),
+        }
+    }
+}
+
+impl SpokenFigures {
+    fn of(spoken: &crate::console::comparison::Spoken) -> SpokenFigures {
+        let (press, clock_s) = (spoken.said.press, spoken.said.clock.as_secs_f64());
+        SpokenFigures { press, clock_s, says: spoken.what.words() }
+    }
+}
+
+impl DifferenceFigures {
+    fn of(watched: &Watched, index: usize, difference: &Difference) -> DifferenceFigures {
+        let comparison = &watched.comparison;
+        let spoken = comparison.spoken(difference);
+        let knew = spoken.known.as_ref().map(|known| {
+            let held = |(index, held): (usize, &crate::console::belief::Held)| {
+                let aspect = &watched.kitchen().aspects[index];
+                let truth = watched.kitchen().true_value(known.state, AspectId(index as u8));
+                AspectKnown {
+                    aspect: aspect.name.clone(),
+                    truth: aspect.labels[truth].clone(),
+                    believes: aspect.labels[usize::from(held.believes)].clone(),
+                    p_truth: (f64::from(held.p_truth) * 1e4).round() / 1e4,
+                }
+            };
+            KnownFigures {
+                beliefs: known.held.iter().enumerate().map(held).collect(),
+                advice: comparison.advice(difference).cloned(),
+                screen: known.screen.clone(),
+            }
+        });
+        DifferenceFigures {
+            number: index + 1,
+            headline: comparison.headline(difference),
+            by: comparison.lanes[difference.lane].name.clone(),
+            not_by: comparison.lanes[difference.not].name.clone(),
+            spoken: SpokenFigures::of(spoken),
+            knew,
+        }
+    }
+}
+
+/// What each knew at a difference, by its number in the list, in words.
+///
+/// # Errors
+/// There is no such difference, or more than one recording.
+pub fn open(watched: &[Watched], number: usize) -> FileResult<String> {
+    let [one] = watched else {
+        let found = format!("--open {number} with {} recordings", watched.len());
+        return Err(FileError::at(Path::new("."), "", None, found, "one recording at a time".to_string()));
+    };
+    let differences = &one.comparison.differences;
+    let Some(difference) = number.checked_sub(1).and_then(|index| differences.get(index)) else {
+        let found = format!(
+            "--open {number}, where there are {}",
+            count(differences.len() as u64, "difference", "differences")
+        );
+        return Err(FileError::at(&one.recording, "", None, found, "a number of the list of differences".to_string()));
+    };
+    Ok(one.comparison.opened(one.kitchen(), difference).join("\n") + "\n")
+}
+
+/// The figures for people.
+pub fn describe(figures: &CompareFigures) -> String {
+    let mut text = format!(
+        "{:<24}{:>7}{:>8}{:>8}{:>11}{:>6}{:>7}{:>8}\n",
+        "", "window", "recall", "chance", "precision", "F1", "kappa", "lead"
+    );
+    figures.pairs.iter().for_each(|pair| text += &describe_pair(pair));
+    for one in &figures.recordings {
+        let presses = count(one.human_actions, "press", "presses");
+        text += &format!("\n{}: {presses} of the human\n", one.recording);
+        if !one.standing.counts() {
+            text += &format!("left out of the analysis: {}\n", one.standing.describe());
+        }
+        let lines = one.differences.iter().map(|one| format!("{:>4}  {}\n", one.number, one.headline));
+        text.extend(lines);
+    }
+    text
+}
+
+fn describe_pair(pair: &PairFigures) -> String {
+    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
+    let found = &pair.similarity;
+    let lead = found.median_lead_s.map_or("-".to_string(), |lead| format!("{lead:+.1} s"));
+    let line = |what: &str, window: &str, chance: &str, level: Level| {
+        let [recall, precision, f1] = [level.recall, level.precision, level.f1].map(number);
+        format!("{what:<24}{window:>7}{recall:>8}{chance:>8}{precision:>11}{f1:>6}")
+    };
+    let what = format!("{}, {}", pair.of, pair.with);
+    let strict = line(&what, &pair.window_actions.to_string(), &number(found.chance_recall), found.strict);
+    let kappa = number(found.kappa);
+    let said = format!("{} of {} matched, {} said", found.matched, found.of_n, found.with_n);
+    format!(
+        "{strict}{kappa:>7}{lead:>8}  {said}\n{}\n{}\n",
+        line("  the same kind", "", "", found.lenient),
+        line("  the same time", "", "", found.timing)
+    )
+}

@@ -204,7 +204,12 @@ impl HumanModel {
             count("cases", think.cases),
             share("noticed", self.signal.noticed),
             count("beliefs", self.inference.beliefs),
-            count("states", self.inference.states),
+            (
+                "states",
+                self.inference.states as f64,
+                (1..=256).contains(&self.inference.states),
+                "a whole number from 1 to 256",
+            ),
             above("min_effective", self.inference.min_effective),
             count("max_beliefs", self.inference.max_beliefs),
             count("predictions", self.inference.predictions),

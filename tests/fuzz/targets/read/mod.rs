@@ -5,12 +5,13 @@
 use std::path::{Path, PathBuf};
 
 use tomcom::edge::files::{FileResult, compile_kitchen, key_map, parse};
+use tomcom::edge::log::LogReader;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::mind::model::HumanModel;
-use tomcom::run::replay::Replay;
-use tomcom::session::SessionSpec;
+use tomcom::session::apply::apply;
 use tomcom::session::header::FileText;
 use tomcom::session::plan::{Questionnaire, Study};
+use tomcom::session::{Session, SessionSpec};
 
 const LAYOUT: &str = include_str!("../../../../layouts/sushi.toml");
 const RECIPES: &str = include_str!("../../../../recipes/sushi.toml");
@@ -54,11 +55,19 @@ fn shown<T>(result: FileResult<T>) {
     }
 }
 
-/// Replays a log; the reader wants a file.
+/// Reads a log, which has to be a file, and applies its events.
 fn replay(log: &[u8]) {
     let path = path();
     std::fs::write(&path, log).expect("the temporary folder can be written");
-    shown(Replay::open(&path).and_then(|mut replay| replay.run()));
+    shown(LogReader::open(&path).and_then(|mut log| {
+        let mut session = Session::new(log.kitchen.clone(), log.header.session.clone());
+        while let Some(line) = log.next_line()? {
+            if apply(&mut session, &line.stamped).is_err() {
+                break;
+            }
+        }
+        Ok(())
+    }));
 }
 
 /// A file of this process.

@@ -29,7 +29,7 @@ use crate::run::review::{self, ReviewError};
 use crate::run::series::{self, Sitting};
 use crate::run::similarity::{self, CompareFigures};
 use crate::run::simulate::SimulateError;
-use crate::run::standing::Standing;
+use crate::run::standing::{self, Standing};
 use crate::run::{check_beliefs, kitchen, simulate, tell, timing, verify};
 use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
 
@@ -330,7 +330,11 @@ fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
 
 fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
     let ruling = log::rule(&args.recording, !args.back, args.reason.as_deref().unwrap_or_default())?;
-    let words = if ruling.excluded { "is left out of the analysis" } else { "counts again" };
+    let words = match (ruling.excluded, standing::aborted(&args.recording)?) {
+        (true, _) => "is left out of the analysis".to_string(),
+        (false, None) => "counts again".to_string(),
+        (false, Some(reason)) => format!("is not excluded; it is still left out of the analysis, as aborted: {reason}"),
+    };
     print(args.format, &ruling, || format!("{} {words}\n", args.recording.display()))
 }
 

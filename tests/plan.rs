@@ -8,9 +8,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use serde_json::Value;
 use tmux::{TOMCOM, Terminal, tiny_plan, tomcom};
 use tomcom::base::time::SessionTime;
+use tomcom::console::view::theme::{Ground, Theme};
+use tomcom::console::{Command, KeyMap, Keys, Message, Model, update};
 use tomcom::edge::files::{SessionFiles, read_session};
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::edge::recordings;
@@ -321,6 +324,37 @@ fn items_are_answered_back_and_forth_and_confirmed() {
     assert!(verify(&run.close()).expect("readable").verified);
 }
 
+/// A terminal that reports no releases: the same answer again after 0.3 s is no held key. Enter is, which tells steps read.
+#[test]
+fn hasty_answers_are_all_taken() {
+    let mut run = Run::new(&folder("hasty"), wanted(1, true));
+    run.next_phase();
+    run.trial();
+    run.next_phase();
+    let keys = Keys::live(&run.engine.session().kitchen, &run.engine.session().spec, &KeyMap::default());
+    let theme = Theme { colour: true, unicode: true, ground: Ground::Dark };
+    let mut model = Model::new(keys.expect("keys"), theme, (80, 24));
+    let items = run.engine.session().questionnaire().expect("it is asked").items.clone();
+    for (index, item) in items.iter().enumerate() {
+        model.clock = SessionTime::from_secs_f64(5.0 + 0.3 * index as f64);
+        let key = Message::Key(KeyEvent::new(KeyCode::Char('5'), KeyModifiers::NONE));
+        let Some(Command::Input(event)) = update(&mut model, run.engine.session(), key) else {
+            panic!("item {}: {:?}", item.id, model.notice)
+        };
+        assert_eq!(event, Event::Protocol(ProtocolEvent::ItemAnswered { item: item.id.clone(), answer: 5 }));
+        assert_eq!(run.input(event), None);
+    }
+    for (gap_s, counts) in [(1.0, true), (0.3, false), (0.3, false), (0.3, true)] {
+        model.clock = SessionTime::from_secs_f64(model.clock.as_secs_f64() + gap_s);
+        let key = Message::Key(KeyEvent::new(KeyCode::Enter, KeyModifiers::NONE));
+        let command = update(&mut model, run.engine.session(), key);
+        assert_eq!(command.is_some(), counts, "after {gap_s} s: {command:?}");
+        if let Some(Command::Input(event)) = command {
+            assert_eq!(run.input(event), None);
+        }
+    }
+}
+
 /// Copies a recording, cut after `bytes` of its log.
 fn cut(recording: &Path, out: &Path, bytes: usize) -> PathBuf {
     let folder = out.join(recording.file_name().expect("a name"));
@@ -475,9 +509,10 @@ fn answer(terminal: &Terminal, key: &str) {
             return true;
         }
         terminal.key(key);
-        std::thread::sleep(std::time::Duration::from_millis(800));
+        std::thread::sleep(std::time::Duration::from_millis(400));
         false
     });
+    std::thread::sleep(std::time::Duration::from_millis(800));
     terminal.key("Enter");
     terminal.wait("the answers confirmed", || !terminal.screen().contains("confirm the answers"));
     std::thread::sleep(std::time::Duration::from_millis(800));

@@ -111,13 +111,14 @@ impl Reason {
         })
     }
 
-    /// In words: "order_1 taken for tuna nigiri (0.83): would press "take tuna" instead of "take salmon"".
+    /// In words: "takes order 1 for tuna nigiri (0.83): would press "take tuna" instead of "take salmon"".
     pub fn words(&self) -> String {
         let Reason { aspect, believes, p_wrong, .. } = self;
-        let taken = format!("takes {aspect} for {believes} ({p_wrong:.2})");
-        let instead = self.instead.as_deref().map_or("waiting".to_string(), |button| format!("\"{button}\""));
+        let said = |name: &str| name.replace('_', " ");
+        let taken = format!("takes {} for {believes} ({p_wrong:.2})", said(aspect));
+        let instead = self.instead.as_deref().map_or("waiting".to_string(), |button| format!("\"{}\"", said(button)));
         match &self.prevents {
-            Some(button) => format!("{taken}: would press \"{button}\" instead of {instead}"),
+            Some(button) => format!("{taken}: would press \"{}\" instead of {instead}", said(button)),
             None => taken,
         }
     }

@@ -67,6 +67,16 @@ pub enum Recording {
     Lost,
 }
 
+/// A key that went down, with times on [`Model::clock`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pressed {
+    pub code: KeyCode,
+    /// When the terminal reported it last.
+    pub reported: SessionTime,
+    /// When it was last taken for a press.
+    pub counted: SessionTime,
+}
+
 /// Everything that only concerns the screen and the hands at the keyboard.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -107,8 +117,8 @@ pub struct Model {
     pub playback: Option<Playback>,
     /// The terminal tells key repeat from key press.
     pub(super) exact_keys: bool,
-    /// The key that was pressed last, and when it was last reported, on [`Model::clock`]: against key repeat.
-    pub(super) pressed: Option<(KeyCode, SessionTime)>,
+    /// The key that was pressed last: against key repeat.
+    pub(super) pressed: Option<Pressed>,
 }
 
 impl Model {

@@ -9,7 +9,7 @@ use super::form::{self, sheet};
 use super::hands::{self, Hand};
 use super::keys::{Action, Layer};
 use super::message::{Command, Message};
-use super::model::{Dialog, Level, Model};
+use super::model::{Dialog, Level, Model, Pressed};
 use super::panels::{self, Look};
 use super::preflight;
 use super::view::regions::Regions;
@@ -98,14 +98,14 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
             }
             None
         }
+        action if model.dialog.is_none() && model.playback.is_none() && sheet(session).is_some() => {
+            on_sheet(model, session, key.code, action, touch)
+        }
         Some(action) if touch == Touch::Again && model.dialog.is_none() && !may_follow_at_once(&action) => {
-            model.say(Level::Refused, format!("\"{chord}\" may be held down: press it again in a moment"));
+            model.say(Level::Refused, format!("\"{chord}\" may be held down: press again"));
             None
         }
         action if model.dialog.is_some() => answer(model, chord, action, touch),
-        action if model.playback.is_none() && sheet(session).is_some() => {
-            on_sheet(model, session, key.code, action, touch)
-        }
         Some(action) => act(model, session, action),
         None => {
             unknown(model, session, key.code);
@@ -123,8 +123,12 @@ fn on_sheet(
     touch: Touch,
 ) -> Option<Command> {
     match (form::stroke(code, action == Some(Action::Advance)), action) {
-        // Nobody reads a step or an item so fast: the key is still down from the last one.
-        (Some(form::Stroke::On | form::Stroke::Digit(_)), _) if touch == Touch::Again => None,
+        // Nobody reads a step so fast: the key is still down from the last one. An answer is always taken: one that is lost
+        // would put those after it at the wrong items, one too many is seen.
+        (Some(form::Stroke::On), _) if touch == Touch::Again && code != KeyCode::Right => {
+            model.say(Level::Refused, "not yet: read it, then press the key again");
+            None
+        }
         (Some(stroke), _) => form::write(model, session, stroke),
         (None, Some(action @ (Action::Help | Action::Quit | Action::ResumeRobot))) => act(model, session, action),
         (None, _) => {
@@ -158,19 +162,24 @@ fn touch(model: &mut Model, key: &KeyEvent) -> Touch {
             return if kind == KeyEventKind::Release { Touch::Release } else { Touch::Held };
         }
     }
-    // Only the key that went down last repeats.
-    let last = model.pressed.replace((key.code, model.clock)).filter(|(code, _)| *code == key.code);
-    match last.map(|(_, at)| model.clock.secs_since(at)) {
-        Some(gap_s) if gap_s < REPEAT_S => Touch::Held,
-        Some(gap_s) if gap_s < ANSWER_S => Touch::Again,
+    // Only the key that went down last repeats. The wait runs from the press that counted, so that trying again is no way
+    // to wait for ever.
+    let now = model.clock;
+    let last = model.pressed.filter(|last| last.code == key.code);
+    let touch = match last.map(|last| (now.secs_since(last.reported), now.secs_since(last.counted))) {
+        Some((gap_s, _)) if gap_s < REPEAT_S => Touch::Held,
+        Some((_, since_s)) if since_s < ANSWER_S => Touch::Again,
         _ => Touch::Press,
-    }
+    };
+    let counted = last.filter(|_| touch != Touch::Press).map_or(now, |last| last.counted);
+    model.pressed = Some(Pressed { code: key.code, reported: now, counted });
+    touch
 }
 
 /// Whether a second press within the delay of key repeat counts where the terminal does not tell it from a held key. What
 /// does the opposite the second time does not, nor does what is written down each time.
 fn may_follow_at_once(action: &Action) -> bool {
-    let once = [Hand::HoldRobot, Hand::SkipPress, Hand::Exclude].map(Action::Hand);
+    let once = [Hand::HoldRobot, Hand::SkipPress].map(Action::Hand);
     !matches!(action, Action::Advance | Action::SwitchLayer | Action::Note(_)) && !once.contains(action)
 }
 

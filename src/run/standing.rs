@@ -1,10 +1,26 @@
 //! Whether a recording counts: aborted at the console, excluded there or later from the command line, or neither.
 
+use std::path::Path;
+
 use serde::Serialize;
 
 use crate::edge::files::FileResult;
 use crate::edge::log::{LogReader, Ruling, ruling};
-use crate::session::Session;
+use crate::session::{Event, Session};
+
+/// Why the trial of a recording was aborted, if it was.
+///
+/// # Errors
+/// Those of reading a log.
+pub fn aborted(recording: &Path) -> FileResult<Option<String>> {
+    let mut log = LogReader::open(recording)?;
+    while let Some(line) = log.next_line()? {
+        if let Event::TrialAborted { reason } = line.stamped.event {
+            return Ok(Some(reason));
+        }
+    }
+    Ok(None)
+}
 
 /// What was said about a trial. An analysis leaves out what does not count.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]

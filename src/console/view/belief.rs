@@ -83,6 +83,11 @@ impl Panel<'_> {
             self.chart(brush, focus, x, bottom, columns, rows);
         }
         let mut y = inside.y;
+        let list: u16 = ranked.iter().map(|&aspect| rows_of(aspect)).sum();
+        if columns >= ONE_LINE && inside.y + list < bottom {
+            self.headings(brush, x, y, columns);
+            y += 1;
+        }
         for (index, &aspect) in ranked.iter().enumerate() {
             let rows = rows_of(aspect);
             let left = ranked.len() - index;
@@ -107,13 +112,24 @@ impl Panel<'_> {
         }
     }
 
+    /// What the columns of [`Panel::row`] are.
+    fn headings(&self, brush: &mut Brush, x: u16, y: u16, columns: u16) {
+        let Widths { name, word, bar } = Widths::of(columns);
+        let quiet = brush.style(Role::Quiet);
+        let believed = x + name + 1;
+        let truth = believed + word + bar + 6;
+        brush.text(believed, y, word, "believed", quiet);
+        brush.text(truth, y, word, "in truth", quiet);
+        brush.text_right(truth + word + 7, y, 6, "wrong", quiet);
+        if columns >= WITH_COURSE {
+            brush.text_right(x + columns, y, COURSE, "30 s", quiet);
+        }
+    }
+
     /// An aspect in one line: name, what is believed, how surely, the truth, since when it is wrong, its course.
     fn row(&self, brush: &mut Brush, aspect: usize, x: u16, y: u16, columns: u16) {
         let with_course = columns >= WITH_COURSE;
-        let course = if with_course { COURSE + 1 } else { 0 };
-        let bar = if with_course { 6 } else { 4 };
-        let text = columns - course - bar - 15;
-        let (name, word) = (text * 2 / 5, (text - text * 2 / 5) / 2);
+        let Widths { name, word, bar } = Widths::of(columns);
         let held = self.held[aspect];
         let (role, quiet) = (self.role(aspect), brush.style(Role::Quiet));
         let style = brush.style(role);
@@ -147,13 +163,14 @@ impl Panel<'_> {
         self.since(brush, aspect, bar + 9, y);
         let room = columns.saturating_sub(16);
         if !held.is_false() {
-            let name = fit(&self.name(aspect), room / 2, brush.theme.signs().ellipsis);
+            // Which it is comes before what it holds: that is as it should be.
+            let name = fit(&self.name(aspect), room.saturating_sub(6), brush.theme.signs().ellipsis);
             let end = brush.text(x, y, room, &name, quiet) + 1;
             brush.text(end, y, (x + room).saturating_sub(end), self.label(aspect, usize::from(held.believes)), style);
             return;
         }
         brush.text(x, y, room, &self.name(aspect), style);
-        let said = format!("  {}, is {}", self.label(aspect, usize::from(held.believes)), self.truth(aspect));
+        let said = format!("  {}", self.against_truth(aspect));
         let text = brush.style(Role::Text);
         brush.text(x, y + 1, columns, &said, text);
     }
@@ -194,12 +211,7 @@ impl Panel<'_> {
             let end = format!("{note}{} {:>5}", share(held.p), age.unwrap_or_default().to_string());
             let style = brush.style(Role::FalseBelief);
             brush.text_right(x + columns, y, columns, &end, style);
-            let said = format!(
-                "{}: {}, is {}",
-                self.name(aspect),
-                self.label(aspect, usize::from(held.believes)),
-                self.truth(aspect)
-            );
+            let said = format!("{}: {}", self.name(aspect), self.against_truth(aspect));
             brush.text(x, y, columns.saturating_sub(end.len() as u16 + 1), &said, style);
         }
     }
@@ -267,8 +279,33 @@ impl Panel<'_> {
         &self.kitchen().aspects[aspect].labels[value]
     }
 
+    /// What is believed against what is. The truth may be what is believed most, and yet not surely enough.
+    fn against_truth(&self, aspect: usize) -> String {
+        match (self.label(aspect, usize::from(self.held[aspect].believes)), self.truth(aspect)) {
+            (believed, truth) if believed == truth => format!("unsure of {truth}"),
+            (believed, truth) => format!("{believed}; is {truth}"),
+        }
+    }
+
     fn truth(&self, aspect: usize) -> &str {
         self.label(aspect, self.kitchen().true_value(self.session.state, AspectId(aspect as u8)))
+    }
+}
+
+/// The widths of the columns of an aspect in one line.
+struct Widths {
+    name: u16,
+    /// What is believed, and what is true.
+    word: u16,
+    bar: u16,
+}
+
+impl Widths {
+    fn of(columns: u16) -> Widths {
+        let (course, bar) = if columns >= WITH_COURSE { (COURSE + 1, 6) } else { (0, 4) };
+        let text = columns - course - bar - 15;
+        let name = text * 2 / 5;
+        Widths { name, word: (text - name) / 2, bar }
     }
 }
 

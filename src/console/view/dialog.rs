@@ -6,7 +6,7 @@ use super::hands;
 use super::paint::{Brush, width};
 use super::picker;
 use super::regions::inside;
-use super::theme::Role;
+use super::theme::{Role, Signs};
 use crate::console::chord::Chord;
 use crate::console::keys::{Binding, Layer};
 use crate::console::model::{Dialog, Model};
@@ -72,23 +72,52 @@ fn ask(brush: &mut Brush, screen: Rect, title: &str, lines: &[&str]) {
 }
 
 /// The columns of a line of the help, with its key.
-const HELP_COLUMNS: u16 = 37;
+const HELP_COLUMNS: u16 = 39;
 
-/// A line of the help: a heading, or a key with what it does.
+/// A line of the help: a heading, a key with what it does, or a sign with what it means.
+#[derive(Clone, Copy)]
 enum Line<'a> {
     Heading(&'a str),
     Key(&'a Binding),
+    /// A sign of the panels, with what it means.
+    Sign(&'static str, &'static str),
     Space,
 }
 
+/// What the signs mean that explain themselves nowhere else.
+fn legend(signs: &Signs) -> Vec<Line<'static>> {
+    let meanings = [
+        (signs.gaze, "the gaze; in the belief: it was just there"),
+        (signs.trail, "where the gaze was before"),
+        (signs.rules[1], "changed just now, by whom: the colour"),
+        (signs.changed, "changed so long ago"),
+        (signs.rules[2], "shown to the participant"),
+        (signs.to, "the robot goes there; trial or robot goes on"),
+        (signs.bar_full, "how sure a belief is; what a signal saves"),
+        (signs.press, "press"),
+        (signs.no_effect, "press without effect"),
+        (signs.error, "error; trial excluded"),
+        (signs.served, "order served"),
+        ("+", "new order; more than there is room for"),
+        (signs.taken_back, "taken back; robot's press skipped"),
+        (signs.by_hand, "by the experimenter's hand"),
+        (signs.stopped, "robot stopped"),
+        (signs.pause, "trial paused; robot held"),
+        ("*", "note in words"),
+        ("!", "the keyboard was elsewhere"),
+    ];
+    meanings.map(|(sign, meaning)| Line::Sign(sign, meaning)).to_vec()
+}
+
 fn help(brush: &mut Brush, screen: Rect, model: &Model) {
-    let mut groups: Vec<(&str, Vec<&Binding>)> = Vec::new();
+    let mut groups: Vec<(&str, Vec<Line>)> = Vec::new();
     for binding in &model.keys.bindings {
         match groups.iter_mut().find(|(group, _)| *group == binding.group) {
-            Some((_, members)) => members.push(binding),
-            None => groups.push((binding.group, vec![binding])),
+            Some((_, members)) => members.push(Line::Key(binding)),
+            None => groups.push((binding.group, vec![Line::Key(binding)])),
         }
     }
+    groups.push(("Signs", legend(brush.theme.signs())));
     let rows = screen.height.saturating_sub(3);
     let columns = columns(&groups, usize::from(rows));
     let tallest = columns.iter().map(Vec::len).max().unwrap_or(0) as u16;
@@ -115,6 +144,11 @@ fn help_line(brush: &mut Brush, x: u16, y: u16, columns: u16, line: &Line) {
             let style = brush.style(Role::Strong);
             brush.text(x, y, columns, text, style);
         }
+        Line::Sign(sign, meaning) => {
+            let style = brush.style(Role::Strong);
+            brush.text(x + 5, y, 1, sign, style);
+            brush.parts(x + 7, y, columns.saturating_sub(7), &[(meaning, Role::Text)]);
+        }
         Line::Key(binding) => {
             let key = binding.chords.first().map(Chord::to_string).unwrap_or_default();
             let role = match binding.layer {
@@ -131,7 +165,7 @@ fn help_line(brush: &mut Brush, x: u16, y: u16, columns: u16, line: &Line) {
 
 /// The groups in as few columns as hold them: each in the first column that has room, one that is longer than a column
 /// goes on in the next.
-fn columns<'a>(groups: &'a [(&'a str, Vec<&'a Binding>)], rows: usize) -> Vec<Vec<Line<'a>>> {
+fn columns<'a>(groups: &[(&'a str, Vec<Line<'a>>)], rows: usize) -> Vec<Vec<Line<'a>>> {
     let rows = rows.max(4);
     let mut columns: Vec<Vec<Line>> = vec![Vec::new()];
     for (group, members) in groups {
@@ -150,7 +184,7 @@ fn columns<'a>(groups: &'a [(&'a str, Vec<&'a Binding>)], rows: usize) -> Vec<Ve
                 columns.push(Vec::new());
                 index = columns.len() - 1;
             }
-            columns[index].push(Line::Key(member));
+            columns[index].push(*member);
         }
     }
     columns

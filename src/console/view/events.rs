@@ -14,7 +14,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         return;
     }
     let remark = match model.events_back {
-        0 => "newest first".to_string(),
+        0 => "how long ago, newest first".to_string(),
         back => format!("{back} newer"),
     };
     let inside = brush.panel(regions.events, "Events", &remark);

@@ -10,7 +10,7 @@ use crate::console::model::{Dialog, Level, Model};
 use crate::console::panels::Look;
 use crate::console::playback::Move;
 use crate::session::protocol::StudyPhase;
-use crate::session::settings::ParticipantKind;
+use crate::session::settings::{Condition, ParticipantKind};
 use crate::session::{Phase, Session};
 
 /// How long a notice stays, in seconds.
@@ -137,6 +137,7 @@ fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&
         Action::EndTrial => runs.then_some(label),
         Action::StopRobot => (!session.robot.stopped).then_some(label),
         Action::ResumeRobot => session.robot.stopped.then_some(label),
+        Action::Accept => (session.spec.trial.condition == Condition::Wizard).then_some(label),
         Action::TakeBack => session.shown.is_some().then_some(label),
         Action::Look(Look::All) => {
             (model.alone.is_some() || model.events_back > 0 || model.timeline_back_s > 0).then_some(label)

@@ -198,7 +198,11 @@ impl<'a> Place<'a> {
     /// The key that acts here, in the active layer.
     fn key(&self) -> Option<(String, Role)> {
         match self.model.layer {
-            Layer::Wizard => self.model.keys.of_signal(self.id).map(|chord| (chord.to_string(), Role::Signal)),
+            Layer::Wizard => {
+                let sends = self.session.spec.trial.condition == Condition::Wizard || self.model.playback.is_some();
+                let key = self.model.keys.of_signal(self.id).filter(|_| sends);
+                key.map(|chord| (chord.to_string(), Role::Signal))
+            }
             Layer::Participant => {
                 let main = |action| matches!(action, Action::Use(at) | Action::Serve(at) if at == self.id);
                 participant_key(self.session, self.model, Agent::Human, main).map(|key| (key, Role::Human))

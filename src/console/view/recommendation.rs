@@ -15,6 +15,10 @@ use crate::session::Session;
 /// Columns of a gauge; each stands for half a press that is saved, of ToM for a twelfth of a whole belief.
 const GAUGE: u16 = 12;
 const PRESSES_A_COLUMN: f64 = 0.5;
+/// "[a] highlight assembly board": there is a bar only where so much has room beside it.
+const LONGEST_SIGNAL: u16 = 28;
+/// With fewer columns the line of the cost is said shorter.
+const NARROW: u16 = 46;
 
 /// Draws the recommendation panel.
 pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
@@ -138,10 +142,12 @@ fn option_line(
     let is_best = Some(&option.signal) == advice.best.as_ref();
     let role = if is_best { Role::Strong } else { Role::Quiet };
     let worth = worth(option, session);
-    let x = brush.parts(inside.x, y, inside.width, &[(worth.as_str(), role)]);
-    let x = gauge(brush, x, y, option, session, role);
-    let key = key(option, session, model);
-    let words = words::signal(&option.signal);
+    let mut x = brush.parts(inside.x, y, inside.width, &[(worth.as_str(), role)]);
+    let (key, words) = (key(option, session, model), words::signal(&option.signal));
+    // What a signal says comes before how it looks as a bar.
+    if inside.right().saturating_sub(x) >= GAUGE + 1 + LONGEST_SIGNAL {
+        x = gauge(brush, x, y, option, session, role);
+    }
     brush.parts(x, y, inside.right().saturating_sub(x), &[(key.as_str(), Role::Signal), (words.as_str(), role)]);
     y + 1
 }
@@ -196,6 +202,7 @@ fn cost_line(
     let left = match session.spec.assistant.concept {
         ConceptName::Tom => format!("{silence}threshold {price:.2}"),
         ConceptName::Dev | ConceptName::None => silence.trim_end_matches("; ").to_string(),
+        ConceptName::TomCom if inside.width < NARROW => format!("{silence}costs {price:.1}"),
         ConceptName::TomCom => format!("{silence}a signal costs {price:.1}"),
     };
     let age = session.age(advice.for_ns, model.now).as_secs_f64();

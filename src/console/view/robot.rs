@@ -10,7 +10,7 @@ use crate::console::model::Model;
 use crate::console::words;
 use crate::kitchen::Agent;
 use crate::robot::IdleReason;
-use crate::session::Session;
+use crate::session::{Phase, Session};
 
 /// Draws the robot panel.
 pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
@@ -41,8 +41,8 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
 
 fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
     if session.robot.stopped {
-        let resume =
-            model.keys.of(&Action::ResumeRobot).map(|key| format!(": {key} lets it go on")).unwrap_or_default();
+        let key = model.keys.of(&Action::ResumeRobot).filter(|_| session.phase != Phase::Closed);
+        let resume = key.map(|key| format!(": {key} lets it go on")).unwrap_or_default();
         let badge = brush.theme.badge(Role::Alarm);
         let x = brush.text(x, y, columns, " STOPPED ", badge);
         brush.parts(x, y, columns.saturating_sub(9), &[(&resume, Role::Text)]);

@@ -35,7 +35,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let plot = Rect { x: inside.x + LABELS, width: inside.width.saturating_sub(LABELS + 1), ..inside };
     let back_s = model.timeline_back_s;
     axis(brush, plot, back_s);
-    let now = column(model.now) - (f64::from(back_s) / COLUMN_S) as i64;
+    let now = column(until(session, model)) - (f64::from(back_s) / COLUMN_S) as i64;
     let newest = session.timeline.iter().rev();
     let entries = newest.map(|entry| (now - column(entry.time), entry));
     let in_view: Vec<Mark> = entries
@@ -49,6 +49,12 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         .filter(|mark| mark.y < plot.bottom())
         .collect();
     place(brush, plot, &in_view);
+}
+
+/// What stands at the right edge: now; in a pause the last that happened, since that is when one looks back.
+fn until(session: &Session, model: &Model) -> SessionTime {
+    let last = session.timeline.last().map_or(session.paused_at, |entry| entry.time.max(session.paused_at));
+    if session.phase == Phase::Paused { last.min(model.now) } else { model.now }
 }
 
 /// A sign in the plot.

@@ -1087,3 +1087,25 @@ fn enter_accepts_what_is_recommended_and_says_so() {
     unseen.session.spec.console.visibility = Visibility::State;
     assert_eq!(input(unseen.key(KeyCode::Enter)), None, "what is not shown is not accepted");
 }
+
+/// A long session needs no more memory than a short one, and still knows since when what is believed wrong.
+#[test]
+fn the_belief_forgets_what_no_panel_shows() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.at(1.0, Event::TrialStarted);
+    stage.estimate(&[("cooking_pot", "rice raw", 0.9)], false);
+    let aspect = stage.session.kitchen.location_named("cooking_pot").expect("a pot").index();
+    for second in 2..3600 {
+        stage.model.now = SessionTime::from_secs_f64(f64::from(second));
+        let p = if second % 2 == 0 { 0.8 } else { 0.9 };
+        stage.estimate(&[("cooking_pot", "rice raw", p)], false);
+        stage.model.belief.forget(stage.model.now, belief::SHOWN_S);
+        let moments = stage.model.belief.until(stage.model.now);
+        assert!(moments.len() <= 200, "{} moments", moments.len());
+        assert!(second < 70 || moments[0].time.as_secs_f64() <= f64::from(second) - belief::SHOWN_S);
+        assert_eq!(belief::wrong_since(moments, aspect), Some(SessionTime::from_secs_f64(1.0)));
+    }
+    stage.model.now = SessionTime::from_secs_f64(3700.0);
+    stage.estimate(&[("cooking_pot", "empty", 0.9)], true);
+    assert_eq!(belief::wrong_since(stage.model.belief.until(stage.model.now), aspect), None);
+}

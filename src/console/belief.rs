@@ -13,6 +13,9 @@ const JUMP: f64 = 0.1;
 const NEWS_S: f64 = 2.0;
 const NEWS: f64 = 0.2;
 
+/// No panel shows more of the past than the chart of one aspect, in seconds.
+pub const SHOWN_S: f64 = 60.0;
+
 /// What is estimated of one aspect at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Held {
@@ -38,6 +41,8 @@ pub struct Moment {
     by_gaze: bool,
     /// By aspect.
     pub held: Vec<Held>,
+    /// By aspect, since when it is believed wrong, if it is.
+    wrong_since: Vec<Option<SessionTime>>,
 }
 
 impl Moment {
@@ -52,7 +57,9 @@ impl Moment {
                 p_truth: belief.p_truth(kitchen, state, AspectId(index as u8)) as f32,
             }
         };
-        Moment { time, by_gaze, held: (0..kitchen.aspects.len()).map(held).collect() }
+        let held: Vec<Held> = (0..kitchen.aspects.len()).map(held).collect();
+        let wrong_since = held.iter().map(|held| held.is_false().then_some(time)).collect();
+        Moment { time, by_gaze, held, wrong_since }
     }
 }
 
@@ -66,7 +73,7 @@ pub struct BeliefTrack {
 
 impl BeliefTrack {
     /// Keeps a moment, unless it is one of many gaze samples that change little.
-    pub fn note(&mut self, moment: Moment) {
+    pub fn note(&mut self, mut moment: Moment) {
         if let Some(last) = self.moments.last().filter(|_| moment.by_gaze) {
             let pairs = || last.held.iter().zip(&moment.held);
             let is_news = pairs().any(|(then, now)| f64::from((now.p_truth - then.p_truth).abs()) >= JUMP);
@@ -74,7 +81,22 @@ impl BeliefTrack {
                 return;
             }
         }
+        if let Some(last) = self.moments.last() {
+            for (since, earlier) in moment.wrong_since.iter_mut().zip(&last.wrong_since) {
+                *since = since.and(*earlier).or(*since);
+            }
+        }
         self.moments.push(moment);
+    }
+
+    /// Forgets what no panel shows any more `kept_s` seconds later, so that a long session needs no more memory than a short
+    /// one.
+    pub fn forget(&mut self, now: SessionTime, kept_s: f64) {
+        let old = self.moments.partition_point(|moment| now.secs_since(moment.time) > kept_s);
+        // Now and then, and not the last one: it is what holds now.
+        if old > 2 * (self.moments.len() - old) {
+            self.moments.drain(..old.min(self.moments.len() - 1));
+        }
     }
 
     /// Takes over what another track of the same session has beyond this one.
@@ -112,8 +134,7 @@ pub fn ranked(moments: &[Moment]) -> Vec<usize> {
 
 /// Since when an aspect is believed wrong; `None` if it is not.
 pub fn wrong_since(moments: &[Moment], aspect: usize) -> Option<SessionTime> {
-    let wrong = moments.iter().rev().take_while(|moment| moment.held[aspect].is_false());
-    wrong.last().map(|moment| moment.time)
+    moments.last()?.wrong_since[aspect]
 }
 
 /// When the gaze last changed what is believed of an aspect, if that was a moment ago.

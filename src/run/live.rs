@@ -16,7 +16,7 @@ use super::resume::ResumeError;
 use super::standing::Standing;
 use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
-use crate::console::belief::Moment;
+use crate::console::belief::{self, Moment};
 use crate::console::keys::KeyError;
 use crate::console::model::{Level, Recording};
 use crate::console::screen::screen as on_screen;
@@ -308,6 +308,7 @@ impl Live {
             let session = self.engine.session();
             let moment = Moment::new(&session.kitchen, session.state, self.engine.belief(), last.time, by_gaze);
             self.model.belief.note(moment);
+            self.model.belief.forget(last.time, belief::SHOWN_S);
         }
         for question in self.engine.take_questions() {
             if let Some(advisor) = &self.advisor {

@@ -12,7 +12,7 @@ use crate::kitchen::{AspectId, AspectKind, Kitchen};
 use crate::session::{Phase, Session};
 
 /// The chart of one aspect goes back so far, in seconds; the small ones beside each aspect half as far.
-const COURSE_S: f64 = 60.0;
+const COURSE_S: f64 = belief::SHOWN_S;
 /// From so many columns on, an aspect with all that is told of it takes one line, and from so many its course too.
 const ONE_LINE: u16 = 46;
 const WITH_COURSE: u16 = 62;

@@ -155,15 +155,15 @@ fn print(format: Format, figures: &impl Serialize, text: impl FnOnce() -> String
 
 fn operate(args: &OperateArgs) -> Result<(), Failure> {
     let done = match &args.recording {
-        Some(recording) => series::operate(Beginning::Continued(recording.clone()))?,
-        None => new_session(args)?,
+        Some(recording) => series::operate(Beginning::Continued(recording.clone()), None)?,
+        None => new_session(args.session.as_deref(), &args.flags, None)?,
     };
     Ok(write!(std::io::stdout(), "{}", series::describe(&done))?)
 }
 
-fn new_session(args: &OperateArgs) -> Result<Sitting, Failure> {
-    let flags = &args.flags;
-    let mut files = options::session_or_default(args.session.as_deref())?;
+/// Runs a session of this file; with wizard and assistants side by side, where that is asked for.
+fn new_session(session: Option<&Path>, flags: &OperateFlags, compare: Option<Request>) -> Result<Sitting, Failure> {
+    let mut files = options::session_or_default(session)?;
     let overrides = Overrides {
         participant: flags.participant.map(|participant| match participant {
             Participant::Simulated => ParticipantKind::Simulated,
@@ -187,11 +187,11 @@ fn new_session(args: &OperateArgs) -> Result<Sitting, Failure> {
     overrides.apply(&mut files).map_err(wrong_setting)?;
     let out = flags.out.clone();
     match &files.spec.plan {
-        None => Ok(series::operate(Beginning::New { files: Box::new(files), trial: 0, out })?),
+        None => Ok(series::operate(Beginning::New { files: Box::new(files), trial: 0, out }, compare)?),
         Some(plan) => {
             let participant = options::participant_of_plan(plan, flags.code.as_deref());
             let participant = participant.map_err(wrong_setting)?;
-            Ok(series::operate_series(Series { files, participant, out })?)
+            Ok(series::operate_series(Series { files, participant, out, compare })?)
         }
     }
 }
@@ -229,7 +229,7 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         return print(args.format, &figures, || timing::describe(&figures));
     }
     if args.format == Format::Text && std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
-        return Ok(review::review(recording, args.follow)?);
+        return Ok(review::review(recording, args.follow, None)?);
     }
     let mut replay = Replay::open(recording)?;
     let mut events = 0;
@@ -256,9 +256,25 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
 fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let with: Vec<ConceptName> = args.with.iter().map(|&concept| concept.into()).collect();
     let request = |window: u32| Request { with: with.clone(), window };
+    let session = match &args.paths[..] {
+        [] => Some(None),
+        [path] => Some(Some(path.as_path())).filter(|_| path.extension().is_some_and(|extension| extension == "toml")),
+        _ => None,
+    };
+    if let Some(session) = session.filter(|_| !args.follow) {
+        let done = new_session(session, &args.flags, Some(request(args.window)))?;
+        return Ok(write!(std::io::stdout(), "{}", series::describe(&done))?);
+    }
+    if args.follow {
+        let [recording] = &args.paths[..] else {
+            let help = "the folder of one recording";
+            return Err(Failure::Wrong(miette::miette!(help = help, "found --follow and {} paths", args.paths.len())));
+        };
+        return Ok(review::review(recording, true, Some(&request(args.window)))?);
+    }
     let windows: Vec<u32> = if args.sweep { similarity::SWEEP.collect() } else { vec![args.window] };
-    let bar = progress((args.recordings.len() * windows.len()) as u64, "recordings");
-    let watch = |window: u32| similarity::watch(&args.recordings, &request(window), || bar.inc(1));
+    let bar = progress((args.paths.len() * windows.len()) as u64, "recordings");
+    let watch = |window: u32| similarity::watch(&args.paths, &request(window), || bar.inc(1));
     let first = watch(windows[0])?;
     let mut figures = CompareFigures::of(&first);
     for &window in &windows[1..] {

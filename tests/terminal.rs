@@ -309,3 +309,35 @@ fn an_aborted_trial_is_done_again_in_a_recording_of_its_own() {
         assert!(output.status.success(), "{output:?}");
     }
 }
+
+#[test]
+fn wizard_and_assistant_are_compared_live_and_from_another_terminal() {
+    let Some(terminal) = Terminal::open("compare") else { return };
+    let Some(beside) = Terminal::open("compare-follow") else { return };
+    let (root, out) = (env!("CARGO_MANIFEST_DIR"), terminal.folder.display());
+    terminal.run(&format!("{TOMCOM} compare {root}/sessions/default.toml --with tom --out {out}/recordings"));
+    terminal.see("READY");
+    terminal.see("Wizard and assistant");
+    terminal.start();
+    // The other sees the same lanes, and writes nothing.
+    beside.run(&format!("{TOMCOM} compare {} --with tom --follow", terminal.recording().display()));
+    beside.see("Wizard and assistant");
+    terminal.key_logs("q", "show_recipe");
+    for one in [&terminal, &beside] {
+        one.see("recall");
+        one.see("wizard");
+        one.see("tom-com");
+    }
+    // What may still be matched is no difference.
+    terminal.see("opens it");
+    terminal.key("C-o");
+    terminal.see("What each knew");
+    terminal.key("x");
+    terminal.wait("a closed dialog", || !terminal.screen().contains("What each knew"));
+    beside.key("q");
+    beside.is_whole("0");
+    terminal.quit();
+    assert_eq!(terminal.count("\"kind\":\"unblinded\",\"concepts\":[\"tom-com\",\"tom\"]"), 1);
+    assert!(terminal.count("\"comparison\"") > 0, "the panel is among those that were seen");
+    terminal.verifies();
+}

@@ -150,11 +150,17 @@ pub(super) enum SimulatedCondition {
 
 /// Sets wizard and assistants side by side: what each said, what of it matches, and what each knew where they differ.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom compare sessions/2026-03-14-P07-1 --with tom,dev --window 3")]
+#[command(
+    after_help = "Examples: tomcom compare sessions/2026-03-14-P07-1 --with tom,dev\n          tomcom compare sessions/2026-03-14-P07-1 --follow\n          tomcom compare sessions/default.toml"
+)]
 pub(super) struct CompareArgs {
-    /// Folders of recordings, or their events.jsonl.
-    #[arg(required = true, value_name = "RECORDING")]
-    pub(super) recordings: Vec<PathBuf>,
+    /// Folders of recordings, or their events.jsonl; or a session file, to operate it with the comparison in front (by default
+    /// sessions/default.toml). That unblinds the wizard, and the recording says so.
+    #[arg(value_name = "RECORDING|SESSION")]
+    pub(super) paths: Vec<PathBuf>,
+    /// Open the console over a session that is still running, and read along from this terminal.
+    #[arg(long)]
+    pub(super) follow: bool,
     /// Further concepts beside the session's own, with commas between them.
     #[arg(long, value_enum, value_delimiter = ',')]
     pub(super) with: Vec<ConceptArg>,
@@ -170,6 +176,8 @@ pub(super) struct CompareArgs {
     /// How to print the figures.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: Format,
+    #[command(flatten, next_help_heading = "To operate a session")]
+    pub(super) flags: OperateFlags,
 }
 
 /// Opens the console over a recording. Through a pipe: what happened, line by line. Or checks that it comes out the same.

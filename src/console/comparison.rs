@@ -208,6 +208,51 @@ impl Comparison {
     }
 }
 
+/// What a key asks of the list of differences.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    Next,
+    Last,
+    /// Shows what each knew then.
+    Open,
+}
+
+/// The comparison at the console, and the difference that is looked at.
+#[derive(Clone, Debug, Default)]
+pub struct Compared {
+    /// None until the first press or order.
+    pub seen: Option<Comparison>,
+    /// None: the newest.
+    chosen: Option<Difference>,
+}
+
+impl Compared {
+    /// Takes over what was compared meanwhile; what was chosen stays chosen.
+    pub fn show(&mut self, newest: Comparison) {
+        self.chosen = self.chosen.filter(|chosen| newest.differences.contains(chosen));
+        self.seen = Some(newest);
+    }
+
+    /// The difference that is looked at: its place in the list, and the comparison.
+    pub fn chosen(&self) -> Option<(usize, &Comparison)> {
+        let seen = self.seen.as_ref()?;
+        let newest = seen.differences.len().checked_sub(1)?;
+        let is_it = |chosen: Difference| seen.differences.iter().position(|one| *one == chosen);
+        Some((self.chosen.and_then(is_it).unwrap_or(newest), seen))
+    }
+
+    /// Goes on to the next difference, or back to the last; at the newest the newest is followed.
+    pub fn choose(&mut self, step: Step) {
+        let Some((at, seen)) = self.chosen() else { return };
+        let to = match step {
+            Step::Next => at + 1,
+            Step::Last => at.saturating_sub(1),
+            Step::Open => at,
+        };
+        self.chosen = seen.differences.get(to).copied().filter(|_| to + 1 < seen.differences.len());
+    }
+}
+
 /// What an assistant thought, in words.
 fn thought(advice: &Recommendation) -> String {
     if let Some(proposal) = &advice.proposal {

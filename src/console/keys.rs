@@ -7,6 +7,7 @@ use std::fmt;
 use std::ops::Range;
 
 use super::chord::Chord;
+use super::comparison::Step;
 use super::hands::Hand;
 use super::keymap::KeyMap;
 use super::panels::Look;
@@ -44,6 +45,8 @@ pub enum Action {
     Look(Look),
     /// One aspect of the belief over time, then the next one.
     Belief,
+    /// Where wizard and assistant differ.
+    Differ(Step),
     Help,
     Quit,
 }
@@ -129,6 +132,8 @@ pub struct Keys {
     pub bindings: Vec<Binding>,
     /// How the signal about each location is written in the timeline: its key.
     marks: Vec<Option<Chord>>,
+    /// The lines that act only where wizard and assistant are compared.
+    comparing: Vec<Binding>,
 }
 
 impl Keys {
@@ -137,7 +142,7 @@ impl Keys {
     /// # Errors
     /// A key with two meanings, or a line of the key file that cannot be.
     pub fn live(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyMap) -> Result<Keys, KeyError> {
-        let mut bindings = lines(kitchen, map)?;
+        let (comparing, mut bindings) = without_comparing(lines(kitchen, map)?, Section::Console);
         let marks = marks(kitchen, &bindings);
         let at_keyboard = spec.participant.kind == ParticipantKind::Keyboard;
         bindings.retain(|line| match &line.action {
@@ -155,7 +160,7 @@ impl Keys {
                 line.help.clone_from(&spec.console.notes[index]);
             }
         }
-        Ok(Keys { bindings, marks })
+        Ok(Keys { bindings, marks, comparing })
     }
 
     /// The table of a replay.
@@ -163,10 +168,16 @@ impl Keys {
     /// # Errors
     /// As of [`Keys::live`].
     pub fn replay(kitchen: &Kitchen, map: &KeyMap) -> Result<Keys, KeyError> {
-        let mut bindings = lines(kitchen, map)?;
+        let (comparing, mut bindings) = without_comparing(lines(kitchen, map)?, Section::Replay);
         let marks = marks(kitchen, &bindings);
         bindings.retain(|line| line.section == Section::Replay && !line.chords.is_empty());
-        Ok(Keys { bindings, marks })
+        Ok(Keys { bindings, marks, comparing })
+    }
+
+    /// The same with the keys of the comparison.
+    pub fn with_comparison(mut self) -> Keys {
+        self.bindings.append(&mut self.comparing);
+        self
     }
 
     /// What a key means in a layer.
@@ -195,6 +206,14 @@ impl Keys {
     pub fn of(&self, action: &Action) -> Option<Chord> {
         self.bindings.iter().find(|line| line.action == *action).and_then(|line| line.chords.first().copied())
     }
+}
+
+/// The lines of a console that compare, and all the others.
+fn without_comparing(lines: Vec<Binding>, section: Section) -> (Vec<Binding>, Vec<Binding>) {
+    let (mut comparing, others): (Vec<Binding>, Vec<Binding>) =
+        lines.into_iter().partition(|line| matches!(line.action, Action::Differ(_)));
+    comparing.retain(|line| line.section == section && !line.chords.is_empty());
+    (comparing, others)
 }
 
 /// Every line of both consoles for a kitchen, with the keys of a key file; no key has two meanings, whatever the

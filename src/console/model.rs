@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use crossterm::event::KeyCode;
 
 use super::belief::BeliefTrack;
+use super::comparison::Compared;
 use super::keys::{Keys, Layer};
 use super::note::Line;
 use super::panels::Panel;
@@ -34,6 +35,8 @@ pub enum Dialog {
     Preflight,
     /// A line for a note in words.
     Note(Line),
+    /// What each knew where wizard and assistant differ, in lines.
+    Difference(Vec<String>),
 }
 
 /// How much a notice matters.
@@ -113,6 +116,8 @@ pub struct Model {
     pub errors: Vec<SessionTime>,
     /// What is estimated of the participant's belief.
     pub belief: BeliefTrack,
+    /// Wizard and assistants side by side, where that is asked for.
+    pub comparison: Option<Compared>,
     /// Set when a recording is replayed.
     pub playback: Option<Playback>,
     /// The terminal tells key repeat from key press.
@@ -145,6 +150,7 @@ impl Model {
             malformed: 0,
             errors: Vec::new(),
             belief: BeliefTrack::default(),
+            comparison: None,
             playback: None,
             exact_keys: false,
             pressed: None,

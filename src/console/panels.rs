@@ -18,16 +18,25 @@ pub enum Panel {
     GazeMap,
     Events,
     Timeline,
+    Comparison,
 }
 
 impl Panel {
     /// In the order in which the keys go through them.
-    const ALL: [Panel; 6] =
-        [Panel::Kitchen, Panel::Belief, Panel::Recommendation, Panel::GazeMap, Panel::Events, Panel::Timeline];
+    const ALL: [Panel; 7] = [
+        Panel::Comparison,
+        Panel::Kitchen,
+        Panel::Belief,
+        Panel::Recommendation,
+        Panel::GazeMap,
+        Panel::Events,
+        Panel::Timeline,
+    ];
 
     /// Whether the wizard may see it.
-    fn may_be_seen(self, visibility: Visibility) -> bool {
+    fn may_be_seen(self, visibility: Visibility, compares: bool) -> bool {
         match self {
+            Panel::Comparison => compares,
             Panel::Belief => visibility >= Visibility::Belief,
             Panel::Recommendation => visibility >= Visibility::Recommendation,
             _ => true,
@@ -61,7 +70,8 @@ const STEP: (u32, usize) = (5, 1);
 /// Looks at what a key asks for.
 pub fn look(model: &mut Model, session: &Session, look: Look) {
     let visibility = session.spec.console.visibility;
-    let seen: Vec<Panel> = Panel::ALL.into_iter().filter(|panel| panel.may_be_seen(visibility)).collect();
+    let may_be_seen = |panel: &Panel| panel.may_be_seen(visibility, model.comparison.is_some());
+    let seen: Vec<Panel> = Panel::ALL.into_iter().filter(may_be_seen).collect();
     let at = model.alone.and_then(|alone| seen.iter().position(|panel| *panel == alone));
     match look {
         Look::All => (model.alone, model.events_back, model.timeline_back_s) = (None, 0, 0),
@@ -70,9 +80,14 @@ pub fn look(model: &mut Model, session: &Session, look: Look) {
             let before = at.map_or(Some(seen.len() - 1), |at| at.checked_sub(1));
             model.alone = before.and_then(|before| seen.get(before)).copied();
         }
-        Look::Back => scroll(model, session, model.alone == Some(Panel::Timeline), 1),
-        Look::Forward => scroll(model, session, model.alone == Some(Panel::Timeline), -1),
+        Look::Back => scroll(model, session, is_of_time(model.alone), 1),
+        Look::Forward => scroll(model, session, is_of_time(model.alone), -1),
     }
+}
+
+/// Whether a panel has an axis of time.
+fn is_of_time(panel: Option<Panel>) -> bool {
+    matches!(panel, Some(Panel::Timeline | Panel::Comparison))
 }
 
 /// Leafs through the help.
@@ -99,8 +114,8 @@ pub fn wheel(model: &mut Model, session: &Session, cell: (u16, u16), steps: i64)
         leaf(model, if steps > 0 { Look::Back } else { Look::Forward });
         return;
     }
-    let regions = Regions::new(model.size, session.spec.console.visibility, model.alone);
-    scroll(model, session, Panel::at(&regions, cell) == Some(Panel::Timeline), steps);
+    let regions = Regions::showing(model.size, session, model);
+    scroll(model, session, is_of_time(Panel::at(&regions, cell)), steps);
 }
 
 /// A click tells what a place's key does, since a signal sent by mistake cannot be unseen; beside the places it shows the
@@ -109,7 +124,7 @@ pub fn click(model: &mut Model, session: &Session, cell: (u16, u16)) {
     if model.dialog.is_some() {
         return;
     }
-    let regions = Regions::new(model.size, session.spec.console.visibility, model.alone);
+    let regions = Regions::showing(model.size, session, model);
     if regions.kitchen_inside().contains(cell.into()) {
         let with_keys = session.spec.participant.kind == ParticipantKind::Keyboard;
         let plan = Plan::new(&session.kitchen, regions.kitchen_inside(), with_keys);

@@ -11,7 +11,7 @@ use crate::session::screen::Screen;
 pub fn screen(session: &Session, model: &Model) -> Screen {
     let visibility = session.spec.console.visibility;
     let fits = model.size.0 >= LEAST.0 && model.size.1 >= LEAST.1;
-    let regions = Regions::new(model.size, visibility, model.alone);
+    let regions = Regions::showing(model.size, session, model);
     let room = match regions.room {
         _ if !fits => "too_small",
         Room::Small => "small",
@@ -36,6 +36,7 @@ fn name(dialog: &Dialog) -> &'static str {
         Dialog::EndTrial => "end_trial",
         Dialog::Preflight => "preflight",
         Dialog::Note(_) => "note",
+        Dialog::Difference(_) => "difference",
         Dialog::Pick(list) => match list.question {
             Question::Place => "correct_place",
             Question::Content(_) => "correct_content",

@@ -5,6 +5,7 @@ use crossterm::event::KeyCode::{
 };
 
 use super::chord::Chord;
+use super::comparison::Step;
 use super::hands::Hand;
 use super::keys::{Action, Binding, Layer, Section};
 use super::panels::Look;
@@ -20,6 +21,7 @@ const REPLAY: &str = "Recording";
 const ROBOT: &str = "Robot";
 const BUTTONS: &str = "The participant's buttons";
 const CONSOLE: &str = "Console";
+const COMPARISON: &str = "Wizard and assistant";
 
 /// What the key does that looks at one aspect of the belief.
 const BELIEF: &str = "one belief over time; again: the next";
@@ -101,6 +103,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<Binding> {
     )));
     lines.extend(buttons(kitchen));
     lines.extend(looks(Right, Left));
+    lines.extend(differences());
     lines.extend([
         line("belief", &[Chord::ctrl('b')], Action::Belief, CONSOLE, BELIEF, None),
         line("help", &[Chord::char('?')], Action::Help, CONSOLE, "this help", Some("help")),
@@ -130,8 +133,20 @@ pub fn replay() -> Vec<Binding> {
         line("help", &[Chord::char('?')], Action::Help, CONSOLE, "this help", Some("help")),
     ];
     lines.extend(looks(Tab, BackTab));
+    lines.extend(differences());
     lines.extend(moves.map(|(name, keys, to, help, footer)| of_move(name, &keys, to, help, footer)));
     lines.into_iter().map(|line| Binding { section: Section::Replay, ..line }).collect()
+}
+
+/// Where wizard and assistant differ; only where they are compared.
+fn differences() -> [Binding; 3] {
+    let differ =
+        |name, key, step, help, footer| line(name, &[Chord::ctrl(key)], Action::Differ(step), COMPARISON, help, footer);
+    [
+        differ("open_difference", 'o', Step::Open, "what each knew where they differ", Some("difference")),
+        differ("next_difference", 'g', Step::Next, "the next difference", None),
+        differ("last_difference", 't', Step::Last, "the difference before", None),
+    ]
 }
 
 /// What is on the screen.

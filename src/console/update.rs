@@ -5,6 +5,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 use super::arrange::Plan;
 use super::belief;
 use super::chord::Chord;
+use super::comparison::Step;
 use super::form::{self, sheet};
 use super::hands::{self, Hand};
 use super::keys::{Action, Layer};
@@ -33,7 +34,7 @@ pub fn update(model: &mut Model, session: &Session, message: Message) -> Option<
     match message {
         Message::Key(key) => pressed(model, session, &key),
         Message::Pointer(column, row) => {
-            let regions = Regions::new(model.size, session.spec.console.visibility, model.alone);
+            let regions = Regions::showing(model.size, session, model);
             let plan = Plan::new(
                 &session.kitchen,
                 regions.kitchen_inside(),
@@ -105,7 +106,7 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
             model.say(Level::Refused, format!("\"{chord}\" may be held down: press again"));
             None
         }
-        action if model.dialog.is_some() => answer(model, chord, action, touch),
+        action if model.dialog.is_some() => answer(model, session, chord, action, touch),
         Some(action) => act(model, session, action),
         None => {
             unknown(model, session, key.code);
@@ -191,7 +192,7 @@ fn stop_robot(model: &mut Model, session: &Session) -> Option<Command> {
     send(model, session, Event::RobotStopped, Level::Alarm, "the robot is stopped")
 }
 
-fn answer(model: &mut Model, chord: Chord, action: Option<Action>, touch: Touch) -> Option<Command> {
+fn answer(model: &mut Model, session: &Session, chord: Chord, action: Option<Action>, touch: Touch) -> Option<Command> {
     let dialog = model.dialog.clone()?;
     if let (Dialog::Help, Some(Action::Look(look))) = (&dialog, &action)
         && *look != Look::All
@@ -199,10 +200,15 @@ fn answer(model: &mut Model, chord: Chord, action: Option<Action>, touch: Touch)
         panels::leaf(model, *look);
         return None;
     }
+    if let (Dialog::Difference(_), Some(Action::Differ(step @ (Step::Next | Step::Last)))) = (&dialog, &action) {
+        differ(model, session, *step);
+        differ(model, session, Step::Open);
+        return None;
+    }
     let again = match dialog {
         Dialog::Quit => Some(Action::Quit),
         Dialog::EndTrial => Some(Action::EndTrial),
-        Dialog::Help | Dialog::Pick(_) | Dialog::Preflight | Dialog::Note(_) => None,
+        Dialog::Help | Dialog::Pick(_) | Dialog::Preflight | Dialog::Note(_) | Dialog::Difference(_) => None,
     };
     if touch == Touch::Again && again.is_some() && action == again {
         return None;
@@ -273,6 +279,10 @@ pub(super) fn act(model: &mut Model, session: &Session, action: Action) -> Optio
             model.belief.focus_next(&ranked);
             None
         }
+        Action::Differ(step) => {
+            differ(model, session, step);
+            None
+        }
         Action::Help => {
             (model.dialog, model.help_from) = (Some(Dialog::Help), 0);
             None
@@ -283,6 +293,19 @@ pub(super) fn act(model: &mut Model, session: &Session, action: Action) -> Optio
             None
         }
         Action::StopRobot | Action::Move(_) => None,
+    }
+}
+
+/// Another difference between wizard and assistant, or what each knew at this one.
+fn differ(model: &mut Model, session: &Session, step: Step) {
+    let Some(compared) = &mut model.comparison else { return };
+    compared.choose(step);
+    match compared.chosen() {
+        None => model.say(Level::Refused, "they do not differ yet"),
+        Some((at, seen)) if step == Step::Open => {
+            model.dialog = Some(Dialog::Difference(seen.opened(&session.kitchen, &seen.differences[at])));
+        }
+        Some(_) => {}
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::compare::Request;
 use super::engine::Engine;
 use super::live::LiveError;
 use super::options::Beginning;
@@ -22,6 +23,8 @@ pub(super) struct Begun {
     pub consent: bool,
     /// When it begins.
     pub time: SessionTime,
+    /// Wizard and assistants are compared at the console.
+    pub compare: Option<Request>,
     pub place: Place,
 }
 
@@ -45,19 +48,35 @@ impl Begun {
                 header.keys = files.keys;
                 let engine = Engine::new(kitchen.clone(), files.spec, trial, CostToGo::new(kitchen)).without_causes();
                 let (first, time, place) = (Vec::new(), SessionTime::ZERO, Place::In(out));
-                Ok(Begun { engine, header, first, consent: false, time, place })
+                Ok(Begun { engine, header, first, consent: false, time, compare: None, place })
             }
             Beginning::Again { header, kitchen, out } => {
                 let engine = Engine::new(kitchen.clone(), header.session.clone(), header.trial, CostToGo::new(kitchen))
                     .without_causes();
                 let (header, place) = (*header, Place::In(out));
-                Ok(Begun { engine, header, first: Vec::new(), consent: false, time: SessionTime::ZERO, place })
+                Ok(Begun {
+                    engine,
+                    header,
+                    first: Vec::new(),
+                    consent: false,
+                    time: SessionTime::ZERO,
+                    compare: None,
+                    place,
+                })
             }
             Beginning::Continued(recording) => {
                 let resumed = resume(&recording)?;
                 let place = Place::After(resumed.folder, resumed.lock);
                 let (header, first, time) = (resumed.header, resumed.first, resumed.time);
-                Ok(Begun { engine: resumed.engine.without_causes(), header, first, consent: false, time, place })
+                Ok(Begun {
+                    engine: resumed.engine.without_causes(),
+                    header,
+                    first,
+                    consent: false,
+                    time,
+                    compare: None,
+                    place,
+                })
             }
         }
     }
@@ -65,6 +84,11 @@ impl Begun {
     /// The participant has just agreed to be recorded.
     pub fn with_consent(self) -> Begun {
         Begun { consent: true, ..self }
+    }
+
+    /// With wizard and assistants side by side, where that is asked for.
+    pub fn comparing(self, compare: Option<Request>) -> Begun {
+        Begun { compare, ..self }
     }
 
     /// Its settings.

@@ -43,7 +43,7 @@ pub struct Request {
 
 impl Request {
     /// The concepts that are asked: the session's own, or ToM-Com where it has none, and those that were asked for.
-    fn concepts(&self, spec: &SessionSpec) -> Vec<ConceptName> {
+    pub fn concepts(&self, spec: &SessionSpec) -> Vec<ConceptName> {
         let own = match spec.assistant.concept {
             ConceptName::None => ConceptName::TomCom,
             own => own,

@@ -1,22 +1,23 @@
 //! A live session: real time, a wizard at the console, every event recorded as it happens.
 
 use std::io;
-use std::path::PathBuf;
 use std::time::Duration;
 
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
 use super::advisor::{AdvisorDesk, next_advice};
 use super::begun::{Begun, Place};
+use super::compare::{WatchDesk, Watcher};
 use super::desk::Desk;
 use super::engine::Engine;
 use super::figures::TrialFigures;
+use super::leaving::{Leaving, LiveEnd};
 use super::options::Beginning;
 use super::resume::ResumeError;
 use super::standing::Standing;
-use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
 use crate::console::belief::{self, Moment};
+use crate::console::comparison::Compared;
 use crate::console::keys::KeyError;
 use crate::console::model::{Level, Recording};
 use crate::console::screen::screen as on_screen;
@@ -80,53 +81,13 @@ impl From<FileError> for LiveError {
     }
 }
 
-/// How the wizard left a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Leaving {
-    /// The program ends.
-    Quit,
-    /// What comes next in the series begins.
-    Next,
-    /// The trial is done again, in another recording.
-    Redo,
-}
-
-/// What came of a live session.
-#[derive(Clone, Debug)]
-pub struct LiveEnd {
-    /// The folder of the recording.
-    pub folder: PathBuf,
-    pub leaving: Leaving,
-    pub figures: TrialFigures,
-    pub standing: Standing,
-    /// What its trial is done again with, if that was asked for.
-    pub again: Option<Beginning>,
-}
-
-impl LiveEnd {
-    /// What came of it, for people.
-    pub fn describe(&self) -> String {
-        let folder = self.folder.display();
-        let presses = count(self.figures.human_actions + self.figures.robot_actions, "press", "presses");
-        let signals = count(self.figures.signals, "signal", "signals");
-        let served = count(self.figures.served.len() as u64, "order", "orders");
-        let standing = if self.standing.counts() {
-            String::new()
-        } else {
-            format!("left out of the analysis: {}\n", self.standing.describe())
-        };
-        format!(
-            "{presses}, {signals}, {served} served\n{standing}recorded in {folder}\n\
-             look at it again: tomcom replay {folder}"
-        )
-    }
-}
-
 /// A recording that is run at the desk.
 struct Live {
     engine: Engine,
     /// The assistant, if this session asks it.
     advisor: Option<AdvisorDesk>,
+    /// Who compares wizard and assistants, if somebody does.
+    watch: Option<WatchDesk>,
     model: Model,
     /// Of this recording.
     header: Header,
@@ -154,9 +115,10 @@ pub(super) async fn run(begun: Begun, desk: &mut Desk) -> Result<LiveEnd, LiveEr
 
 impl Live {
     fn open(begun: Begun, ground: Ground) -> Result<Live, LiveError> {
-        let Begun { engine, mut header, first, consent, time, place } = begun;
+        let Begun { engine, mut header, first, consent, time, compare, place } = begun;
         let (kitchen, spec) = (engine.session().kitchen.clone(), engine.session().spec.clone());
         let keys = Keys::live(&kitchen, &spec, &key_map(header.keys.as_ref())?)?;
+        let keys = if compare.is_some() { keys.with_comparison() } else { keys };
         let wall = WallTime::now();
         header.started = Some(wall.rfc3339());
         let (log, before) = match place {
@@ -166,11 +128,15 @@ impl Live {
         let size = Screen::size().map_err(LiveError::Terminal)?;
         let mut model = Model::new(keys, theme(&spec.console, ground), size);
         model.recording = Recording::On(log.folder().display().to_string());
+        model.comparison = compare.as_ref().map(|_| Compared::default());
+        let watch = compare.as_ref().map(|request| Watcher::new(kitchen.clone(), &spec, request));
+        let watch = watch.map(|watcher| watcher.without_causes().on_thread());
         let clock = SessionClock::start(time);
         let advisor = spec.asks_assistant().then(|| engine.advisor().on_thread());
         let mut live = Live {
             engine,
             advisor,
+            watch,
             model,
             header,
             log,
@@ -184,6 +150,9 @@ impl Live {
         live.model.free_bytes = free_bytes(live.log.folder()).ok();
         live.record(&first);
         live.tick();
+        if let Some(request) = compare {
+            live.input(Event::Unblinded { concepts: request.concepts(&spec) });
+        }
         live.begin_protocol(consent);
         Ok(live)
     }
@@ -297,6 +266,9 @@ impl Live {
             if let Event::Gaze(sample) = stamped.event {
                 self.model.see(stamped.time, sample);
             }
+            if let Some(watch) = &self.watch {
+                watch.tell(stamped);
+            }
             if self.failed.is_none()
                 && let Err(error) = self.log.append(stamped)
             {
@@ -379,6 +351,11 @@ impl Live {
 
     fn draw(&mut self, screen: &mut Screen) -> io::Result<()> {
         self.tick();
+        if let (Some(newest), Some(compared)) =
+            (self.watch.as_ref().and_then(WatchDesk::newest), &mut self.model.comparison)
+        {
+            compared.show(newest);
+        }
         if screen.is_ready() {
             self.tell_screen();
         }

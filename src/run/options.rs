@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::compare::Request;
 use crate::communication::concept::ConceptName;
 use crate::edge::files::{self, FileResult, SessionFiles};
 use crate::kitchen::Kitchen;
@@ -30,6 +31,8 @@ pub struct Series {
     pub participant: usize,
     /// Where its recordings are and come.
     pub out: PathBuf,
+    /// Wizard and assistants are compared at the console.
+    pub compare: Option<Request>,
 }
 
 /// Settings of the session file that arguments replace.

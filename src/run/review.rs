@@ -1,7 +1,4 @@
 //! The console over a recording, or over a session that is still running: pause, step, seek, speed.
-//!
-//! The recording is read once, with every press judged; what is shown is a session of its own that the same events are
-//! applied to. Sessions kept on the way make steps back cheap.
 
 use std::io;
 use std::path::Path;
@@ -9,19 +6,17 @@ use std::time::Duration;
 
 use tokio::time::{Instant, sleep_until};
 
-use super::replay::Replay;
-use super::standing::Standing;
+use super::compare::{Request, WatchDesk, Watcher};
+use super::film::Film;
 use crate::base::time::SessionTime;
-use crate::console::belief::{BeliefTrack, Moment};
+use crate::console::comparison::Compared;
 use crate::console::keys::KeyError;
 use crate::console::playback::{Move, Playback, SPEEDS};
 use crate::console::{Command, Keys, Message, Model, update};
-use crate::edge::files::{FileError, FileResult, key_map};
+use crate::edge::files::{FileError, key_map};
 use crate::edge::terminal::{Hands, Screen, asked_to_end, theme};
-use crate::session::{Event, Session, Stamped, apply};
+use crate::session::Event;
 
-/// A session is kept every so many events.
-const KEEP_EVERY: usize = 4096;
 /// At most 30 frames a second.
 const FRAME: Duration = Duration::from_millis(33);
 /// At full speed, so much of every frame goes into applying events.
@@ -51,140 +46,15 @@ impl From<FileError> for ReviewError {
     }
 }
 
-/// Opens the console over a recording; with `follow`, at the growing end of a running session.
+/// Opens the console over a recording; with `follow`, at the growing end of a running session; with a comparison of wizard
+/// and assistants, where that is asked for.
 ///
 /// # Errors
 /// The recording cannot be read, or there is no terminal.
-pub fn review(recording: &Path, follow: bool) -> Result<(), ReviewError> {
+pub fn review(recording: &Path, follow: bool, compare: Option<&Request>) -> Result<(), ReviewError> {
     let film = Film::open(recording)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(ReviewError::Terminal)?;
-    runtime.block_on(Review::open(film, recording, follow)?.run())
-}
-
-/// A recording that can be wound forward and back.
-#[derive(Debug)]
-pub struct Film {
-    replay: Replay,
-    events: Vec<Stamped>,
-    /// Times of the presses that were errors.
-    pub errors: Vec<SessionTime>,
-    judged: usize,
-    /// What was estimated of the participant's belief.
-    pub beliefs: BeliefTrack,
-    /// The session after the first `position` events.
-    pub session: Session,
-    pub position: usize,
-    /// Sessions after every [`KEEP_EVERY`] events, the first before any.
-    kept: Vec<Session>,
-}
-
-impl Film {
-    /// Reads a recording to its end, and winds it to its beginning.
-    ///
-    /// # Errors
-    /// Those of [`Replay::step`].
-    pub fn open(recording: &Path) -> FileResult<Film> {
-        let replay = Replay::open(recording)?;
-        let session = replay.session().clone();
-        let kept = vec![session.clone()];
-        let mut film = Film {
-            replay,
-            events: Vec::new(),
-            errors: Vec::new(),
-            judged: 0,
-            beliefs: BeliefTrack::default(),
-            session,
-            position: 0,
-            kept,
-        };
-        film.read()?;
-        Ok(film)
-    }
-
-    /// Reads what was added since; whether anything was.
-    ///
-    /// # Errors
-    /// Those of [`Replay::step`].
-    pub fn read(&mut self) -> FileResult<bool> {
-        let before = self.events.len();
-        while let Some(line) = self.replay.step()? {
-            let (session, belief) = (self.replay.session(), self.replay.follower.filter.belief());
-            let by_gaze = is_gaze(&line.stamped);
-            self.beliefs.note(Moment::new(&session.kitchen, session.state, belief, line.stamped.time, by_gaze));
-            self.events.push(line.stamped);
-        }
-        let judged = &self.replay.follower.judged;
-        let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
-        self.errors.extend(new);
-        self.judged = judged.len();
-        Ok(self.events.len() > before)
-    }
-
-    /// Whether the session's end is missing.
-    pub fn is_cut(&self) -> bool {
-        self.replay.log().is_cut()
-    }
-
-    /// Whether it counts.
-    ///
-    /// # Errors
-    /// Those of [`Standing::of`].
-    pub fn standing(&self) -> FileResult<Standing> {
-        Standing::of(self.replay.session(), self.replay.log())
-    }
-
-    /// The time of the last event, and the number of events.
-    pub fn length(&self) -> (SessionTime, usize) {
-        (self.events.last().map_or(SessionTime::ZERO, |stamped| stamped.time), self.events.len())
-    }
-
-    /// Applies the next event and hands it out.
-    pub fn forward(&mut self) -> Option<&Stamped> {
-        let stamped = self.events.get(self.position)?;
-        apply(&mut self.session, stamped).expect("it was applied when it was read");
-        self.position += 1;
-        if self.position == self.kept.len() * KEEP_EVERY {
-            self.kept.push(self.session.clone());
-        }
-        Some(stamped)
-    }
-
-    /// Winds to the place after the first `position` events.
-    pub fn wind(&mut self, position: usize) {
-        if position < self.position {
-            let index = (position / KEEP_EVERY).min(self.kept.len() - 1);
-            self.session = self.kept[index].clone();
-            self.position = index * KEEP_EVERY;
-        }
-        while self.position < position && self.forward().is_some() {}
-    }
-
-    /// The number of events until and with this time.
-    pub fn until(&self, time: SessionTime) -> usize {
-        self.events.partition_point(|stamped| stamped.time <= time)
-    }
-
-    /// The place after the next event that is no gaze sample.
-    pub fn next_step(&self) -> usize {
-        let rest = self.events[self.position..].iter();
-        self.position + rest.take_while(|stamped| is_gaze(stamped)).count() + 1
-    }
-
-    /// The place after the last event but one that is no gaze sample.
-    pub fn last_step(&self) -> usize {
-        let steps = |end: usize| self.events[..end].iter().rposition(|stamped| !is_gaze(stamped));
-        let last = steps(self.position).unwrap_or(0);
-        steps(last).map_or(0, |index| index + 1)
-    }
-
-    /// The time of the last applied event.
-    pub fn time(&self) -> SessionTime {
-        self.session.time
-    }
-}
-
-fn is_gaze(stamped: &Stamped) -> bool {
-    matches!(stamped.event, Event::Gaze(_))
+    runtime.block_on(Review::open(film, recording, follow, compare)?.run())
 }
 
 struct Review {
@@ -199,15 +69,23 @@ struct Review {
     read_at: Instant,
     grows: bool,
     dirty: bool,
+    /// Who compares wizard and assistants.
+    watch: Option<WatchDesk>,
 }
 
 impl Review {
-    fn open(film: Film, recording: &Path, follow: bool) -> Result<Review, ReviewError> {
+    fn open(film: Film, recording: &Path, follow: bool, compare: Option<&Request>) -> Result<Review, ReviewError> {
         let screen = Screen::take().map_err(ReviewError::Terminal)?;
         let size = Screen::size().map_err(ReviewError::Terminal)?;
         let keys = film.replay.log().header.keys.as_ref();
         let keys = Keys::replay(&film.session.kitchen, &key_map(keys)?)?;
+        let keys = if compare.is_some() { keys.with_comparison() } else { keys };
         let mut model = Model::new(keys, theme(&film.session.spec.console, screen.ground), size);
+        model.comparison = compare.map(|_| Compared::default());
+        let watch = compare.map(|request| {
+            let session = &film.session;
+            Watcher::new(session.kitchen.clone(), &session.spec, request).without_causes().on_thread()
+        });
         let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
         let excluded = film.standing()?.excluded.is_some();
         model.playback = Some(Playback { excluded, ..Playback::new(name) });
@@ -222,7 +100,9 @@ impl Review {
             read_at: now,
             grows: follow,
             dirty: true,
+            watch,
         };
+        review.tell(0);
         review.playback(|playback| playback.playing = true);
         if follow {
             review.go(Move::ToEnd);
@@ -333,10 +213,19 @@ impl Review {
         self.film.wind(position);
     }
 
+    /// Tells whoever compares what was read from the event with this place on.
+    fn tell(&self, from: usize) {
+        if let Some(watch) = &self.watch {
+            self.film.events[from..].iter().for_each(|stamped| watch.tell(stamped));
+        }
+    }
+
     /// Reads on in a growing recording.
     fn look(&mut self) -> Result<(), ReviewError> {
+        let (_, known) = self.film.length();
         if self.film.read()? {
             self.read_at = Instant::now();
+            self.tell(known);
         }
         if !self.film.is_cut() {
             self.grows = false;
@@ -379,6 +268,12 @@ impl Review {
     }
 
     fn draw(&mut self) -> io::Result<()> {
+        if let (Some(newest), Some(compared)) =
+            (self.watch.as_ref().and_then(WatchDesk::newest), &mut self.model.comparison)
+        {
+            compared.show(newest);
+            self.dirty = true;
+        }
         if !self.dirty || !self.screen.is_ready() {
             return Ok(());
         }

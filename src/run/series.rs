@@ -2,8 +2,10 @@
 //! series of them, made at the same desk without leaving the console.
 
 use super::begun::Begun;
+use super::compare::Request;
 use super::desk::Desk;
-use super::live::{self, Leaving, LiveEnd, LiveError};
+use super::leaving::{Leaving, LiveEnd};
+use super::live::{self, LiveError};
 use super::options::{Beginning, Series};
 use crate::console::question::Question;
 use crate::edge::files::SessionFiles;
@@ -18,14 +20,15 @@ pub struct Sitting {
     pub remark: Option<String>,
 }
 
-/// Runs one session at the console, until the wizard leaves it; its trial again, where that is asked for.
+/// Runs one session at the console, until the wizard leaves it; its trial again, where that is asked for. With `compare`,
+/// wizard and assistants stand side by side, which unblinds the wizard; a recording that is continued has none.
 ///
 /// # Errors
 /// There is no terminal, the session cannot be recorded, or the gaze input cannot be opened.
-pub fn operate(beginning: Beginning) -> Result<Sitting, LiveError> {
+pub fn operate(beginning: Beginning, compare: Option<Request>) -> Result<Sitting, LiveError> {
     in_runtime(async {
         // Before the terminal is taken and a recording is made: a session that cannot start leaves nothing behind.
-        let mut begun = Begun::new(beginning)?;
+        let mut begun = Begun::new(beginning)?.comparing(compare.clone());
         let mut desk = Desk::take(begun.spec()).await?;
         let mut done = Vec::new();
         loop {
@@ -33,7 +36,7 @@ pub fn operate(beginning: Beginning) -> Result<Sitting, LiveError> {
             let again = end.again.take();
             done.push(end);
             match again {
-                Some(again) => begun = Begun::new(again)?,
+                Some(again) => begun = Begun::new(again)?.comparing(compare.clone()),
                 None => return Ok(Sitting { done, remark: None }),
             }
         }
@@ -147,7 +150,7 @@ impl Planned {
                 Beginning::New { files, trial, out: self.series.out.clone() }
             }
         };
-        let begun = Begun::new(beginning)?;
+        let begun = Begun::new(beginning)?.comparing(self.series.compare.clone());
         Ok(Choice::Begin(Box::new(if progress.consent { begun } else { begun.with_consent() })))
     }
 }

@@ -35,6 +35,8 @@ pub struct RecordingFigures {
     #[serde(flatten)]
     pub beliefs: BeliefFigures,
     pub signals: u64,
+    /// The wizard saw what assistants would say, beside what was sent.
+    pub unblinded: bool,
     pub orders_served: u64,
     /// The trial's length by its own clock, in seconds.
     pub trial_s: f64,
@@ -53,6 +55,7 @@ impl RecordingFigures {
             races: trial.races,
             beliefs: BeliefFigures::of([&trial]),
             signals: trial.signals,
+            unblinded: follower.session.unblinded,
             orders_served: trial.served.len() as u64,
             trial_s: trial.seconds,
         }
@@ -101,6 +104,10 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::TrialIncluded => "trial no longer excluded".to_string(),
         Event::Preflight { checks, overridden } => preflight(checks, *overridden),
         Event::Screen(screen) => on_screen(screen),
+        Event::Unblinded { concepts } => {
+            let names: Vec<&str> = concepts.iter().map(|concept| concept.title()).collect();
+            format!("the wizard sees what {} would say", names.join(", "))
+        }
         Event::FocusLost => "the terminal lost the keyboard".to_string(),
         Event::FocusRegained => "the terminal has the keyboard again".to_string(),
         Event::Press { agent, button } => format!("{} presses {button}{}", agent.name(), verdict(stamped, follower)),

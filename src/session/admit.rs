@@ -101,6 +101,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::TrialIncluded
         | Event::Preflight { .. }
         | Event::Screen(_)
+        | Event::Unblinded { .. }
         | Event::FocusLost
         | Event::FocusRegained
         | Event::Marker { .. }

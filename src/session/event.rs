@@ -9,6 +9,7 @@ use super::preflight::Check;
 use super::protocol::ProtocolEvent;
 use super::screen::Screen;
 use crate::base::time::SessionTime;
+use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::gaze::GazeSample;
@@ -137,6 +138,10 @@ pub enum Event {
     },
     /// Witness: what is on the wizard's screen from now on.
     Screen(Screen),
+    /// Witness: the wizard sees from now on what these concepts would say, beside what is sent.
+    Unblinded {
+        concepts: Vec<ConceptName>,
+    },
     /// Witness: the terminal lost the keyboard: keys went elsewhere, the robot stop among them.
     FocusLost,
     FocusRegained,
@@ -181,6 +186,7 @@ impl Event {
             Event::Protocol(_) => "protocol",
             Event::ClockJumped { .. } => "clock_jumped",
             Event::Screen(_) => "screen",
+            Event::Unblinded { .. } => "unblinded",
             Event::FocusLost => "focus_lost",
             Event::FocusRegained => "focus_regained",
             Event::ParticipantBelieves(_) => "participant_believes",

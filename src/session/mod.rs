@@ -72,6 +72,8 @@ pub struct Session {
     pub advice: Option<Recommendation>,
     /// When the wizard last sent a signal.
     pub signalled_at: Option<SessionTime>,
+    /// The wizard saw what assistants would say, beside what was sent.
+    pub unblinded: bool,
     /// Why the trial was aborted, if it was.
     pub aborted: Option<String>,
     /// Why the trial is to be left out of the analysis, if it is.
@@ -198,6 +200,7 @@ impl Session {
             shown: None,
             advice: None,
             signalled_at: None,
+            unblinded: false,
             aborted: None,
             excluded: None,
             gaze: GazeStatus::default(),

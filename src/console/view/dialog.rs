@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::hands;
-use super::paint::{Brush, width};
+use super::paint::{Brush, width, wrap};
 use super::picker;
 use super::regions::inside;
 use super::theme::{Role, Signs};
@@ -20,6 +20,7 @@ pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
         Some(Dialog::Preflight) => hands::preflight(brush, screen, session, model),
         Some(Dialog::Note(line)) => hands::note(brush, screen, line),
         Some(Dialog::Help) => help(brush, screen, model),
+        Some(Dialog::Difference(lines)) => difference(brush, screen, lines),
         Some(Dialog::EndTrial) => ask(brush, screen, "End the trial?", &["It cannot be resumed after that."]),
         Some(Dialog::Quit) => {
             let lines: &[&str] = match session.phase {
@@ -69,6 +70,22 @@ fn ask(brush: &mut Brush, screen: Rect, title: &str, lines: &[&str]) {
     let y = inside.bottom() - 1;
     let parts = [("y", Role::Strong), (" yes    ", Role::Text), ("any other key", Role::Strong), (" no", Role::Text)];
     brush.parts(inside.x + 2, y, inside.width - 3, &parts);
+}
+
+/// What each knew where they differ.
+fn difference(brush: &mut Brush, screen: Rect, lines: &[String]) {
+    let columns = (screen.width - 4).min(100);
+    let wrapped: Vec<(bool, String)> = lines
+        .iter()
+        .enumerate()
+        .flat_map(|(index, line)| wrap(line, columns - 4).into_iter().map(move |line| (index == 0, line)))
+        .collect();
+    let rows = wrapped.len() as u16 + 2;
+    let inside = open(brush, screen, (columns, rows), "What each knew", "any key closes");
+    for (row, (is_head, line)) in wrapped.iter().enumerate().take(usize::from(inside.height)) {
+        let style = brush.style(if *is_head { Role::Strong } else { Role::Text });
+        brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, style);
+    }
 }
 
 /// The columns of a line of the help, with its key.

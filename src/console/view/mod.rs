@@ -1,6 +1,7 @@
 //! `view(&Session, &Model, &mut Frame)`: reads, draws, and changes nothing.
 
 pub mod belief;
+pub mod comparison;
 pub mod dialog;
 pub mod events;
 pub mod footer;
@@ -34,7 +35,7 @@ pub fn view(session: &Session, model: &Model, frame: &mut Frame) {
         too_small(&mut brush, session, model);
         return;
     }
-    let regions = Regions::new((area.width, area.height), session.spec.console.visibility, model.alone);
+    let regions = Regions::showing((area.width, area.height), session, model);
     head::draw(&mut brush, &regions, session, model);
     kitchen::draw(&mut brush, &regions, session, model);
     belief::draw(&mut brush, &regions, session, model);
@@ -45,6 +46,7 @@ pub fn view(session: &Session, model: &Model, frame: &mut Frame) {
     gaze::draw(&mut brush, &regions, session, model);
     events::draw(&mut brush, &regions, session, model);
     timeline::draw(&mut brush, &regions, session, model);
+    comparison::draw(&mut brush, &regions, session, model);
     footer::draw(&mut brush, &regions, session, model);
     sheet::draw(&mut brush, area, session, model);
     dialog::draw(&mut brush, area, session, model);
@@ -64,6 +66,7 @@ fn too_small(brush: &mut Brush, session: &Session, model: &Model) {
         Some(Dialog::Pick(_)) => "The list needs more room; esc leaves it",
         Some(Dialog::Preflight) => "Not all is ok for the trial; more room shows what; esc leaves",
         Some(Dialog::Note(_)) => "A note: enter keeps it, esc leaves",
+        Some(Dialog::Difference(_)) => "What each knew needs more room; any key closes it",
         None => return,
     };
     let strong = brush.style(Role::Strong);

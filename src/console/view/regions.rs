@@ -2,7 +2,10 @@
 
 use ratatui::layout::Rect;
 
+use crate::console::comparison::Compared;
+use crate::console::model::Model;
 use crate::console::panels::Panel;
+use crate::session::Session;
 use crate::session::settings::Visibility;
 
 /// Below this nothing can be drawn that helps.
@@ -38,6 +41,8 @@ pub struct Regions {
     pub robot: Rect,
     pub events: Rect,
     pub timeline: Rect,
+    /// Wizard and assistants side by side, in the place of the timeline.
+    pub comparison: Rect,
     pub footer: Rect,
 }
 
@@ -47,8 +52,19 @@ const KITCHEN_COLUMNS: u16 = 81;
 const TIMELINE_ROWS: u16 = 7;
 
 impl Regions {
-    /// Deals out a terminal of `size` columns and rows, to all panels or to one alone.
+    /// Deals out a terminal of `size` columns and rows to what this console shows.
+    pub fn showing(size: (u16, u16), session: &Session, model: &Model) -> Regions {
+        let assistants = |compared: &Compared| compared.seen.as_ref().map_or(1, |seen| seen.pairs.len()) as u16;
+        Regions::with(size, session.spec.console.visibility, model.alone, model.comparison.as_ref().map(assistants))
+    }
+
+    /// Deals it out to all panels but the comparison, or to one alone.
     pub fn new(size: (u16, u16), visibility: Visibility, alone: Option<Panel>) -> Regions {
+        Regions::with(size, visibility, alone, None)
+    }
+
+    /// With a comparison of a wizard with so many assistants, if there is one.
+    fn with(size: (u16, u16), visibility: Visibility, alone: Option<Panel>, assistants: Option<u16>) -> Regions {
         let room = match size {
             (columns, rows) if columns >= 168 && rows >= 46 => Room::Large,
             (columns, rows) if columns >= ROOMY_COLUMNS && rows >= 34 => Room::Medium,
@@ -58,6 +74,8 @@ impl Regions {
         let (head, rest) = top(all, 1);
         let (rest, footer) = bottom(rest, 1);
         let blank = Rect::default();
+        let rows = assistants.filter(|_| alone.is_none()).map_or(0, |number| comparison_rows(room, number));
+        let (rest, comparison) = bottom(rest, rows);
         let bare = Regions {
             room,
             head,
@@ -70,6 +88,7 @@ impl Regions {
             gaze: blank,
             events: blank,
             timeline: blank,
+            comparison,
             footer,
         };
         match room {
@@ -91,6 +110,7 @@ impl Regions {
             Panel::GazeMap => regions.gaze_map = body,
             Panel::Events => regions.events = body,
             Panel::Timeline => regions.timeline = body,
+            Panel::Comparison => regions.comparison = body,
         }
         regions
     }
@@ -104,12 +124,18 @@ impl Regions {
             Panel::GazeMap => self.gaze_map,
             Panel::Events => self.events,
             Panel::Timeline => self.timeline,
+            Panel::Comparison => self.comparison,
         }
+    }
+
+    /// The comparison has the timeline's place.
+    fn timeline_rows(&self, rows: u16) -> u16 {
+        if self.comparison.area() > 0 { 0 } else { rows }
     }
 
     /// The panels as lines below the kitchen, the three worst beliefs among them.
     fn small(self, visibility: Visibility) -> Regions {
-        let (rest, timeline) = bottom(self.kitchen, 4);
+        let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(4));
         let (rest, recommendation) = bottom(rest, u16::from(visibility == Visibility::Recommendation));
         let beliefs = if rest.height >= 17 { 3 } else { 1 };
         let (rest, belief) = bottom(rest, if visibility >= Visibility::Belief { beliefs } else { 0 });
@@ -121,7 +147,7 @@ impl Regions {
 
     /// The kitchen at the left; at the right from what is believed over what could be said to who does what.
     fn medium(self, visibility: Visibility) -> Regions {
-        let (rest, timeline) = bottom(self.kitchen, TIMELINE_ROWS);
+        let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(TIMELINE_ROWS));
         let (kitchen, side) = left(rest, (rest.width * 13 / 20).max(KITCHEN_COLUMNS));
         let (side, robot) = bottom(side, 4);
         let (side, gaze) = bottom(side, 4);
@@ -131,7 +157,7 @@ impl Regions {
 
     /// Three columns: what is, what is believed and could be said, what happened.
     fn large(self, visibility: Visibility) -> Regions {
-        let (rest, timeline) = bottom(self.kitchen, TIMELINE_ROWS);
+        let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(TIMELINE_ROWS));
         let (rest, events) = right(rest, 36);
         let (kitchen, side) = left(rest, (rest.width / 2).max(KITCHEN_COLUMNS));
         let (kitchen, below) = bottom(kitchen, kitchen.height * 3 / 10);
@@ -169,6 +195,7 @@ impl Regions {
             ("gaze", self.gaze),
             ("events", self.events),
             ("timeline", self.timeline),
+            ("comparison", self.comparison),
         ];
         panels.into_iter().filter(|(_, area)| area.area() > 0).map(|(name, _)| name).collect()
     }
@@ -179,6 +206,17 @@ impl Regions {
             Room::Small => self.kitchen,
             _ => below_title(self.kitchen),
         }
+    }
+}
+
+/// Rows of the comparison: axis and first lane, for each assistant its lane, its matches and its figures, and the
+/// differences; with a title where there is room.
+fn comparison_rows(room: Room, assistants: u16) -> u16 {
+    match room {
+        // Figures of the first assistant alone.
+        Room::Small => 4 + if assistants == 1 { 2 } else { assistants },
+        Room::Medium => 4 + 3 * assistants,
+        Room::Large => 7 + 3 * assistants,
     }
 }
 

@@ -34,7 +34,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     }
     let plot = Rect { x: inside.x + LABELS, width: inside.width.saturating_sub(LABELS + 1), ..inside };
     let back_s = model.timeline_back_s;
-    axis(brush, plot, back_s);
+    axis(brush, plot, back_s, COLUMN_S);
     let now = column(until(session, model)) - (f64::from(back_s) / COLUMN_S) as i64;
     let newest = session.timeline.iter().rev();
     let entries = newest.map(|entry| (now - column(entry.time), entry));
@@ -52,7 +52,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
 }
 
 /// What stands at the right edge: now; in a pause the last that happened, since that is when one looks back.
-fn until(session: &Session, model: &Model) -> SessionTime {
+pub(super) fn until(session: &Session, model: &Model) -> SessionTime {
     let last = session.timeline.last().map_or(session.paused_at, |entry| entry.time.max(session.paused_at));
     if session.phase == Phase::Paused { last.min(model.now) } else { model.now }
 }
@@ -101,9 +101,10 @@ fn column(time: SessionTime) -> i64 {
     (time.as_secs_f64() / COLUMN_S) as i64
 }
 
-fn axis(brush: &mut Brush, plot: Rect, back_s: u32) {
+/// Draws the axis of time in the first row, in columns of so many seconds, with now, or so long ago, at its right end.
+pub(super) fn axis(brush: &mut Brush, plot: Rect, back_s: u32, column_s: f64) {
     let quiet = brush.style(Role::Quiet);
-    let every = (10.0 / COLUMN_S) as u16;
+    let every = (10.0 / column_s) as u16;
     let line = brush.theme.signs().frame[4];
     let thin = brush.style(Role::Frame);
     for x in plot.x..plot.right() {

@@ -1,0 +1,169 @@
+//! Wizard and assistants side by side: a lane each on one axis of time, matched communications joined, the figures, and where
+//! they differ.
+
+use ratatui::layout::Rect;
+
+use super::paint::{Brush, width};
+use super::regions::{ROOMY_COLUMNS, Regions, Room};
+use super::theme::Role;
+use super::timeline::{axis, until};
+use crate::base::time::SessionTime;
+use crate::console::comparison::{Comparison, Difference, Spoken, Step, What};
+use crate::console::keys::Action;
+use crate::console::model::Model;
+use crate::session::Session;
+
+/// The width of a column in seconds.
+const COLUMN_S: f64 = 1.0;
+const LABELS: u16 = 10;
+
+/// Draws the comparison.
+pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+    let area = regions.comparison;
+    let Some(compared) = model.comparison.as_ref().filter(|_| area.area() > 0) else { return };
+    let is_small = regions.room == Room::Small;
+    let window = compared.seen.as_ref().map(|seen| format!("matched within {} presses", seen.window));
+    let inside = match is_small {
+        true => area,
+        false => brush.panel(area, "Wizard and assistant", &window.unwrap_or_default()),
+    };
+    let Some(seen) = &compared.seen else {
+        let quiet = brush.style(Role::Quiet);
+        brush.text(inside.x + 1, inside.y, inside.width, "compared from the first order or press on", quiet);
+        return;
+    };
+    let plot = Rect { x: inside.x + LABELS, width: inside.width.saturating_sub(LABELS + 1), ..inside };
+    axis(brush, plot, model.timeline_back_s, COLUMN_S);
+    let chosen = compared.chosen().map(|(at, seen)| (at, seen.differences[at]));
+    let assistants = seen.pairs.len() as u16;
+    // Matches are drawn where there are rows for them.
+    let joined = inside.height >= 4 + 2 * assistants;
+    let view = View { session, model, plot, seen, chosen: chosen.map(|(_, chosen)| chosen) };
+    let mut y = inside.y + 1;
+    view.lane(brush, 0, y);
+    for lane in 1..seen.lanes.len() {
+        if joined {
+            y += 1;
+            view.matches(brush, lane, y);
+        }
+        y += 1;
+        view.lane(brush, lane, y);
+    }
+    y += 1;
+    let figures = usize::from(inside.bottom().saturating_sub(y + 1)).min(seen.pairs.len());
+    for lane in 1..=figures {
+        figures_line(brush, inside, y, seen, lane);
+        y += 1;
+    }
+    let rest = Rect { y, height: inside.bottom().saturating_sub(y), ..inside };
+    differences(brush, rest, seen, chosen, model);
+}
+
+struct View<'a> {
+    session: &'a Session,
+    model: &'a Model,
+    plot: Rect,
+    seen: &'a Comparison,
+    chosen: Option<Difference>,
+}
+
+impl View<'_> {
+    /// The column of a moment, if it is in view.
+    fn column(&self, time: SessionTime) -> Option<u16> {
+        let column = |time: SessionTime| (time.as_secs_f64() / COLUMN_S) as i64;
+        let now = column(until(self.session, self.model)) - (f64::from(self.model.timeline_back_s) / COLUMN_S) as i64;
+        let age = now - column(time);
+        (0..i64::from(self.plot.width)).contains(&age).then(|| self.plot.right() - 1 - age as u16)
+    }
+
+    fn lane(&self, brush: &mut Brush, lane: usize, y: u16) {
+        if y >= self.plot.bottom() {
+            return;
+        }
+        let style = brush.style(if lane == 0 { Role::Signal } else { Role::Strong });
+        brush.text(self.plot.x - LABELS + 1, y, LABELS - 1, &self.seen.lanes[lane].name, style);
+        for (index, spoken) in self.seen.lanes[lane].spoken.iter().enumerate() {
+            let Some(x) = self.column(spoken.time) else { continue };
+            let is_chosen = self.chosen.is_some_and(|chosen| (chosen.lane, chosen.index) == (lane, index));
+            let role = if lane == 0 { Role::Signal } else { Role::Strong };
+            let style = if is_chosen { brush.theme.badge(role) } else { brush.style(role) };
+            let sign = self.sign(brush, spoken);
+            brush.text(x, y, 1, &sign, style);
+        }
+    }
+
+    /// The key of a signal; a proposal has none.
+    fn sign(&self, brush: &Brush, spoken: &Spoken) -> String {
+        let What::Signal(signal) = &spoken.what else { return brush.theme.signs().by_hand.to_string() };
+        let location = self.session.kitchen.location_named(signal.target());
+        location.and_then(|id| self.model.keys.mark(id)).map_or("!".to_string(), |chord| chord.to_string())
+    }
+
+    /// Lines from what the first lane said, above, to its match in this lane, below.
+    fn matches(&self, brush: &mut Brush, lane: usize, y: u16) {
+        if y >= self.plot.bottom() {
+            return;
+        }
+        let [top_left, top_right, bottom_left, bottom_right, across, down] = brush.theme.signs().frame;
+        let style = brush.style(Role::Quiet);
+        for &(of, with) in &self.seen.pairs[lane - 1].matched {
+            let times = [self.seen.lanes[0].spoken[of].time, self.seen.lanes[lane].spoken[with].time];
+            let [Some(from), Some(to)] = times.map(|time| self.column(time)) else { continue };
+            for x in from.min(to)..from.max(to) {
+                brush.text(x, y, 1, across, style);
+            }
+            let (start, end) = match from.cmp(&to) {
+                std::cmp::Ordering::Equal => (down, down),
+                std::cmp::Ordering::Less => (bottom_left, top_right),
+                std::cmp::Ordering::Greater => (bottom_right, top_left),
+            };
+            brush.text(from, y, 1, start, style);
+            brush.text(to, y, 1, end, style);
+        }
+    }
+}
+
+/// How alike the first lane and this one are.
+fn figures_line(brush: &mut Brush, inside: Rect, y: u16, seen: &Comparison, lane: usize) {
+    let found = &seen.pairs[lane - 1].similarity;
+    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
+    let lead = found.median_lead_s.map_or("-".to_string(), |lead| format!("{lead:+.1} s"));
+    let [recall, precision, f1] = [found.strict.recall, found.strict.precision, found.strict.f1].map(number);
+    let (kappa, chance) = (number(found.kappa), number(found.chance_recall));
+    let name = format!("{:<9}", seen.lanes[lane].name);
+    let text = match inside.width >= ROOMY_COLUMNS - 8 {
+        true => format!(
+            "recall {recall} (chance {chance})  precision {precision}  F1 {f1}  kappa {kappa}  lead {lead}   \
+             {} of {} matched, {} said",
+            found.matched, found.of_n, found.with_n
+        ),
+        false => format!("recall {recall}  precision {precision}  F1 {f1}  kappa {kappa}  lead {lead}"),
+    };
+    brush.parts(inside.x + 1, y, inside.width - 1, &[(&name, Role::Strong), (&text, Role::Text)]);
+}
+
+/// The differences up to the chosen one, the last in the last row.
+fn differences(brush: &mut Brush, area: Rect, seen: &Comparison, chosen: Option<(usize, Difference)>, model: &Model) {
+    let Some((at, _)) = chosen.filter(|_| area.height > 0) else {
+        let quiet = brush.style(Role::Quiet);
+        if area.height > 0 {
+            brush.text(area.x + 1, area.y, area.width - 1, "no differences yet", quiet);
+        }
+        return;
+    };
+    let rows = usize::from(area.height);
+    // The chosen one is in the middle, unless the list ends there.
+    let from = at.saturating_sub(rows / 2).min(seen.differences.len().saturating_sub(rows));
+    for (row, (index, difference)) in seen.differences.iter().enumerate().skip(from).take(rows).enumerate() {
+        let y = area.y + row as u16;
+        let is_chosen = index == at;
+        let number = format!("{:>3}/{}  ", index + 1, seen.differences.len());
+        let role = if is_chosen { Role::Strong } else { Role::Quiet };
+        let open = model.keys.of(&Action::Differ(Step::Open)).filter(|_| is_chosen);
+        let open = open.map_or(String::new(), |key| format!("  {key} opens it"));
+        let headline = seen.headline(difference);
+        let room = area.width.saturating_sub(width(&open) + 1);
+        let x = brush.parts(area.x + 1, y, room, &[(&number, Role::Quiet), (&headline, role)]);
+        brush.parts(x, y, area.right().saturating_sub(x), &[(&open, Role::Signal)]);
+    }
+}

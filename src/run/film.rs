@@ -1,0 +1,140 @@
+//! A recording that is read once, with every press judged, and shown as a session of its own that the same events are
+//! applied to. Sessions kept on the way make steps back cheap.
+
+use std::path::Path;
+
+use super::replay::Replay;
+use super::standing::Standing;
+use crate::base::time::SessionTime;
+use crate::console::belief::{BeliefTrack, Moment};
+use crate::edge::files::FileResult;
+use crate::session::{Event, Session, Stamped, apply};
+
+/// A session is kept every so many events.
+const KEEP_EVERY: usize = 4096;
+
+/// A recording that can be wound forward and back.
+#[derive(Debug)]
+pub struct Film {
+    pub(super) replay: Replay,
+    pub(super) events: Vec<Stamped>,
+    /// Times of the presses that were errors.
+    pub errors: Vec<SessionTime>,
+    judged: usize,
+    /// What was estimated of the participant's belief.
+    pub beliefs: BeliefTrack,
+    /// The session after the first `position` events.
+    pub session: Session,
+    pub position: usize,
+    /// Sessions after every [`KEEP_EVERY`] events, the first before any.
+    kept: Vec<Session>,
+}
+
+impl Film {
+    /// Reads a recording to its end, and winds it to its beginning.
+    ///
+    /// # Errors
+    /// Those of [`Replay::step`].
+    pub fn open(recording: &Path) -> FileResult<Film> {
+        let replay = Replay::open(recording)?;
+        let session = replay.session().clone();
+        let kept = vec![session.clone()];
+        let mut film = Film {
+            replay,
+            events: Vec::new(),
+            errors: Vec::new(),
+            judged: 0,
+            beliefs: BeliefTrack::default(),
+            session,
+            position: 0,
+            kept,
+        };
+        film.read()?;
+        Ok(film)
+    }
+
+    /// Reads what was added since; whether anything was.
+    ///
+    /// # Errors
+    /// Those of [`Replay::step`].
+    pub fn read(&mut self) -> FileResult<bool> {
+        let before = self.events.len();
+        while let Some(line) = self.replay.step()? {
+            let (session, belief) = (self.replay.session(), self.replay.follower.filter.belief());
+            let by_gaze = is_gaze(&line.stamped);
+            self.beliefs.note(Moment::new(&session.kitchen, session.state, belief, line.stamped.time, by_gaze));
+            self.events.push(line.stamped);
+        }
+        let judged = &self.replay.follower.judged;
+        let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
+        self.errors.extend(new);
+        self.judged = judged.len();
+        Ok(self.events.len() > before)
+    }
+
+    /// Whether the session's end is missing.
+    pub fn is_cut(&self) -> bool {
+        self.replay.log().is_cut()
+    }
+
+    /// Whether it counts.
+    ///
+    /// # Errors
+    /// Those of [`Standing::of`].
+    pub fn standing(&self) -> FileResult<Standing> {
+        Standing::of(self.replay.session(), self.replay.log())
+    }
+
+    /// The time of the last event, and the number of events.
+    pub fn length(&self) -> (SessionTime, usize) {
+        (self.events.last().map_or(SessionTime::ZERO, |stamped| stamped.time), self.events.len())
+    }
+
+    /// Applies the next event and hands it out.
+    pub fn forward(&mut self) -> Option<&Stamped> {
+        let stamped = self.events.get(self.position)?;
+        apply(&mut self.session, stamped).expect("it was applied when it was read");
+        self.position += 1;
+        if self.position == self.kept.len() * KEEP_EVERY {
+            self.kept.push(self.session.clone());
+        }
+        Some(stamped)
+    }
+
+    /// Winds to the place after the first `position` events.
+    pub fn wind(&mut self, position: usize) {
+        if position < self.position {
+            let index = (position / KEEP_EVERY).min(self.kept.len() - 1);
+            self.session = self.kept[index].clone();
+            self.position = index * KEEP_EVERY;
+        }
+        while self.position < position && self.forward().is_some() {}
+    }
+
+    /// The number of events until and with this time.
+    pub fn until(&self, time: SessionTime) -> usize {
+        self.events.partition_point(|stamped| stamped.time <= time)
+    }
+
+    /// The place after the next event that is no gaze sample.
+    pub fn next_step(&self) -> usize {
+        let rest = self.events[self.position..].iter();
+        self.position + rest.take_while(|stamped| is_gaze(stamped)).count() + 1
+    }
+
+    /// The place after the last event but one that is no gaze sample.
+    pub fn last_step(&self) -> usize {
+        let steps = |end: usize| self.events[..end].iter().rposition(|stamped| !is_gaze(stamped));
+        let last = steps(self.position).unwrap_or(0);
+        steps(last).map_or(0, |index| index + 1)
+    }
+
+    /// The time of the last applied event.
+    pub fn time(&self) -> SessionTime {
+        self.session.time
+    }
+}
+
+fn is_gaze(stamped: &Stamped) -> bool {
+    matches!(stamped.event, Event::Gaze(_))
+}

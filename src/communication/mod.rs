@@ -4,6 +4,7 @@ pub mod concept;
 pub mod dev;
 pub mod planner;
 pub mod recommendation;
+pub mod reference;
 pub mod repeats;
 pub mod settings;
 pub mod situation;

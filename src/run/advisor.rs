@@ -53,6 +53,17 @@ impl Question {
         Question { seq, time, state, belief, robot, robot_press_s, signals, error }
     }
 
+    /// What there is to decide about.
+    pub fn situation(&self) -> Situation<'_> {
+        let Question { state, ref belief, robot, robot_press_s, .. } = *self;
+        Situation { state, belief, robot, robot_press_s }
+    }
+
+    /// What may be said.
+    pub fn signals(&self) -> &[Signal] {
+        &self.signals
+    }
+
     /// The same question about another estimate, and with other things that may be said.
     pub fn about(&self, belief: &DirichletBelief, signals: Vec<Signal>) -> Question {
         Question { belief: belief.clone(), signals, ..self.clone() }
@@ -78,8 +89,8 @@ impl Advisor {
     }
 
     pub fn answer(&mut self, question: &Question) -> Recommendation {
-        let Question { seq, time, state, ref belief, robot, robot_press_s, ref signals, error } = *question;
-        let situation = Situation { state, belief, robot, robot_press_s };
+        let Question { seq, time, ref signals, error, .. } = *question;
+        let situation = question.situation();
         self.concept.advise(&mut self.cost, &Moment { seq, time, situation, signals, error })
     }
 

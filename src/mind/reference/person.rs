@@ -85,8 +85,28 @@ impl Person {
         }
     }
 
-    /// p(a | b) of every button of the human, given that one is pressed: Q over so many states and recipes drawn from the
-    /// belief, or over all of them where they are few.
+    /// E_b[C(s)], and E_b[C(s')] after every button of the human: over so many states and recipes drawn from the belief, or
+    /// over all of them where they are few.
+    pub fn prospects(
+        &self,
+        kitchen: &Kitchen,
+        cost: &mut CostToGo,
+        states: usize,
+        random: &mut Stream,
+    ) -> (f64, Vec<f64>) {
+        let mut here = 0.0;
+        let mut after = vec![0.0; kitchen.buttons[Agent::Human.index()].len()];
+        for way in self.ways(kitchen, states, random) {
+            let decision = cost.decision(way.state, &way.recipes, Agent::Human);
+            here += way.p * f64::from(decision.here);
+            for (sum, &one) in after.iter_mut().zip(&decision.after) {
+                *sum += way.p * f64::from(one);
+            }
+        }
+        (here, after)
+    }
+
+    /// p(a | b) of every button of the human, given that one is pressed.
     pub fn press_chances(
         &self,
         kitchen: &Kitchen,
@@ -95,15 +115,8 @@ impl Person {
         states: usize,
         random: &mut Stream,
     ) -> Vec<f64> {
-        let buttons = kitchen.buttons[Agent::Human.index()].len();
-        let mut expected = vec![0.0; buttons];
-        for way in self.ways(kitchen, states, random) {
-            let decision = cost.decision(way.state, &way.recipes, Agent::Human);
-            for (sum, &after) in expected.iter_mut().zip(&decision.after[..buttons]) {
-                *sum += way.p * f64::from(after);
-            }
-        }
-        press_chances(kitchen, model, &expected)
+        let (_, after) = self.prospects(kitchen, cost, states, random);
+        press_chances(kitchen, model, &after)
     }
 
     /// Knows that it pressed a button, and whether that had an effect: Bayes' rule over what the press depends on, and the

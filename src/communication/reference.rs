@@ -1,0 +1,193 @@
+//! The reference: planning of communication in its plainest form, straight from the equations (paper, section "Planning
+//! communication"), for tests and benchmarks. It shares nothing with [`super::planner`] but the cost to go, the kitchen's
+//! rules, the robot's policy and the parameters.
+//!
+//! Every rollout has an explicit belief, every component of it drawn by a gamma draw, which is moved on by the human model
+//! ([`Person`]); Q is thought through anew, over states drawn from that belief, at every decision. All signals are rolled out
+//! as often as silence, in full, with the random numbers of a rollout the same for all of them.
+
+use std::sync::Arc;
+
+use rand::RngExt;
+
+use super::recommendation::aspects_told;
+use super::settings::AssistantSpec;
+use super::situation::{RobotOutlook, Situation};
+use super::{Signal, unavailable};
+use crate::base::rng::{Stream, stream};
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, State};
+use crate::mind::model::HumanModel;
+use crate::mind::reference::person::{Person, pick, press_chances};
+use crate::robot::policy;
+
+/// What a signal is worth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Worth {
+    pub signal: Signal,
+    /// Presses of both agents that it saves.
+    pub benefit: f64,
+    pub standard_error: f64,
+}
+
+/// The planner in its plainest form.
+#[derive(Clone, Debug)]
+pub struct ReferencePlanner {
+    kitchen: Arc<Kitchen>,
+    human: HumanModel,
+    spec: AssistantSpec,
+    seed: u64,
+}
+
+/// A rollout that is under way.
+struct Future {
+    state: State,
+    person: Person,
+    /// The button that the arm is on its way to, when it is there, and whether it is pressed there in any case.
+    errand: Option<(ButtonId, f64, bool)>,
+    now_s: f64,
+    presses: u32,
+}
+
+impl ReferencePlanner {
+    /// A planner for people as `human` says. Its chances follow from `seed` and the number of an event.
+    pub fn new(kitchen: Arc<Kitchen>, human: HumanModel, spec: AssistantSpec, seed: u64) -> ReferencePlanner {
+        ReferencePlanner { kitchen, human, spec, seed }
+    }
+
+    /// What each of these signals is worth after the event of this number; those that cannot be sent are left out.
+    pub fn advise(&self, cost: &mut CostToGo, situation: &Situation, signals: &[Signal], seq: u64) -> Vec<Worth> {
+        let possible = signals.iter().filter(|signal| unavailable(&self.kitchen, situation.state, signal).is_none());
+        let signals: Vec<&Signal> = possible.collect();
+        let mut saved: Vec<Vec<f64>> = vec![Vec::new(); signals.len()];
+        for rollout in 0..self.spec.rollout.rollouts as u64 {
+            let silent = self.roll_out(cost, situation, None, seq, rollout);
+            for (signal, saved) in signals.iter().zip(&mut saved) {
+                saved.push(silent - self.roll_out(cost, situation, Some(signal), seq, rollout));
+            }
+        }
+        let worth = |(signal, saved): (&&Signal, &Vec<f64>)| {
+            let n = saved.len() as f64;
+            let benefit = saved.iter().sum::<f64>() / n;
+            let spread = saved.iter().map(|one| (one - benefit).powi(2)).sum::<f64>();
+            let standard_error = (spread / (n - 1.0).max(1.0) / n).sqrt();
+            Worth { signal: (*signal).clone(), benefit, standard_error }
+        };
+        signals.iter().zip(&saved).map(worth).collect()
+    }
+
+    /// The random numbers of a rollout for something at a step, the same whatever was said.
+    fn chance(&self, of: &str, seq: u64, rollout: u64, step: u64) -> Stream {
+        stream(self.seed, of, seq << 32 | rollout << 8 | step)
+    }
+
+    /// Presses of both agents and the cost to go at the end of one rollout.
+    fn roll_out(
+        &self,
+        cost: &mut CostToGo,
+        situation: &Situation,
+        signal: Option<&Signal>,
+        seq: u64,
+        rollout: u64,
+    ) -> f64 {
+        let mut random = self.chance("plain belief", seq, rollout, 0);
+        let mut person = Person::draw(&self.kitchen, situation.belief, &mut random);
+        let first_s = random.random::<f64>() * self.spec.rollout.human_press_s;
+        for aspect in signal.map_or(Vec::new(), |signal| aspects_told(&self.kitchen, situation.state, signal)) {
+            person.settle(aspect, self.kitchen.true_value(situation.state, aspect));
+        }
+        let errand = match situation.robot {
+            RobotOutlook::Busy { button, remaining_s, driven } => Some((button, remaining_s, driven)),
+            RobotOutlook::Free | RobotOutlook::Still => None,
+        };
+        let mut future = Future { state: situation.state, person, errand, now_s: 0.0, presses: 0 };
+        for step in 0..self.spec.rollout.horizon {
+            let until_s = first_s + step as f64 * self.spec.rollout.human_press_s;
+            if situation.robot != RobotOutlook::Still {
+                let mut random = self.chance("plain robot", seq, rollout, step as u64);
+                self.robot_until(cost, &mut future, until_s, situation.robot_press_s, &mut random);
+            }
+            future.now_s = until_s;
+            let mut random = self.chance("plain decision", seq, rollout, step as u64);
+            self.decide(cost, &mut future, &mut random);
+        }
+        f64::from(future.presses) + f64::from(cost.all_orders(future.state, &self.kitchen.true_recipes()))
+    }
+
+    /// The robot follows its policy until the human decides.
+    fn robot_until(&self, cost: &mut CostToGo, future: &mut Future, until_s: f64, press_s: f64, random: &mut Stream) {
+        let (kitchen, recipes) = (&self.kitchen, self.kitchen.true_recipes());
+        loop {
+            if future.errand.is_none() {
+                let choices = policy::choices(kitchen, cost, future.state, &recipes);
+                if !choices.is_empty() {
+                    let button = choices[random.random_range(0..choices.len())];
+                    future.errand = Some((button, future.now_s + press_s, false));
+                }
+            }
+            let Some((button, due_s, driven)) = future.errand.filter(|(_, due_s, _)| *due_s <= until_s) else { return };
+            (future.now_s, future.errand) = (due_s, None);
+            if driven || policy::best_presses(kitchen, cost, future.state, &recipes).contains(&button) {
+                let after = kitchen.press(future.state, &recipes, Agent::Robot, button);
+                future.state = after.unwrap_or(future.state);
+                future.presses += 1;
+                if random.random::<f64>() < self.human.transition.foresight {
+                    future.person.robot_pressed(kitchen, cost, self.spec.rollout.states, random);
+                }
+            }
+        }
+    }
+
+    /// The human looks where its next press will be, decides, and presses.
+    fn decide(&self, cost: &mut CostToGo, future: &mut Future, random: &mut Stream) {
+        let kitchen = &self.kitchen;
+        let looks = 1.0 - (-self.spec.rollout.looks_hz * self.spec.rollout.human_press_s).exp();
+        let draw = random.random::<f64>();
+        let glances: Vec<f64> = kitchen.locations.iter().map(|_| random.random()).collect();
+        let mut deed = self.deed(cost, &future.person, draw, random);
+        if let Some(button) = deed {
+            let places = kitchen.involved(Agent::Human, button).into_iter();
+            let seen: Vec<LocationId> = places.filter(|place| glances[place.index()] < looks).collect();
+            for &place in &seen {
+                let aspect = AspectId::of_location(place);
+                future.person.settle(aspect, kitchen.true_value(future.state, aspect));
+            }
+            if !seen.is_empty() {
+                deed = self.deed(cost, &future.person, draw, random);
+            }
+        }
+        let Some(button) = deed else { return };
+        let before = future.state;
+        let after = kitchen.press(before, &kitchen.true_recipes(), Agent::Human, button);
+        // Who is proved wrong altogether looks.
+        let truth = |index: usize| {
+            let mut certain = vec![0.0; kitchen.aspects[index].values.len()];
+            certain[kitchen.true_value(before, AspectId(index as u8))] = 1.0;
+            certain
+        };
+        let truth: Vec<Vec<f64>> = (0..kitchen.aspects.len()).map(truth).collect();
+        future.person.pressed(kitchen, &truth, button, after.is_some());
+        future.state = after.unwrap_or(before);
+        future.presses += 1;
+    }
+
+    /// What the human does by a draw from 0 to 1: nothing (it waits), or a press, slips included.
+    fn deed(&self, cost: &mut CostToGo, person: &Person, draw: f64, random: &mut Stream) -> Option<ButtonId> {
+        let (kitchen, decision) = (&self.kitchen, &self.human.decision);
+        let (here, after) = person.prospects(kitchen, cost, self.spec.rollout.states, random);
+        let least = after.iter().copied().fold(f64::INFINITY, f64::min);
+        let presses: f64 = after.iter().map(|after| (-decision.tau * (after - least)).exp()).sum();
+        let waits = (-decision.tau * (here + decision.wait_cost - 1.0 - least)).exp();
+        let p_wait = if waits.is_finite() { waits / (waits + presses) } else { 1.0 };
+        if draw < p_wait {
+            return None;
+        }
+        let mut left = (draw - p_wait) / (1.0 - p_wait);
+        let chances = press_chances(kitchen, decision, &after);
+        let reached = chances.iter().position(|chance| {
+            left -= chance;
+            left < 0.0
+        });
+        reached.map(|index| ButtonId(index as u8)).or_else(|| Some(ButtonId(pick(&chances, random) as u8)))
+    }
+}

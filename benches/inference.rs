@@ -1,0 +1,100 @@
+//! How long inference takes, event by event, on recorded sessions, and how much longer its plain reference takes for the
+//! same events on the same machine.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use tomcom::edge::files::read_kitchen;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::mind::filter::BeliefFilter;
+use tomcom::mind::model::HumanModel;
+use tomcom::mind::observation::{Observation, Observed};
+use tomcom::mind::reference::ReferenceFilter;
+
+#[path = "../tests/inference/observed.rs"]
+mod observed;
+
+/// Recorded trials a kitchen, and presses of both agents in each.
+const TRIALS: u64 = 3;
+const PRESSES: u32 = 304;
+/// The reference takes part in so many events from the start of each trial.
+const REFERENCE_EVENTS: usize = 10_000;
+
+/// Times by kind of event.
+#[derive(Default)]
+struct Times {
+    gaze: Vec<Duration>,
+    press: Vec<Duration>,
+}
+
+impl Times {
+    fn add(&mut self, observation: &Observation, took: Duration) {
+        match observation.what {
+            Observed::Gaze { .. } => self.gaze.push(took),
+            Observed::Pressed { .. } => self.press.push(took),
+            _ => {}
+        }
+    }
+
+    fn total(&self) -> f64 {
+        self.gaze.iter().chain(&self.press).map(Duration::as_secs_f64).sum()
+    }
+}
+
+/// Percentiles in microseconds.
+fn told(name: &str, mut times: Vec<Duration>) -> String {
+    times.sort_unstable();
+    let at = |share: f64| times.get((times.len().saturating_sub(1) as f64 * share) as usize);
+    let micros = |share| at(share).map_or(0.0, |time| time.as_secs_f64() * 1e6);
+    format!(
+        "{name} {} events, us: p50 {:.2}, p99 {:.2}, max {:.2}",
+        times.len(),
+        micros(0.5),
+        micros(0.99),
+        micros(1.0)
+    )
+}
+
+fn main() {
+    for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
+        let kitchen = Arc::new(read_kitchen(Path::new(layout)).expect("the layout loads").kitchen);
+        let (mut fast, mut same, mut plain) = (Times::default(), Times::default(), Times::default());
+        for seed in 0..TRIALS {
+            let observations = observed::recorded(&kitchen, 31 + seed, PRESSES);
+            let mut cost = CostToGo::new(kitchen.clone());
+            let mut filter = BeliefFilter::new(kitchen.clone(), HumanModel::default(), seed);
+            for (index, observation) in observations.iter().enumerate() {
+                let began = Instant::now();
+                filter.observe(observation, &mut cost);
+                let took = began.elapsed();
+                fast.add(observation, took);
+                if index < REFERENCE_EVENTS {
+                    same.add(observation, took);
+                }
+            }
+            let mut cost = CostToGo::new(kitchen.clone());
+            let mut reference = ReferenceFilter::new(kitchen.clone(), HumanModel::default(), seed);
+            for observation in observations.iter().take(REFERENCE_EVENTS) {
+                let began = Instant::now();
+                reference.observe(observation, &mut cost);
+                plain.add(observation, began.elapsed());
+            }
+        }
+        let ratio = |plain: &[Duration], fast: &[Duration]| {
+            plain.iter().map(Duration::as_secs_f64).sum::<f64>() / fast.iter().map(Duration::as_secs_f64).sum::<f64>()
+        };
+        println!(
+            "{layout}, the first {REFERENCE_EVENTS} events of {TRIALS} trials: reference {:.3} s, filter {:.3} s; ratio {:.1} \
+             (gaze {:.1}, presses {:.1})",
+            plain.total(),
+            same.total(),
+            plain.total() / same.total(),
+            ratio(&plain.gaze, &same.gaze),
+            ratio(&plain.press, &same.press),
+        );
+        println!("  {}", told("gaze", fast.gaze));
+        println!("  {}", told("press", fast.press));
+        println!("  {}", told("reference, press", plain.press));
+    }
+}

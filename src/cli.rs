@@ -1,6 +1,7 @@
 //! The command line. A command is listed when it works.
 
 mod args;
+mod estimates;
 
 use std::io::{IsTerminal, Write};
 use std::path::Path;
@@ -30,7 +31,7 @@ use crate::run::series::{self, Sitting};
 use crate::run::similarity::{self, CompareFigures};
 use crate::run::simulate::SimulateError;
 use crate::run::standing::{self, Standing};
-use crate::run::{check_beliefs, kitchen, simulate, tell, timing, verify};
+use crate::run::{kitchen, simulate, tell, timing, verify};
 use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
 
 /// Exit code: something failed.
@@ -126,6 +127,7 @@ pub fn main() -> ExitCode {
         Command::Replay(args) => replay(&args),
         Command::Simulate(args) => simulate(&args),
         Command::Plan(args) => show_plan(&args),
+        Command::Fit(args) => estimates::fit(&args),
         Command::Kitchen(args) => kitchen(&args),
         Command::Keys(args) => keys(&args),
         Command::Exclude(args) => exclude(&args),
@@ -213,10 +215,13 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
 
 fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     if args.check_beliefs {
-        return check_beliefs(args);
+        return estimates::check_beliefs(args);
+    }
+    if args.accuracy {
+        return estimates::accuracy(args);
     }
     let [recording] = &args.recordings[..] else {
-        let help = "one recording, or --check-beliefs";
+        let help = "one recording, or --check-beliefs or --accuracy";
         return Err(Failure::Wrong(miette::miette!(help = help, "found {} recordings", args.recordings.len())));
     };
     if args.verify {
@@ -285,13 +290,6 @@ fn compare(args: &CompareArgs) -> Result<(), Failure> {
         Some(number) => Ok(write!(std::io::stdout(), "{}", similarity::open(&first, number)?)?),
         None => print(args.format, &figures, || similarity::describe(&figures)),
     }
-}
-
-fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
-    let bar = progress(args.recordings.len() as u64, "recordings");
-    let found = check_beliefs::check(&args.recordings, None, || bar.inc(1))?;
-    bar.finish_and_clear();
-    print(args.format, &found, || check_beliefs::describe(&found))
 }
 
 /// A bar on stderr that counts so many of something; nothing to be seen where that is no terminal.

@@ -445,3 +445,51 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
         swept["pairs"].as_array().expect("pairs").iter().filter_map(|pair| pair["window_actions"].as_u64()).collect();
     assert_eq!(swept, (0..=10).collect::<Vec<u64>>());
 }
+
+/// Few presses, thought about little: what the commands print is looked at here, not how good it is.
+const QUICK: &str = "[trial]
+condition = \"none\"
+presses = 30
+[assistant.rollout]
+horizon = 2
+rollouts = 4
+states = 2
+least_rollouts = 2
+";
+
+#[test]
+fn fit_writes_a_parameter_file_and_accuracy_tells_its_figures() {
+    let folder = folder("fit");
+    let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
+    let [session, start, out, fitted] = ["session.toml", "start.toml", "out", "fitted.toml"].map(path);
+    let layout = fs::canonicalize("layouts/sushi.toml").expect("the layout is there");
+    let layout = layout.to_str().expect("a path in UTF-8");
+    fs::write(&session, format!("layout = {layout:?}\n{QUICK}")).expect("the session can be written");
+    let few = "[inference]\nbeliefs = 8\nstates = 4\nmax_beliefs = 8\npredictions = 4\n";
+    fs::write(&start, few).expect("the parameters can be written");
+    let simulated = figures(&["simulate", &session, "--out", &out, "--format", "json"], 0);
+    let recording = simulated["recordings"][0].as_str().expect("a recording");
+    let fit = ["fit", recording, "--start", &start, "--tries", "10", "--out", &fitted, "--format", "json"];
+    let found = figures(&[&fit[..], &["--parameters", "tau,lapse"]].concat(), 0);
+    assert_eq!(found["human_actions"], simulated["human_actions"]);
+    let names: Vec<&str> =
+        found["parameters"].as_array().expect("parameters").iter().filter_map(|one| one["name"].as_str()).collect();
+    assert_eq!(names, ["tau", "lapse"]);
+    // What was fitted is in force where a session names the file.
+    fs::write(&session, format!("layout = {layout:?}\nhuman_model = {fitted:?}\n{QUICK}"))
+        .expect("the session can be written");
+    let again = figures(&["simulate", &session, "--out", &out, "--seed", "5", "--format", "json"], 0);
+    let log = Path::new(again["recordings"][0].as_str().expect("a recording")).join("events.jsonl");
+    let log = fs::read_to_string(log).expect("a log");
+    let header: Value = serde_json::from_str(log.lines().next().unwrap_or_default()).expect("a header");
+    let [in_force, fitted_tau] = [&header["session"]["human"]["decision"]["tau"], &found["parameters"][0]["value"]];
+    assert!((in_force.as_f64().expect("a number") - fitted_tau.as_f64().expect("a number")).abs() < 1e-9);
+    let accuracy = ["replay", recording, "--accuracy", "--steps", "6", "--reference-steps", "2", "--format", "json"];
+    let found = figures(&accuracy, 0);
+    assert_eq!((&found["steps"], &found["reference_steps"]), (&Value::from(6), &Value::from(2)));
+    assert!(found["reference_ratio"].as_f64().is_some_and(|ratio| ratio > 0.0), "{found}");
+    for key in ["same_decision", "benefit_rmse"] {
+        assert!(found.get(key).is_some(), "{key} in {found}");
+    }
+    assert!(complaint(&["fit", &session]).contains("events.jsonl"));
+}

@@ -1,6 +1,8 @@
-//! What every room may use: time, random streams, words, and the search for a minimum.
+//! What every room may use: time, random streams, words, and a little numerical mathematics.
 
+pub mod linear;
 pub mod minimise;
 pub mod rng;
+pub mod surface;
 pub mod time;
 pub mod words;

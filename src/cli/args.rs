@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::communication::concept::ConceptName;
+use crate::mind::fitting::Parameter;
 use crate::run::compare;
 
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
@@ -27,6 +28,7 @@ pub(super) enum Command {
     Replay(ReplayArgs),
     Simulate(SimulateArgs),
     Plan(PlanArgs),
+    Fit(FitArgs),
     Kitchen(KitchenArgs),
     Keys(KeysArgs),
     Exclude(ExcludeArgs),
@@ -184,7 +186,7 @@ pub(super) struct CompareArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify")]
 pub(super) struct ReplayArgs {
-    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs.
+    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs and --accuracy.
     #[arg(required = true, value_name = "RECORDING")]
     pub(super) recordings: Vec<PathBuf>,
     /// Run the session again from the recording's header and its inputs; every line must come out the same.
@@ -196,6 +198,15 @@ pub(super) struct ReplayArgs {
     /// Take the time of the inference, event by event.
     #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs"])]
     pub(super) timing: bool,
+    /// Hold the planner's answers against those with 64 times the rollouts, and against its plain reference. Takes long.
+    #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs", "timing"])]
+    pub(super) accuracy: bool,
+    /// With --accuracy: at most so many steps, spread evenly over the recordings.
+    #[arg(long, default_value_t = 500, requires = "accuracy", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub(super) steps: u64,
+    /// With --accuracy: at most so many of them for the plain reference.
+    #[arg(long, default_value_t = 30, requires = "accuracy", value_parser = clap::value_parser!(u64).range(0..=100_000))]
+    pub(super) reference_steps: u64,
     /// Watch a session that is still running, until it ends.
     #[arg(long)]
     pub(super) follow: bool,
@@ -246,6 +257,65 @@ pub(super) struct SimulateArgs {
     /// How to print the figures.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: Format,
+}
+
+/// Fits the human model to recordings: the parameters under which the recorded presses are likeliest, with standard errors.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "A session uses the file with human_model = \"FILE\".\nExample: tomcom fit recordings/* --out sessions/human.toml"
+)]
+pub(super) struct FitArgs {
+    /// The folders of recordings of one kitchen, or their events.jsonl.
+    #[arg(required = true, value_name = "RECORDING")]
+    pub(super) recordings: Vec<PathBuf>,
+    /// Which parameters.
+    #[arg(long, value_enum, value_delimiter = ',', default_values_t = FitParameter::USUAL)]
+    pub(super) parameters: Vec<FitParameter>,
+    /// Where to begin, a parameter file; what is not fitted stays as it is there. By default the program's own values.
+    #[arg(long, value_name = "FILE")]
+    pub(super) start: Option<PathBuf>,
+    /// The search for the best parameters ends after so many tries.
+    #[arg(long, default_value_t = 150, value_parser = clap::value_parser!(u64).range(10..=100_000))]
+    pub(super) tries: u64,
+    /// Where to write the parameter file.
+    #[arg(long, value_name = "FILE")]
+    pub(super) out: Option<PathBuf>,
+    /// How to print the figures.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(super) format: Format,
+}
+
+/// A parameter of the human model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum FitParameter {
+    /// How strictly fewer expected presses are preferred.
+    Tau,
+    /// The share of presses that slip.
+    Lapse,
+    /// Radius of the area around the fixation.
+    Radius,
+    /// Readings a second.
+    Reading,
+    /// Half-life of what is remembered of recipes.
+    HalfLife,
+    /// The share of the robot's unseen presses that the human thinks through.
+    Foresight,
+}
+
+impl FitParameter {
+    const USUAL: [FitParameter; 5] =
+        [FitParameter::Tau, FitParameter::Lapse, FitParameter::Radius, FitParameter::Reading, FitParameter::HalfLife];
+
+    pub(super) fn parameter(self) -> Parameter {
+        match self {
+            FitParameter::Tau => Parameter::Tau,
+            FitParameter::Lapse => Parameter::Lapse,
+            FitParameter::Radius => Parameter::RadiusDeg,
+            FitParameter::Reading => Parameter::ReadingRateHz,
+            FitParameter::HalfLife => Parameter::RecipeHalfLifeS,
+            FitParameter::Foresight => Parameter::Foresight,
+        }
+    }
 }
 
 /// Checks a kitchen and prints it: locations, buttons, recipes, optimal plans, size of the state space.

@@ -173,6 +173,16 @@ pub fn read_human_model(path: &Path) -> FileResult<HumanModel> {
     }
 }
 
+/// Writes a file with all parameters of the human model, below a comment of whole lines.
+///
+/// # Errors
+/// It cannot be written.
+pub fn write_human_model(path: &Path, model: &HumanModel, comment: &str) -> std::io::Result<()> {
+    let comment: String = comment.lines().map(|line| format!("# {line}\n")).collect();
+    let text = toml::to_string(model).map_err(std::io::Error::other)?;
+    std::fs::write(path, format!("{comment}\n{text}"))
+}
+
 /// The default session with its kitchen, which the program carries with it, so that it runs without any file.
 ///
 /// # Errors

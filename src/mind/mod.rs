@@ -4,6 +4,7 @@ pub mod belief;
 pub mod decision;
 pub mod dirichlet;
 pub mod filter;
+pub mod fitting;
 pub mod model;
 pub mod observation;
 pub mod reference;

@@ -7,10 +7,10 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::parallel;
-use super::replay::Replay;
+use super::replay::{OneKitchen, Replay};
 use crate::base::time::SessionTime;
 use crate::base::words::count;
-use crate::edge::files::{FileError, FileResult};
+use crate::edge::files::FileResult;
 use crate::gaze::MIN_CONFIDENCE;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::state::MAX_LOCATIONS;
@@ -75,22 +75,13 @@ pub struct Views {
 /// Those of [`check`].
 pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Views> {
     let results = parallel::each(recordings, |recording| view(recording), done);
-    let mut first: Option<(&Path, Arc<Kitchen>)> = None;
-    let mut trials = Vec::new();
+    let (mut one_kitchen, mut trials) = (OneKitchen::default(), Vec::new());
     for (result, recording) in results.into_iter().zip(recordings) {
         let (kitchen, trial) = result?;
-        let (path, of_first) = first.get_or_insert_with(|| (recording, kitchen.clone()));
-        if of_first.aspects != kitchen.aspects || of_first.buttons != kitchen.buttons {
-            let found = format!("a recording of the kitchen {}, beside {}", kitchen.name, path.display());
-            let remedy = format!("recordings of one kitchen, here of {}", of_first.name);
-            return Err(FileError::at(recording, "", None, found, remedy));
-        }
+        one_kitchen.admit(recording, &kitchen)?;
         trials.push(trial);
     }
-    match first {
-        Some((_, kitchen)) => Ok(Views { kitchen, trials }),
-        None => Err(FileError::at(Path::new("."), "", None, "no recording".into(), "at least one recording".into())),
-    }
+    Ok(Views { kitchen: one_kitchen.kitchen()?, trials })
 }
 
 /// The presses of one recording.

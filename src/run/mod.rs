@@ -1,5 +1,6 @@
 //! The composers: they bring session, robot, participant, files and clock together. Nothing else does.
 
+pub mod accuracy;
 pub mod advisor;
 mod begun;
 pub mod check_beliefs;
@@ -8,6 +9,7 @@ mod desk;
 pub mod engine;
 pub mod figures;
 pub mod film;
+pub mod fit;
 pub mod follower;
 pub mod headless;
 pub mod kitchen;

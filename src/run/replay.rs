@@ -1,11 +1,14 @@
 //! Replays a recording: feeds its events through the same [`apply`](crate::session::apply) as the live session.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::follower::Follower;
-use crate::edge::files::FileResult;
+use crate::edge::files::{FileError, FileResult};
 use crate::edge::log::{LogLine, LogReader, at_line};
+use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
+use crate::mind::observation::Observation;
 use crate::session::Session;
 
 /// A recording and the session at the point up to which it was replayed.
@@ -48,6 +51,21 @@ impl Replay {
         Ok(())
     }
 
+    /// Applies everything that is there, and hands out what it tells of the human's belief.
+    ///
+    /// # Errors
+    /// Those of [`Replay::step`].
+    pub fn observations(&mut self) -> FileResult<Vec<Observation>> {
+        let mut observations = Vec::new();
+        loop {
+            let (before, counts) = (self.session().state, self.session().is_running());
+            let Some(line) = self.step()? else { return Ok(observations) };
+            if let Some(what) = self.follower.observed(&line.stamped, before, counts) {
+                observations.push(Observation { number: line.stamped.seq, time: line.stamped.time, what });
+            }
+        }
+    }
+
     pub fn session(&self) -> &Session {
         &self.follower.session
     }
@@ -55,5 +73,39 @@ impl Replay {
     /// The log that is replayed.
     pub fn log(&self) -> &LogReader {
         &self.log
+    }
+}
+
+/// Recordings that are looked at together must be of one kitchen.
+#[derive(Debug, Default)]
+pub struct OneKitchen {
+    first: Option<(PathBuf, Arc<Kitchen>)>,
+}
+
+impl OneKitchen {
+    /// Takes note of a recording's kitchen.
+    ///
+    /// # Errors
+    /// It is another one than that of the first recording.
+    pub fn admit(&mut self, recording: &Path, kitchen: &Arc<Kitchen>) -> FileResult<()> {
+        let (path, first) = self.first.get_or_insert_with(|| (recording.to_path_buf(), kitchen.clone()));
+        if first.aspects == kitchen.aspects && first.buttons == kitchen.buttons {
+            return Ok(());
+        }
+        let found = format!("a recording of the kitchen {}, beside {}", kitchen.name, path.display());
+        let remedy = format!("recordings of one kitchen, here of {}", first.name);
+        Err(FileError::at(recording, "", None, found, remedy))
+    }
+
+    /// The kitchen of all of them.
+    ///
+    /// # Errors
+    /// There was no recording.
+    pub fn kitchen(self) -> FileResult<Arc<Kitchen>> {
+        let none = || {
+            let remedy = "at least one recording".to_string();
+            FileError::at(Path::new("."), "", None, "no recording".to_string(), remedy)
+        };
+        self.first.map(|(_, kitchen)| kitchen).ok_or_else(none)
     }
 }

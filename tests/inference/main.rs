@@ -3,6 +3,7 @@
 
 mod calibration;
 mod exact;
+mod fitting;
 mod grid;
 mod laws;
 mod observed;

@@ -1,0 +1,45 @@
+//! Commands that look at how good the estimates are: of beliefs, of what signals are worth, of the human model's parameters.
+
+use super::args::{FitArgs, ReplayArgs};
+use super::{Failure, print, progress};
+use crate::edge::files;
+use crate::run::accuracy::Extent;
+use crate::run::{accuracy, check_beliefs, fit};
+
+/// `tomcom replay RECORDING... --check-beliefs`.
+pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
+    let bar = progress(args.recordings.len() as u64, "recordings");
+    let found = check_beliefs::check(&args.recordings, None, || bar.inc(1))?;
+    bar.finish_and_clear();
+    print(args.format, &found, || check_beliefs::describe(&found))
+}
+
+/// `tomcom replay RECORDING... --accuracy`.
+pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
+    let extent = Extent { steps: args.steps as usize, reference_steps: args.reference_steps.min(args.steps) as usize };
+    // Each step is planned twice.
+    let bar = progress(2 * args.steps + args.reference_steps, "answers at most");
+    let found = accuracy::measure(&args.recordings, extent, || bar.inc(1))?;
+    bar.finish_and_clear();
+    print(args.format, &found, || accuracy::describe(&found))
+}
+
+/// `tomcom fit RECORDING...`.
+pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
+    let start = args.start.as_deref().map(files::read_human_model).transpose()?.unwrap_or_default();
+    let mut parameters: Vec<_> = args.parameters.iter().map(|one| one.parameter()).collect();
+    parameters.sort_unstable();
+    parameters.dedup();
+    let trials = fit::Trials::read(&args.recordings)?;
+    let plan = fit::Plan { parameters, start, most_tries: args.tries as usize };
+    let bar = progress(plan.most() as u64, "tries at most");
+    let found = fit::fit(&trials, &plan, || bar.inc(1));
+    bar.finish_and_clear();
+    if let Some(path) = &args.out {
+        files::write_human_model(path, &found.model, &fit::comment(&found)).map_err(|error| {
+            let help = "a place where a file can be written";
+            Failure::Failed(miette::miette!(help = help, "{}: cannot be written: {error}", path.display()))
+        })?;
+    }
+    print(args.format, &found, || fit::describe(&found))
+}

@@ -2,6 +2,7 @@
 
 mod args;
 mod estimates;
+mod wizard;
 
 use std::io::{IsTerminal, Write};
 use std::path::Path;
@@ -28,7 +29,6 @@ use crate::run::plan::{self, Overview};
 use crate::run::replay::Replay;
 use crate::run::review::{self, ReviewError};
 use crate::run::series::{self, Sitting};
-use crate::run::similarity::{self, CompareFigures};
 use crate::run::simulate::SimulateError;
 use crate::run::standing::{self, Standing};
 use crate::run::{kitchen, simulate, tell, timing, verify};
@@ -123,7 +123,8 @@ pub fn main() -> ExitCode {
         cli.command.unwrap_or(Command::Operate(OperateArgs { session: None, recording: None, flags: cli.operate }));
     let done = match command {
         Command::Operate(args) => operate(&args),
-        Command::Compare(args) => compare(&args),
+        Command::Compare(args) => wizard::compare(&args),
+        Command::Train(args) => wizard::train(&args),
         Command::Replay(args) => replay(&args),
         Command::Simulate(args) => simulate(&args),
         Command::Plan(args) => show_plan(&args),
@@ -256,40 +257,6 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     let standing = Standing::of(replay.session(), replay.log())?;
     let figures = tell::RecordingFigures::of(&replay.follower, events, replay.log().is_cut(), standing);
     print(args.format, &figures, || figures.describe())
-}
-
-fn compare(args: &CompareArgs) -> Result<(), Failure> {
-    let with: Vec<ConceptName> = args.with.iter().map(|&concept| concept.into()).collect();
-    let request = |window: u32| Request { with: with.clone(), window };
-    let session = match &args.paths[..] {
-        [] => Some(None),
-        [path] => Some(Some(path.as_path())).filter(|_| path.extension().is_some_and(|extension| extension == "toml")),
-        _ => None,
-    };
-    if let Some(session) = session.filter(|_| !args.follow) {
-        let done = new_session(session, &args.flags, Some(request(args.window)))?;
-        return Ok(write!(std::io::stdout(), "{}", series::describe(&done))?);
-    }
-    if args.follow {
-        let [recording] = &args.paths[..] else {
-            let help = "the folder of one recording";
-            return Err(Failure::Wrong(miette::miette!(help = help, "found --follow and {} paths", args.paths.len())));
-        };
-        return Ok(review::review(recording, true, Some(&request(args.window)))?);
-    }
-    let windows: Vec<u32> = if args.sweep { similarity::SWEEP.collect() } else { vec![args.window] };
-    let bar = progress((args.paths.len() * windows.len()) as u64, "recordings");
-    let watch = |window: u32| similarity::watch(&args.paths, &request(window), || bar.inc(1));
-    let first = watch(windows[0])?;
-    let mut figures = CompareFigures::of(&first);
-    for &window in &windows[1..] {
-        figures.pairs.extend(CompareFigures::of(&watch(window)?).pairs);
-    }
-    bar.finish_and_clear();
-    match args.open {
-        Some(number) => Ok(write!(std::io::stdout(), "{}", similarity::open(&first, number)?)?),
-        None => print(args.format, &figures, || similarity::describe(&figures)),
-    }
 }
 
 /// A bar on stderr that counts so many of something; nothing to be seen where that is no terminal.

@@ -439,6 +439,8 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
         assert!(opened.contains(told), "{told} in\n{opened}");
     }
     assert!(complaint(&["compare", recordings[0], "--open", "999"]).contains("a number of the list of differences"));
+    assert!(complaint(&["compare", recordings[0], "--seed", "3"]).contains("--seed, with recordings"));
+    assert!(complaint(&["compare", session, "--open", "1"]).contains("--open, with a session"));
     assert!(complaint(&["compare", "tests/golden"]).contains("events.jsonl"));
     let swept = figures(&["compare", recordings[0], "--sweep", "--format", "json"], 0);
     let swept: Vec<u64> =

@@ -338,6 +338,52 @@ fn wizard_and_assistant_are_compared_live_and_from_another_terminal() {
     beside.is_whole("0");
     terminal.quit();
     assert_eq!(terminal.count("\"kind\":\"unblinded\",\"concepts\":[\"tom-com\",\"tom\"]"), 1);
+    assert!(terminal.count("signal_drawn") > 0, "when a signal was seen");
     assert!(terminal.count("\"comparison\"") > 0, "the panel is among those that were seen");
     terminal.verifies();
+}
+
+#[test]
+fn a_wizard_is_trained_with_feedback_and_a_score_and_held_against_oneself() {
+    let Some(terminal) = Terminal::open("train") else { return };
+    let out = terminal.folder.join("training");
+    let mut met = Vec::new();
+    for time in 1..=2 {
+        terminal.run(&format!(
+            "{TOMCOM} train --wizard W7 --speed 4 --seconds 30 --hits 0 --wrong 1 --out {}",
+            out.display()
+        ));
+        terminal.see("training: 0 hit");
+        terminal.key(".");
+        terminal.see("it runs");
+        // The orders come with the trial's first moment.
+        terminal.see("0:01");
+        for key in ["q", "c", "p"] {
+            terminal.key(key);
+            terminal.wait("feedback", || {
+                let screen = terminal.screen();
+                ["hit:", "told already", "believed wrong", "late:", "wrong:"].iter().any(|word| screen.contains(word))
+            });
+            std::thread::sleep(Duration::from_millis(900));
+        }
+        terminal.is_whole("0");
+        terminal.see("recorded in");
+        let record = fs::read_to_string(out.join(format!("W7-{time}.json"))).expect("a record");
+        let record: serde_json::Value = serde_json::from_str(&record).expect("a JSON object");
+        let one = &record["recordings"][0];
+        assert_eq!(one["complete"], true, "{record}");
+        assert_eq!(one["signals"].as_array().map(Vec::len), Some(3));
+        assert!(one["measures"]["episodes"].is_number());
+        assert_eq!(one["kappa_with_oneself"].is_number(), time == 2, "{record}");
+        met.push(record["met"].clone());
+    }
+    assert_eq!(met[0], met[1], "the criterion holds for the same signals");
+    // The training belongs to the wizard's figures.
+    let recording =
+        fs::read_dir(out.join("recordings")).expect("a folder").next().expect("a recording").expect("readable");
+    let arguments = ["compare", "--wizard", "W7", "--format", "json", "--training"].map(str::to_string);
+    let folders = [&out, &recording.path()].map(|path| path.display().to_string());
+    let output = Command::new(TOMCOM).args(arguments).args(folders).output().expect("tomcom runs");
+    let figures: serde_json::Value = serde_json::from_slice(&output.stdout).expect("a JSON object");
+    assert_eq!(figures["training"]["times"], 2, "{figures}");
 }

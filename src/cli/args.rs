@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::wizard::{CompareArgs, TrainArgs};
 use crate::communication::concept::ConceptName;
 use crate::mind::fitting::Parameter;
-use crate::run::compare;
 
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
 #[derive(Debug, Parser)]
@@ -25,6 +25,7 @@ pub(super) struct Cli {
 pub(super) enum Command {
     Operate(OperateArgs),
     Compare(CompareArgs),
+    Train(TrainArgs),
     Replay(ReplayArgs),
     Simulate(SimulateArgs),
     Plan(PlanArgs),
@@ -148,38 +149,6 @@ pub(super) enum SimulatedCondition {
     None,
     /// The assistant, by itself.
     Assistant,
-}
-
-/// Sets wizard and assistants side by side: what each said, what of it matches, and what each knew where they differ.
-#[derive(Debug, Args)]
-#[command(
-    after_help = "Examples: tomcom compare sessions/2026-03-14-P07-1 --with tom,dev\n          tomcom compare sessions/2026-03-14-P07-1 --follow\n          tomcom compare sessions/default.toml"
-)]
-pub(super) struct CompareArgs {
-    /// Folders of recordings, or their events.jsonl; or a session file, to operate it with the comparison in front (by default
-    /// sessions/default.toml). That unblinds the wizard, and the recording says so.
-    #[arg(value_name = "RECORDING|SESSION")]
-    pub(super) paths: Vec<PathBuf>,
-    /// Open the console over a session that is still running, and read along from this terminal.
-    #[arg(long)]
-    pub(super) follow: bool,
-    /// Further concepts beside the session's own, with commas between them.
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub(super) with: Vec<ConceptArg>,
-    /// Communications match within so many presses of the human.
-    #[arg(long, default_value_t = compare::WINDOW, value_parser = clap::value_parser!(u32).range(0..=100))]
-    pub(super) window: u32,
-    /// The figures for every window from 0 to 10.
-    #[arg(long, conflicts_with_all = ["open", "window"])]
-    pub(super) sweep: bool,
-    /// What each knew at the difference with this number.
-    #[arg(long, value_name = "NUMBER", conflicts_with = "format")]
-    pub(super) open: Option<usize>,
-    /// How to print the figures.
-    #[arg(long, value_enum, default_value = "text")]
-    pub(super) format: Format,
-    #[command(flatten, next_help_heading = "To operate a session")]
-    pub(super) flags: OperateFlags,
 }
 
 /// Opens the console over a recording. Through a pipe: what happened, line by line. Or checks that it comes out the same.

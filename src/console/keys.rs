@@ -163,6 +163,18 @@ impl Keys {
         Ok(Keys { bindings, marks, comparing })
     }
 
+    /// The table of a training: the signals, and what the console itself needs.
+    ///
+    /// # Errors
+    /// As of [`Keys::live`].
+    pub fn training(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyMap) -> Result<Keys, KeyError> {
+        let mut keys = Keys::live(kitchen, spec, map)?;
+        keys.bindings.retain(|line| {
+            matches!(line.action, Action::Signal(..) | Action::Advance | Action::Look(_) | Action::Help | Action::Quit)
+        });
+        Ok(keys)
+    }
+
     /// The table of a replay.
     ///
     /// # Errors

@@ -8,3 +8,4 @@ pub mod gaze_json;
 pub mod log;
 pub mod recordings;
 pub mod terminal;
+pub mod training;

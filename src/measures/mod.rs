@@ -8,6 +8,7 @@ pub mod flags;
 pub mod likelihood;
 pub mod matching;
 pub mod sequences;
+pub mod wizard;
 
 use crate::base::time::SessionTime;
 

@@ -142,8 +142,13 @@ impl Episodes {
         }
     }
 
+    /// All so far, harmful or not, in the order of their corrections, open ones last.
+    pub fn all(&self) -> impl Iterator<Item = &Episode> {
+        self.done.iter().chain(self.open.iter().flatten())
+    }
+
     /// The episodes so far that caused at least one error, in the order of their corrections, open ones last.
     pub fn harmful(&self) -> impl Iterator<Item = &Episode> {
-        self.done.iter().chain(self.open.iter().flatten()).filter(|episode| episode.errors > 0)
+        self.all().filter(|episode| episode.errors > 0)
     }
 }

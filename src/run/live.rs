@@ -97,6 +97,8 @@ struct Live {
     /// The log cannot be written any more.
     failed: Option<WriteError>,
     clock: SessionClock,
+    /// The signal that no frame shows yet, by its number.
+    undrawn: Option<u64>,
     /// What the wizard sees, as it was recorded last.
     seen: Option<OnScreen>,
     /// How many judged presses the model knows.
@@ -143,6 +145,7 @@ impl Live {
             _before: before,
             failed: None,
             clock,
+            undrawn: None,
             seen: None,
             judged: 0,
             dirty: true,
@@ -263,8 +266,10 @@ impl Live {
     fn record(&mut self, events: &[Stamped]) {
         self.dirty = true;
         for stamped in events {
-            if let Event::Gaze(sample) = stamped.event {
-                self.model.see(stamped.time, sample);
+            match stamped.event {
+                Event::Gaze(sample) => self.model.see(stamped.time, sample),
+                Event::SignalShown { .. } => self.undrawn = Some(stamped.seq),
+                _ => {}
             }
             if let Some(watch) = &self.watch {
                 watch.tell(stamped);
@@ -356,12 +361,17 @@ impl Live {
         {
             compared.show(newest);
         }
-        if screen.is_ready() {
+        let is_ready = screen.is_ready();
+        if is_ready {
             self.tell_screen();
         }
         // A terminal that is still busy with the last frame gets this one later.
-        self.dirty = !screen.is_ready();
-        screen.draw(self.engine.session(), &self.model)
+        self.dirty = !is_ready;
+        screen.draw(self.engine.session(), &self.model)?;
+        if let Some(signal) = self.undrawn.take_if(|_| is_ready && self.engine.session().phase != Phase::Closed) {
+            self.input(Event::SignalDrawn { signal });
+        }
+        Ok(())
     }
 
     /// Records what the wizard is about to see, if that is something else than before.

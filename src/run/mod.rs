@@ -27,4 +27,6 @@ pub mod simulate;
 pub mod standing;
 pub mod tell;
 pub mod timing;
+pub mod train;
 pub mod verify;
+pub mod wizard;

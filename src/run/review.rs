@@ -1,7 +1,7 @@
 //! The console over a recording, or over a session that is still running: pause, step, seek, speed.
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use tokio::time::{Instant, sleep_until};
@@ -35,6 +35,9 @@ pub enum ReviewError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
+    #[error("{}: the training cannot be recorded: {reason}", path.display())]
+    #[diagnostic(help("a folder that can be written to, with --out"))]
+    Training { path: PathBuf, reason: io::Error },
     #[error("the header of the recording: {0}")]
     #[diagnostic(help("{}", .0.remedy))]
     Keys(#[from] KeyError),

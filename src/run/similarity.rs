@@ -7,14 +7,18 @@ use serde::Serialize;
 use super::compare::{Request, Watcher};
 use super::parallel;
 use super::standing::Standing;
+use super::wizard::{self, WizardFigures, WizardLog};
 use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
 use crate::console::comparison::{Comparison, Difference};
 use crate::edge::files::{FileError, FileResult};
 use crate::edge::log::{LogReader, at_line};
+use crate::edge::training;
 use crate::kitchen::{AspectId, Kitchen};
 use crate::measures::matching::{Level, Said, Similarity, Tally};
+use crate::measures::wizard::TrainingCriterion;
 use crate::session::screen::Screen;
+use crate::session::settings::Condition;
 
 /// The windows of `--sweep`.
 pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;
@@ -25,6 +29,37 @@ pub struct CompareFigures {
     /// Over all recordings that count.
     pub pairs: Vec<PairFigures>,
     pub recordings: Vec<RecordingComparison>,
+    /// Of the wizard who was named.
+    pub training: Option<TrainingFigures>,
+}
+
+/// What a wizard was trained.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TrainingFigures {
+    pub wizard: String,
+    pub times: u64,
+    pub minutes: f64,
+    /// The criterion of the last time, and whether it was met then; null: never trained.
+    pub criterion: Option<TrainingCriterion>,
+    pub met: Option<bool>,
+}
+
+impl TrainingFigures {
+    /// Of a wizard's training as it is recorded in this folder.
+    ///
+    /// # Errors
+    /// Those of [`training::read`].
+    pub fn read(folder: &Path, wizard: &str) -> FileResult<TrainingFigures> {
+        let records = training::read(folder, wizard)?;
+        let last = records.last();
+        Ok(TrainingFigures {
+            wizard: wizard.to_string(),
+            times: records.len() as u64,
+            minutes: records.iter().map(|record| record.minutes).sum(),
+            criterion: last.map(|record| record.criterion),
+            met: last.map(|record| record.met),
+        })
+    }
 }
 
 /// Two lanes against each other.
@@ -46,6 +81,8 @@ pub struct RecordingComparison {
     pub standing: Standing,
     pub human_actions: u64,
     pub lanes: Vec<LaneFigures>,
+    /// Of the wizard; null where nobody could send signals.
+    pub wizard: Option<WizardFigures>,
     pub differences: Vec<DifferenceFigures>,
 }
 
@@ -105,6 +142,7 @@ pub struct Watched {
     pub watcher: Watcher,
     pub standing: Standing,
     pub comparison: Comparison,
+    pub wizard: Option<WizardFigures>,
 }
 
 impl Watched {
@@ -115,14 +153,18 @@ impl Watched {
     pub fn new(recording: &Path, request: &Request) -> FileResult<Watched> {
         let mut log = LogReader::open(recording)?;
         let mut watcher = Watcher::new(log.kitchen.clone(), &log.header.session, request);
+        let mut hands = WizardLog::default();
         while let Some(line) = log.next_line()? {
             let applied = watcher.apply(&line.stamped);
             applied.map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
+            hands.note(&line.stamped, &watcher.follower.session);
         }
         watcher.finish();
         let standing = Standing::of(&watcher.follower.session, &log)?;
         let comparison = watcher.comparison(true);
-        Ok(Watched { recording: recording.to_path_buf(), watcher, standing, comparison })
+        let is_wizards = log.header.session.trial.condition == Condition::Wizard;
+        let wizard = is_wizards.then(|| hands.figures(&watcher.follower));
+        Ok(Watched { recording: recording.to_path_buf(), watcher, standing, comparison, wizard })
     }
 
     fn kitchen(&self) -> &Kitchen {
@@ -163,7 +205,11 @@ impl CompareFigures {
             }
         }
         let pairs = pairs.into_iter().map(|(pair, tally)| PairFigures { similarity: tally.similarity(), ..pair });
-        CompareFigures { pairs: pairs.collect(), recordings: watched.iter().map(RecordingComparison::of).collect() }
+        CompareFigures {
+            pairs: pairs.collect(),
+            recordings: watched.iter().map(RecordingComparison::of).collect(),
+            training: None,
+        }
     }
 }
 
@@ -180,6 +226,7 @@ impl RecordingComparison {
             standing: watched.standing.clone(),
             human_actions: u64::from(watched.watcher.presses()),
             lanes: lanes.collect(),
+            wizard: watched.wizard.clone(),
             differences: differences.map(|(index, one)| DifferenceFigures::of(watched, index, one)).collect(),
         }
     }
@@ -251,12 +298,22 @@ pub fn describe(figures: &CompareFigures) -> String {
         "", "window", "recall", "chance", "precision", "F1", "kappa", "lead"
     );
     figures.pairs.iter().for_each(|pair| text += &describe_pair(pair));
+    if let Some(training) = &figures.training {
+        let met = match training.met {
+            None => "never trained",
+            Some(true) => "the criterion was met",
+            Some(false) => "the criterion was not met",
+        };
+        let times = count(training.times, "time", "times");
+        text += &format!("\n{}: trained {times}, {:.1} minutes; {met}\n", training.wizard, training.minutes);
+    }
     for one in &figures.recordings {
         let presses = count(one.human_actions, "press", "presses");
         text += &format!("\n{}: {presses} of the human\n", one.recording);
         if !one.standing.counts() {
             text += &format!("left out of the analysis: {}\n", one.standing.describe());
         }
+        text += &one.wizard.as_ref().map_or(String::new(), wizard::describe);
         let lines = one.differences.iter().map(|one| format!("{:>4}  {}\n", one.number, one.headline));
         text.extend(lines);
     }

@@ -8,14 +8,14 @@ use std::time::Instant;
 use super::engine::Engine;
 use super::figures::{SimulationFigures, TrialFigures};
 use super::follower::Follower;
-use super::{headless, kitchen};
+use super::{headless, kitchen, options};
 use crate::base::words::count;
 use crate::communication::settings::Shadow;
 use crate::edge::files::{FileError, SessionFiles};
 use crate::edge::log::{LogWriter, WriteError, check_simulated, ruling};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::session::settings::{Condition, SessionSpec};
+use crate::session::settings::{Condition, ParticipantSpec, SessionSpec};
 use crate::session::{Header, Stamped};
 
 /// Why trials could not be simulated.
@@ -106,6 +106,23 @@ pub fn simulate(simulation: &Simulation, done: impl Fn() + Sync) -> Result<Simul
     figures.recordings = folders.iter().map(|folder| folder.display().to_string()).collect();
     figures.wall_s = began.elapsed().as_secs_f64();
     Ok(figures)
+}
+
+/// A recording to train a wizard with, of the default kitchen: an unassisted trial of so many seconds.
+///
+/// # Errors
+/// Those of [`simulate`].
+pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>, SimulateError> {
+    let mut files = options::session_or_default(None).map_err(Box::new)?;
+    (files.spec.plan, files.spec.seed) = (None, seed);
+    (files.spec.trial.condition, files.spec.assistant.shadow) = (Condition::None, Shadow::Off);
+    (files.spec.trial.seconds, files.spec.trial.orders) = (seconds, None);
+    files.spec.participant = ParticipantSpec::default();
+    files.spec.check().map_err(|error| {
+        Box::new(FileError::at(Path::new("--seconds"), "", None, error.found, error.remedy.to_string()))
+    })?;
+    let figures = simulate(&Simulation { files, trials: 1, out: out.to_path_buf() }, || ())?;
+    Ok(figures.recordings.iter().map(PathBuf::from).collect())
 }
 
 /// Where the recording of a trial goes; the name does not depend on how many trials there are.

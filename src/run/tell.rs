@@ -88,7 +88,7 @@ pub const HEADING: &str = " trial time  what happened";
 /// The line for an event that was just applied, at the time of the trial's clock; none for gaze samples.
 pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
     let words = match &stamped.event {
-        Event::Gaze(_) => return None,
+        Event::Gaze(_) | Event::SignalDrawn { .. } => return None,
         // An estimate is worth a line where it says that something is believed wrong.
         Event::BeliefEstimated(estimate) => estimated(estimate)?,
         Event::TrialStarted => "trial started".to_string(),

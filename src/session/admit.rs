@@ -102,6 +102,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::Preflight { .. }
         | Event::Screen(_)
         | Event::Unblinded { .. }
+        | Event::SignalDrawn { .. }
         | Event::FocusLost
         | Event::FocusRegained
         | Event::Marker { .. }

@@ -139,7 +139,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
         Event::Marker { note: text } => note(session, now, Happening::Marker(text.clone())),
         Event::Protocol(event) => protocol::apply(session, event),
         Event::Unblinded { .. } => session.unblinded = true,
-        Event::Preflight { .. } | Event::Screen(_) => {}
+        Event::Preflight { .. } | Event::Screen(_) | Event::SignalDrawn { .. } => {}
         Event::ClockJumped { .. } | Event::ParticipantBelieves(_) | Event::BeliefEstimated(_) => {}
         Event::SessionEnded => close(session, now, &mut effects),
     }

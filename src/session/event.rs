@@ -121,6 +121,10 @@ pub enum Event {
     },
     /// What the assistant advises, for an event that is some time ago where it was computed while the session went on.
     Advised(Recommendation),
+    /// Witness: the first frame that shows the signal of this number was handed to the terminal.
+    SignalDrawn {
+        signal: u64,
+    },
     /// The signal vanishes.
     SignalEnded {
         reason: SignalEnd,
@@ -181,6 +185,7 @@ impl Event {
             Event::KitchenCorrected { .. } => "kitchen_corrected",
             Event::Advised(_) => "advised",
             Event::SignalShown { .. } => "signal_shown",
+            Event::SignalDrawn { .. } => "signal_drawn",
             Event::SignalEnded { .. } => "signal_ended",
             Event::Marker { .. } => "marker",
             Event::Protocol(_) => "protocol",

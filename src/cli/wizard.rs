@@ -1,0 +1,177 @@
+//! The commands that are about the wizard: beside assistants, and in training.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::args::{ConceptArg, Format, OperateFlags};
+use super::{Failure, new_session, print, progress};
+use crate::communication::concept::ConceptName;
+use crate::console::playback::SPEEDS;
+use crate::measures::wizard::TrainingCriterion;
+use crate::run::compare::{self, Request};
+use crate::run::similarity::{self, CompareFigures, TrainingFigures};
+use crate::run::train::{self, Lesson};
+use crate::run::{review, series, simulate};
+use crate::session::settings::is_code;
+
+/// Sets wizard and assistants side by side: what each said, what of it matches, and what each knew where they differ.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples: tomcom compare sessions/2026-03-14-P07-1 --with tom,dev\n          tomcom compare sessions/2026-03-14-P07-1 --follow\n          tomcom compare sessions/default.toml"
+)]
+pub(super) struct CompareArgs {
+    /// Folders of recordings, or their events.jsonl; or a session file, to operate it with the comparison in front (by default
+    /// sessions/default.toml). That unblinds the wizard, and the recording says so.
+    #[arg(value_name = "RECORDING|SESSION")]
+    paths: Vec<PathBuf>,
+    /// Open the console over a session that is still running, and read along from this terminal.
+    #[arg(long)]
+    follow: bool,
+    /// Further concepts beside the session's own, with commas between them.
+    #[arg(long, value_enum, value_delimiter = ',')]
+    with: Vec<ConceptArg>,
+    /// Communications match within so many presses of the human.
+    #[arg(long, default_value_t = compare::WINDOW, value_parser = clap::value_parser!(u32).range(0..=100))]
+    window: u32,
+    /// The figures for every window from 0 to 10.
+    #[arg(long, conflicts_with_all = ["open", "window"])]
+    sweep: bool,
+    /// What each knew at the difference with this number.
+    #[arg(long, value_name = "NUMBER", conflicts_with = "format")]
+    open: Option<usize>,
+    /// The wizard's code: with the figures of the training.
+    #[arg(long)]
+    wizard: Option<String>,
+    /// Where tomcom train has recorded it.
+    #[arg(long, default_value = "sessions/training")]
+    training: PathBuf,
+    /// How to print the figures.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    #[command(flatten, next_help_heading = "To operate a session")]
+    flags: OperateFlags,
+}
+
+/// Trains a wizard: recordings in which it is known what was believed wrong are watched and answered by the keys of a session,
+/// with feedback at once and a score.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom train --wizard W1 --hits 0.6 --wrong 0.4")]
+pub(super) struct TrainArgs {
+    /// Recordings of simulated participants without signals; by default one is simulated.
+    #[arg(value_name = "RECORDING")]
+    recordings: Vec<PathBuf>,
+    /// The wizard's code, never a name. Who watches a recording again is held against oneself.
+    #[arg(long, default_value = "W1")]
+    wizard: String,
+    /// The criterion: at least this share of the false beliefs that lead to errors are hit …
+    #[arg(long, default_value_t = 0.6)]
+    hits: f64,
+    /// … and at most this share of the signals are wrong.
+    #[arg(long, default_value_t = 0.4)]
+    wrong: f64,
+    /// How fast it is played, as in a replay.
+    #[arg(long, value_parser = ["0.25", "0.5", "1", "2", "4", "16", "64"], default_value = "1")]
+    speed: String,
+    /// The seed of the recording that is simulated; its length in seconds is that of --seconds.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    #[arg(long, default_value_t = 300.0)]
+    seconds: f64,
+    /// Where the result goes.
+    #[arg(long, default_value = "sessions/training")]
+    out: PathBuf,
+}
+
+pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
+    let with: Vec<ConceptName> = args.with.iter().map(|&concept| concept.into()).collect();
+    let request = |window: u32| Request { with: with.clone(), window };
+    let session = match &args.paths[..] {
+        [] => Some(None),
+        [path] => Some(Some(path.as_path())).filter(|_| path.extension().is_some_and(|extension| extension == "toml")),
+        _ => None,
+    };
+    check_flags(args, session.is_some() && !args.follow)?;
+    if let Some(session) = session.filter(|_| !args.follow) {
+        let done = new_session(session, &args.flags, Some(request(args.window)))?;
+        return Ok(write!(std::io::stdout(), "{}", series::describe(&done))?);
+    }
+    if args.follow {
+        let [recording] = &args.paths[..] else {
+            let help = "the folder of one recording";
+            return Err(Failure::Wrong(miette::miette!(help = help, "found --follow and {} paths", args.paths.len())));
+        };
+        return Ok(review::review(recording, true, Some(&request(args.window)))?);
+    }
+    let windows: Vec<u32> = if args.sweep { similarity::SWEEP.collect() } else { vec![args.window] };
+    let bar = progress((args.paths.len() * windows.len()) as u64, "recordings");
+    let watch = |window: u32| similarity::watch(&args.paths, &request(window), || bar.inc(1));
+    let first = watch(windows[0])?;
+    let mut figures = CompareFigures::of(&first);
+    for &window in &windows[1..] {
+        figures.pairs.extend(CompareFigures::of(&watch(window)?).pairs);
+    }
+    if let Some(wizard) = &args.wizard {
+        figures.training = Some(TrainingFigures::read(&args.training, &code_of(wizard)?)?);
+    }
+    bar.finish_and_clear();
+    match args.open {
+        Some(number) => Ok(write!(std::io::stdout(), "{}", similarity::open(&first, number)?)?),
+        None => print(args.format, &figures, || similarity::describe(&figures)),
+    }
+}
+
+/// Flags that have no meaning for what is compared.
+fn check_flags(args: &CompareArgs, is_session: bool) -> Result<(), Failure> {
+    let flags = &args.flags;
+    let of_session = [
+        ("--code", flags.code.is_some()),
+        ("--participant", flags.participant.is_some()),
+        ("--gaze", flags.gaze.is_some()),
+        ("--condition", flags.condition.is_some()),
+        ("--concept", flags.concept.is_some()),
+        ("--seed", flags.seed.is_some()),
+    ];
+    let of_recordings = [("--sweep", args.sweep), ("--open", args.open.is_some()), ("--wizard", args.wizard.is_some())];
+    let (strange, help) = match is_session {
+        true => (&of_recordings[..], "recordings, or a session without it"),
+        false => (&of_session[..], "a session file, or recordings without it: their headers say it"),
+    };
+    if let Some((flag, _)) = strange.iter().find(|(_, is_given)| *is_given) {
+        let what = if is_session { "a session" } else { "recordings" };
+        return Err(Failure::Wrong(miette::miette!(help = help, "found {flag}, with {what}")));
+    }
+    Ok(())
+}
+
+pub(super) fn train(args: &TrainArgs) -> Result<(), Failure> {
+    let is_share = |value: f64| (0.0..=1.0).contains(&value);
+    if let Some((key, value)) =
+        [("hits", args.hits), ("wrong", args.wrong)].into_iter().find(|(_, value)| !is_share(*value))
+    {
+        return Err(Failure::Wrong(miette::miette!(help = "a share from 0 to 1", "found --{key} {value}")));
+    }
+    let recordings = match &args.recordings[..] {
+        [] => simulate::for_training(args.seed, args.seconds, &args.out.join("recordings"))?,
+        given => given.to_vec(),
+    };
+    let lesson = Lesson {
+        recordings,
+        wizard: code_of(&args.wizard)?,
+        out: args.out.clone(),
+        criterion: TrainingCriterion { hits: args.hits, wrong: args.wrong },
+        speed: SPEEDS.iter().position(|speed| speed.to_string() == args.speed).unwrap_or(2),
+    };
+    let (record, path) = train::train(&lesson)?;
+    Ok(write!(std::io::stdout(), "{}", train::describe(&record, &path))?)
+}
+
+/// A wizard's code.
+fn code_of(text: &str) -> Result<String, Failure> {
+    let remedy = "a code of 1 to 32 letters, digits, - and _, such as \"W1\"; never a name";
+    match is_code(text) {
+        true => Ok(text.to_string()),
+        false => Err(Failure::Wrong(miette::miette!(help = remedy, "found --wizard \"{text}\""))),
+    }
+}

@@ -1,0 +1,206 @@
+//! How well a wizard does: how fast, about what, and what was left out (Riek 2012, "Wizard of Oz studies in HRI", asks for the
+//! wizard's errors and reaction times to be reported).
+//!
+//! Signals are held against spells: times in which an aspect was believed wrong. Only of spells that led to an error something
+//! is asked; one without any signal about it is an omission. All times are on the trial's clock.
+
+use serde::{Deserialize, Serialize};
+
+use super::median;
+use crate::base::time::SessionTime;
+use crate::kitchen::AspectId;
+
+/// A signal is late, and not wrong, if what it is about was seen to be right at most so many presses of the human ago.
+pub const LATE_PRESSES: u32 = 3;
+
+/// A time in which an aspect was believed wrong.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spell {
+    pub aspect: AspectId,
+    pub began: SessionTime,
+    /// When it was right again, and the presses of the human until then; none before the end of the trial.
+    pub corrected: Option<(SessionTime, u32)>,
+    /// Errors that are put down to it.
+    pub errors: u32,
+}
+
+impl Spell {
+    fn holds(&self, clock: SessionTime) -> bool {
+        self.began <= clock && self.corrected.is_none_or(|(end, _)| clock < end)
+    }
+}
+
+/// A signal that a wizard sent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sent {
+    pub clock: SessionTime,
+    /// Presses of the human before it.
+    pub press: u32,
+    /// What it made certain.
+    pub aspects: Vec<AspectId>,
+    /// From the key to the frame that shows it; none if that was not recorded.
+    pub to_display_ms: Option<f64>,
+    pub taken_back: bool,
+}
+
+/// What a signal was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Worth {
+    /// The first about something that was believed wrong and led to an error, so many seconds after it became so; with the
+    /// spell's index.
+    Hit { latency_s: f64, spell: usize },
+    /// Another one about the same.
+    Again,
+    /// About something that was believed wrong and led to no error.
+    Harmless,
+    /// It was right again already, since at most [`LATE_PRESSES`].
+    Late,
+    /// About something that was believed as it is, while something else was not.
+    WrongTarget,
+    /// Nothing was believed wrong.
+    Needless,
+}
+
+/// What each signal was, in their order.
+pub fn worths(sent: &[Sent], spells: &[Spell]) -> Vec<Worth> {
+    let mut hit = vec![false; spells.len()];
+    let worth = |sent: &Sent| {
+        let about = |spell: &Spell| sent.aspects.contains(&spell.aspect);
+        let open = |spell: &Spell| spell.holds(sent.clock);
+        let mut now = spells.iter().enumerate().filter(|(_, spell)| about(spell) && open(spell));
+        // Of two aspects that one signal tells, that which led to an error.
+        let of_errors = now.clone().find(|(_, spell)| spell.errors > 0);
+        match of_errors.or_else(|| now.next()) {
+            Some((index, spell)) if spell.errors > 0 && !hit[index] => {
+                hit[index] = true;
+                return Worth::Hit { latency_s: sent.clock.secs_since(spell.began), spell: index };
+            }
+            Some((_, spell)) if spell.errors > 0 => return Worth::Again,
+            Some(_) => return Worth::Harmless,
+            None => {}
+        }
+        let is_late = |spell: &Spell| {
+            spell.corrected.is_some_and(|(end, press)| end <= sent.clock && sent.press <= press + LATE_PRESSES)
+        };
+        match () {
+            () if spells.iter().any(|spell| about(spell) && is_late(spell)) => Worth::Late,
+            () if spells.iter().any(open) => Worth::WrongTarget,
+            () => Worth::Needless,
+        }
+    };
+    sent.iter().map(worth).collect()
+}
+
+/// Times of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Times {
+    pub n: u64,
+    pub median: f64,
+    pub max: f64,
+}
+
+impl Times {
+    /// None of nothing.
+    pub fn of(times: Vec<f64>) -> Option<Times> {
+        let max = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let n = times.len() as u64;
+        median(times).map(|median| Times { n, median, max })
+    }
+}
+
+/// A wizard in a trial. What takes knowing what was believed is null where nobody knows.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WizardMeasures {
+    pub signals: u64,
+    pub taken_back: u64,
+    /// From the key to the frame that shows the signal, in milliseconds; null if that was not recorded.
+    pub key_to_display_ms: Option<Times>,
+    /// Of false beliefs that led to errors.
+    pub episodes: Option<u64>,
+    /// Of those: with a signal about them, in time.
+    pub hits: Option<u64>,
+    /// Without any.
+    pub omissions: Option<u64>,
+    /// From the beginning of an episode to its signal.
+    pub latency_s: Option<Times>,
+    pub repeated: Option<u64>,
+    pub late: Option<u64>,
+    pub wrong_targets: Option<u64>,
+    /// While nothing was believed wrong.
+    pub needless: Option<u64>,
+    /// About what was believed wrong without an error.
+    pub harmless: Option<u64>,
+}
+
+impl WizardMeasures {
+    /// Of the signals of a trial and, where that is known, of what was believed wrong in it.
+    pub fn of(sent: &[Sent], spells: Option<&[Spell]>) -> WizardMeasures {
+        let drawn: Vec<f64> = sent.iter().filter_map(|sent| sent.to_display_ms).collect();
+        let measures = WizardMeasures {
+            signals: sent.len() as u64,
+            taken_back: sent.iter().filter(|sent| sent.taken_back).count() as u64,
+            key_to_display_ms: Times::of(drawn),
+            ..WizardMeasures::default()
+        };
+        let Some(spells) = spells else { return measures };
+        let worths = worths(sent, spells);
+        let count = |is: fn(&Worth) -> bool| Some(worths.iter().filter(|worth| is(worth)).count() as u64);
+        let latency = |worth: &Worth| if let Worth::Hit { latency_s, .. } = worth { Some(*latency_s) } else { None };
+        let latencies: Vec<f64> = worths.iter().filter_map(latency).collect();
+        let episodes = spells.iter().filter(|spell| spell.errors > 0).count() as u64;
+        WizardMeasures {
+            episodes: Some(episodes),
+            hits: Some(latencies.len() as u64),
+            omissions: Some(episodes - latencies.len() as u64),
+            latency_s: Times::of(latencies),
+            repeated: count(|worth| matches!(worth, Worth::Again)),
+            late: count(|worth| matches!(worth, Worth::Late)),
+            wrong_targets: count(|worth| matches!(worth, Worth::WrongTarget)),
+            needless: count(|worth| matches!(worth, Worth::Needless)),
+            harmless: count(|worth| matches!(worth, Worth::Harmless)),
+            ..measures
+        }
+    }
+}
+
+impl WizardMeasures {
+    /// The counts of several trials together, null where one is; times are left out.
+    pub fn sum<'a>(trials: impl IntoIterator<Item = &'a WizardMeasures>) -> WizardMeasures {
+        let add = |a: Option<u64>, b: Option<u64>| Some(a? + b?);
+        let zero = WizardMeasures::of(&[], Some(&[]));
+        trials.into_iter().fold(zero, |sum, one| WizardMeasures {
+            signals: sum.signals + one.signals,
+            taken_back: sum.taken_back + one.taken_back,
+            key_to_display_ms: None,
+            episodes: add(sum.episodes, one.episodes),
+            hits: add(sum.hits, one.hits),
+            omissions: add(sum.omissions, one.omissions),
+            latency_s: None,
+            repeated: add(sum.repeated, one.repeated),
+            late: add(sum.late, one.late),
+            wrong_targets: add(sum.wrong_targets, one.wrong_targets),
+            needless: add(sum.needless, one.needless),
+            harmless: add(sum.harmless, one.harmless),
+        })
+    }
+}
+
+/// When a wizard is trained enough.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TrainingCriterion {
+    /// At least this share of the episodes are hit.
+    pub hits: f64,
+    /// At most this share of the signals have a wrong target, or are needless.
+    pub wrong: f64,
+}
+
+impl TrainingCriterion {
+    /// Whether these measures meet it; not where there was nothing to hit.
+    pub fn is_met(&self, measures: &WizardMeasures) -> bool {
+        let share = |part: Option<u64>, all: u64| part.map(|part| part as f64 / all as f64).filter(|_| all > 0);
+        let hits = share(measures.hits, measures.episodes.unwrap_or(0));
+        let wrong = measures.wrong_targets.zip(measures.needless).map(|(wrong, needless)| wrong + needless);
+        let wrong = share(wrong, measures.signals).unwrap_or(0.0);
+        hits.is_some_and(|hits| hits >= self.hits) && wrong <= self.wrong
+    }
+}

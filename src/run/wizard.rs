@@ -1,0 +1,136 @@
+//! What a wizard did in a session, gathered event by event, for the measures of [`crate::measures::wizard`].
+
+use serde::Serialize;
+
+use super::follower::Follower;
+use crate::base::time::SessionTime;
+use crate::communication::Sender;
+use crate::communication::recommendation::aspects_told;
+use crate::measures::wizard::{Sent, Spell, WizardMeasures};
+use crate::session::event::SignalEnd;
+use crate::session::screen::Screen;
+use crate::session::settings::ParticipantKind;
+use crate::session::{Event, Session, Stamped};
+
+/// The wizard's signals, and what was on the screen when they were sent.
+#[derive(Clone, Debug, Default)]
+pub struct WizardLog {
+    sent: Vec<(u64, SessionTime, Sent)>,
+    screen: Option<Screen>,
+    seen: Vec<Seen>,
+}
+
+/// How many signals were sent while this was on the wizard's screen.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Seen {
+    /// Null before the first frame, and without a console.
+    pub screen: Option<Screen>,
+    pub signals: u64,
+}
+
+/// The wizard's figures.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WizardFigures {
+    #[serde(flatten)]
+    pub measures: WizardMeasures,
+    /// What was seen.
+    pub screens: Vec<Seen>,
+    /// The wizard saw what assistants would say.
+    pub unblinded: bool,
+}
+
+impl WizardLog {
+    /// Takes note of an event that was just applied.
+    pub fn note(&mut self, stamped: &Stamped, session: &Session) {
+        match &stamped.event {
+            Event::Screen(screen) => self.screen = Some(screen.clone()),
+            Event::SignalShown { by: Sender::Wizard, signal, .. } => {
+                let sent = Sent {
+                    clock: session.trial_clock(stamped.time),
+                    press: session.presses[crate::kitchen::Agent::Human.index()],
+                    aspects: aspects_told(&session.kitchen, session.state, signal),
+                    to_display_ms: None,
+                    taken_back: false,
+                };
+                self.sent.push((stamped.seq, stamped.time, sent));
+                match self.seen.iter_mut().find(|seen| seen.screen == self.screen) {
+                    Some(seen) => seen.signals += 1,
+                    None => self.seen.push(Seen { screen: self.screen.clone(), signals: 1 }),
+                }
+            }
+            Event::SignalDrawn { signal } => {
+                if let Some((_, time, sent)) = self.sent.iter_mut().find(|(seq, ..)| seq == signal) {
+                    sent.to_display_ms = Some(1000.0 * stamped.time.secs_since(*time));
+                }
+            }
+            Event::SignalEnded { reason: SignalEnd::TakenBack } => {
+                if let Some((.., sent)) = self.sent.last_mut() {
+                    sent.taken_back = true;
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// The figures of a session that was followed to its end.
+    pub fn figures(&self, follower: &Follower) -> WizardFigures {
+        let sent: Vec<Sent> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
+        let measures = WizardMeasures::of(&sent, spells(follower).as_deref());
+        WizardFigures { measures, screens: self.seen.clone(), unblinded: follower.session.unblinded }
+    }
+}
+
+/// What was believed wrong when, on the trial's clock; none where nobody knows what was believed.
+pub fn spells(follower: &Follower) -> Option<Vec<Spell>> {
+    let session = &follower.session;
+    let known = session.spec.participant.kind == ParticipantKind::Simulated
+        && follower.judged.iter().all(|press| press.belief_known);
+    let spell = |episode: &crate::measures::sequences::Episode| {
+        let presses = |time: SessionTime| follower.judged.partition_point(|press| press.time < time) as u32;
+        Spell {
+            aspect: episode.aspect,
+            began: clock_at(session, episode.began),
+            corrected: episode.corrected.map(|time| (clock_at(session, time), presses(time))),
+            errors: episode.errors,
+        }
+    };
+    known.then(|| follower.episodes.all().map(spell).collect())
+}
+
+/// The trial's clock at an earlier time of a session.
+fn clock_at(session: &Session, time: SessionTime) -> SessionTime {
+    let paused = session.pauses.iter().map(|&(from, until)| until.min(time) - from);
+    paused.fold(time - session.trial_start, |clock, pause| clock - pause)
+}
+
+/// The figures for people, in lines.
+pub fn describe(figures: &WizardFigures) -> String {
+    let measures = &figures.measures;
+    let number = |value: Option<u64>| value.map_or("-".to_string(), |value| value.to_string());
+    let drawn = measures.key_to_display_ms.map_or("not recorded".to_string(), |times| {
+        format!("{:.1} ms in the median, {:.1} ms at most", times.median, times.max)
+    });
+    let latency = measures.latency_s.map_or("-".to_string(), |times| format!("{:.1} s in the median", times.median));
+    let blind = if figures.unblinded { "; saw what assistants would say" } else { "" };
+    let mut text = format!(
+        "wizard: {} signals, {} taken back, from key to display {drawn}{blind}\n",
+        measures.signals, measures.taken_back
+    );
+    match measures.episodes {
+        None => text += "        what was believed is not known, so neither are hits and omissions\n",
+        Some(episodes) => {
+            text += &format!(
+                "        {} of {episodes} false beliefs with errors hit, after {latency}; {} omitted\n        \
+                 {} repeated, {} late, {} about the wrong thing, {} while nothing was wrong, {} harmless\n",
+                number(measures.hits),
+                number(measures.omissions),
+                number(measures.repeated),
+                number(measures.late),
+                number(measures.wrong_targets),
+                number(measures.needless),
+                number(measures.harmless)
+            );
+        }
+    }
+    text
+}

@@ -20,15 +20,6 @@ const ELSEWHERE: f64 = 0.1;
 /// Less likely readings are left out.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// What reading a value gives: the chances of its own value, of each look-alike, and of each other one.
-#[derive(Clone, Debug)]
-struct Confusion {
-    right: f64,
-    alike: Vec<usize>,
-    each_alike: f64,
-    each_other: f64,
-}
-
 /// A look at a location.
 #[derive(Clone, Copy, Debug)]
 struct Look {
@@ -55,8 +46,8 @@ impl Look {
 /// Reads gaze samples.
 #[derive(Clone, Debug)]
 pub struct Reader {
-    /// By location and value of its aspect.
-    confusions: Vec<Vec<Confusion>>,
+    /// By location and value of its aspect, the chance that each value is read.
+    confusions: Vec<Vec<Vec<f64>>>,
     looks: Vec<Look>,
     /// What the display showed, and since when.
     shown: VecDeque<(SessionTime, State)>,
@@ -134,19 +125,13 @@ impl Reader {
             }
             let aspect = AspectId(index as u8);
             let Some(value) = kitchen.aspects[index].index_of(code) else { continue };
-            let confusion = &self.confusions[index][value];
-            let chance = |other: usize| match other {
-                _ if other == value => confusion.right,
-                _ if confusion.alike.contains(&other) => confusion.each_alike,
-                _ => confusion.each_other,
-            };
-            let values = kitchen.aspects[index].values.len();
-            belief.aspects[aspect.index()].learn(read, (0..values).map(chance));
+            belief.aspects[aspect.index()].learn(read, self.confusions[index][value].iter().copied());
         }
     }
 }
 
-fn confusion(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, value: usize) -> Confusion {
+/// The chances of what is read where this value is: its own, each look-alike, and each other one.
+fn confusion(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, value: usize) -> Vec<f64> {
     let aspect = &kitchen.aspects[location.index()];
     let alike: Vec<usize> = look_alike_codes(kitchen, location, aspect.values[value])
         .into_iter()
@@ -155,12 +140,14 @@ fn confusion(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, v
     let others = aspect.values.len() - 1 - alike.len();
     let to_alike = if alike.is_empty() { 0.0 } else { model.look_alike };
     let to_others = if others == 0 { 0.0 } else { model.anything };
-    Confusion {
-        right: 1.0 - to_alike - to_others,
-        each_alike: to_alike / alike.len().max(1) as f64,
-        each_other: to_others / others.max(1) as f64,
-        alike,
-    }
+    let each_alike = to_alike / alike.len().max(1) as f64;
+    let each_other = to_others / others.max(1) as f64;
+    let chance = |other: usize| match other {
+        _ if other == value => 1.0 - to_alike - to_others,
+        _ if alike.contains(&other) => each_alike,
+        _ => each_other,
+    };
+    (0..aspect.values.len()).map(chance).collect()
 }
 
 /// The codes of what a content, or an order's dish, may be taken for.

@@ -9,7 +9,7 @@ use crate::base::rng::Stream;
 use crate::mind::dirichlet::Dirichlet;
 
 /// Values with a smaller expected probability are the tail, where there are so many values: one of them stands for all.
-const TAIL: f64 = 0.004;
+const TAIL: f64 = 0.01;
 const MANY: usize = 8;
 
 /// The urn of one aspect. The values of its tail are drawn as one, which is chosen anew for every urn by their shares: so

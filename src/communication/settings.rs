@@ -56,9 +56,10 @@ pub struct RolloutModel {
     pub human_press_s: f64,
     /// Looks a second at each place that the next press needs.
     pub looks_hz: f64,
-    /// No more rollouts of a signal are made when the standard error of its benefit is at most this, in presses, …
+    /// No more rollouts of a signal are made when the standard error of its benefit is at most this, in presses, or at most
+    /// one and a half times this if the net benefit is below zero by three standard errors.
     pub enough_error: f64,
-    /// … or at most twice this, if the net benefit is below zero by three standard errors.
+    /// At least so many are made.
     pub least_rollouts: usize,
 }
 
@@ -70,7 +71,7 @@ impl Default for RolloutModel {
             states: 32,
             human_press_s: 2.0,
             looks_hz: 0.3,
-            enough_error: 0.07,
+            enough_error: 0.1,
             least_rollouts: 32,
         }
     }

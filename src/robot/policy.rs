@@ -4,7 +4,7 @@ use rand::RngExt;
 
 use super::IdleReason;
 use crate::base::rng::Stream;
-use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::cost_to_go::{Care, CostToGo};
 use crate::kitchen::{Action, Agent, ButtonId, Kitchen, LocationId, Recipes, State};
 
 /// What the robot does next.
@@ -16,9 +16,20 @@ pub enum Decision {
 
 /// The presses of the robot that bring the goal nearer: those after which the cost to go is one less.
 pub fn best_presses(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes) -> Vec<ButtonId> {
-    let decision = cost.decision(state, recipes, Agent::Robot);
+    best_presses_with(kitchen, cost, Care::Exact, state, recipes)
+}
+
+/// The same with more or less care.
+pub fn best_presses_with(
+    kitchen: &Kitchen,
+    cost: &mut CostToGo,
+    care: Care,
+    state: State,
+    recipes: &Recipes,
+) -> Vec<ButtonId> {
+    let nearer = cost.nearer(care, state, recipes, Agent::Robot);
     let buttons = (0..kitchen.buttons[Agent::Robot.index()].len()).map(|index| ButtonId(index as u8));
-    buttons.filter(|button| decision.after[button.index()] < decision.here).collect()
+    buttons.filter(|button| nearer >> button.0 & 1 == 1).collect()
 }
 
 /// Of these presses those for the order that is nearer to being served, which is the one that the human works on as a rule;
@@ -26,12 +37,13 @@ pub fn best_presses(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipe
 fn for_the_nearer_order(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
+    care: Care,
     state: State,
     recipes: &Recipes,
     presses: Vec<ButtonId>,
 ) -> Vec<ButtonId> {
     let mut orders: Vec<(u32, LocationId)> =
-        kitchen.wanted(state).map(|(order, _)| (cost.order(state, recipes, order), order)).collect();
+        kitchen.wanted(state).map(|(order, _)| (cost.order_with(care, state, recipes, order), order)).collect();
     orders.sort_unstable();
     let [(presses_left, nearer), (others, _)] = orders[..] else { return presses };
     if presses_left == others {
@@ -39,7 +51,7 @@ fn for_the_nearer_order(
     }
     let helps = |button: &ButtonId| {
         let next = kitchen.press(state, recipes, Agent::Robot, *button);
-        next.is_some_and(|next| cost.order(next, recipes, nearer) < presses_left)
+        next.is_some_and(|next| cost.order_with(care, next, recipes, nearer) < presses_left)
     };
     let helping: Vec<ButtonId> = presses.iter().copied().filter(helps).collect();
     if helping.is_empty() { presses } else { helping }
@@ -48,19 +60,31 @@ fn for_the_nearer_order(
 /// What the robot may press in this state if these are the recipes, each as likely; nothing if no press brings the goal
 /// nearer.
 pub fn choices(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes) -> Vec<ButtonId> {
-    let best = best_presses(kitchen, cost, state, recipes);
-    chosen(kitchen, cost, state, recipes, best)
+    choices_with(kitchen, cost, Care::Exact, state, recipes)
+}
+
+/// The same with more or less care.
+pub fn choices_with(
+    kitchen: &Kitchen,
+    cost: &mut CostToGo,
+    care: Care,
+    state: State,
+    recipes: &Recipes,
+) -> Vec<ButtonId> {
+    let best = best_presses_with(kitchen, cost, care, state, recipes);
+    chosen(kitchen, cost, care, state, recipes, best)
 }
 
 /// Of these best presses those that the robot decides between.
-fn chosen(
+pub fn chosen(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
+    care: Care,
     state: State,
     recipes: &Recipes,
     best: Vec<ButtonId>,
 ) -> Vec<ButtonId> {
-    let best = for_the_nearer_order(kitchen, cost, state, recipes, best);
+    let best = for_the_nearer_order(kitchen, cost, care, state, recipes, best);
     // What serves no order is thrown away: put down somewhere, it would soon be in the way again.
     let trash = best.iter().copied().find(|&button| kitchen.button(Agent::Robot, button).action == Action::Trash);
     trash.map_or(best, |trash| vec![trash])
@@ -84,7 +108,7 @@ pub fn decide(
     if best.len() < all.len() && best.is_empty() {
         return Decision::Idle(IdleReason::Skipped);
     }
-    match chosen(kitchen, cost, state, &recipes, best)[..] {
+    match chosen(kitchen, cost, Care::Exact, state, &recipes, best)[..] {
         [] => Decision::Idle(IdleReason::HumanTurn),
         // What is thrown away is no choice, and draws nothing.
         [only] if kitchen.button(Agent::Robot, only).action == Action::Trash => Decision::Press(only),

@@ -4,7 +4,7 @@
 //! people hold point-like beliefs, so few different ones are left.
 
 use super::robot::{Choices, RobotPolicy};
-use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
+use crate::kitchen::cost_to_go::{Care, CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, ContentId, Kitchen, OrderContent, Recipes, State};
 use crate::mind::decision::{DecisionModel, Slips};
 
@@ -41,6 +41,11 @@ impl Cases {
             Some(case) => case.count += count,
             None => self.all.push(Case { state, recipes, count }),
         }
+    }
+
+    /// The number of all draws.
+    fn count(&self) -> u32 {
+        self.all.iter().map(|case| case.count).sum()
     }
 
     /// Puts equal ones together.
@@ -117,9 +122,10 @@ impl Cases {
     /// The human notices that the robot pressed something, not what: every case moves on as the robot's policy would in it,
     /// divided evenly among what it may press. `draw` (0 to 1) decides about remainders.
     pub fn robot_pressed(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, policy: &mut RobotPolicy, draw: f64) {
+        let n = self.count();
         for index in 0..self.all.len() {
             let Case { state, recipes, count } = self.all[index];
-            let choices: Choices = policy.choices(kitchen, cost, state, &recipes);
+            let choices: Choices = policy.choices(kitchen, cost, care(count, n), state, &recipes);
             let ways = choices.count();
             if ways == 0 {
                 continue;
@@ -137,6 +143,11 @@ impl Cases {
     }
 }
 
+/// How closely a case of `count` among `n` draws is looked at.
+fn care(count: u32, n: u32) -> Care {
+    if count * HARDLY >= n { Care::Close } else { Care::Rough }
+}
+
 /// How the human decides, with what that needs again and again.
 #[derive(Clone, Debug)]
 pub struct Decider {
@@ -147,6 +158,8 @@ pub struct Decider {
     buttons: usize,
 }
 
+/// Cases of less than one draw in so many hardly count: their bounds do for their costs.
+const HARDLY: u32 = 8;
 /// Weights below e^-20 count as 0.
 const VANISHES: f64 = 20.0;
 
@@ -174,11 +187,11 @@ impl Decider {
     /// What the human is inclined to do: exp(tau Q), Q over the cases; waiting by E[C(s)] + its cost.
     pub fn inclination(&self, cost: &mut CostToGo, cases: &Cases) -> Inclination {
         let mut sums = [0u32; MAX_BUTTONS];
-        let (mut here, mut n) = (0u32, 0u32);
+        let n = cases.count();
+        let mut here = 0u32;
         for case in &cases.all {
-            let decision = cost.decision(case.state, &case.recipes, Agent::Human);
+            let decision = cost.decision_with(care(case.count, n), case.state, &case.recipes, Agent::Human);
             here += case.count * u32::from(decision.here);
-            n += case.count;
             for (sum, &after) in sums.iter_mut().zip(&decision.after) {
                 *sum += case.count * u32::from(after);
             }

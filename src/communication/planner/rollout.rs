@@ -7,11 +7,11 @@
 use rand::RngExt;
 
 use super::human::{Cases, Decider, Deed};
-use super::robot::{self, Errand, RobotPolicy};
+use super::robot::{self, Choices, Errand, RobotPolicy};
 use crate::base::rng::Stream;
 use crate::communication::settings::RolloutModel;
 use crate::communication::situation::{RobotOutlook, Situation};
-use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::cost_to_go::{Care, CostToGo};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, Recipes, State};
 
@@ -169,7 +169,7 @@ impl Rollout<'_> {
             let Some(errand) = moment.errand.filter(|errand| errand.due_s <= until_s) else { break };
             moment.now_s = errand.due_s;
             moment.errand = None;
-            let choices = self.policy.choices(self.stage.kitchen, self.cost, moment.state, &self.stage.recipes);
+            let choices = self.choices(moment.state);
             if errand.holds(choices) {
                 moment.state = robot::press(self.stage.kitchen, moment.state, &self.stage.recipes, errand.button);
                 moment.presses += 1;
@@ -184,12 +184,17 @@ impl Rollout<'_> {
         moment.now_s = until_s;
     }
 
+    /// What the robot's policy says to the state as it truly is.
+    fn choices(&mut self, state: State) -> Choices {
+        self.policy.choices(self.stage.kitchen, self.cost, Care::Exact, state, &self.stage.recipes)
+    }
+
     /// A free arm sets out for what the policy says.
     fn set_out(&mut self, moment: &mut Moment, step: usize, presses: usize) {
         if moment.errand.is_some() {
             return;
         }
-        let choices = self.policy.choices(self.stage.kitchen, self.cost, moment.state, &self.stage.recipes);
+        let choices = self.choices(moment.state);
         if choices.count() > 0 {
             let draw = self.draws[step].choices[presses % ROBOT_DRAWS];
             let button: ButtonId = choices.nth((draw * f64::from(choices.count())) as u32);

@@ -2,7 +2,7 @@
 
 use super::human::Cases;
 use crate::base::rng::Stream;
-use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, State};
+use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, Recipes, State};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::urn::Urn;
 
@@ -14,6 +14,8 @@ pub struct Samples {
     firsts: Vec<u8>,
     /// `[aspect * states + draw]`: the draws of one sample.
     drawn: Vec<u8>,
+    /// Aspects of which the sample has several values.
+    mixed: Vec<usize>,
     samples: usize,
     states: usize,
 }
@@ -35,29 +37,59 @@ impl Samples {
     /// Draws one sample. Recipes count in cases whose orders want the dish, and where the true orders do.
     pub fn draw(&mut self, kitchen: &Kitchen, truth: State, sample: usize, random: &mut Stream, cases: &mut Cases) {
         let states = self.states;
+        self.mixed.clear();
         for (index, urn) in self.urns.iter().enumerate() {
             let drawn = &mut self.drawn[index * states..(index + 1) * states];
             drawn[0] = self.firsts[index * self.samples + sample];
-            urn.draw_on(random, drawn);
+            if !urn.draw_on(random, drawn) {
+                self.mixed.push(index);
+            }
         }
         cases.all.clear();
-        for draw in 0..states {
-            let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
-            for (index, aspect) in kitchen.aspects.iter().enumerate() {
-                let counts = match aspect.kind {
-                    AspectKind::Location(_) => true,
-                    AspectKind::Recipe(dish) => {
-                        let wanted = OrderContent::Dish(dish);
-                        let is_wanted = |&order| state.order(order) == wanted || truth.order(order) == wanted;
-                        kitchen.orders.iter().any(is_wanted)
-                    }
-                };
-                if counts {
-                    let value = usize::from(self.drawn[index * states + draw]);
-                    kitchen.set_value(&mut state, &mut recipes, AspectId(index as u8), value);
-                }
+        let all: Vec<usize> = (0..self.urns.len()).collect();
+        if self.mixed.iter().any(|index| kitchen.orders.iter().any(|order| order.index() == *index)) {
+            // Which recipes count differs from draw to draw.
+            for draw in 0..states {
+                let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
+                self.set(kitchen, truth, draw, &all, &mut state, &mut recipes);
+                cases.add(state, recipes, 1);
             }
+            return;
+        }
+        let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
+        self.set(kitchen, truth, 0, &all, &mut state, &mut recipes);
+        if self.mixed.is_empty() {
+            return cases.add(state, recipes, states as u32);
+        }
+        for draw in 0..states {
+            self.set(kitchen, truth, draw, &self.mixed, &mut state, &mut recipes);
             cases.add(state, recipes, 1);
+        }
+    }
+
+    /// Gives these aspects the values of one draw; locations come before recipes.
+    fn set(
+        &self,
+        kitchen: &Kitchen,
+        truth: State,
+        draw: usize,
+        aspects: &[usize],
+        state: &mut State,
+        recipes: &mut Recipes,
+    ) {
+        for &index in aspects {
+            let counts = match kitchen.aspects[index].kind {
+                AspectKind::Location(_) => true,
+                AspectKind::Recipe(dish) => {
+                    let wanted = OrderContent::Dish(dish);
+                    let is_wanted = |&order| state.order(order) == wanted || truth.order(order) == wanted;
+                    kitchen.orders.iter().any(is_wanted)
+                }
+            };
+            if counts {
+                let value = usize::from(self.drawn[index * self.states + draw]);
+                kitchen.set_value(state, recipes, AspectId(index as u8), value);
+            }
         }
     }
 }

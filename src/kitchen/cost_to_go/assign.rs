@@ -1,6 +1,6 @@
 //! Which item in the kitchen becomes which part of which target, and the lower bound that follows from it.
 
-use super::goal::{Classes, Goal, MAX_TARGETS, USELESS};
+use super::goal::{Classes, Goal, MAX_TARGETS, Offer, USELESS};
 use super::ground::Ground;
 use super::journeys::Needs;
 
@@ -59,7 +59,9 @@ impl Assignment {
         for &target in &order[..goal.targets.len()] {
             choice.choose_for(ground, goal, state, target, useful);
         }
-        choice.exchange(ground, goal, state);
+        if goal.targets.len() > 1 {
+            choice.exchange(ground, goal, state);
+        }
         for index in 0..choice.count {
             choice.account(goal, state, index);
         }
@@ -83,36 +85,39 @@ impl Assignment {
             have = ready;
         }
         let classes = goal.content.len();
+        let offer = |location: usize| goal.offers[target][location * classes + usize::from(state[location])];
+        let mut offered = [(Offer::default(), 0); 16];
+        let mut count = 0;
+        for location in ones(useful & !self.used) {
+            offered[count] = (offer(location), location);
+            count += usize::from(offered[count].0.fills & !have != 0);
+        }
+        let offered = &offered[..count];
         while have != complete {
-            let mut best = (0, 0, usize::from(STORAGE));
-            for location in ones(useful & !self.used) {
-                let class = usize::from(state[location]);
-                let fills = goal.fills[target][class];
-                if fills == 0 || fills & have != 0 {
-                    continue;
-                }
-                let near = i32::from(goal.near[target][location * classes + class]);
-                let saves = self.fresh(goal, target, fills) - near;
-                let rank = 2 * saves + ground.in_the_way[location];
-                if saves >= 0 && (rank > best.0 || best.2 == usize::from(STORAGE)) {
-                    best = (rank, fills, location);
+            // The first of the best.
+            let mut best: Option<(Offer, usize)> = None;
+            for &(offer, location) in offered.iter().filter(|(offer, _)| offer.fills & have == 0) {
+                if best.is_none_or(|(other, _)| offer.rank > other.rank) {
+                    best = Some((offer, location));
                 }
             }
-            let (_, fills, location) = best;
-            if location == usize::from(STORAGE) {
-                let bit = (complete & !have).trailing_zeros() as usize;
-                self.push(target, 1 << bit, STORAGE);
-                have |= 1 << bit;
-            } else {
-                self.push(target, fills, location as u8);
-                have |= fills;
+            match best {
+                Some((offer, location)) => {
+                    self.push(target, offer.fills, location as u8);
+                    have |= offer.fills;
+                }
+                None => {
+                    let bit = (complete & !have).trailing_zeros() as usize;
+                    self.push(target, 1 << bit, STORAGE);
+                    have |= 1 << bit;
+                }
             }
         }
     }
 
     /// Presses of a part, and what they cannot do without, if it lies at `at`.
     #[inline]
-    fn way(goal: &Goal, state: &Classes, task: &Task, at: u8) -> (u8, Needs) {
+    pub(super) fn way(goal: &Goal, state: &Classes, task: &Task, at: u8) -> (u8, Needs) {
         let target = usize::from(task.target);
         if at == STORAGE {
             return goal.fresh[target][task.bits.trailing_zeros() as usize];
@@ -178,11 +183,6 @@ impl Assignment {
         if at != STORAGE {
             self.used |= 1 << at;
         }
-    }
-
-    fn fresh(&self, goal: &Goal, target: usize, bits: u8) -> i32 {
-        let parts = goal.fresh[target].iter().enumerate();
-        parts.filter(|(bit, _)| bits & (1 << bit) != 0).map(|(_, (presses, _))| i32::from(*presses)).sum()
     }
 
     fn nearest_complete(&self, ground: &Ground, state: &Classes, class: u8, useful: u32) -> Option<usize> {

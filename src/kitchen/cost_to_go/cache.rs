@@ -6,6 +6,9 @@ use crate::kitchen::State;
 /// At most so many buttons of one agent.
 pub const MAX_BUTTONS: usize = 40;
 
+/// The lowest bits of a key tell kinds of values of the same state apart, which share a bucket.
+pub const KIND_BITS: u32 = 2;
+
 /// Values of one byte by keys below 2^56, in buckets of eight, one cache line each.
 #[derive(Clone, Debug)]
 pub struct Cache {
@@ -24,14 +27,20 @@ impl Cache {
     }
 
     #[inline]
+    fn bucket(&self, key: u64) -> usize {
+        (mix(key >> KIND_BITS) & self.mask) as usize
+    }
+
+    #[inline]
     pub fn get(&self, key: u64) -> Option<u32> {
-        let bucket = &self.buckets[(mix(key) & self.mask) as usize];
+        let bucket = &self.buckets[self.bucket(key)];
         let entry = bucket.iter().find(|&&entry| entry >> 8 == key + 1)?;
         Some((entry & 0xff) as u32)
     }
 
     pub fn insert(&mut self, key: u64, value: u32) {
-        let bucket = &mut self.buckets[(mix(key) & self.mask) as usize];
+        let bucket = self.bucket(key);
+        let bucket = &mut self.buckets[bucket];
         let known = bucket.iter().position(|&entry| entry >> 8 == key + 1);
         let place = known.or_else(|| bucket.iter().position(|&entry| entry == 0)).unwrap_or_else(|| {
             self.turn = (self.turn + 1) % 8;

@@ -4,6 +4,7 @@
 
 use crate::kitchen::{Action, Agent, ContentId, Kitchen, LocationId, State};
 
+use super::ground::Ground;
 use super::journeys::{Journeys, NEVER, Needs};
 
 /// At most so many targets, see [`crate::kitchen::compile::MAX_ORDERS`].
@@ -13,6 +14,15 @@ pub const USELESS: u8 = 1;
 
 /// Classes of the physical locations, by location index.
 pub type Classes = [u8; 16];
+
+/// What an item is worth where it is, for one target.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Offer {
+    /// Bit j if it can become the j-th item of the target; 0 if a storage is nearer.
+    pub fills: u8,
+    /// How much is gained by taking it rather than what is in a storage, in half presses.
+    pub rank: i16,
+}
 
 /// One set of targets with its tables over classes.
 #[derive(Clone, Debug)]
@@ -33,6 +43,8 @@ pub struct Goal {
     pub near: [Vec<u8>; MAX_TARGETS],
     /// The same index: what that cannot do without.
     pub near_needs: [Vec<Needs>; MAX_TARGETS],
+    /// The same index: what it would be taken for.
+    pub offers: [Vec<Offer>; MAX_TARGETS],
     /// `[target][j]`: presses for the j-th item from a storage, and what that cannot do without.
     pub fresh: [Vec<(u8, Needs)>; MAX_TARGETS],
     /// For each target the component index of its j-th item.
@@ -43,6 +55,8 @@ pub struct Goal {
     pub target_class: [u8; MAX_TARGETS],
     /// `[target][bits]`: the class of a stack of these items of the target.
     pub part_class: [Vec<u8>; MAX_TARGETS],
+    /// By class, whether more than one target can use it.
+    pub is_shared: Vec<bool>,
     /// What can be taken from storages: by agent, classes.
     pub takes: [Vec<u8>; 2],
     /// `[process][class]`: the useful result, else 0.
@@ -60,7 +74,8 @@ pub struct Goal {
 }
 
 impl Goal {
-    pub fn new(kitchen: &Kitchen, journeys: &Journeys, targets: Vec<ContentId>) -> Goal {
+    pub fn new(kitchen: &Kitchen, ground: &Ground, targets: Vec<ContentId>) -> Goal {
+        let journeys = &ground.journeys;
         let mut content = vec![ContentId::EMPTY];
         let mut class_of = vec![USELESS; kitchen.contents.len()];
         class_of[0] = 0;
@@ -81,6 +96,8 @@ impl Goal {
             ready: Default::default(),
             near: Default::default(),
             near_needs: Default::default(),
+            offers: Default::default(),
+            is_shared: Vec::new(),
             fresh: Default::default(),
             components: Default::default(),
             complete: [0; MAX_TARGETS],
@@ -116,7 +133,11 @@ impl Goal {
                 }
             }
         }
+        let shared =
+            |class: usize| goal.fills.iter().filter(|fills| fills.get(class).is_some_and(|&f| f != 0)).count() > 1;
+        goal.is_shared = (0..goal.content.len()).map(shared).collect();
         goal.fill_distances(kitchen, journeys);
+        goal.fill_offers(ground);
         goal.fill_moves(kitchen);
         goal.fill_keys(kitchen);
         goal
@@ -146,6 +167,21 @@ impl Goal {
                     self.near_needs[target].push(needs);
                 }
             }
+        }
+    }
+
+    fn fill_offers(&mut self, ground: &Ground) {
+        let classes = self.content.len();
+        for target in 0..self.targets.len() {
+            let offer = |(index, &near): (usize, &u8)| {
+                let (location, fills) = (index / classes, self.fills[target][index % classes]);
+                let of_bits = self.fresh[target].iter().enumerate().filter(|(bit, _)| fills & (1 << bit) != 0);
+                let fresh: i16 = of_bits.map(|(_, (presses, _))| i16::from(*presses)).sum();
+                let saves = fresh - i16::from(near);
+                let rank = 2 * saves + ground.in_the_way[location];
+                if saves >= 0 { Offer { fills, rank } } else { Offer::default() }
+            };
+            self.offers[target] = self.near[target].iter().enumerate().map(offer).collect();
         }
     }
 

@@ -11,6 +11,7 @@
 mod assign;
 mod cache;
 mod clear;
+mod decide;
 mod goal;
 mod ground;
 mod journeys;
@@ -22,25 +23,25 @@ use std::sync::Arc;
 
 use self::cache::{Cache, Decisions};
 pub use self::cache::{Decision, MAX_BUTTONS};
+pub use self::decide::Care;
 use self::goal::{Classes, Goal};
 use self::ground::Ground;
+use self::plan::BLOCKED;
 use self::rating::Rating;
 use self::search::Search;
-use super::action::Agent;
+use super::Kitchen;
+use super::action::{Action, Agent};
 use super::content::ContentId;
 use super::layout::LocationId;
 use super::state::{OrderContent, Recipes, State};
-use super::{ButtonId, Kitchen};
 
 /// The value of states from which the goal cannot be reached.
 pub const UNREACHABLE: u32 = 255;
 /// 2^20 values and 2^17 decisions: 8 MiB each.
 const CACHE_BITS: u32 = 20;
 const DECISION_BITS: u32 = 17;
-/// Keys leave so many bits for the goal.
-const SLOT_BITS: u32 = 17;
-/// The highest of them tells rough values from exact ones.
-const ROUGH_BIT: u32 = SLOT_BITS - 1;
+/// Keys leave so many bits for the goal and the kind of value.
+const SLOT_BITS: u32 = 16 + cache::KIND_BITS;
 
 /// Computes costs to go and remembers them.
 #[derive(Clone, Debug)]
@@ -52,15 +53,21 @@ pub struct CostToGo {
     cache: Cache,
     decisions: Decisions,
     counts: Counts,
+    /// `[agent][content]`: what an agent that has thrown it away can take again.
+    takes: [Vec<bool>; 2],
+    /// By agent, whether it can throw away what it has taken.
+    trashes: [bool; 2],
 }
 
-/// How much care is taken of a value.
+/// How closely a single value is looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Care {
+enum Look {
     /// Where bound and plans do not agree, it is searched for.
     Exact,
-    /// It is the bound: mostly exact, else a press or two too low. For what hardly counts.
-    Rough,
+    /// The lower bound.
+    Bound,
+    /// What the best plan takes, an upper bound; where none comes to an end, it is searched for.
+    Plan,
 }
 
 /// How often what was done since the start.
@@ -80,89 +87,50 @@ impl CostToGo {
         let ground = Ground::new(&kitchen);
         let goals = vec![None; kitchen.contents.len() * kitchen.contents.len()];
         let (cache, decisions) = (Cache::new(CACHE_BITS), Decisions::new(DECISION_BITS));
-        CostToGo { kitchen, ground, goals, cache, decisions, counts: Counts::default() }
+        let has = |agent: Agent, action| kitchen.buttons[agent.index()].iter().any(|button| button.action == action);
+        let takes = |agent| {
+            let has = |item| has(agent, Action::Take(ContentId(item as u8)));
+            (0..kitchen.contents.len()).map(has).collect()
+        };
+        CostToGo {
+            takes: Agent::BOTH.map(takes),
+            trashes: Agent::BOTH.map(|agent| has(agent, Action::Trash)),
+            counts: Counts::default(),
+            kitchen,
+            ground,
+            goals,
+            cache,
+            decisions,
+        }
     }
 
     /// C(s, recipes): presses until all present orders are served; 0 if there is none, [`UNREACHABLE`] if they never can be.
     pub fn all_orders(&mut self, state: State, recipes: &Recipes) -> u32 {
         let (mut targets, count) = self.targets(state, recipes);
-        self.cost(Care::Exact, state, &mut targets[..count])
+        self.cost(Look::Exact, state, &mut targets[..count])
     }
 
     /// C_k(s, recipes): presses until the order at this location is served; 0 if it wants nothing.
     pub fn order(&mut self, state: State, recipes: &Recipes, order: LocationId) -> u32 {
+        self.order_with(Care::Exact, state, recipes, order)
+    }
+
+    /// The same with more or less care.
+    pub fn order_with(&mut self, care: Care, state: State, recipes: &Recipes, order: LocationId) -> u32 {
+        let look = match care {
+            Care::Exact => Look::Exact,
+            Care::Close => Look::Plan,
+            Care::Rough => Look::Bound,
+        };
         match state.order(order) {
-            OrderContent::Dish(dish) => self.cost(Care::Exact, state, &mut [recipes.get(dish)]),
+            OrderContent::Dish(dish) => self.cost(look, state, &mut [recipes.get(dish)]),
             _ => 0,
         }
-    }
-
-    /// C of the state and of every state that a button of `agent` leads to, in one look-up where it was asked before: what
-    /// decisions, inference and rollouts need.
-    #[inline]
-    pub fn decision(&mut self, state: State, recipes: &Recipes, agent: Agent) -> &Decision {
-        self.decision_with(Care::Exact, state, recipes, agent)
-    }
-
-    /// The same with more or less care. What is known of one is not used for the other, so that a value never depends on
-    /// what was asked before.
-    #[inline]
-    pub fn decision_with(&mut self, care: Care, state: State, recipes: &Recipes, agent: Agent) -> &Decision {
-        let (mut targets, count) = self.targets(state, recipes);
-        let question =
-            u32::from(targets[0].0) | u32::from(targets[1].0) << 8 | (agent as u32) << 16 | (care as u32) << 17;
-        let (index, known) = self.decisions.find(state, question);
-        if !known {
-            let alike = self.stand_in(state, &mut targets[..count]);
-            let (there, known) = self.decisions.find(alike, question);
-            if !known {
-                self.decide(there, question, care, alike, recipes, agent);
-            }
-            let found = *self.decisions.get(there);
-            self.decisions.set(index, state, question, found.here, found.after);
-        }
-        self.decisions.get(index)
-    }
-
-    /// The state in which contents of no use are put by others that are pressed about in the same ways: its decisions are
-    /// the same, and strange states have few of them.
-    fn stand_in(&mut self, state: State, targets: &mut [ContentId]) -> State {
-        targets.sort_unstable();
-        if targets.is_empty() {
-            return state;
-        }
-        let slot = self.slot(targets);
-        self.make_goal(slot, targets);
-        let Some(goal) = &self.goals[slot] else { return state };
-        let mut alike = state;
-        for location in self.ground.places() {
-            let location = LocationId(location as u8);
-            alike.set_content(location, goal.stands_for[state.content(location).index()]);
-        }
-        alike
     }
 
     /// How much was looked up and how much computed since the start.
     pub fn counts(&self) -> Counts {
         self.counts
-    }
-
-    /// Puts a decision together and keeps it.
-    fn decide(&mut self, index: usize, question: u32, care: Care, state: State, recipes: &Recipes, agent: Agent) {
-        self.counts.decisions_missed += 1;
-        let kitchen = self.kitchen.clone();
-        let mut value = |state: State| {
-            let (mut targets, count) = self.targets(state, recipes);
-            self.cost(care, state, &mut targets[..count]) as u8
-        };
-        let here = value(state);
-        let mut after = [here; MAX_BUTTONS];
-        for (button, after) in after.iter_mut().enumerate().take(kitchen.buttons[agent.index()].len()) {
-            if let Some(next) = kitchen.press(state, recipes, agent, ButtonId(button as u8)) {
-                *after = value(next);
-            }
-        }
-        self.decisions.set(index, state, question, here, after);
     }
 
     /// The stacks that the present orders want, in the order of the orders, and their number.
@@ -179,25 +147,53 @@ impl CostToGo {
         (targets, count)
     }
 
-    fn cost(&mut self, care: Care, state: State, targets: &mut [ContentId]) -> u32 {
+    fn cost(&mut self, look: Look, state: State, targets: &mut [ContentId]) -> u32 {
         if targets.is_empty() {
             return 0;
         }
-        self.counts.values += 1;
+        let Some((slot, key)) = self.key_of_state(state, targets) else { return UNREACHABLE };
+        if let Some(value) = self.known(look, key) {
+            return value;
+        }
+        self.compute_for(look, key, slot, state)
+    }
+
+    fn compute_for(&mut self, look: Look, key: u64, slot: usize, state: State) -> u32 {
+        let Some(goal) = self.goals[slot].clone() else { return UNREACHABLE };
+        let classes = self.classes(&goal, state);
+        self.compute(look, key, slot, &goal, &classes)
+    }
+
+    /// A state's key together with these targets (at least one), and their slot.
+    #[inline]
+    fn key_of_state(&mut self, state: State, targets: &mut [ContentId]) -> Option<(usize, u64)> {
         targets.sort_unstable();
         let slot = self.slot(targets);
         self.make_goal(slot, targets);
-        let Some(goal) = &self.goals[slot] else { return UNREACHABLE };
-        let key = goal.key_of_state(state) << SLOT_BITS | slot as u64 | (care as u64) << ROUGH_BIT;
-        if let Some(value) = self.cache.get(key) {
-            return value;
-        }
-        let goal = goal.clone();
+        let goal = self.goals[slot].as_ref()?;
+        Some((slot, goal.key_of_state(state) << SLOT_BITS | (slot << cache::KIND_BITS) as u64))
+    }
+
+    fn classes(&self, goal: &Goal, state: State) -> Classes {
         let mut classes: Classes = [0; 16];
         for location in self.ground.places() {
             classes[location] = goal.class_of[state.content(LocationId(location as u8)).index()];
         }
-        self.compute(care, key, slot, &goal, &classes)
+        classes
+    }
+
+    #[inline]
+    fn known(&mut self, look: Look, key: u64) -> Option<u32> {
+        self.counts.values += 1;
+        self.cache.get(key | look as u64)
+    }
+
+    #[inline]
+    fn keep(&mut self, look: Look, key: u64, value: u32) -> u32 {
+        self.counts.values_missed += 1;
+        let value = value.min(UNREACHABLE);
+        self.cache.insert(key | look as u64, value);
+        value
     }
 
     /// The value of a state of classes without one of its targets, which has just been served.
@@ -215,23 +211,21 @@ impl CostToGo {
             classes[location] = rest.class_of[goal.content[usize::from(state[location])].index()];
         }
         let key = self.key(slot, &rest, &classes);
-        self.cache.get(key).unwrap_or_else(|| self.compute(Care::Exact, key, slot, &rest, &classes))
+        self.cache.get(key).unwrap_or_else(|| self.compute(Look::Exact, key, slot, &rest, &classes))
     }
 
-    fn compute(&mut self, care: Care, key: u64, slot: usize, goal: &Goal, state: &Classes) -> u32 {
-        self.counts.values_missed += 1;
-        let value = self.solve(care, slot, goal, state).min(UNREACHABLE);
-        self.cache.insert(key, value);
-        value
+    fn compute(&mut self, look: Look, key: u64, slot: usize, goal: &Goal, state: &Classes) -> u32 {
+        let value = self.solve(look, slot, goal, state);
+        self.keep(look, key, value)
     }
 
-    fn solve(&mut self, care: Care, slot: usize, goal: &Goal, state: &Classes) -> u32 {
+    fn solve(&mut self, look: Look, slot: usize, goal: &Goal, state: &Classes) -> u32 {
         let rating = Rating::new(&self.ground, goal, state);
-        if care == Care::Rough {
+        if look == Look::Bound {
             return rating.lower;
         }
         let upper = rating.upper(&self.ground, goal, state);
-        if upper <= rating.lower {
+        if upper <= rating.lower || look == Look::Plan && upper < BLOCKED {
             return upper;
         }
         self.counts.searches += 1;
@@ -243,8 +237,9 @@ impl CostToGo {
         }
     }
 
+    /// The key of its exact value.
     fn key(&self, slot: usize, goal: &Goal, state: &Classes) -> u64 {
-        goal.key_of_classes(state) << SLOT_BITS | slot as u64
+        goal.key_of_classes(state) << SLOT_BITS | (slot << cache::KIND_BITS) as u64
     }
 
     fn slot(&self, targets: &[ContentId]) -> usize {
@@ -255,7 +250,7 @@ impl CostToGo {
     #[inline]
     fn make_goal(&mut self, slot: usize, targets: &[ContentId]) {
         if self.goals[slot].is_none() {
-            let goal = Goal::new(&self.kitchen, &self.ground.journeys, targets.to_vec());
+            let goal = Goal::new(&self.kitchen, &self.ground, targets.to_vec());
             self.goals[slot] = Some(Arc::new(goal));
         }
     }

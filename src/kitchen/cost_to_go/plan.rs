@@ -247,21 +247,12 @@ impl<'a> Plan<'a> {
 
     /// Presses of a task if nothing were in the way.
     pub(super) fn least(&self, task: &Task) -> u32 {
-        u32::from(self.bring(task, self.ground.journeys.all_free))
+        u32::from(Assignment::way(self.goal, &self.state, task, task.at).0)
     }
 
     /// What the rest of a task cannot do without.
     pub(super) fn needs(&self, task: &Task) -> FreeMask {
-        let goal = self.goal;
-        let target = usize::from(task.target);
-        if task.bits.count_ones() > 1 {
-            return 0;
-        }
-        if task.at == STORAGE {
-            return usize::from(goal.fresh[target][task.bits.trailing_zeros() as usize].1);
-        }
-        let at = usize::from(task.at);
-        usize::from(goal.near_needs[target][at * goal.content.len() + usize::from(self.state[at])])
+        usize::from(Assignment::way(self.goal, &self.state, task, task.at).1)
     }
 
     /// The task whose item lies at a location.

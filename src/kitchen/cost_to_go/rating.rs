@@ -20,8 +20,7 @@ impl Rating {
         if goal.targets.len() < 2 || goal.targets[0] == goal.targets[1] {
             return Rating { choices: [forwards, forwards], count: 1, lower };
         }
-        let is_shared = |class: u8| goal.fills[0][usize::from(class)] != 0 && goal.fills[1][usize::from(class)] != 0;
-        if !state.iter().any(|&class| is_shared(class)) {
+        if !state.iter().any(|&class| goal.is_shared[usize::from(class)]) {
             return Rating { choices: [forwards, forwards.reversed()], count: 2, lower };
         }
         let backwards = Assignment::choose(ground, goal, state, [1, 0]);

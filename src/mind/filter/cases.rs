@@ -4,8 +4,8 @@ use crate::base::rng::mix;
 use crate::kitchen::cost_to_go::{Care, CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, Recipes, State};
 
-/// At least this share of all draws, or of the weight that they have after the press, has to be of a case for its costs to
-/// be searched for where plans are not surely best.
+/// At least this share of all draws, or of the weight that they have after the press, has to be of a case for plans to be
+/// made for its costs.
 const COUNTS: f64 = 0.01;
 
 /// Cases with their numbers of draws.
@@ -33,9 +33,9 @@ impl Cases {
         self.slots.resize((draws * 2).next_power_of_two(), 0);
     }
 
-    /// The index of a case that was drawn once more.
+    /// The index of a case that was drawn so many times more.
     #[inline]
-    pub fn count(&mut self, state: State, recipes: Recipes) -> u32 {
+    pub fn count(&mut self, state: State, recipes: Recipes, times: u32) -> u32 {
         let mask = self.slots.len() - 1;
         let (bits, of_recipes) = (state.bits(), recipes.bits());
         let folded =
@@ -44,14 +44,14 @@ impl Cases {
         loop {
             match self.slots[slot] {
                 0 => {
-                    self.known.push(Case { state, recipes, draws: 1, after: None });
+                    self.known.push(Case { state, recipes, draws: times, after: None });
                     self.slots[slot] = self.known.len() as u32;
                     return self.known.len() as u32 - 1;
                 }
                 index => {
                     let case = &mut self.known[index as usize - 1];
                     if case.state == state && case.recipes == recipes {
-                        case.draws += 1;
+                        case.draws += times;
                         return index - 1;
                     }
                 }
@@ -60,28 +60,21 @@ impl Cases {
         }
     }
 
-    /// The same case once more.
-    #[inline]
-    pub fn count_again(&mut self, index: u32) -> u32 {
-        self.known[index as usize].draws += 1;
-        index
-    }
-
     /// Finds the costs of all cases that have none yet, of `draws` draws in all.
     pub fn rate(&mut self, cost: &mut CostToGo, draws: usize) {
         for case in self.known.iter_mut().filter(|case| case.after.is_none()) {
-            let care = if f64::from(case.draws) >= COUNTS * draws as f64 { Care::Exact } else { Care::Rough };
+            let care = if f64::from(case.draws) >= COUNTS * draws as f64 { Care::Close } else { Care::Rough };
             case.rate(cost, care);
         }
     }
 
-    /// Searches for the costs of those cases that hardly counted before the press, and do now: `weights` by case, of this
+    /// Plans for the costs of those cases that hardly counted before the press, and do now: `weights` by case, of this
     /// sum. A bound that is a press too low is strong evidence, and wrong. Tells whether there were any.
     pub fn rate_again(&mut self, cost: &mut CostToGo, weights: &[f64], sum: f64) -> bool {
         let mut any = false;
         for (case, &weight) in self.known.iter_mut().zip(weights) {
             if weight >= COUNTS * sum && case.after.is_some_and(|(_, care)| care == Care::Rough) {
-                case.rate(cost, Care::Exact);
+                case.rate(cost, Care::Close);
                 any = true;
             }
         }

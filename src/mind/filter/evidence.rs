@@ -50,8 +50,8 @@ pub struct Sampler {
     drawn_cases: Vec<u32>,
     /// By case, the weight of its draws after the press.
     case_weights: Vec<f64>,
-    /// Aspects of which a belief sample has several values.
-    mixed: Vec<usize>,
+    /// Aspects of which a belief sample has several values, one bit each, by belief sample.
+    mixed: Vec<u32>,
 }
 
 /// What a press is judged by.
@@ -83,6 +83,7 @@ impl Sampler {
         let mut wanted = judge.inference.beliefs;
         self.drawn.clear();
         self.drawn_cases.clear();
+        self.mixed.clear();
         self.priors.clear();
         self.posteriors.clear();
         self.cases.clear(states * wanted.max(judge.inference.max_beliefs));
@@ -117,31 +118,30 @@ impl Sampler {
         self.firsts = firsts;
         for sample in old..wanted {
             let drawn = &mut self.drawn[sample * row..(sample + 1) * row];
-            draw_on(kitchen, &self.urns, states, drawn, random, &mut self.mixed);
+            let mixed = draw_on(kitchen, &self.urns, states, drawn, random);
             let counts = self.counts.iter().enumerate().filter(|(_, counts)| !counts.is_empty());
             let count = counts.map(|(aspect, counts)| match drawn[aspect * states] {
                 UNDRAWN => 1.0,
                 value => counts[usize::from(value)],
             });
             self.priors.push(count.product());
+            self.mixed.push(mixed);
             let (mut state, mut recipes) = (kitchen.empty_state(), truth);
             for aspect in 0..aspects {
                 set(kitchen, &mut state, &mut recipes, aspect, drawn[aspect * states]);
             }
-            let mut last = None;
-            for draw in 0..states {
-                // Where all draws are the same, they are one case.
-                let case = match last {
-                    Some(case) if self.mixed.is_empty() => self.cases.count_again(case),
-                    _ => {
-                        for &aspect in &self.mixed {
-                            set(kitchen, &mut state, &mut recipes, aspect, drawn[aspect * states + draw]);
-                        }
-                        self.cases.count(state, recipes)
-                    }
-                };
-                self.drawn_cases.push(case);
-                last = Some(case);
+            // Where all draws are the same, they are one case.
+            let first = self.cases.count(state, recipes, if mixed == 0 { states as u32 } else { 1 });
+            self.drawn_cases.push(first);
+            for draw in 1..states {
+                if mixed == 0 {
+                    self.drawn_cases.push(first);
+                    continue;
+                }
+                for aspect in ones(mixed) {
+                    set(kitchen, &mut state, &mut recipes, aspect, drawn[aspect * states + draw]);
+                }
+                self.drawn_cases.push(self.cases.count(state, recipes, 1));
             }
         }
         self.cases.rate(cost, wanted * states);
@@ -156,10 +156,12 @@ impl Sampler {
         let states = judge.inference.states;
         let buttons = judge.kitchen.buttons[Agent::Human.index()].len();
         self.posteriors.truncate(from);
-        for (of_sample, prior) in self.drawn_cases.chunks(states).zip(&self.priors).skip(from) {
+        let samples = self.drawn_cases.chunks(states).zip(&self.priors).zip(&self.mixed);
+        for ((of_sample, prior), mixed) in samples.skip(from) {
             let mut sums = [0u32; MAX_BUTTONS];
+            let (of_sample, times) = if *mixed == 0 { (&of_sample[..1], states as u32) } else { (of_sample, 1) };
             for &case in of_sample {
-                sums.iter_mut().zip(self.cases.after(case)).for_each(|(sum, &after)| *sum += u32::from(after));
+                sums.iter_mut().zip(self.cases.after(case)).for_each(|(sum, &after)| *sum += times * u32::from(after));
             }
             let sums = &sums[..buttons];
             let likelihood = judge.decision.press_chance(judge.slips, sums, states as f64, button);
@@ -187,12 +189,21 @@ impl Sampler {
     /// Maps the weighted samples back to Dirichlets.
     fn collapse(&self, belief: &mut DirichletBelief, states: usize) {
         let (before, total): (f64, f64) = (self.priors.iter().sum(), self.posteriors.iter().sum());
+        let weights = || self.posteriors.iter().zip(&self.priors).map(|(after, prior)| after / total - prior / before);
         let row = belief.aspects.len() * states;
         for (aspect, dirichlet) in belief.aspects.iter_mut().enumerate() {
             let mut moments = Moments::of(dirichlet);
-            for (sample, (posterior, prior)) in self.posteriors.iter().zip(&self.priors).enumerate() {
+            // Belief samples with one and the same value in all their draws are added together.
+            let mut of_value = [0.0; UNDRAWN as usize + 1];
+            for (sample, weight) in weights().enumerate() {
                 let start = sample * row + aspect * states;
-                moments.add(&self.drawn[start..start + states], posterior / total - prior / before);
+                match self.mixed[sample] >> aspect & 1 {
+                    0 => of_value[usize::from(self.drawn[start])] += weight,
+                    _ => moments.add(&self.drawn[start..start + states], weight),
+                }
+            }
+            for (value, &weight) in of_value.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
+                moments.add_pure(value, states, weight);
             }
             *dirichlet = moments.collapsed(self.urns[aspect].stand_in());
         }
@@ -207,20 +218,14 @@ fn set(kitchen: &Kitchen, state: &mut State, recipes: &mut Recipes, aspect: usiz
     }
 }
 
-/// Draws the values of one belief sample that follow the first ones, and tells of which aspects there are several.
-fn draw_on(
-    kitchen: &Kitchen,
-    urns: &[Urn],
-    states: usize,
-    drawn: &mut [u8],
-    random: &mut Stream,
-    mixed: &mut Vec<usize>,
-) {
-    mixed.clear();
+/// Draws the values of one belief sample that follow the first ones, and tells of which aspects there are several, one bit
+/// each.
+fn draw_on(kitchen: &Kitchen, urns: &[Urn], states: usize, drawn: &mut [u8], random: &mut Stream) -> u32 {
+    let mut mixed = 0;
     let locations = kitchen.locations.len();
     for location in 0..locations {
         if !urns[location].draw_on(random, &mut drawn[location * states..(location + 1) * states]) {
-            mixed.push(location);
+            mixed |= 1 << location;
         }
     }
     // Recipes count where an order wants the dish; the other first draws are taken back.
@@ -235,9 +240,20 @@ fn draw_on(
         if !is_wanted {
             of_aspect.fill(UNDRAWN);
         } else if !urns[aspect].draw_on(random, of_aspect) {
-            mixed.push(aspect);
+            mixed |= 1 << aspect;
         }
     }
+    mixed
+}
+
+/// The positions of the bits that are set.
+#[inline]
+fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let position = bits.trailing_zeros();
+        bits &= bits.wrapping_sub(1);
+        (position < u32::BITS).then_some(position as usize)
+    })
 }
 
 /// Mean and second moment of a mixture of Dirichlets, from those of the Dirichlet that all of them come from.
@@ -246,54 +262,61 @@ struct Moments<'a> {
     mean: Vec<f64>,
     second: f64,
     square: f64,
+    /// How much of the prior's mean is to be added in the end.
+    share: f64,
 }
 
 impl Moments<'_> {
     fn of(prior: &Dirichlet) -> Moments<'_> {
         let mean = prior.mean().to_vec();
         let square = mean.iter().map(|m| m * m).sum();
-        Moments { prior, mean, second: prior.second(), square }
+        Moments { prior, mean, second: prior.second(), square, share: 0.0 }
     }
 
     /// Adds Dir(alpha + counts of these draws) with this weight; all weights sum to 0.
     fn add(&mut self, drawn: &[u8], weight: f64) {
+        let mut counts = [0u32; UNDRAWN as usize + 1];
+        drawn.iter().for_each(|&value| counts[usize::from(value)] += 1);
         let (precision, prior) = (self.prior.precision(), self.prior.mean());
-        let mut counts: Vec<(u8, u32)> = Vec::with_capacity(8);
-        let mut drawn_in_all = 0u32;
-        for &value in drawn.iter().filter(|&&value| value != UNDRAWN) {
-            drawn_in_all += 1;
-            match counts.iter_mut().find(|(other, _)| *other == value) {
-                Some((_, count)) => *count += 1,
-                None => counts.push((value, 1)),
-            }
-        }
-        let size = precision + f64::from(drawn_in_all);
-        // What the prior's alphas give alone; where all aspects have as many draws, it cancels out.
-        let share = weight * precision / size;
-        if drawn_in_all == 0 {
-            return self.add_prior(weight);
-        }
+        let size = precision + drawn.len() as f64;
         let (mut cross, mut squares) = (0.0, 0.0);
-        for &(value, count) in &counts {
-            let (value, count) = (usize::from(value), f64::from(count));
+        for &value in drawn {
+            // Each value once.
+            let value = usize::from(value);
+            let count = f64::from(std::mem::take(&mut counts[value]));
             self.mean[value] += weight * count / size;
             cross += prior[value] * count;
             squares += count * count;
         }
-        self.mean.iter_mut().zip(prior).for_each(|(mean, p)| *mean += share * p);
-        let second = precision * precision * self.square + 2.0 * precision * cross + squares + size;
-        self.second += weight * second / (size * (size + 1.0));
+        self.add_moments(weight, size, cross, squares);
     }
 
-    fn add_prior(&mut self, weight: f64) {
-        self.mean.iter_mut().zip(self.prior.mean()).for_each(|(mean, p)| *mean += weight * p);
-        self.second += weight * self.prior.second();
+    /// The same for `draws` draws of one value.
+    fn add_pure(&mut self, value: usize, draws: usize, weight: f64) {
+        if value == usize::from(UNDRAWN) {
+            self.share += weight;
+            self.second += weight * self.prior.second();
+            return;
+        }
+        let draws = draws as f64;
+        let size = self.prior.precision() + draws;
+        self.mean[value] += weight * draws / size;
+        self.add_moments(weight, size, self.prior.mean()[value] * draws, draws * draws);
+    }
+
+    fn add_moments(&mut self, weight: f64, size: f64, cross: f64, squares: f64) {
+        let precision = self.prior.precision();
+        // What the prior's alphas give alone; where all aspects have as many draws, it cancels out.
+        self.share += weight * precision / size;
+        let second = precision * precision * self.square + 2.0 * precision * cross + squares + size;
+        self.second += weight * second / (size * (size + 1.0));
     }
 
     /// What the value that stands for the tail has gained is its own; what it has lost the whole tail loses, since it is
     /// so improbable only as a part of it.
     fn collapsed(mut self, stand_in: Option<usize>) -> Dirichlet {
         let prior = self.prior.mean();
+        self.mean.iter_mut().zip(prior).for_each(|(mean, p)| *mean += self.share * p);
         if let Some(value) = stand_in
             && self.mean[value] < prior[value]
         {

@@ -7,12 +7,15 @@
 //! they are.
 
 use crate::base::rng::Stream;
-use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::cost_to_go::{Care, CostToGo};
 use crate::kitchen::{Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, Recipes, State};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::robot::policy;
 
 use super::urn::Urn;
+
+/// At least this share of all draws has to be of a case for plans to be made in it.
+const COUNTS: f64 = 0.05;
 
 /// One way a value may go, and how often it did.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +46,8 @@ pub fn predict(
                 occurred[value] += count;
             }
         }
-        let choices = policy::choices(kitchen, cost, state, &recipes);
+        let care = if count >= COUNTS * draws as f64 { Care::Close } else { Care::Rough };
+        let choices = policy::choices_with(kitchen, cost, care, state, &recipes);
         let weight = count / choices.len().max(1) as f64;
         for next in choices.iter().filter_map(|&button| kitchen.press(state, &recipes, Agent::Robot, button)) {
             note_changes(kitchen, state, next, weight, &mut flows);

@@ -1,0 +1,237 @@
+//! Decisions: the cost to go of a state together with that of every state that a button leads to.
+//!
+//! What a press leads to is at most one press nearer; if it can be taken back by one press, it is at most one further away.
+//! Together with the bound that settles most buttons without a plan.
+
+use super::cache::{Decision, MAX_BUTTONS};
+use super::plan::BLOCKED;
+use super::rating::Rating;
+use super::{CostToGo, Look, UNREACHABLE};
+use crate::kitchen::{Action, Agent, ButtonId, ContentId, LocationId, Recipes, State};
+
+/// How much care is taken of a decision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Care {
+    /// Where bounds and plans do not agree, it is searched for.
+    Exact,
+    /// What follows from bounds and plans, without a search: for what people decide by. A few values are a press or two off,
+    /// most of them of presses that lead away.
+    Close,
+    /// The bounds: mostly exact, else a press or two too low. For what hardly counts.
+    Rough,
+}
+
+/// A value that was looked up: where it belongs, and what was found there. Without orders it belongs nowhere.
+#[derive(Clone, Copy, Debug)]
+struct Asked {
+    /// Its goal's slot and its key.
+    at: Option<(usize, u64)>,
+    known: Option<u32>,
+}
+
+/// A state that a button leads to.
+#[derive(Clone, Copy, Debug)]
+struct Next {
+    state: State,
+    asked: Asked,
+    /// Whether one press leads back.
+    can_be_undone: bool,
+}
+
+impl CostToGo {
+    /// C of the state and of every state that a button of `agent` leads to, in one look-up where it was asked before: what
+    /// decisions, inference and rollouts need.
+    #[inline]
+    pub fn decision(&mut self, state: State, recipes: &Recipes, agent: Agent) -> &Decision {
+        self.decision_with(Care::Exact, state, recipes, agent)
+    }
+
+    /// The same with more or less care. What is known of one is not used for the other, so that a value never depends on
+    /// what was asked before.
+    #[inline]
+    pub fn decision_with(&mut self, care: Care, state: State, recipes: &Recipes, agent: Agent) -> &Decision {
+        let (mut targets, count) = self.targets(state, recipes);
+        let question =
+            u32::from(targets[0].0) | u32::from(targets[1].0) << 8 | (agent as u32) << 16 | (care as u32) << 17;
+        let (index, known) = self.decisions.find(state, question);
+        if !known {
+            let alike = self.stand_in(state, &mut targets[..count]);
+            let (there, known) = self.decisions.find(alike, question);
+            if !known {
+                self.decide(there, question, care, alike, recipes, agent);
+            }
+            let found = *self.decisions.get(there);
+            self.decisions.set(index, state, question, found.here, found.after);
+        }
+        self.decisions.get(index)
+    }
+
+    /// The buttons of `agent` that bring the goal nearer, one bit each.
+    pub fn nearer(&mut self, care: Care, state: State, recipes: &Recipes, agent: Agent) -> u64 {
+        if care != Care::Exact {
+            let buttons = self.kitchen.buttons[agent.index()].len();
+            let decision = self.decision_with(care, state, recipes, agent);
+            let after = decision.after[..buttons].iter().enumerate();
+            return after.map(|(button, &after)| u64::from(after < decision.here) << button).sum();
+        }
+        let kitchen = self.kitchen.clone();
+        let here = self.value(Look::Exact, state, recipes);
+        let mut nearer = 0;
+        for button in 0..kitchen.buttons[agent.index()].len() {
+            let Some(next) = kitchen.press(state, recipes, agent, ButtonId(button as u8)) else { continue };
+            // Most are settled by the bound.
+            let is_nearer =
+                self.value(Look::Bound, next, recipes) < here && self.value(Look::Exact, next, recipes) < here;
+            nearer |= u64::from(is_nearer) << button;
+        }
+        nearer
+    }
+
+    /// The state in which contents of no use are put by others that are pressed about in the same ways: its decisions are
+    /// the same, and strange states have few of them.
+    fn stand_in(&mut self, state: State, targets: &mut [ContentId]) -> State {
+        targets.sort_unstable();
+        if targets.is_empty() {
+            return state;
+        }
+        let slot = self.slot(targets);
+        self.make_goal(slot, targets);
+        let Some(goal) = &self.goals[slot] else { return state };
+        let mut alike = state;
+        for location in self.ground.places() {
+            let location = LocationId(location as u8);
+            alike.set_content(location, goal.stands_for[state.content(location).index()]);
+        }
+        alike
+    }
+
+    /// Puts a decision together and keeps it.
+    fn decide(&mut self, index: usize, question: u32, care: Care, state: State, recipes: &Recipes, agent: Agent) {
+        self.counts.decisions_missed += 1;
+        let (here, after) = match care {
+            Care::Exact => self.each(Look::Exact, state, recipes, agent),
+            Care::Close => self.close(state, recipes, agent),
+            Care::Rough => self.each(Look::Bound, state, recipes, agent),
+        };
+        self.decisions.set(index, state, question, here, after);
+    }
+
+    /// The values one by one.
+    fn each(&mut self, look: Look, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
+        let here = self.value(look, state, recipes) as u8;
+        let mut after = [here; MAX_BUTTONS];
+        for (after, next) in after.iter_mut().zip(self.nexts(look, state, recipes, agent)) {
+            let Some(Next { state, asked, .. }) = next else { continue };
+            *after = self.answer(look, state, &asked) as u8;
+        }
+        (here, after)
+    }
+
+    /// What follows from bounds and plans.
+    fn close(&mut self, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
+        let asked = self.ask(Look::Bound, state, recipes);
+        let most_here = self.bracket(state, &asked, UNREACHABLE).1.unwrap_or(UNREACHABLE);
+        let mut here = most_here;
+        let brackets = self.nexts(Look::Bound, state, recipes, agent).map(|next| {
+            let Next { state, asked, can_be_undone } = next?;
+            let (lower, upper) = self.bracket(state, &asked, most_here);
+            here = here.min(upper.unwrap_or(lower) + 1);
+            Some((lower, upper, can_be_undone))
+        });
+        let after = brackets.map(|bracket| {
+            let value = match bracket {
+                None => here,
+                Some((_, None, true)) => here + 1,
+                Some((lower, None, false)) => lower,
+                Some((_, Some(upper), true)) => upper.min(here + 1),
+                Some((_, Some(upper), false)) => upper,
+            };
+            value.min(UNREACHABLE) as u8
+        });
+        (here as u8, after)
+    }
+
+    /// The states that the agent's buttons lead to, all looked up before any is computed: so the look-ups wait for memory
+    /// together.
+    fn nexts(&mut self, look: Look, state: State, recipes: &Recipes, agent: Agent) -> [Option<Next>; MAX_BUTTONS] {
+        let kitchen = self.kitchen.clone();
+        let mut nexts = [None; MAX_BUTTONS];
+        for (next, button) in nexts.iter_mut().zip(&kitchen.buttons[agent.index()]) {
+            *next = kitchen.act(state, recipes, agent, button.action).map(|there| Next {
+                state: there,
+                asked: self.ask(look, there, recipes),
+                can_be_undone: self.can_be_undone(state, agent, button.action),
+            });
+        }
+        nexts
+    }
+
+    /// Looks a value up.
+    #[inline]
+    fn ask(&mut self, look: Look, state: State, recipes: &Recipes) -> Asked {
+        let (mut targets, count) = self.targets(state, recipes);
+        if count == 0 {
+            return Asked { at: None, known: Some(0) };
+        }
+        match self.key_of_state(state, &mut targets[..count]) {
+            Some((slot, key)) => Asked { at: Some((slot, key)), known: self.known(look, key) },
+            None => Asked { at: None, known: Some(UNREACHABLE) },
+        }
+    }
+
+    fn answer(&mut self, look: Look, state: State, asked: &Asked) -> u32 {
+        match (asked.known, asked.at) {
+            (Some(value), _) => value,
+            (None, Some((slot, key))) => self.compute_for(look, key, slot, state),
+            (None, None) => UNREACHABLE,
+        }
+    }
+
+    /// The bound of a state, which was looked up, and, if that is not above `most`, what its best plan takes.
+    fn bracket(&mut self, state: State, asked: &Asked, most: u32) -> (u32, Option<u32>) {
+        let Some((slot, key)) = asked.at else {
+            let value = asked.known.unwrap_or(UNREACHABLE);
+            return (value, Some(value));
+        };
+        if let Some(lower) = asked.known {
+            if lower > most {
+                return (lower, None);
+            }
+            if let Some(upper) = self.known(Look::Plan, key) {
+                return (lower, Some(upper));
+            }
+        }
+        let Some(goal) = self.goals[slot].clone() else { return (UNREACHABLE, None) };
+        let classes = self.classes(&goal, state);
+        let rating = Rating::new(&self.ground, &goal, &classes);
+        let lower = asked.known.unwrap_or_else(|| self.keep(Look::Bound, key, rating.lower));
+        if lower > most {
+            return (lower, None);
+        }
+        let upper = match rating.upper(&self.ground, &goal, &classes) {
+            BLOCKED => self.solve(Look::Plan, slot, &goal, &classes),
+            upper => upper,
+        };
+        (lower, Some(self.keep(Look::Plan, key, upper)))
+    }
+
+    /// Whether one press of the agent leads back from where an action of it leads.
+    fn can_be_undone(&self, state: State, agent: Agent, action: Action) -> bool {
+        let held = state.content(self.kitchen.hands[agent.index()]);
+        match action {
+            Action::Take(_) => self.trashes[agent.index()],
+            Action::Trash => self.takes[agent.index()][held.index()],
+            Action::Use(location) => {
+                let there = state.content(location);
+                // What is stacked stays so; what was picked up can be put down where it is accepted.
+                there.is_empty() || held.is_empty() && self.kitchen.accepts(location, there)
+            }
+            Action::Process(_) | Action::Serve(_) => false,
+        }
+    }
+
+    fn value(&mut self, look: Look, state: State, recipes: &Recipes) -> u32 {
+        let asked = self.ask(look, state, recipes);
+        self.answer(look, state, &asked)
+    }
+}

@@ -69,7 +69,8 @@ pub struct Fit {
     pub model: HumanModel,
 }
 
-/// A parameter that was fitted. Error and interval are null where the likelihood is not curved: the recordings do not tell.
+/// A parameter that was fitted. Error and interval are null where the likelihood is not curved in every direction (the
+/// recordings do not tell), and where the search did not come to its end.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fitted {
     pub name: &'static str,
@@ -156,8 +157,9 @@ pub fn fit(trials: &Trials, plan: &Plan, tried: impl Fn()) -> Fit {
     let steps = vec![FIRST_STEP; start.len()];
     let before = judge.likelihood(&plan.start);
     let best = minimise(loss, &start, &steps, TOLERANCE_NATS, plan.most_tries);
-    let steps = telling_steps(loss, &best.at, best.value);
-    let surface = surface(loss, &best.at, &steps);
+    // Away from the maximum, curvature says nothing of errors.
+    let around = || surface(loss, &best.at, &telling_steps(loss, &best.at, best.value));
+    let surface = best.converged.then(around).flatten();
     let at = surface.as_ref().map_or(&best.at, |surface| &surface.at);
     let log_p = judge.likelihood(&with(at)).log_p;
     let presses = before.presses.max(1) as f64;

@@ -219,7 +219,7 @@ fn told_about(name: &str, bad: &Bad) -> String {
         ("recipes/sushi.toml", read("recipes/sushi.toml")),
         ("sessions/default.toml", with_keys),
         ("sessions/keys.toml", String::new()),
-        ("sessions/parameterised.toml", format!("human_model = \"parameters.toml\"\n{session}")),
+        ("sessions/parameterised.toml", format!("human_model = \"parameters.toml\"\n{}", read("sessions/study.toml"))),
         ("sessions/parameters.toml", String::new()),
         ("sessions/study.toml", read("sessions/study.toml")),
         ("sessions/questionnaires/acceptance.toml", read("sessions/questionnaires/acceptance.toml")),

@@ -27,7 +27,7 @@ use super::{Signal, unavailable};
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen};
+use crate::kitchen::{Action, Agent, AspectId, ButtonId, Kitchen};
 use crate::mind::model::HumanModel;
 use crate::mind::witness::rounded;
 
@@ -44,6 +44,9 @@ pub struct Planner {
     decider: Decider,
     foresight: f64,
     involved: Vec<Vec<AspectId>>,
+    /// By button of the human, what is looked at before it is pressed: those places, and before something is fetched the
+    /// robot's hand, which may be bringing it.
+    watched: Vec<Vec<AspectId>>,
     policy: RobotPolicy,
     samples: Samples,
     trace: Trace,
@@ -66,11 +69,15 @@ impl Planner {
     /// A planner for people as `human` says. Its chances follow from `seed` and the number of an event.
     pub fn new(kitchen: Arc<Kitchen>, human: &HumanModel, spec: AssistantSpec, seed: u64) -> Planner {
         let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
-        let aspects = |button| kitchen.involved(Agent::Human, button).into_iter().map(AspectId::of_location).collect();
+        let aspects = |button| kitchen.involved(Agent::Human, button).into_iter().map(AspectId::of_location);
+        let of_robot = AspectId::of_location(kitchen.hands[Agent::Robot.index()]);
+        let fetches = |button| matches!(kitchen.button(Agent::Human, button).action, Action::Take(_));
+        let watched = |button| aspects(button).chain(fetches(button).then_some(of_robot)).collect();
         Planner {
             decider: Decider::new(&kitchen, &human.decision, spec.rollout.states),
             foresight: human.transition.foresight,
-            involved: buttons.map(aspects).collect(),
+            involved: buttons.clone().map(|button| aspects(button).collect()).collect(),
+            watched: buttons.map(watched).collect(),
             policy: RobotPolicy::default(),
             samples: Samples::default(),
             trace: Trace::default(),
@@ -137,6 +144,7 @@ impl Planner {
             recipes: self.kitchen.true_recipes(),
             decider: &self.decider,
             involved: &self.involved,
+            watched: &self.watched,
             model,
             robot_press_s: situation.robot_press_s,
             foresight: self.foresight,

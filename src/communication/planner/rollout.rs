@@ -45,6 +45,8 @@ pub struct Stage<'a> {
     pub decider: &'a Decider,
     /// By button of the human, the aspects of the places that decide what it does.
     pub involved: &'a [Vec<AspectId>],
+    /// What is looked at before each of them is pressed.
+    pub watched: &'a [Vec<AspectId>],
     pub model: &'a RolloutModel,
     pub robot_press_s: f64,
     /// The chance that a place which is needed is looked at before a press.
@@ -202,14 +204,14 @@ impl Rollout<'_> {
         }
     }
 
-    /// The human looks where its next press will be, decides, and presses.
+    /// The human looks at what its next press needs, decides, and presses.
     fn decide(&mut self, moment: &mut Moment, step: usize) -> Deed {
         let (stage, draws) = (self.stage, &self.draws[step]);
         let inclination = stage.decider.inclination(self.cost, &moment.cases);
         let mut meant = stage.decider.meant(&inclination, draws.decision);
         if let Deed::Press(button) = meant {
             let mut is_news = false;
-            for &aspect in &stage.involved[button.index()] {
+            for &aspect in &stage.watched[button.index()] {
                 if draws.looks[aspect.index()] < stage.looks {
                     is_news |= moment.cases.learn(stage.kitchen, aspect, moment.state);
                 }

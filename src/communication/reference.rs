@@ -16,7 +16,7 @@ use super::situation::{RobotOutlook, Situation};
 use super::{Signal, unavailable};
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, State};
+use crate::kitchen::{Action, Agent, AspectId, ButtonId, Kitchen, LocationId, State};
 use crate::mind::model::HumanModel;
 use crate::mind::reference::person::{Person, pick, press_chances};
 use crate::robot::policy;
@@ -138,7 +138,7 @@ impl ReferencePlanner {
         }
     }
 
-    /// The human looks where its next press will be, decides, and presses.
+    /// The human looks at what its next press needs, decides, and presses.
     fn decide(&self, cost: &mut CostToGo, future: &mut Future, random: &mut Stream) {
         let kitchen = &self.kitchen;
         let looks = 1.0 - (-self.spec.rollout.looks_hz * self.spec.rollout.human_press_s).exp();
@@ -146,7 +146,10 @@ impl ReferencePlanner {
         let glances: Vec<f64> = kitchen.locations.iter().map(|_| random.random()).collect();
         let mut deed = self.deed(cost, &future.person, draw, random);
         if let Some(button) = deed {
-            let places = kitchen.involved(Agent::Human, button).into_iter();
+            // The robot may be bringing what is about to be fetched.
+            let fetches = matches!(kitchen.button(Agent::Human, button).action, Action::Take(_));
+            let robots_hand = fetches.then_some(kitchen.hands[Agent::Robot.index()]);
+            let places = kitchen.involved(Agent::Human, button).into_iter().chain(robots_hand);
             let seen: Vec<LocationId> = places.filter(|place| glances[place.index()] < looks).collect();
             for &place in &seen {
                 let aspect = AspectId::of_location(place);

@@ -311,7 +311,9 @@ fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
 
 fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
     let ruling = log::rule(&args.recording, !args.back, args.reason.as_deref().unwrap_or_default())?;
-    let words = match (ruling.excluded, standing::aborted(&args.recording)?) {
+    // Only who counts a recording again has to know what else is in its log.
+    let aborted = if ruling.excluded { None } else { standing::aborted(&args.recording)? };
+    let words = match (ruling.excluded, aborted) {
         (true, _) => "is left out of the analysis".to_string(),
         (false, None) => "counts again".to_string(),
         (false, Some(reason)) => format!("is not excluded; it is still left out of the analysis, as aborted: {reason}"),

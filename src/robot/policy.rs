@@ -15,12 +15,7 @@ pub enum Decision {
 }
 
 /// The presses of the robot that bring the goal nearer: those after which the cost to go is one less.
-pub fn best_presses(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes) -> Vec<ButtonId> {
-    best_presses_with(kitchen, cost, Care::Exact, state, recipes)
-}
-
-/// The same with more or less care.
-pub fn best_presses_with(
+pub fn best_presses(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
     care: Care,
@@ -59,19 +54,8 @@ fn for_the_nearer_order(
 
 /// What the robot may press in this state if these are the recipes, each as likely; nothing if no press brings the goal
 /// nearer.
-pub fn choices(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes) -> Vec<ButtonId> {
-    choices_with(kitchen, cost, Care::Exact, state, recipes)
-}
-
-/// The same with more or less care.
-pub fn choices_with(
-    kitchen: &Kitchen,
-    cost: &mut CostToGo,
-    care: Care,
-    state: State,
-    recipes: &Recipes,
-) -> Vec<ButtonId> {
-    let best = best_presses_with(kitchen, cost, care, state, recipes);
+pub fn choices(kitchen: &Kitchen, cost: &mut CostToGo, care: Care, state: State, recipes: &Recipes) -> Vec<ButtonId> {
+    let best = best_presses(kitchen, cost, care, state, recipes);
     chosen(kitchen, cost, care, state, recipes, best)
 }
 
@@ -103,7 +87,7 @@ pub fn decide(
         return Decision::Idle(IdleReason::NoOrder);
     }
     let recipes = kitchen.true_recipes();
-    let all = best_presses(kitchen, cost, state, &recipes);
+    let all = best_presses(kitchen, cost, Care::Exact, state, &recipes);
     let best: Vec<ButtonId> = all.iter().copied().filter(|&button| Some(button) != skipped).collect();
     if best.len() < all.len() && best.is_empty() {
         return Decision::Idle(IdleReason::Skipped);

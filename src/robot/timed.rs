@@ -7,7 +7,7 @@ use super::policy::{self, Decision};
 use super::{AbortReason, IdleReason};
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
-use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::cost_to_go::{Care, CostToGo};
 use crate::kitchen::{ButtonId, Kitchen, State};
 
 /// What the robot does at a moment.
@@ -124,7 +124,7 @@ impl TimedRobot {
     pub fn touch(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotDeed> {
         let Errand { button, driven, .. } = self.busy.take()?;
         let recipes = kitchen.true_recipes();
-        match driven || policy::best_presses(kitchen, cost, state, &recipes).contains(&button) {
+        match driven || policy::best_presses(kitchen, cost, Care::Exact, state, &recipes).contains(&button) {
             true => Some(RobotDeed::Press(button)),
             false => Some(RobotDeed::Abort(button, AbortReason::NoLongerUseful)),
         }
@@ -133,7 +133,8 @@ impl TimedRobot {
     /// Something else than a press changed the state: what is no longer useful is given up at once.
     pub fn reconsider(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotDeed> {
         let errand = self.busy.filter(|errand| !errand.driven)?;
-        match policy::best_presses(kitchen, cost, state, &kitchen.true_recipes()).contains(&errand.button) {
+        match policy::best_presses(kitchen, cost, Care::Exact, state, &kitchen.true_recipes()).contains(&errand.button)
+        {
             true => None,
             false => self.give_up(AbortReason::NoLongerUseful),
         }

@@ -5,12 +5,13 @@
 //! early end: the converged answer. The plain reference answers on a few of these steps, at default fidelity.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::time::Instant;
 
 use serde::Serialize;
 
 use super::advisor::{Advisor, Question};
+use super::parallel;
 use super::replay::{OneKitchen, Replay};
 use crate::base::words::count;
 use crate::communication::Signal;
@@ -19,7 +20,7 @@ use crate::communication::reference::{ReferencePlanner, Worth};
 use crate::edge::files::FileResult;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::session::{Event, SessionSpec};
+use crate::session::SessionSpec;
 
 /// How many times the rollouts of the converged answer.
 const CONVERGED: usize = 64;
@@ -107,14 +108,17 @@ pub fn measure(recordings: &[PathBuf], extent: Extent, done: impl Fn() + Sync) -
         done();
     }
     let every = steps.len().div_ceil(extent.reference_steps.max(1)).max(1);
-    on_all_processors(&mut steps, |worker, (index, step)| {
-        step.converged = benefits(worker.advisor(&bench, step.recording, CONVERGED), bench.question(step));
+    let numbered: Vec<(usize, Step)> = steps.into_iter().enumerate().collect();
+    let answer = |worker: &mut Worker, (index, step): &(usize, Step)| {
+        let converged = benefits(worker.advisor(&bench, step.recording, CONVERGED), bench.question(step));
         done();
-        if index % every == 0 {
-            step.plain = Some(bench.plain(step));
+        let plain = (index % every == 0).then(|| bench.plain(step));
+        if plain.is_some() {
             done();
         }
-    });
+        Step { converged, plain, ..step.clone() }
+    };
+    let steps = parallel::each_with(&numbered, Worker::default, answer, || {});
     let price = bench.asked.first().map_or(0.0, |asked| asked.spec.assistant.cost_of_communication);
     Ok(figures(&steps, price))
 }
@@ -122,17 +126,9 @@ pub fn measure(recordings: &[PathBuf], extent: Extent, done: impl Fn() + Sync) -
 /// The questions that the assistant is asked after presses.
 fn ask(replay: &mut Replay) -> FileResult<Asked> {
     let spec = replay.session().spec.clone();
-    let (mut questions, mut pressed) = (Vec::new(), None);
-    while let Some(line) = replay.step()? {
-        match line.stamped.event {
-            Event::Press { .. } if replay.session().is_running() => pressed = Some(line.stamped.seq),
-            // By now the robot has made up its mind.
-            Event::Gaze(_) => {
-                let question = pressed.take().map(|seq| Question::of(&replay.follower, seq, line.stamped.time));
-                questions.extend(question);
-            }
-            _ => {}
-        }
+    let mut questions = Vec::new();
+    while let Some(question) = replay.next_question()? {
+        questions.push(question);
     }
     Ok(Asked { spec, questions })
 }
@@ -196,23 +192,6 @@ impl Worker {
         self.advisor = self.advisor.take().filter(|(of, _)| *of == recording);
         &mut self.advisor.get_or_insert_with(made).1
     }
-}
-
-fn on_all_processors(steps: &mut [Step], work: impl Fn(&mut Worker, (usize, &mut Step)) + Sync) {
-    let threads = std::thread::available_parallelism().map_or(1, |count| count.get());
-    let left = Mutex::new(steps.iter_mut().enumerate());
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                let mut worker = Worker::default();
-                loop {
-                    let next = left.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).next();
-                    let Some(step) = next else { return };
-                    work(&mut worker, step);
-                }
-            });
-        }
-    });
 }
 
 /// What is best to do, silence (`None`) included, and by how much it leads.

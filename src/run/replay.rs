@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::advisor::Question;
 use super::follower::Follower;
 use crate::edge::files::{FileError, FileResult};
 use crate::edge::log::{LogLine, LogReader, at_line};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::mind::observation::Observation;
-use crate::session::Session;
+use crate::session::{Event, Session};
 
 /// A recording and the session at the point up to which it was replayed.
 #[derive(Debug)]
@@ -64,6 +65,27 @@ impl Replay {
                 observations.push(Observation { number: line.stamped.seq, time: line.stamped.time, what });
             }
         }
+    }
+
+    /// Replays on to the next question that the assistant is asked after a press; `None` where the log ends for now.
+    ///
+    /// # Errors
+    /// Those of [`Replay::step`].
+    pub fn next_question(&mut self) -> FileResult<Option<Question>> {
+        let mut pressed = None;
+        while let Some(line) = self.step()? {
+            match line.stamped.event {
+                Event::Press { .. } if self.session().is_running() => pressed = Some(line.stamped.seq),
+                // By now the robot has made up its mind.
+                Event::Gaze(_) => {
+                    if let Some(seq) = pressed {
+                        return Ok(Some(Question::of(&self.follower, seq, line.stamped.time)));
+                    }
+                }
+                _ => {}
+            }
+        }
+        Ok(None)
     }
 
     pub fn session(&self) -> &Session {

@@ -134,8 +134,7 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::RobotResumed => "robot goes on".to_string(),
         // Advice is worth a line where something should be said.
         Event::Advised(advice) => advised(advice, follower.session.spec.assistant.concept)?,
-        Event::SignalShown { signal: Signal::ShowRecipe(order), .. } => format!("signal: recipe of {order}"),
-        Event::SignalShown { signal: Signal::Highlight(place), .. } => format!("signal: highlight {place}"),
+        Event::SignalShown { signal: shown, .. } => format!("signal: {}", signal(shown)),
         Event::SignalEnded { reason: SignalEnd::Elapsed } => "signal ends".to_string(),
         Event::SignalEnded { reason: SignalEnd::TakenBack } => "signal taken back".to_string(),
         Event::Marker { note } => format!("marker: {note}"),
@@ -204,15 +203,20 @@ fn estimated(estimate: &EstimateWitness) -> Option<String> {
     (!wrong.is_empty()).then(|| format!("estimated: participant believes {}", wrong.join(", ")))
 }
 
+/// A signal by the names of the log.
+fn signal(signal: &Signal) -> String {
+    match signal {
+        Signal::ShowRecipe(order) => format!("recipe of {order}"),
+        Signal::Highlight(place) => format!("highlight {place}"),
+    }
+}
+
 fn advised(advice: &Recommendation, by: ConceptName) -> Option<String> {
     if let Some(proposal) = &advice.proposal {
         return Some(format!("proposed after the error: {}", proposal.presses.join(", ")));
     }
     let best = advice.top().filter(|option| Some(&option.signal) == advice.best.as_ref())?;
-    let what = match &best.signal {
-        Signal::ShowRecipe(order) => format!("recipe of {order}"),
-        Signal::Highlight(place) => format!("highlight {place}"),
-    };
+    let what = signal(&best.signal);
     let worth = match by {
         ConceptName::Tom => format!("belief off by {:.2}", best.benefit),
         _ => format!("saves {:.1} presses (±{:.1})", best.benefit, best.standard_error),

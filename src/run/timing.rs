@@ -5,12 +5,11 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::advisor::{Advisor, Question};
+use super::advisor::Advisor;
 use super::follower::Timing;
 use super::replay::Replay;
 use crate::edge::files::FileResult;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::session::Event;
 
 /// What `--timing` prints, in microseconds. Null is what the recording does not have.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -58,23 +57,13 @@ pub fn measure(recording: &Path) -> FileResult<TimingFigures> {
     let mut advisor = Advisor::new(kitchen.clone(), &spec, CostToGo::new(kitchen));
     let began = Instant::now();
     let (mut plan_ns, mut step_ns) = (Vec::new(), Vec::new());
-    let mut asked = None;
-    while let Some(event) = replay.step()? {
-        let follower = &replay.follower;
-        match event.stamped.event {
-            Event::Press { .. } if follower.session.is_running() => asked = Some(event.stamped.seq),
-            // By now the robot has made up its mind.
-            Event::Gaze(_) => {
-                let Some(seq) = asked.take() else { continue };
-                let began = Instant::now();
-                advisor.answer(&Question::of(follower, seq, event.stamped.time));
-                let took_ns = began.elapsed().as_nanos() as u64;
-                plan_ns.push(took_ns);
-                let inference = follower.timing.as_ref().and_then(|timing| timing.action_ns.last());
-                step_ns.extend(inference.map(|inference| inference + took_ns));
-            }
-            _ => {}
-        }
+    while let Some(question) = replay.next_question()? {
+        let began = Instant::now();
+        advisor.answer(&question);
+        let took_ns = began.elapsed().as_nanos() as u64;
+        plan_ns.push(took_ns);
+        let inference = replay.follower.timing.as_ref().and_then(|timing| timing.action_ns.last());
+        step_ns.extend(inference.map(|inference| inference + took_ns));
     }
     let wall_s = began.elapsed().as_secs_f64();
     let timing = replay.follower.timing.take().unwrap_or_default();

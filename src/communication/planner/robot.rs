@@ -64,7 +64,7 @@ impl RobotPolicy {
             return choices;
         }
         let bits = |buttons: &[ButtonId]| buttons.iter().fold(0, |bits, button| bits | 1u64 << button.0);
-        let best = policy::best_presses_with(kitchen, cost, care, state, recipes);
+        let best = policy::best_presses(kitchen, cost, care, state, recipes);
         let useful = bits(&best);
         let choices = Choices { choices: bits(&policy::chosen(kitchen, cost, care, state, recipes, best)), useful };
         self.known[place] = Some((care, state, wanted, choices));

@@ -47,7 +47,7 @@ pub fn predict(
             }
         }
         let care = if count >= COUNTS * draws as f64 { Care::Close } else { Care::Rough };
-        let choices = policy::choices_with(kitchen, cost, care, state, &recipes);
+        let choices = policy::choices(kitchen, cost, care, state, &recipes);
         let weight = count / choices.len().max(1) as f64;
         for next in choices.iter().filter_map(|&button| kitchen.press(state, &recipes, Agent::Robot, button)) {
             note_changes(kitchen, state, next, weight, &mut flows);

@@ -1,39 +1,38 @@
 //! A live session: real time, a wizard at the console, every event recorded as it happens.
 
+mod inputs;
+mod recording;
+mod showing;
+
 use std::io;
 use std::time::Duration;
 
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
-use super::advisor::{AdvisorDesk, next_advice};
-use super::begun::{Begun, Place};
-use super::compare::{WatchDesk, Watcher};
-use super::desk::Desk;
-use super::engine::Engine;
-use super::figures::TrialFigures;
-use super::leaving::{Leaving, LiveEnd};
-use super::options::Beginning;
-use super::resume::ResumeError;
-use super::standing::Standing;
-use crate::communication::recommendation::Recommendation;
-use crate::console::belief::{self, Moment};
 use crate::console::comparison::Compared;
 use crate::console::keys::KeyError;
-use crate::console::model::{Level, Recording};
-use crate::console::screen::screen as on_screen;
+use crate::console::model::Recording;
 use crate::console::view::theme::Ground;
-use crate::console::{Command, Keys, Message, Model, update};
+use crate::console::{Keys, Model};
 use crate::edge::clock::{SessionClock, WallTime};
 use crate::edge::doctor::free_bytes;
 use crate::edge::files::{FileError, key_map};
-use crate::edge::gaze_json::GazeLine;
 use crate::edge::log::{Lock, LogWriter, WriteError};
 use crate::edge::terminal::{Screen, theme};
-use crate::gaze::GazeSample;
+use crate::run::advisor::{AdvisorDesk, next_advice};
+use crate::run::begun::{Begun, Place};
+use crate::run::compare::{WatchDesk, Watcher};
+use crate::run::desk::Desk;
+use crate::run::engine::Engine;
+use crate::run::figures::TrialFigures;
+use crate::run::leaving::{Leaving, LiveEnd};
+use crate::run::options::Beginning;
+use crate::run::resume::ResumeError;
+use crate::run::standing::Standing;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::screen::Screen as OnScreen;
 use crate::session::settings::GazeSource;
-use crate::session::{Event, Header, Phase, Stamped};
+use crate::session::{Event, Header};
 
 /// At most 30 frames a second.
 const FRAME: Duration = Duration::from_millis(33);
@@ -111,7 +110,7 @@ struct Live {
 ///
 /// # Errors
 /// The session cannot be recorded, or the terminal is gone.
-pub(super) async fn run(begun: Begun, desk: &mut Desk) -> Result<LiveEnd, LiveError> {
+pub(in crate::run) async fn run(begun: Begun, desk: &mut Desk) -> Result<LiveEnd, LiveError> {
     Live::open(begun, desk.screen.ground)?.run(desk).await
 }
 
@@ -214,30 +213,6 @@ impl Live {
         }
     }
 
-    /// Tells the model what time it is.
-    fn tick(&mut self) {
-        self.model.now = self.clock.now();
-        self.model.clock = self.model.now;
-    }
-
-    /// Takes a message of the terminal; how the wizard leaves the recording, if that is what it says.
-    fn take(&mut self, message: Message) -> Option<Leaving> {
-        self.tick();
-        self.dirty |= !matches!(message, Message::Pointer(..));
-        match update(&mut self.model, self.engine.session(), message) {
-            Some(Command::Input(event)) => self.input(event),
-            Some(Command::Start(preflight)) => {
-                self.input(preflight);
-                self.input(Event::TrialStarted);
-            }
-            Some(Command::Quit) => return Some(Leaving::Quit),
-            Some(Command::Next) => return Some(Leaving::Next),
-            Some(Command::Redo) => return Some(Leaving::Redo),
-            Some(Command::Move(_)) | None => {}
-        }
-        None
-    }
-
     /// The same trial in another recording beside this one.
     fn beginning_again(&self) -> Beginning {
         let folder = self.log.folder();
@@ -245,142 +220,6 @@ impl Live {
         let out = folder.parent().unwrap_or(std::path::Path::new(".")).to_path_buf();
         let header = Header { redoes: Some(name), started: None, continues: None, ..self.header.clone() };
         Beginning::Again { header: Box::new(header), kitchen: self.engine.session().kitchen.clone(), out }
-    }
-
-    fn input(&mut self, event: Event) {
-        let is_gaze = matches!(event, Event::Gaze(_));
-        let outcome = self.engine.input(self.clock.now(), event);
-        self.record(&outcome.events);
-        if let Some(reason) = outcome.refused.filter(|_| !is_gaze) {
-            update(&mut self.model, self.engine.session(), Message::Refused(reason));
-        }
-    }
-
-    /// Takes the assistant's answer; one that comes when the trial is over is of no use any more.
-    fn advise(&mut self, advice: Recommendation) {
-        let outcome = self.engine.input(self.clock.now(), Event::Advised(advice));
-        self.record(&outcome.events);
-    }
-
-    /// Writes events to the log; the session ends where that fails, since what is not recorded did not happen.
-    fn record(&mut self, events: &[Stamped]) {
-        self.dirty = true;
-        for stamped in events {
-            match stamped.event {
-                Event::Gaze(sample) => self.model.see(stamped.time, sample),
-                Event::SignalShown { .. } => self.undrawn = Some(stamped.seq),
-                _ => {}
-            }
-            if let Some(watch) = &self.watch {
-                watch.tell(stamped);
-            }
-            if self.failed.is_none()
-                && let Err(error) = self.log.append(stamped)
-            {
-                self.fail(error);
-            }
-        }
-        if let Some(last) = events.last() {
-            let by_gaze = events.iter().all(|stamped| matches!(stamped.event, Event::Gaze(_)));
-            let session = self.engine.session();
-            let moment = Moment::new(&session.kitchen, session.state, self.engine.belief(), last.time, by_gaze);
-            self.model.belief.note(moment);
-            self.model.belief.forget(last.time, belief::SHOWN_S);
-        }
-        for question in self.engine.take_questions() {
-            if let Some(advisor) = &self.advisor {
-                advisor.ask(question);
-            }
-        }
-        let judged = self.engine.judged();
-        let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
-        self.model.errors.extend(new);
-        self.judged = judged.len();
-    }
-
-    fn flush(&mut self) {
-        if self.failed.is_none()
-            && let Err(error) = self.log.flush()
-        {
-            self.fail(error);
-        }
-    }
-
-    /// Whether the recording is still where it should be, and whether the clock jumped.
-    fn watch(&mut self) {
-        if let Some(by_ms) = self.clock.jump() {
-            self.input(Event::ClockJumped { by_ms });
-            let text = format!("the clock jumped by {:.1} s: session time did not", by_ms as f64 / 1000.0);
-            self.model.say(Level::Alarm, text);
-        }
-        if self.engine.session().phase == Phase::Ready {
-            self.model.free_bytes = free_bytes(self.log.folder()).ok();
-        }
-        if self.failed.is_none()
-            && let Err(error) = self.log.check()
-        {
-            self.fail(error);
-        }
-    }
-
-    /// The log cannot be written: alarm, stop the robot, end the session. The console stays until the wizard leaves.
-    fn fail(&mut self, error: WriteError) {
-        let (reason, saved) = match &error {
-            WriteError::Unwritable { reason, saved, .. } => (reason.to_string(), saved.clone()),
-            error => (error.to_string(), None),
-        };
-        let saved = saved.map_or(String::new(), |saved| format!(", saved in {}", saved.display()));
-        self.model.recording = Recording::Lost;
-        self.model.say(Level::Alarm, format!("session over, the recording ends here: {reason}{saved}"));
-        self.failed = Some(error);
-        self.dirty = true;
-        for event in [Event::RobotStopped, Event::SessionEnded] {
-            // Nothing of it can be recorded; a robot that is stopped already stays so.
-            let _ = self.engine.input(self.clock.now(), event);
-        }
-    }
-
-    fn gaze(&mut self, line: GazeLine) {
-        match line {
-            GazeLine::Sample(sample) => self.input(Event::Gaze(sample)),
-            GazeLine::Malformed => self.model.malformed += 1,
-        }
-    }
-
-    /// The pointer as a gaze sample; nobody has moved it yet: no sample.
-    fn look(&mut self) {
-        if let Some([x, y]) = self.model.pointer {
-            self.input(Event::Gaze(GazeSample { x, y, confidence: 1.0, device_ns: None }));
-        }
-    }
-
-    fn draw(&mut self, screen: &mut Screen) -> io::Result<()> {
-        self.tick();
-        if let (Some(newest), Some(compared)) =
-            (self.watch.as_ref().and_then(WatchDesk::newest), &mut self.model.comparison)
-        {
-            compared.show(newest);
-        }
-        let is_ready = screen.is_ready();
-        if is_ready {
-            self.tell_screen();
-        }
-        // A terminal that is still busy with the last frame gets this one later.
-        self.dirty = !is_ready;
-        screen.draw(self.engine.session(), &self.model)?;
-        if let Some(signal) = self.undrawn.take_if(|_| is_ready && self.engine.session().phase != Phase::Closed) {
-            self.input(Event::SignalDrawn { signal });
-        }
-        Ok(())
-    }
-
-    /// Records what the wizard is about to see, if that is something else than before.
-    fn tell_screen(&mut self) {
-        let now = on_screen(self.engine.session(), &self.model);
-        if self.engine.session().phase != Phase::Closed && self.seen.as_ref() != Some(&now) {
-            self.seen = Some(now.clone());
-            self.input(Event::Screen(now));
-        }
     }
 
     fn close(mut self, leaving: Leaving) -> Result<LiveEnd, LiveError> {

@@ -1,0 +1,88 @@
+//! Every event into the log, and to whoever else wants to know of it; what is done when that fails.
+
+use super::Live;
+use crate::console::belief::{self, Moment};
+use crate::console::model::{Level, Recording};
+use crate::edge::doctor::free_bytes;
+use crate::edge::log::WriteError;
+use crate::session::{Event, Phase, Stamped};
+
+impl Live {
+    /// Writes events to the log; the session ends where that fails, since what is not recorded did not happen.
+    pub(super) fn record(&mut self, events: &[Stamped]) {
+        self.dirty = true;
+        for stamped in events {
+            match stamped.event {
+                Event::Gaze(sample) => self.model.see(stamped.time, sample),
+                Event::SignalShown { .. } => self.undrawn = Some(stamped.seq),
+                _ => {}
+            }
+            if let Some(watch) = &self.watch {
+                watch.tell(stamped);
+            }
+            if self.failed.is_none()
+                && let Err(error) = self.log.append(stamped)
+            {
+                self.fail(error);
+            }
+        }
+        if let Some(last) = events.last() {
+            let by_gaze = events.iter().all(|stamped| matches!(stamped.event, Event::Gaze(_)));
+            let session = self.engine.session();
+            let moment = Moment::new(&session.kitchen, session.state, self.engine.belief(), last.time, by_gaze);
+            self.model.belief.note(moment);
+            self.model.belief.forget(last.time, belief::SHOWN_S);
+        }
+        for question in self.engine.take_questions() {
+            if let Some(advisor) = &self.advisor {
+                advisor.ask(question);
+            }
+        }
+        let judged = self.engine.judged();
+        let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
+        self.model.errors.extend(new);
+        self.judged = judged.len();
+    }
+
+    pub(super) fn flush(&mut self) {
+        if self.failed.is_none()
+            && let Err(error) = self.log.flush()
+        {
+            self.fail(error);
+        }
+    }
+
+    /// Whether the recording is still where it should be, and whether the clock jumped.
+    pub(super) fn watch(&mut self) {
+        if let Some(by_ms) = self.clock.jump() {
+            self.input(Event::ClockJumped { by_ms });
+            let text = format!("the clock jumped by {:.1} s: session time did not", by_ms as f64 / 1000.0);
+            self.model.say(Level::Alarm, text);
+        }
+        if self.engine.session().phase == Phase::Ready {
+            self.model.free_bytes = free_bytes(self.log.folder()).ok();
+        }
+        if self.failed.is_none()
+            && let Err(error) = self.log.check()
+        {
+            self.fail(error);
+        }
+    }
+
+    /// The log cannot be written: alarm, stop the robot, end the session. The console stays until the wizard leaves.
+    pub(super) fn fail(&mut self, error: WriteError) {
+        let (reason, saved) = match &error {
+            WriteError::Unwritable { reason, saved, .. } => (reason.to_string(), saved.clone()),
+            error => (error.to_string(), None),
+        };
+        let saved = saved.map_or(String::new(), |saved| format!(", saved in {}", saved.display()));
+        self.model.recording = Recording::Lost;
+        self.model.say(Level::Alarm, format!("session over, the recording ends here: {reason}{saved}"));
+        self.failed = Some(error);
+        self.dirty = true;
+        for event in [Event::RobotStopped, Event::SessionEnded] {
+            // Nothing of it can be recorded; a robot that is stopped already stays so.
+            let _ = self.engine.input(self.clock.now(), event);
+        }
+    }
+}

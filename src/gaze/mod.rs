@@ -1,5 +1,8 @@
 //! Gaze: samples on the wall display and the locations that they may have read.
 
+pub mod surface;
+pub mod tags;
+
 use serde::{Deserialize, Serialize};
 
 use crate::kitchen::{Kitchen, LocationId};

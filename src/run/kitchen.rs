@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use crate::gaze::tags::{CELLS, Tag, Tags};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationKind, OrderContent, State};
 
@@ -16,6 +17,40 @@ pub struct KitchenFigures {
     pub states: String,
     pub aspects: Vec<AspectFigures>,
     pub plans: Vec<PlanFigures>,
+    /// The tags in the corners of the wall display; null where there is no room for them.
+    pub tags: Option<TagFigures>,
+}
+
+/// The tags by which an eye tracker finds the wall display.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TagFigures {
+    pub family: &'static str,
+    /// The length of the black edges, in metres.
+    pub edge_m: f64,
+    pub tags: Vec<TagFigure>,
+    /// The corners of the surface that they span: top left, top right, bottom right, bottom left, in fractions of the
+    /// display.
+    pub surface: [[f64; 2]; 4],
+}
+
+/// A tag: x, y, w and h with its white border, in fractions of the display; rows of cells, `#` for black.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TagFigure {
+    pub id: u16,
+    pub area: [f64; 4],
+    pub cells: Vec<String>,
+}
+
+impl TagFigures {
+    fn of(tags: &Tags) -> TagFigures {
+        let row = |row: &[bool; CELLS]| row.iter().map(|black| if *black { '#' } else { '.' }).collect();
+        let tag = |tag: &Tag| {
+            let area = [tag.area.x, tag.area.y, tag.area.w, tag.area.h];
+            TagFigure { id: tag.id, area, cells: tag.cells().iter().map(row).collect() }
+        };
+        let tags_drawn = tags.corners.iter().map(tag).collect();
+        TagFigures { family: "tag36h11", edge_m: tags.edge_m, tags: tags_drawn, surface: tags.hull() }
+    }
 }
 
 /// The size of a state aspect.
@@ -46,6 +81,7 @@ impl KitchenFigures {
             states: kitchen.state_count().to_string(),
             aspects: aspects.collect(),
             plans: plans.collect(),
+            tags: Tags::place(kitchen).ok().as_ref().map(TagFigures::of),
         }
     }
 }
@@ -92,7 +128,8 @@ pub fn describe(kitchen: &Kitchen, figures: &KitchenFigures) -> String {
     let written = write_locations(&mut text, kitchen)
         .and_then(|()| write_buttons(&mut text, kitchen))
         .and_then(|()| write_recipes(&mut text, kitchen, figures))
-        .and_then(|()| write_aspects(&mut text, figures));
+        .and_then(|()| write_aspects(&mut text, figures))
+        .and_then(|()| write_tags(&mut text, kitchen));
     written.expect("a string takes every text");
     text
 }
@@ -159,4 +196,18 @@ fn write_aspects(text: &mut String, figures: &KitchenFigures) -> std::fmt::Resul
         writeln!(text, "  {:<28} {:>4}", aspect.name, aspect.values)?;
     }
     writeln!(text, "  {:<28} {:>4}", "product", figures.states)
+}
+
+fn write_tags(text: &mut String, kitchen: &Kitchen) -> std::fmt::Result {
+    writeln!(text, "\nTAGS OF THE WALL DISPLAY")?;
+    let tags = match Tags::place(kitchen) {
+        Ok(tags) => tags,
+        Err(error) => return writeln!(text, "  none: found {error}; right would be {}", error.remedy),
+    };
+    let [top_left, top_right, bottom_right, bottom_left] = tags.corners.map(|tag| tag.id);
+    writeln!(
+        text,
+        "  tag36h11 {top_left} top left, {top_right} top right, {bottom_right} bottom right, {bottom_left} bottom left"
+    )?;
+    writeln!(text, "  black edges of {:.3} m", tags.edge_m)
 }

@@ -1,0 +1,47 @@
+//! From a tracker's surface to the wall display.
+
+/// Corners that span less than this part of the display are no surface.
+const LEAST_AREA: f64 = 1e-3;
+
+/// The homography of a tracked surface to the display.
+///
+/// A tracker tells gaze in fractions of a surface that it found by the tags; where the corners of that surface are on the
+/// display is known, and the four of them decide the mapping (Heckbert 1989, section 2.2.3).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceMap {
+    /// Rows of the homography from the unit square, y down, to fractions of the display.
+    rows: [[f64; 3]; 3],
+}
+
+impl SurfaceMap {
+    /// The map of the surface with these corners in fractions of the display: top left, top right, bottom right, bottom left.
+    /// Nothing if they are no convex quadrangle in this order.
+    pub fn new(corners: [[f64; 2]; 4]) -> Option<SurfaceMap> {
+        let turn =
+            |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
+        let turns = (0..4).map(|i| turn(corners[i], corners[(i + 1) % 4], corners[(i + 2) % 4]));
+        // Clockwise, since y points down: every turn is a positive one.
+        if !turns.into_iter().all(|turn| turn.is_finite() && turn > LEAST_AREA) {
+            return None;
+        }
+        let [p0, p1, p2, p3] = corners;
+        let sum = [p0[0] - p1[0] + p2[0] - p3[0], p0[1] - p1[1] + p2[1] - p3[1]];
+        let (d1, d2) = ([p1[0] - p2[0], p1[1] - p2[1]], [p3[0] - p2[0], p3[1] - p2[1]]);
+        let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+        let (g, h) = (cross(sum, d2) / cross(d1, d2), cross(d1, sum) / cross(d1, d2));
+        let row = |axis: usize| {
+            let (a, b) = (p1[axis] - p0[axis] + g * p1[axis], p3[axis] - p0[axis] + h * p3[axis]);
+            [a, b, p0[axis]]
+        };
+        Some(SurfaceMap { rows: [row(0), row(1), [g, h, 1.0]] })
+    }
+
+    /// The display point of a place on the surface: `norm_pos` as Pupil tells it, the origin at the bottom left, y up. May
+    /// lie outside of the display; nothing if it is no number, or beyond the horizon of the surface.
+    pub fn to_display(&self, norm_pos: [f64; 2]) -> Option<[f64; 2]> {
+        let at = [norm_pos[0], 1.0 - norm_pos[1], 1.0];
+        let [x, y, w] = self.rows.map(|row| row.iter().zip(at).map(|(a, b)| a * b).sum::<f64>());
+        let point = [x / w, y / w];
+        (w > 0.0 && point.iter().all(|value| value.is_finite())).then_some(point)
+    }
+}

@@ -1,0 +1,132 @@
+//! The tags on the wall display by which an eye tracker finds it: AprilTags of the family tag36h11, one in each corner.
+//!
+//! Pupil Labs asks for at least four tags with unique ids, a black edge of at least 8 cm at 2 m, and a white border of one
+//! cell around it.
+
+use crate::kitchen::{Area, Kitchen};
+
+/// The ids of the corners' tags: top left, top right, bottom right, bottom left.
+pub const IDS: [u16; 4] = [0, 1, 2, 3];
+/// The black edge in millimetres: as long as the corners have room for, between these.
+const EDGE_MM: (u32, u32) = (80, 100);
+/// Cells of the black square's side: six of data, and the black border.
+const BLACK_CELLS: usize = 8;
+/// Cells of a whole tag's side, with the white border.
+pub const CELLS: usize = 10;
+/// The data of the tags with these ids: six rows of six bits, the first bit top left, 1 for white (Olson 2011; Wang and
+/// Olson 2016).
+const DATA: [u64; 4] = [0xd_5d62_8584, 0xd_97f1_8b49, 0xd_d280_910e, 0xe_479e_9c98];
+
+/// A tag on the wall display.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tag {
+    /// In the family tag36h11.
+    pub id: u16,
+    /// With its white border, in fractions of the display.
+    pub area: Area,
+    /// The black square, in fractions of the display.
+    pub black: Area,
+}
+
+/// The tags of a wall display.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tags {
+    /// Top left, top right, bottom right, bottom left.
+    pub corners: [Tag; 4],
+    /// The length of the black edges, in metres.
+    pub edge_m: f64,
+}
+
+/// Tags that do not fit on a display.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{found}")]
+pub struct TagError {
+    pub found: String,
+    /// What would be right.
+    pub remedy: String,
+}
+
+impl Tags {
+    /// The largest tags that the corners of a kitchen's display have room for beside locations and storages.
+    ///
+    /// # Errors
+    /// Something lies where the smallest tags would be.
+    pub fn place(kitchen: &Kitchen) -> Result<Tags, TagError> {
+        let locations = kitchen.locations.iter().map(|location| (location.label(), location.display));
+        let storage = |storage: &crate::kitchen::layout::Storage| {
+            (format!("{} of the {}", storage.label, storage.agent.name()), storage.display)
+        };
+        let taken: Vec<(String, Area)> = locations.chain(kitchen.storages.iter().map(storage)).collect();
+        let in_the_way = |tags: &Tags| {
+            let hidden =
+                |tag: &Tag| taken.iter().find(|(_, area)| overlap(tag.area, *area)).map(|(name, _)| name.clone());
+            let corners = ["top left", "top right", "bottom right", "bottom left"];
+            tags.corners.iter().zip(corners).find_map(|(tag, corner)| Some((corner, hidden(tag)?)))
+        };
+        let (least, most) = EDGE_MM;
+        let sizes = (least..=most).rev().map(|edge_mm| Tags::of_edge(f64::from(edge_mm) / 1000.0, kitchen.display_m));
+        for tags in sizes {
+            if in_the_way(&tags).is_none() {
+                return Ok(tags);
+            }
+        }
+        let smallest = Tags::of_edge(f64::from(least) / 1000.0, kitchen.display_m);
+        let (corner, name) = in_the_way(&smallest).unwrap_or_default();
+        let side_m = smallest.edge_m * CELLS as f64 / BLACK_CELLS as f64;
+        Err(TagError {
+            found: format!("\"{name}\" where the {corner} tag of the eye tracker has to be"),
+            remedy: format!("{side_m:.2} m by {side_m:.2} m free in each corner of the display"),
+        })
+    }
+
+    fn of_edge(edge_m: f64, display_m: [f64; 2]) -> Tags {
+        let cell_m = edge_m / BLACK_CELLS as f64;
+        let [cell_x, cell_y] = display_m.map(|length_m| cell_m / length_m);
+        let (w, h) = (cell_x * CELLS as f64, cell_y * CELLS as f64);
+        let tag = |id: u16, x: f64, y: f64| {
+            let (black_w, black_h) = (cell_x * BLACK_CELLS as f64, cell_y * BLACK_CELLS as f64);
+            let black = Area { x: x + cell_x, y: y + cell_y, w: black_w, h: black_h };
+            Tag { id, area: Area { x, y, w, h }, black }
+        };
+        let (right, bottom) = (1.0 - w, 1.0 - h);
+        let places = [(0.0, 0.0), (right, 0.0), (right, bottom), (0.0, bottom)];
+        let mut corners = [tag(0, 0.0, 0.0); 4];
+        for ((corner, id), (x, y)) in corners.iter_mut().zip(IDS).zip(places) {
+            *corner = tag(id, x, y);
+        }
+        Tags { corners, edge_m }
+    }
+
+    /// The corners of Pupil's default surface, the hull of the black corners of all tags, in fractions of the display: top
+    /// left, top right, bottom right, bottom left.
+    pub fn hull(&self) -> [[f64; 2]; 4] {
+        let [top_left, top_right, bottom_right, bottom_left] = self.corners.map(|tag| tag.black);
+        [
+            [top_left.x, top_left.y],
+            [top_right.x + top_right.w, top_right.y],
+            [bottom_right.x + bottom_right.w, bottom_right.y + bottom_right.h],
+            [bottom_left.x, bottom_left.y + bottom_left.h],
+        ]
+    }
+}
+
+impl Tag {
+    /// What is to be drawn: rows from the top, cells from the left; true for black.
+    pub fn cells(&self) -> [[bool; CELLS]; CELLS] {
+        let data = IDS.iter().position(|id| *id == self.id).map_or(0, |index| DATA[index]);
+        let mut cells = [[false; CELLS]; CELLS];
+        for (row, line) in cells.iter_mut().enumerate().skip(1).take(BLACK_CELLS) {
+            for (column, cell) in line.iter_mut().enumerate().skip(1).take(BLACK_CELLS) {
+                let in_data = |at: usize| (2..8).contains(&at);
+                let is_white = in_data(row) && in_data(column) && data >> (35 - ((row - 2) * 6 + column - 2)) & 1 == 1;
+                *cell = !is_white;
+            }
+        }
+        cells
+    }
+}
+
+fn overlap(a: Area, b: Area) -> bool {
+    let meet = |a: f64, a_len: f64, b: f64, b_len: f64| a + a_len > b && b + b_len > a;
+    meet(a.x, a.w, b.x, b.w) && meet(a.y, a.h, b.y, b.h)
+}

@@ -27,10 +27,12 @@ use tomcom::console::view::theme::{Ground, Role, Theme};
 use tomcom::console::{Command, KeyMap, Keys, Message, Model, update, view};
 use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::gaze::GazeSample;
+use tomcom::gaze::calibration::{Found, FoundTarget};
 use tomcom::kitchen::{Agent, Kitchen, LocationKind};
 use tomcom::measures::matching::Said;
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom::mind::model::PriorModel;
+use tomcom::session::calibration::CalibrationEvent;
 use tomcom::session::event::{EndReason, Event, SignalEnd, Stamped};
 use tomcom::session::plan::Wanted;
 use tomcom::session::preflight::Verdict;
@@ -82,7 +84,7 @@ impl Stage {
     }
 
     fn look(&mut self, seconds: f64, x: f64, y: f64) {
-        self.at(seconds, Event::Gaze(GazeSample { x, y, confidence: 0.97, device_ns: None }));
+        self.at(seconds, Event::Gaze(GazeSample::new(x, y, 0.97)));
     }
 
     /// The estimate from now on: these aspects are held for these values, so surely.
@@ -258,7 +260,7 @@ fn the_participants_keys_stand_at_their_places() {
 fn a_gaze_map_fills_the_room_of_what_the_wizard_may_not_see() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.session.spec.console.visibility = Visibility::State;
-    stage.model.see(stage.model.now, GazeSample { x: 0.30, y: 0.4, confidence: 0.97, device_ns: None });
+    stage.model.see(stage.model.now, GazeSample::new(0.30, 0.4, 0.97));
     insta::assert_snapshot!("gaze_map_120x40", stage.screen((120, 40)));
 }
 
@@ -1220,4 +1222,50 @@ fn every_lane_of_a_comparison_fits_the_smallest_console() {
     for figure in ["recall", "kappa", "lead", "1/"] {
         assert!(alone.contains(figure), "{figure} in\n{alone}");
     }
+}
+
+#[test]
+fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    let begun = input(stage.control('v')).expect("a check begins");
+    assert_eq!(begun, Event::Calibration(CalibrationEvent::begin()));
+    stage.at(1.0, begun);
+    stage.at(2.0, Event::Calibration(CalibrationEvent::TargetShown { target: 1 }));
+    insta::assert_snapshot!("calibration_target_120x40", stage.screen((120, 40)));
+    assert!(stage.screen((80, 24)).contains("look here: 2 of 5"));
+    let target = |samples, accuracy_deg| FoundTarget { samples, accuracy_deg };
+    let found = Found {
+        accuracy_deg: 2.31,
+        corrected_deg: 0.42,
+        precision_deg: 0.19,
+        offset: [0.02, -0.01],
+        targets: vec![target(130, Some(2.1)), target(2, None), target(131, Some(2.6))],
+    };
+    stage.at(3.0, Event::Calibration(CalibrationEvent::TargetsHidden));
+    stage.at(3.0, Event::Calibration(CalibrationEvent::Measured { found: Some(found) }));
+    for size in SIZES {
+        insta::assert_snapshot!(format!("calibration_{}x{}", size.0, size.1), stage.screen(size));
+    }
+    stage.wait(1.0);
+    let accepted = input(stage.key(KeyCode::Enter));
+    assert_eq!(accepted, Some(Event::Calibration(CalibrationEvent::Accepted { corrected: true })));
+    assert_eq!(stage.model.dialog, None);
+}
+
+#[test]
+fn a_check_without_enough_samples_can_be_repeated_or_left_and_not_accepted() {
+    let mut stage = Stage::new("burger", ParticipantKind::Simulated);
+    let begun = input(stage.control('v')).expect("a check begins");
+    stage.at(1.0, begun);
+    stage.at(2.0, Event::Calibration(CalibrationEvent::TargetShown { target: 4 }));
+    stage.at(3.0, Event::Calibration(CalibrationEvent::TargetsHidden));
+    stage.at(3.0, Event::Calibration(CalibrationEvent::Measured { found: None }));
+    assert!(stage.screen((120, 40)).contains("too few usable samples"));
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    assert_eq!(input(stage.key(KeyCode::Char('r'))), Some(Event::Calibration(CalibrationEvent::begin())));
+    assert_eq!(stage.model.dialog, Some(Dialog::Calibration));
+    let left = input(stage.key(KeyCode::Esc));
+    assert_eq!(left, Some(Event::Calibration(CalibrationEvent::Dismissed)));
+    assert_eq!(stage.model.dialog, None);
 }

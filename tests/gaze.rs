@@ -1,11 +1,23 @@
 //! Gaze: the tags on the wall display, the mapping from a tracker's surface, and what comes of samples.
 
 use std::path::Path;
+use std::sync::Arc;
 
-use tomcom::edge::files::read_kitchen;
+use tomcom::base::time::SessionTime;
+use tomcom::edge::files::{read_kitchen, read_session};
+use tomcom::gaze::GazeSample;
+use tomcom::gaze::calibration::{TARGETS, Viewing, measure};
+use tomcom::gaze::device_clock::DeviceClock;
+use tomcom::gaze::quality::{GazeFault, RateLimit};
 use tomcom::gaze::surface::SurfaceMap;
 use tomcom::gaze::tags::{CELLS, Tags};
+use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Area, Kitchen};
+use tomcom::run::engine::Engine;
+use tomcom::session::admit::is_external;
+use tomcom::session::calibration::{CalibrationEvent, Check};
+use tomcom::session::settings::{GazeSource, ParticipantKind};
+use tomcom::session::{Event, SessionSpec, Stamped};
 
 fn load(layout: &str) -> Kitchen {
     match read_kitchen(Path::new(layout)) {
@@ -104,4 +116,207 @@ fn corners_that_are_no_surface_are_none() {
     for corners in [reversed, crossed, flat, endless] {
         assert_eq!(SurfaceMap::new(corners), None, "{corners:?}");
     }
+}
+
+/// A session of the sushi kitchen with these settings.
+fn engine(change: impl Fn(&mut SessionSpec)) -> Engine {
+    let mut files = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    change(&mut files.spec);
+    let kitchen = Arc::new(files.kitchen.kitchen);
+    Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen))
+}
+
+/// Checks the calibration as the live session does, from `from_s` on; all events of the check.
+fn check_calibration(engine: &mut Engine, from_s: f64, accept: CalibrationEvent) -> Vec<Stamped> {
+    let at = SessionTime::from_secs_f64;
+    let mut events = Vec::new();
+    let mut input = |engine: &mut Engine, time, event| {
+        let outcome = engine.input(time, event);
+        events.extend(outcome.events);
+        outcome.refused
+    };
+    assert_eq!(input(engine, at(from_s), Event::Calibration(CalibrationEvent::begin())), None);
+    while let Some((time, event)) = engine.session().calibration.as_ref().and_then(Check::next) {
+        let now = engine.session().time;
+        let refused = input(engine, now, Event::TrialStarted);
+        assert_eq!(refused.as_deref(), Some("the calibration is being checked"));
+        assert_eq!(input(engine, time, Event::Calibration(event)), None);
+    }
+    let now = engine.session().time;
+    assert_eq!(input(engine, now, Event::Calibration(accept)), None);
+    events
+}
+
+#[test]
+fn simulated_gaze_is_checked_by_targets_corrected_and_comes_out_the_same_again() {
+    let mut checked = engine(|spec| spec.seed = 4);
+    let events = check_calibration(&mut checked, 2.0, CalibrationEvent::Accepted { corrected: true });
+    let calibrated = checked.session().calibrated.clone().expect("accepted");
+    let found = &calibrated.found;
+    println!("{found:?}");
+    assert!(found.targets.iter().all(|target| (100..=140).contains(&target.samples)), "{found:?}");
+    // The simulated tracker has an offset of about a degree, and tremor of 4 mm around it, 2 m away.
+    assert!(found.corrected_deg < found.accuracy_deg && found.accuracy_deg < 3.0, "{found:?}");
+    assert!((0.1..0.3).contains(&found.precision_deg), "{found:?}");
+    let sample = GazeSample::new(0.4, 0.4, 1.0);
+    let corrected = checked.session().corrected(sample);
+    assert_eq!([corrected.x - sample.x, corrected.y - sample.y].map(|by| (by * 1e5).round() / 1e5), found.offset);
+    // The events from outside alone give all the others again: samples and result.
+    let mut again = engine(|spec| spec.seed = 4);
+    let mut produced = Vec::new();
+    for stamped in &events {
+        if is_external(again.session(), &stamped.event) {
+            produced.extend(again.input(stamped.time, stamped.event.clone()).events);
+        }
+    }
+    assert!(produced == events, "{} events and {} again", events.len(), produced.len());
+    assert_eq!(again.session().calibrated, Some(calibrated));
+}
+
+#[test]
+fn a_check_changes_nothing_in_the_trial_but_the_offset_of_the_gaze() {
+    let trial = |checks: bool| {
+        let mut engine = engine(|spec| (spec.seed, spec.trial.presses) = (4, 12));
+        if checks {
+            check_calibration(&mut engine, 0.0, CalibrationEvent::Dismissed);
+        }
+        let start = SessionTime::from_secs_f64(60.0);
+        let mut events = engine.input(start, Event::TrialStarted).events;
+        while let Some(due) = engine.next_due() {
+            assert!(due >= start);
+            events.extend(engine.fire());
+        }
+        let told = |stamped: Stamped| match stamped.event {
+            Event::BeliefEstimated(_) | Event::Advised(_) => None,
+            event => Some((stamped.time, event)),
+        };
+        events.into_iter().filter_map(told).collect::<Vec<_>>()
+    };
+    let unchecked = trial(false);
+    assert!(unchecked.len() > 1000, "{} events", unchecked.len());
+    assert!(trial(true) == unchecked, "the trial is another one");
+}
+
+#[test]
+fn a_check_measures_what_the_gaze_is_off_by() {
+    let viewing = Viewing { display_m: [1.5, 0.84375], distance_m: 2.0 };
+    // At 2 m, a degree is 35 mm.
+    assert!((viewing.angle_deg([0.5, 0.5], [0.5 + 0.0349 / 1.5, 0.5]) - 1.0).abs() < 0.001);
+    let off = [0.03, -0.02];
+    let at = |target: [f64; 2], n: usize| vec![GazeSample::new(target[0] + off[0], target[1] + off[1], 0.9); n];
+    let samples: Vec<Vec<GazeSample>> = TARGETS.iter().map(|&target| at(target, 20)).collect();
+    let found = measure(&viewing, &TARGETS, &samples).expect("enough samples");
+    assert_eq!(found.offset, [-0.03, 0.02]);
+    assert_eq!((found.corrected_deg, found.precision_deg), (0.0, 0.0));
+    let straight = viewing.angle_deg(TARGETS[0], [TARGETS[0][0] + off[0], TARGETS[0][1] + off[1]]);
+    assert!((found.accuracy_deg - straight).abs() < 0.15, "{} and {straight}", found.accuracy_deg);
+    // Targets that were not looked at are left out, and without three of them nothing is known.
+    let seen =
+        |count: usize| TARGETS.iter().enumerate().map(move |(i, &target)| at(target, if i < count { 20 } else { 3 }));
+    let three = measure(&viewing, &TARGETS, &seen(3).collect::<Vec<_>>()).expect("three targets");
+    assert_eq!(three.targets.iter().filter(|target| target.accuracy_deg.is_none()).count(), 2);
+    assert_eq!(measure(&viewing, &TARGETS, &seen(2).collect::<Vec<_>>()), None);
+}
+
+#[test]
+fn a_check_is_refused_where_it_cannot_be() {
+    let mut engine = engine(|_| {});
+    let refused = |engine: &mut Engine, event: Event| {
+        let now = engine.session().time;
+        engine.input(now, event).refused.unwrap_or_default()
+    };
+    let calibration = Event::Calibration;
+    assert!(refused(&mut engine, calibration(CalibrationEvent::TargetsHidden)).contains("no target is shown"));
+    assert!(refused(&mut engine, calibration(CalibrationEvent::Accepted { corrected: true })).contains("nothing was"));
+    assert_eq!(refused(&mut engine, Event::TrialStarted), "");
+    assert!(refused(&mut engine, calibration(CalibrationEvent::begin())).contains("pause the trial first"));
+    assert_eq!(refused(&mut engine, Event::TrialPaused), "");
+    assert_eq!(refused(&mut engine, calibration(CalibrationEvent::begin())), "");
+    assert!(refused(&mut engine, Event::TrialResumed).contains("being checked"));
+    assert_eq!(refused(&mut engine, calibration(CalibrationEvent::Dismissed)), "");
+    assert_eq!(refused(&mut engine, Event::TrialResumed), "");
+}
+
+#[test]
+fn what_is_wrong_with_a_stream_is_counted_by_kind_and_not_read() {
+    let mut engine = engine(|spec| {
+        (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
+    });
+    let at = |ms: u64| SessionTime(ms * 1_000_000);
+    assert_eq!(engine.input(at(0), Event::TrialStarted).refused, None);
+    let send = |engine: &mut Engine, arrived: u64, taken: u64, x: f64| {
+        let sample =
+            GazeSample { device_ns: Some(taken + 5), taken_ns: Some(at(taken)), ..GazeSample::new(x, 0.35, 0.9) };
+        let before = engine.belief().clone();
+        assert_eq!(engine.input(at(arrived), Event::Gaze(sample)).refused, None);
+        (*engine.belief() != before, engine.session().gaze.fault)
+    };
+    assert_eq!(send(&mut engine, 1000, 990, 0.40), (true, None));
+    assert_eq!(send(&mut engine, 1000, 998, 0.40), (true, None));
+    assert_eq!(send(&mut engine, 1002, 998, 0.40), (false, Some(GazeFault::Duplicate)));
+    assert_eq!(send(&mut engine, 1003, 910, 0.40), (false, Some(GazeFault::OutOfOrder)));
+    assert_eq!(send(&mut engine, 1600, 1010, 0.40), (false, Some(GazeFault::TooOld)));
+    // One from the future counts as taken now; the stream goes on after it.
+    assert_eq!(send(&mut engine, 1610, 9000, 0.40), (true, None));
+    assert_eq!(send(&mut engine, 1620, 1618, 0.40), (true, None));
+    let counts = engine.session().gaze.judge.counts;
+    assert_eq!((counts.duplicate, counts.out_of_order, counts.too_old, counts.sum()), (1, 1, 1, 3));
+    assert_eq!(engine.session().gaze.samples, 7);
+}
+
+#[test]
+fn what_is_read_is_what_the_display_showed_when_the_sample_was_taken() {
+    let at = |ms: u64| SessionTime(ms * 1_000_000);
+    // Salmon is put down on the counter at 1000 ms; gaze of before and after arrives at 1100 ms.
+    let p_salmon = |taken_ms: u64| {
+        let mut engine = engine(|spec| {
+            (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
+        });
+        let kitchen = engine.session().kitchen.clone();
+        let counter = kitchen.location_named("counter").expect("a counter");
+        let [x, y] = kitchen.location(counter).display.centre();
+        let input = |engine: &mut Engine, ms: u64, event: Event| {
+            assert_eq!(engine.input(at(ms), event).refused, None);
+        };
+        input(&mut engine, 0, Event::TrialStarted);
+        let (location, content) = ("counter".to_string(), "salmon raw".to_string());
+        input(&mut engine, 1000, Event::KitchenCorrected { location, content });
+        for sample in 0..8 {
+            let taken_ns = Some(at(taken_ms + 5 * sample));
+            input(&mut engine, 1100, Event::Gaze(GazeSample { taken_ns, ..GazeSample::new(x, y, 0.9) }));
+        }
+        let salmon = kitchen.content_named("salmon raw").expect("salmon").0;
+        let value = kitchen.aspects[counter.index()].index_of(salmon).expect("a value");
+        engine.belief().aspects[counter.index()].mean()[value]
+    };
+    let (before, after) = (p_salmon(940), p_salmon(1040));
+    assert!(before < 0.05, "salmon was not there yet: {before}");
+    assert!(after > 0.15, "salmon lay there: {after}");
+}
+
+#[test]
+fn device_time_is_told_from_the_samples_that_took_the_shortest_way() {
+    let mut clock = DeviceClock::default();
+    let ms = |ms: u64| SessionTime(ms * 1_000_000);
+    // The device's clock is 5 s behind; samples take 3 ms at least, some of them longer.
+    for step in 0..200u64 {
+        let late = 3 + [0, 9, 4, 30][step as usize % 4];
+        let taken = clock.session_time(ms(1000 + 10 * step).0, ms(6000 + 10 * step + late));
+        assert_eq!(taken, ms(6000 + 10 * step + 3), "step {step}");
+    }
+    // It begins anew at zero: the old offset does not hold for it.
+    assert_eq!(clock.session_time(0, ms(9000)), ms(9000));
+    assert_eq!(clock.session_time(ms(10).0, ms(9015)), ms(9010));
+}
+
+#[test]
+fn a_flood_is_let_through_at_the_rate_of_the_fastest_tracker() {
+    let mut limit = RateLimit::default();
+    let passed = |limit: &mut RateLimit, hz: u64, from_s: u64, seconds: u64| {
+        let times = (0..hz * seconds).map(|n| SessionTime(from_s * 1_000_000_000 + n * 1_000_000_000 / hz));
+        times.filter(|&time| limit.admits(time)).count() as u64
+    };
+    assert_eq!(passed(&mut limit, 1000, 0, 20), 20_000, "a fast tracker loses nothing");
+    let flood = passed(&mut limit, 50_000, 20, 10);
+    assert!((20_000..=21_001).contains(&flood), "{flood} of a flood");
 }

@@ -88,7 +88,7 @@ fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
         }
         14..24 => {
             let [x, y, confidence] = [1.2, 1.2, 1.0].map(|scale| scale * random.random::<f64>());
-            Event::Gaze(GazeSample { x, y, confidence, device_ns: None })
+            Event::Gaze(GazeSample::new(x, y, confidence))
         }
         _ => {
             let button = buttons[random.random_range(0..buttons.len())].name.clone();

@@ -28,6 +28,8 @@ pub enum Hand {
     Redo,
     /// Show what is ready for the trial, and what is not.
     Preflight,
+    /// Check the calibration of the eye tracker.
+    Calibrate,
     /// Write a note in words.
     NoteInWords,
     /// Leave the trial out of the analysis, for a reason; or take that back.
@@ -66,6 +68,7 @@ pub(super) fn act(model: &mut Model, session: &Session, hand: Hand) -> Option<Co
             model.dialog = Some(Dialog::Note(Line::default()));
             None
         }
+        Hand::Calibrate => super::calibration::begin(model, session),
         Hand::Redo => redo(model, session),
         Hand::Exclude if session.excluded.is_some() => {
             send(model, session, Event::TrialIncluded, Level::Done, "the trial is no longer excluded")

@@ -3,6 +3,7 @@
 
 pub mod arrange;
 pub mod belief;
+pub mod calibration;
 pub mod chord;
 pub mod comparison;
 pub mod form;

@@ -33,6 +33,8 @@ pub enum Dialog {
     Pick(Picker),
     /// What was found before the trial.
     Preflight,
+    /// Targets are looked at, or what came of it is shown.
+    Calibration,
     /// A line for a note in words.
     Note(Line),
     /// What each knew where wizard and assistant differ, in lines.
@@ -181,6 +183,8 @@ impl Model {
         match source {
             GazeSource::Simulated => "simulated",
             GazeSource::Mouse => "mouse",
+            GazeSource::Pupil => "pupil",
+            GazeSource::File => "file",
             GazeSource::Json => "json",
             GazeSource::None => "none",
         }

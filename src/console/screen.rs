@@ -35,6 +35,7 @@ fn name(dialog: &Dialog) -> &'static str {
         Dialog::Quit => "quit",
         Dialog::EndTrial => "end_trial",
         Dialog::Preflight => "preflight",
+        Dialog::Calibration => "calibration",
         Dialog::Note(_) => "note",
         Dialog::Difference(_) => "difference",
         Dialog::Pick(list) => match list.question {

@@ -67,6 +67,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<Binding> {
         line("start_pause", &[Chord::char('.')], Action::Advance, TRIAL, "start, pause, resume", Some("start/pause")),
         line("end_trial", &[Chord::ctrl('e')], Action::EndTrial, TRIAL, "end the trial (asks first)", Some("end")),
         hand("preflight", 'f', Hand::Preflight, TRIAL, "what is ready for it"),
+        hand("check_gaze", 'v', Hand::Calibrate, TRIAL, "check the gaze by targets"),
         hand("correct", 'k', Hand::Correct, TRIAL, "correct what lies where"),
         hand("abort_trial", 'x', Hand::Abort, TRIAL, "abort it (asks why)"),
         hand("redo_trial", 'n', Hand::Redo, TRIAL, "do an aborted one again"),

@@ -93,6 +93,9 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
         action if model.dialog == Some(Dialog::Preflight) => {
             preflight::answer(model, session, chord.code, action, touch == Touch::Press)
         }
+        _ if model.dialog == Some(Dialog::Calibration) => {
+            super::calibration::answer(model, session, chord.code, touch == Touch::Press)
+        }
         _ if touch == Touch::Held => {
             if model.dialog.is_none() {
                 model.say(Level::Refused, format!("\"{chord}\" is held down: it counts once"));
@@ -208,7 +211,8 @@ fn answer(model: &mut Model, session: &Session, chord: Chord, action: Option<Act
     let again = match dialog {
         Dialog::Quit => Some(Action::Quit),
         Dialog::EndTrial => Some(Action::EndTrial),
-        Dialog::Help | Dialog::Pick(_) | Dialog::Preflight | Dialog::Note(_) | Dialog::Difference(_) => None,
+        Dialog::Help | Dialog::Pick(_) | Dialog::Preflight => None,
+        Dialog::Calibration | Dialog::Note(_) | Dialog::Difference(_) => None,
     };
     if touch == Touch::Again && again.is_some() && action == again {
         return None;

@@ -3,10 +3,13 @@
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::{Sender, Signal};
+use crate::gaze::quality::DropCounts;
 use crate::kitchen::{Action, Agent, Kitchen, LocationId, OrderContent};
+use crate::session::calibration::CalibrationEvent;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::plan::PhaseSpec;
 use crate::session::protocol::ProtocolEvent;
+use crate::session::tracker::TrackerEvent;
 use crate::session::{Happening, Phase, Session};
 
 /// A button in words: "cutting board", "take rice".
@@ -153,4 +156,39 @@ pub fn is_unseen(session: &Session, location: LocationId) -> bool {
     let seen = session.gaze.looked_at[location.index()].is_some_and(|seen| seen >= at);
     let knows = seen || session.gaze.samples == 0 || at == SessionTime::ZERO;
     !knows && changed_by(session, at) != Some(Agent::Human)
+}
+
+/// What the eye tracker tells; nothing for fixations and blinks, which are too many.
+pub fn tracker(event: &TrackerEvent) -> Option<String> {
+    Some(match event {
+        TrackerEvent::Connected { device } => format!("eye tracker connected: {device}"),
+        TrackerEvent::Lost { reason } => format!("eye tracker lost: {reason}"),
+        TrackerEvent::DisplayFound => "eye tracker sees the display".to_string(),
+        TrackerEvent::DisplayLost => "eye tracker does not see the display".to_string(),
+        TrackerEvent::Dropped(counts) => format!("gaze not recorded so far: {}", drops(counts)),
+        TrackerEvent::Fixation { .. } | TrackerEvent::Blink { .. } => return None,
+    })
+}
+
+/// What could not be recorded, by kind.
+pub fn drops(counts: &DropCounts) -> String {
+    let kinds = [(counts.malformed, "malformed"), (counts.too_frequent, "too frequent"), (counts.overrun, "overrun")];
+    kinds.iter().filter(|(n, _)| *n > 0).map(|(n, kind)| format!("{n} {kind}")).collect::<Vec<_>>().join(", ")
+}
+
+/// A step in a check of the calibration.
+pub fn calibration(event: &CalibrationEvent) -> String {
+    match event {
+        CalibrationEvent::Begun { targets } => format!("check of the gaze begins: {} targets", targets.len()),
+        CalibrationEvent::TargetShown { target } => format!("target {} is shown", target + 1),
+        CalibrationEvent::TargetsHidden => "no target is shown any more".to_string(),
+        CalibrationEvent::Measured { found: None } => "gaze not measured: too few usable samples".to_string(),
+        CalibrationEvent::Measured { found: Some(found) } => format!(
+            "gaze measured: accuracy {:.2} deg, {:.2} deg without its offset, precision {:.2} deg",
+            found.accuracy_deg, found.corrected_deg, found.precision_deg
+        ),
+        CalibrationEvent::Accepted { corrected: true } => "gaze accepted, its offset is taken off".to_string(),
+        CalibrationEvent::Accepted { corrected: false } => "gaze accepted as it is".to_string(),
+        CalibrationEvent::Dismissed => "check of the gaze given up".to_string(),
+    }
 }

@@ -88,7 +88,7 @@ fn parse(line: &[u8]) -> Option<GazeLine> {
         return Some(GazeLine::Malformed);
     }
     let device_ns = found.t.filter(|t| (0.0..1e10).contains(t)).map(|t| (t * 1e9) as u64);
-    Some(GazeLine::Sample(GazeSample { x: found.x, y: found.y, confidence: found.confidence, device_ns }))
+    Some(GazeLine::Sample(GazeSample { device_ns, ..GazeSample::new(found.x, found.y, found.confidence) }))
 }
 
 #[cfg(test)]
@@ -122,7 +122,9 @@ mod tests {
         while let Some(line) = lines.recv().await {
             found.push(line);
         }
-        let sample = |x, y, confidence, device_ns| GazeLine::Sample(GazeSample { x, y, confidence, device_ns });
+        let sample = |x, y, confidence, device_ns| {
+            GazeLine::Sample(GazeSample { device_ns, ..GazeSample::new(x, y, confidence) })
+        };
         let expected = [sample(0.25, 0.5, 0.9, Some(1_500_000_000)), sample(0.1, 2.0, 0.0, None)];
         assert_eq!(found[..2], expected);
         assert_eq!(found[2..], [GazeLine::Malformed; 6]);

@@ -1,10 +1,14 @@
 //! Gaze: samples on the wall display and the locations that they may have read.
 
+pub mod calibration;
+pub mod device_clock;
+pub mod quality;
 pub mod surface;
 pub mod tags;
 
 use serde::{Deserialize, Serialize};
 
+use crate::base::time::SessionTime;
 use crate::kitchen::{Kitchen, LocationId};
 
 /// Samples below this confidence are useless (Pupil Labs) and are not used for reading.
@@ -21,9 +25,18 @@ pub struct GazeSample {
     /// The tracker's own clock, in nanoseconds, where it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub device_ns: Option<u64>,
+    /// The session time at which it was taken, where the tracker's clock is known to stand to session time; else it counts as
+    /// taken when it arrived.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub taken_ns: Option<SessionTime>,
 }
 
 impl GazeSample {
+    /// A sample of which the tracker says no time.
+    pub fn new(x: f64, y: f64, confidence: f64) -> GazeSample {
+        GazeSample { x, y, confidence, device_ns: None, taken_ns: None }
+    }
+
     /// The sample as it is recorded: places to a hundred thousandth of the display (15 um on a wall display, far below
     /// what any tracker resolves), confidence to a thousandth.
     pub fn rounded(self) -> GazeSample {

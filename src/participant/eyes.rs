@@ -173,7 +173,7 @@ impl Eyes {
         };
         // Trackers send no more digits than they can know; the log is the shorter for it.
         let rounded = |value: f64| (value * 1e4).round() / 1e4;
-        GazeSample { x: rounded(seen[0]), y: rounded(seen[1]), confidence: rounded(confidence), device_ns: None }
+        GazeSample::new(rounded(seen[0]), rounded(seen[1]), rounded(confidence))
     }
 
     fn is_closed(&self, now: SessionTime) -> bool {

@@ -11,6 +11,7 @@ mod hand;
 mod learning;
 mod memory;
 pub mod population;
+mod targets;
 mod witness;
 
 use std::sync::Arc;
@@ -59,6 +60,8 @@ pub struct SimulatedParticipant {
     beliefs: Beliefs,
     memory: Memory,
     eyes: Eyes,
+    /// While the calibration is checked.
+    at_targets: Option<Eyes>,
     attention: Attention,
     intent: Intent,
     /// The mind's chances: attention, reading, thinking; and the hand's: times and slips.
@@ -104,6 +107,7 @@ impl SimulatedParticipant {
             beliefs,
             memory,
             eyes,
+            at_targets: None,
             attention: Attention { read_at, ..Attention::default() },
             intent: Intent::default(),
             mind: stream(seed, "participant's mind", trial),

@@ -19,6 +19,7 @@ use crate::participant::{Deed, SimulatedParticipant};
 use crate::robot::timed::{RobotDeed, TimedRobot};
 use crate::session::admit::{admit, hygiene};
 use crate::session::apply::ApplyError;
+use crate::session::calibration::Check;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::orders::OrderList;
 use crate::session::protocol::ProtocolEvent;
@@ -141,7 +142,8 @@ impl Engine {
 
     fn next_source(&self) -> Option<(SessionTime, Source)> {
         if !self.session().is_running() {
-            return None;
+            let simulated = self.participant.as_ref().filter(|_| self.session().spec.participant.simulates_gaze());
+            return simulated.and_then(|one| Some((one.target_due()?, Source::Participant)));
         }
         let participant = self.participant.as_ref().and_then(SimulatedParticipant::next_due);
         let sources = [
@@ -170,6 +172,12 @@ impl Engine {
     }
 
     fn let_participant_act(&mut self, now: SessionTime) {
+        if !self.session().is_running() {
+            if let Some(sample) = self.participant.as_mut().and_then(|one| one.look_at_target(now)) {
+                self.record_own(now, Event::Gaze(sample));
+            }
+            return;
+        }
         let state = self.session().state;
         let deed = self.participant.as_mut().and_then(|one| one.act(now, state, &mut self.follower.cost));
         match deed {
@@ -277,6 +285,7 @@ impl Engine {
             self.record_deed(now, deed);
         }
         self.check_criterion(now);
+        self.measure_calibration(now);
         Ok(())
     }
 
@@ -313,6 +322,15 @@ impl Engine {
         let errors = self.follower.errors() as u32;
         let met = criterion.is_met(orders, presses, errors);
         self.record_own(now, Event::Protocol(ProtocolEvent::CriterionChecked { met, orders, presses, errors }));
+    }
+
+    /// What the samples say when the last target of a check was shown.
+    fn measure_calibration(&mut self, now: SessionTime) {
+        let session = self.session();
+        let event = session.calibration.as_ref().and_then(|check| check.to_measure(&session.viewing()));
+        if let Some(event) = event {
+            self.record_own(now, Event::Calibration(event));
+        }
     }
 
     /// What the assistant does about its own advice, if it can and may.
@@ -360,6 +378,7 @@ impl Engine {
                 }
             }
             Event::SignalEnded { .. } => participant.on_signal_end(now),
+            Event::Calibration(_) => participant.on_target(now, session.calibration.as_ref().and_then(Check::target)),
             _ => {}
         }
     }

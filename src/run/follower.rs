@@ -167,7 +167,12 @@ impl Follower {
             Event::TrialStarted => Some(Observed::Started { state }),
             Event::TrialPaused => Some(Observed::Paused),
             Event::TrialResumed => Some(Observed::Resumed),
-            Event::Gaze(sample) => Some(Observed::Gaze { sample: *sample, taken: stamped.time }),
+            // What has a fault of its own is recorded, and not read.
+            Event::Gaze(_) if self.session.gaze.fault.is_some() => None,
+            Event::Gaze(sample) => {
+                let taken = sample.taken_ns.map_or(stamped.time, |taken| taken.min(stamped.time));
+                Some(Observed::Gaze { sample: self.session.corrected(*sample), taken })
+            }
             Event::Press { agent, button } if counts => {
                 let button = kitchen.button_named(*agent, button)?;
                 // A press that has an effect changes the state.

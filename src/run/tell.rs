@@ -139,6 +139,8 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::SignalEnded { reason: SignalEnd::TakenBack } => "signal taken back".to_string(),
         Event::Marker { note } => format!("marker: {note}"),
         Event::Protocol(event) => words::protocol(event),
+        Event::Tracker(event) => words::tracker(event)?,
+        Event::Calibration(event) => words::calibration(event),
         Event::ClockJumped { by_ms } => format!("the wall clock jumped by {:.1} s", *by_ms as f64 / 1000.0),
         Event::ParticipantBelieves(belief) => believes(belief),
         Event::SessionEnded => "session over".to_string(),

@@ -4,7 +4,7 @@
 use super::event::{EndReason, Event, SignalEnd};
 use super::protocol::{self, ProtocolEvent};
 use super::settings::{Condition, ParticipantKind};
-use super::{Phase, Session, hands};
+use super::{Phase, Session, calibration, hands, tracker};
 use crate::base::time::SessionTime;
 use crate::communication::{self, Sender, Signal};
 use crate::kitchen::{Agent, LocationKind};
@@ -20,11 +20,15 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
     match event {
         Event::TrialStarted => {
             refuse_if(phase != Phase::Ready, "the trial was started already")?;
+            refuse_if(session.is_calibrating(), "the calibration is being checked")?;
             protocol::admit_trial(session)
         }
         Event::Preflight { .. } => refuse_if(phase != Phase::Ready, "the trial was started already"),
         Event::TrialPaused => refuse_if(phase != Phase::Running, "no trial runs"),
-        Event::TrialResumed => refuse_if(phase != Phase::Paused, "the trial is not paused"),
+        Event::TrialResumed => {
+            refuse_if(phase != Phase::Paused, "the trial is not paused")?;
+            refuse_if(session.is_calibrating(), "the calibration is being checked")
+        }
         Event::TrialEnded { reason: EndReason::Aborted } => Err("an aborted trial needs a reason: trial_aborted"),
         Event::TrialEnded { .. } => {
             refuse_if(!matches!(phase, Phase::Running | Phase::Paused), "there is no trial to end")
@@ -33,6 +37,8 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
             let finite = sample.x.is_finite() && sample.y.is_finite() && sample.confidence.is_finite();
             refuse_if(!finite, "the gaze sample is not a number")
         }
+        Event::Tracker(event) => tracker::admit(event),
+        Event::Calibration(event) => calibration::admit(session, event),
         Event::RobotStopped => refuse_if(session.robot.stopped, "the robot is stopped already"),
         Event::RobotResumed => refuse_if(!session.robot.stopped, "the robot is not stopped"),
         Event::SignalShown { by, signal, .. } => admit_signal(session, *by, signal),
@@ -108,7 +114,9 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::Marker { .. }
         | Event::ClockJumped { .. }
         | Event::Advised(_)
+        | Event::Tracker(_)
         | Event::SessionEnded => true,
+        Event::Calibration(event) => event.is_external(),
         Event::TrialEnded { reason } => *reason == EndReason::Wizard,
         Event::Protocol(event) => !matches!(event, ProtocolEvent::CriterionChecked { .. }),
         Event::SignalShown { by, .. } => *by == Sender::Wizard,

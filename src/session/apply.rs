@@ -2,8 +2,8 @@
 
 use super::admit::admit;
 use super::event::{EndReason, Event, SignalEnd, Stamped};
-use super::protocol;
 use super::{Entry, Happening, Phase, RobotStatus, Served, Session, ShownSignal};
+use super::{calibration, protocol};
 use crate::base::time::SessionTime;
 use crate::communication::{Sender, Signal};
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
@@ -86,6 +86,8 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
         Event::FocusLost => note(session, now, Happening::Focus(false)),
         Event::FocusRegained => note(session, now, Happening::Focus(true)),
         Event::Gaze(sample) => gaze(session, now, *sample),
+        Event::Tracker(event) => session.tracker.apply(now, event),
+        Event::Calibration(event) => calibration::apply(session, now, event),
         Event::Press { agent, button } => {
             let button = named.button(*agent, button)?;
             press(session, now, *agent, button, &mut effects);
@@ -382,6 +384,13 @@ fn gaze(session: &mut Session, now: SessionTime, sample: GazeSample) {
             status.steady_since = Some(now);
         }
     }
+    status.fault = status.judge.judge(&sample, now);
+    if status.fault.is_some() {
+        return;
+    }
+    calibration::gaze(session, sample.taken_ns.unwrap_or(now).min(now), sample);
+    let sample = session.corrected(sample);
+    let status = &mut session.gaze;
     let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
     if !on_display || sample.confidence < MIN_CONFIDENCE {
         status.unusable += 1;

@@ -5,9 +5,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::calibration::CalibrationEvent;
 use super::preflight::Check;
 use super::protocol::ProtocolEvent;
 use super::screen::Screen;
+use super::tracker::TrackerEvent;
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
@@ -59,6 +61,10 @@ pub enum Event {
     TrialIncluded,
     /// A gaze sample of the participant.
     Gaze(GazeSample),
+    /// What the eye tracker tells beside its samples.
+    Tracker(TrackerEvent),
+    /// A step in a check of the calibration.
+    Calibration(CalibrationEvent),
     /// An agent pressed a physical button.
     Press {
         agent: Agent,
@@ -170,6 +176,8 @@ impl Event {
             Event::TrialExcluded { .. } => "trial_excluded",
             Event::TrialIncluded => "trial_included",
             Event::Gaze(_) => "gaze",
+            Event::Tracker(_) => "tracker",
+            Event::Calibration(_) => "calibration",
             Event::Press { .. } => "press",
             Event::OrderShown { .. } => "order_shown",
             Event::OrderCleared { .. } => "order_cleared",

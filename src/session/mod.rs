@@ -3,6 +3,7 @@
 
 pub mod admit;
 pub mod apply;
+pub mod calibration;
 pub mod event;
 mod hands;
 pub mod header;
@@ -13,6 +14,7 @@ pub mod protocol;
 pub mod screen;
 pub mod settings;
 pub mod timers;
+pub mod tracker;
 
 use std::sync::Arc;
 
@@ -20,6 +22,7 @@ use crate::base::time::SessionTime;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::gaze::GazeSample;
+use crate::gaze::quality::{GazeFault, Judge};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
 pub use apply::{Effect, Timer, apply};
@@ -79,6 +82,12 @@ pub struct Session {
     /// Why the trial is to be left out of the analysis, if it is.
     pub excluded: Option<String>,
     pub gaze: GazeStatus,
+    /// What is known of the eye tracker.
+    pub tracker: tracker::TrackerStatus,
+    /// The check of the calibration that goes on, or waits for the wizard's verdict.
+    pub calibration: Option<calibration::Check>,
+    /// The check that was accepted last.
+    pub calibrated: Option<calibration::Calibrated>,
     /// What happened, without the gaze: the timeline of the console.
     pub timeline: Vec<Entry>,
     /// Where it is in its plan, if it belongs to one.
@@ -129,6 +138,10 @@ pub struct GazeStatus {
     /// Samples so far; those with too low a confidence or outside of the display are counted apart.
     pub samples: u64,
     pub unusable: u64,
+    /// Those that were recorded and are not read, by kind.
+    pub judge: Judge,
+    /// What is wrong with the newest sample.
+    pub fault: Option<GazeFault>,
     /// Samples a second, smoothed over about a second: see [`Session::gaze_hz`].
     pub(crate) rate_hz: f64,
     /// Since when samples come without a gap; nothing after a pause.
@@ -204,6 +217,9 @@ impl Session {
             aborted: None,
             excluded: None,
             gaze: GazeStatus::default(),
+            tracker: tracker::TrackerStatus::default(),
+            calibration: None,
+            calibrated: None,
             timeline: Vec::new(),
             protocol,
         }

@@ -4,7 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::Session;
 use super::settings::{GazeSource, ParticipantKind};
+use super::tracker::Link;
 use crate::base::time::SessionTime;
+use crate::gaze::calibration::{GOOD_DEG, USABLE_DEG};
 
 /// Slower gaze misses short looks, in samples a second.
 const SLOW_HZ: f64 = 20.0;
@@ -63,7 +65,7 @@ pub fn space(free_bytes: Option<u64>) -> Check {
     Check::new("free space", verdict, format!("{} MB", free / 1_000_000), remedy)
 }
 
-/// Who takes part, and where the gaze comes from. No source has a calibration of its own that could be asked for.
+/// Who takes part, where the gaze comes from, and how true it is.
 pub fn participant(session: &Session, now: SessionTime) -> Vec<Check> {
     let spec = &session.spec.participant;
     let who = match spec.kind {
@@ -74,7 +76,20 @@ pub fn participant(session: &Session, now: SessionTime) -> Vec<Check> {
     match spec.gaze {
         GazeSource::Simulated => checks.push(Check::ok("gaze", "simulated: it comes with the trial")),
         GazeSource::None => checks.push(Check::ok("gaze", "none is asked for")),
-        GazeSource::Mouse | GazeSource::Json => checks.extend(gaze(session, now)),
+        GazeSource::File => {
+            let file = session.spec.tracker.file.clone().unwrap_or_default();
+            checks.push(Check::ok("gaze", format!("{file}: it comes with the trial")));
+        }
+        GazeSource::Mouse => checks.extend(gaze(session, now)),
+        GazeSource::Json => {
+            checks.extend(gaze(session, now));
+            checks.extend(calibration(session));
+        }
+        GazeSource::Pupil => {
+            checks.push(tracker(session));
+            checks.extend(gaze(session, now));
+            checks.push(calibration(session).unwrap_or_else(unchecked));
+        }
     }
     checks
 }
@@ -82,11 +97,12 @@ pub fn participant(session: &Session, now: SessionTime) -> Vec<Check> {
 fn gaze(session: &Session, now: SessionTime) -> Vec<Check> {
     let mends = match session.spec.participant.gaze {
         GazeSource::Json => format!("start what sends lines to port {}", session.spec.participant.gaze_port),
+        GazeSource::Pupil => "let the participant look at the wall display; Capture needs a calibration".to_string(),
         _ => "move the pointer over the kitchen".to_string(),
     };
     let Some(hz) = session.gaze_hz(now) else {
-        let verdict =
-            if session.spec.participant.gaze == GazeSource::Json { Verdict::Failed } else { Verdict::Warning };
+        let is_mouse = session.spec.participant.gaze == GazeSource::Mouse;
+        let verdict = if is_mouse { Verdict::Warning } else { Verdict::Failed };
         return vec![Check::new("gaze", verdict, "no sample arrives", mends)];
     };
     let verdict = if hz < SLOW_HZ { Verdict::Warning } else { Verdict::Ok };
@@ -101,4 +117,38 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<Check> {
         }
     };
     vec![rate, quality]
+}
+
+/// Whether the eye tracker is there, and sees the display.
+fn tracker(session: &Session) -> Check {
+    let spec = &session.spec.tracker;
+    let name = "eye tracker";
+    match (&session.tracker.link, session.tracker.sees_display) {
+        (Link::Connected { device }, Some(true)) => Check::ok(name, format!("{device}, sees the display")),
+        (Link::Connected { device }, _) => {
+            let found = format!("{device}, does not see \"{}\"", spec.surface);
+            let remedy = format!("tags in view and lit; Capture's Surface Tracker with a surface \"{}\"", spec.surface);
+            Check::new(name, Verdict::Failed, found, remedy)
+        }
+        _ => {
+            let remedy = format!("start Pupil Capture on {}, Pupil Remote on port {}", spec.address, spec.port);
+            Check::new(name, Verdict::Failed, "Pupil Capture does not answer", remedy)
+        }
+    }
+}
+
+/// How the gaze was found to be, if it was looked at.
+fn calibration(session: &Session) -> Option<Check> {
+    let accuracy_deg = session.calibrated.as_ref()?.accuracy_deg();
+    let verdict = match accuracy_deg {
+        deg if deg <= GOOD_DEG => Verdict::Ok,
+        deg if deg <= USABLE_DEG => Verdict::Warning,
+        _ => Verdict::Failed,
+    };
+    let remedy = "calibrate the tracker anew, then check it with the targets";
+    Some(Check::new("calibration", verdict, format!("off by {accuracy_deg:.1} deg"), remedy))
+}
+
+fn unchecked() -> Check {
+    Check::new("calibration", Verdict::Warning, "not checked", "check the gaze by targets, under Trial in the help")
 }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::plan::{PlanSpec, StepSpec};
+use super::tracker::TrackerSpec;
 use crate::communication::settings::{AssistantSpec, Shadow};
 use crate::mind::model::HumanModel;
 
@@ -19,6 +20,8 @@ pub struct SessionSpec {
     pub trial: TrialSpec,
     #[serde(default)]
     pub participant: ParticipantSpec,
+    #[serde(default, skip_serializing_if = "TrackerSpec::is_default")]
+    pub tracker: TrackerSpec,
     #[serde(default)]
     pub robot: RobotSpec,
     #[serde(default)]
@@ -105,13 +108,14 @@ impl SessionSpec {
         }
         if self.participant.gaze == GazeSource::Simulated && self.participant.kind != ParticipantKind::Simulated {
             let found = "gaze = \"simulated\" of a participant who is not simulated".to_string();
-            let remedy = "gaze = \"mouse\", \"json\" or \"none\"";
+            let remedy = "gaze = \"mouse\", \"pupil\", \"file\", \"json\" or \"none\"";
             return Err(SettingError::new("gaze", found, remedy));
         }
         if !(0.0..=60.0).contains(&self.signals.cool_down_s) {
             let found = format!("cool_down_s = {}", self.signals.cool_down_s);
             return Err(SettingError::new("cool_down_s", found, "seconds from 0 (none) to 60"));
         }
+        self.tracker.check(self.participant.gaze)?;
         self.console.check()?;
         match self.human.fault().or_else(|| self.assistant.fault()) {
             Some((key, found, remedy)) => Err(SettingError::new(key, found, remedy)),
@@ -217,7 +221,11 @@ pub enum GazeSource {
     Simulated,
     /// The mouse pointer over the console's kitchen.
     Mouse,
-    /// Newline separated JSON over TCP on localhost.
+    /// Pupil Core, through Pupil Capture's network API.
+    Pupil,
+    /// A recorded file: Pupil Player's export, or a recording of this program.
+    File,
+    /// Newline separated JSON over TCP and UDP on localhost.
     Json,
     /// No gaze at all.
     None,

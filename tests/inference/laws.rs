@@ -83,7 +83,7 @@ impl Bench {
     /// Looks at the middle of a location for some time, `hz` samples a second.
     fn look(&mut self, from_s: f64, seconds: f64, name: &str, hz: f64) {
         let [x, y] = self.kitchen.location(self.location(name)).display.centre();
-        let sample = GazeSample { x, y, confidence: 1.0, device_ns: None };
+        let sample = GazeSample::new(x, y, 1.0);
         for step in 0..(seconds * hz).round() as u32 {
             let time = from_s + f64::from(step) / hz;
             self.observe(time, Observed::Gaze { sample, taken: at(time) });
@@ -157,7 +157,7 @@ fn anything(kitchen: &Kitchen, time: SessionTime, random: &mut Stream) -> Observ
                 1 => SessionTime(time.0.saturating_add(random.random_range(0..2_000_000_000))),
                 _ => time,
             };
-            Observed::Gaze { sample: GazeSample { x, y, confidence, device_ns: None }, taken }
+            Observed::Gaze { sample: GazeSample::new(x, y, confidence), taken }
         }
     }
 }

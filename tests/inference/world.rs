@@ -124,7 +124,7 @@ impl World {
             self.fixation = (until, self.kitchen.locations[place].display.centre());
         }
         let [x, y] = self.fixation.1;
-        let sample = GazeSample { x, y, confidence: 0.9, device_ns: None };
+        let sample = GazeSample::new(x, y, 0.9);
         self.observation(now, Observed::Gaze { sample, taken: SessionTime::from_secs_f64(now) })
     }
 

@@ -18,6 +18,7 @@ pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
         None => {}
         Some(Dialog::Pick(list)) => picker::draw(brush, screen, session, list),
         Some(Dialog::Preflight) => hands::preflight(brush, screen, session, model),
+        Some(Dialog::Calibration) => super::calibration::draw(brush, screen, session),
         Some(Dialog::Note(line)) => hands::note(brush, screen, line),
         Some(Dialog::Help) => help(brush, screen, model),
         Some(Dialog::Difference(lines)) => difference(brush, screen, lines),

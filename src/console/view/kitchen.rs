@@ -49,6 +49,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         }
     }
     gaze_mark(brush, &plan, area, session, model);
+    super::calibration::target(brush, &plan, area, session);
 }
 
 fn zones(brush: &mut Brush, plan: &Plan) {

@@ -52,7 +52,7 @@ impl Live {
     /// The pointer as a gaze sample; nobody has moved it yet: no sample.
     pub(super) fn look(&mut self) {
         if let Some([x, y]) = self.model.pointer {
-            self.input(Event::Gaze(GazeSample { x, y, confidence: 1.0, device_ns: None }));
+            self.input(Event::Gaze(GazeSample::new(x, y, 1.0)));
         }
     }
 }

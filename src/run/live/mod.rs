@@ -1,5 +1,6 @@
 //! A live session: real time, a wizard at the console, every event recorded as it happens.
 
+mod calibration;
 mod inputs;
 mod recording;
 mod showing;
@@ -171,6 +172,7 @@ impl Live {
         while !desk.screen.is_lost() {
             self.tick();
             let due = self.engine.next_due().map(|due| Instant::from_std(self.clock.instant_of(due)));
+            let target = self.next_target();
             tokio::select! {
                 biased;
                 message = desk.seat.next() => match message {
@@ -184,6 +186,7 @@ impl Live {
                     let events = self.engine.fire();
                     self.record(&events);
                 }
+                () = sleep_until(target.unwrap_or_else(Instant::now)), if target.is_some() => self.show_target(),
                 Some(advice) = next_advice(&mut self.advisor) => self.advise(advice),
                 _ = pointer.tick(), if with_pointer => self.look(),
                 _ = flush.tick() => self.flush(),

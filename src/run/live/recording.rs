@@ -13,7 +13,7 @@ impl Live {
         self.dirty = true;
         for stamped in events {
             match stamped.event {
-                Event::Gaze(sample) => self.model.see(stamped.time, sample),
+                Event::Gaze(sample) => self.model.see(stamped.time, self.engine.session().corrected(sample)),
                 Event::SignalShown { .. } => self.undrawn = Some(stamped.seq),
                 _ => {}
             }

@@ -1,0 +1,50 @@
+//! The check of the calibration at the console: a key begins it, the targets are shown on the wall display and in the
+//! kitchen, and the wizard says what comes of the result.
+
+use crossterm::event::KeyCode;
+
+use super::message::Command;
+use super::model::{Dialog, Level, Model};
+use super::update::send;
+use crate::session::calibration::CalibrationEvent;
+use crate::session::{Event, Session};
+
+/// The key that takes the gaze as it is.
+pub const AS_IT_IS: char = 'u';
+/// The key that repeats the check.
+pub const REPEAT: char = 'r';
+
+/// Begins a check, or begins it again.
+pub(super) fn begin(model: &mut Model, session: &Session) -> Option<Command> {
+    let event = Event::Calibration(CalibrationEvent::begin());
+    let begun = send(model, session, event, Level::Done, "the participant looks at the targets; esc ends the check");
+    if begun.is_some() {
+        model.dialog = Some(Dialog::Calibration);
+    }
+    begun
+}
+
+/// A key while a check goes on, or its result is shown.
+pub(super) fn answer(model: &mut Model, session: &Session, code: KeyCode, is_press: bool) -> Option<Command> {
+    let outcome = session.calibration.as_ref().and_then(|check| check.result.as_ref());
+    let has_found = outcome.is_some_and(|outcome| outcome.found.is_some());
+    let mut decide = |event: CalibrationEvent, words: &str| {
+        model.dialog = None;
+        send(model, session, Event::Calibration(event), Level::Done, words)
+    };
+    match code {
+        KeyCode::Esc if session.calibration.is_none() => {
+            model.dialog = None;
+            None
+        }
+        KeyCode::Esc => decide(CalibrationEvent::Dismissed, "the calibration stays as it was"),
+        KeyCode::Enter if is_press && has_found => {
+            decide(CalibrationEvent::Accepted { corrected: true }, "accepted: the offset is taken off the gaze")
+        }
+        KeyCode::Char(AS_IT_IS) if is_press && has_found => {
+            decide(CalibrationEvent::Accepted { corrected: false }, "accepted: the gaze stays as it is")
+        }
+        KeyCode::Char(REPEAT) if is_press && outcome.is_some() => begin(model, session),
+        _ => None,
+    }
+}

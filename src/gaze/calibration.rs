@@ -1,0 +1,115 @@
+//! How true gaze is: targets on the wall display, and how far from them the samples are that were taken meanwhile.
+
+use serde::{Deserialize, Serialize};
+
+use super::GazeSample;
+
+/// Where the targets are, in fractions of the display: the centre first.
+pub const TARGETS: [[f64; 2]; 5] = [[0.5, 0.5], [0.2, 0.25], [0.8, 0.25], [0.8, 0.75], [0.2, 0.75]];
+/// How long a target is shown, and from when on samples count, in seconds: until then the eyes are on their way.
+pub const TARGET_S: f64 = 1.8;
+pub const SETTLE_S: f64 = 0.7;
+/// A target with fewer samples was not looked at, or not seen by the tracker.
+pub const LEAST_SAMPLES: usize = 10;
+/// A check with fewer targets says nothing about the display.
+const LEAST_TARGETS: usize = 3;
+/// Gaze is good up to this accuracy, and usable up to that, in degrees: locations are 0.15 m apart, 4.3 degrees at 2 m.
+pub const GOOD_DEG: f64 = 2.0;
+pub const USABLE_DEG: f64 = 3.0;
+
+/// What a check found. Degrees are of visual angle, seen from the set distance in front of the display's centre.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Found {
+    /// Mean angle from target to gaze, over the targets (accuracy).
+    pub accuracy_deg: f64,
+    /// The same after the offset is taken off.
+    pub corrected_deg: f64,
+    /// Root mean square of the angles from one sample to the next (precision; Holmqvist et al. 2012).
+    pub precision_deg: f64,
+    /// What has to be added to gaze, in fractions of the display: the mean over targets of how far the median of the gaze is
+    /// from them.
+    pub offset: [f64; 2],
+    /// By target, in the order in which they were shown.
+    pub targets: Vec<FoundTarget>,
+}
+
+/// What was found at a target.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FoundTarget {
+    /// Samples with enough confidence.
+    pub samples: usize,
+    /// Nothing: too few samples.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accuracy_deg: Option<f64>,
+}
+
+/// The geometry of a display and who looks at it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viewing {
+    /// Width and height of the display in metres.
+    pub display_m: [f64; 2],
+    /// From the eyes to the display, in metres.
+    pub distance_m: f64,
+}
+
+impl Viewing {
+    /// The angle in degrees between two display points (fractions).
+    pub fn angle_deg(&self, a: [f64; 2], b: [f64; 2]) -> f64 {
+        let ray = |point: [f64; 2]| {
+            let [x, y] = [0, 1].map(|axis| (point[axis] - 0.5) * self.display_m[axis]);
+            [x, y, self.distance_m]
+        };
+        let (a, b) = (ray(a), ray(b));
+        let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        let dot: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
+        // Unlike the arc cosine of the product, exact for small angles.
+        cross.iter().map(|part| part * part).sum::<f64>().sqrt().atan2(dot).to_degrees()
+    }
+}
+
+/// What samples say that were taken while targets were looked at; `samples` by target, of each with enough confidence, in
+/// the order in which they were taken. Nothing if too few targets have enough of them.
+pub fn measure(viewing: &Viewing, targets: &[[f64; 2]], samples: &[Vec<GazeSample>]) -> Option<Found> {
+    let looked: Vec<([f64; 2], &Vec<GazeSample>)> =
+        targets.iter().copied().zip(samples).filter(|(_, samples)| samples.len() >= LEAST_SAMPLES).collect();
+    if looked.len() < LEAST_TARGETS.min(targets.len()) {
+        return None;
+    }
+    let mean = |values: &mut dyn Iterator<Item = f64>| {
+        let (sum, count) = values.fold((0.0, 0usize), |(sum, count), value| (sum + value, count + 1));
+        sum / count.max(1) as f64
+    };
+    let off = |target: [f64; 2], by: [f64; 2], samples: &[GazeSample]| {
+        mean(&mut samples.iter().map(|sample| viewing.angle_deg(target, [sample.x + by[0], sample.y + by[1]])))
+    };
+    let offset = [0, 1].map(|axis| {
+        let median = |samples: &[GazeSample]| {
+            let mut values: Vec<f64> = samples.iter().map(|sample| [sample.x, sample.y][axis]).collect();
+            values.sort_by(f64::total_cmp);
+            values[values.len() / 2]
+        };
+        mean(&mut looked.iter().map(|(target, samples)| target[axis] - median(samples)))
+    });
+    let steps = looked.iter().flat_map(|(_, samples)| samples.windows(2));
+    let steps = steps.map(|pair| viewing.angle_deg([pair[0].x, pair[0].y], [pair[1].x, pair[1].y]).powi(2));
+    let precision_deg = mean(&mut { steps }).sqrt();
+    let of_targets = |by: [f64; 2]| mean(&mut looked.iter().map(|(target, samples)| off(*target, by, samples)));
+    let found = targets.iter().zip(samples).map(|(target, samples)| FoundTarget {
+        samples: samples.len(),
+        accuracy_deg: (samples.len() >= LEAST_SAMPLES).then(|| thousandths(off(*target, [0.0; 2], samples))),
+    });
+    Some(Found {
+        accuracy_deg: thousandths(of_targets([0.0; 2])),
+        corrected_deg: thousandths(of_targets(offset)),
+        precision_deg: thousandths(precision_deg),
+        offset: offset.map(|value| (value * 1e5).round() / 1e5),
+        targets: found.collect(),
+    })
+}
+
+/// No check knows more digits.
+fn thousandths(value: f64) -> f64 {
+    (value * 1e3).round() / 1e3
+}

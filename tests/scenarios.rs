@@ -138,7 +138,7 @@ impl Scenario {
         let kitchen = self.kitchen();
         let state = self.state(&kitchen);
         let belief = self.belief(&kitchen, state);
-        let situation = Situation { state, belief: &belief, robot: self.outlook(&kitchen), robot_press_s: 2.4 };
+        let situation = Situation { state, belief: &belief, changed: &[], robot: self.outlook(&kitchen), robot_press_s: 2.4 };
         let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
         let moment = Moment { seq: 0, time: SessionTime::ZERO, situation, signals: &signals, error };
         concept.advise(&mut CostToGo::new(kitchen), &moment)
@@ -232,7 +232,7 @@ fn an_answer_depends_on_nothing_that_was_asked_before() {
         let state = scenario.state(&kitchen);
         let belief = scenario.belief(&kitchen, state);
         let robot = scenario.outlook(&kitchen);
-        let situation = Situation { state, belief: &belief, robot, robot_press_s: 2.4 };
+        let situation = Situation { state, belief: &belief, changed: &[], robot, robot_press_s: 2.4 };
         if scenario.cost.is_none() {
             assert_eq!(
                 planner.advise(&mut cost, &situation, &signals, 0, SessionTime::ZERO),

@@ -49,6 +49,16 @@ struct Future {
     presses: u32,
 }
 
+impl Future {
+    /// The human sees what these places hold.
+    fn see(&mut self, kitchen: &Kitchen, is_seen: impl Fn(LocationId) -> bool) {
+        for place in (0..kitchen.locations.len()).map(|index| LocationId(index as u8)).filter(|place| is_seen(*place)) {
+            let aspect = AspectId::of_location(place);
+            self.person.settle(aspect, kitchen.true_value(self.state, aspect));
+        }
+    }
+}
+
 impl ReferencePlanner {
     /// A planner for people as `human` says. Its chances follow from `seed` and the number of an event.
     pub fn new(kitchen: Arc<Kitchen>, human: HumanModel, spec: AssistantSpec, seed: u64) -> ReferencePlanner {
@@ -93,7 +103,11 @@ impl ReferencePlanner {
         let mut random = self.chance("plain belief", seq, rollout, 0);
         let mut person = Person::draw(&self.kitchen, situation.belief, &mut random);
         let first_s = random.random::<f64>() * self.spec.rollout.human_press_s;
+        let sees = random.random::<f64>() < self.spec.rollout.capture;
         for aspect in signal.map_or(Vec::new(), |signal| aspects_told(&self.kitchen, situation.state, signal)) {
+            person.settle(aspect, self.kitchen.true_value(situation.state, aspect));
+        }
+        for &aspect in situation.changed.iter().filter(|_| sees) {
             person.settle(aspect, self.kitchen.true_value(situation.state, aspect));
         }
         let errand = match situation.robot {
@@ -128,22 +142,29 @@ impl ReferencePlanner {
             let Some((button, due_s, driven)) = future.errand.filter(|(_, due_s, _)| *due_s <= until_s) else { return };
             (future.now_s, future.errand) = (due_s, None);
             if driven || policy::best_presses(kitchen, cost, Care::Exact, future.state, &recipes).contains(&button) {
-                let after = kitchen.press(future.state, &recipes, Agent::Robot, button);
-                future.state = after.unwrap_or(future.state);
+                let before = future.state;
+                future.state = kitchen.press(before, &recipes, Agent::Robot, button).unwrap_or(before);
                 future.presses += 1;
                 if random.random::<f64>() < self.human.transition.foresight {
                     future.person.robot_pressed(kitchen, cost, self.spec.rollout.states, random);
+                }
+                if random.random::<f64>() < self.spec.rollout.capture {
+                    let now = future.state;
+                    future.see(kitchen, |place| before.code(place) != now.code(place));
                 }
             }
         }
     }
 
-    /// The human looks at what its next press needs, decides, and presses.
+    /// The human looks around and at what its next press needs, decides, and presses.
     fn decide(&self, cost: &mut CostToGo, future: &mut Future, random: &mut Stream) {
         let kitchen = &self.kitchen;
-        let looks = 1.0 - (-self.spec.rollout.looks_hz * self.spec.rollout.human_press_s).exp();
+        let chance = |rate_hz: f64| 1.0 - (-rate_hz * self.spec.rollout.human_press_s).exp();
+        let looks = chance(self.spec.rollout.looks_hz);
+        let other_looks = chance(self.spec.rollout.other_looks_hz);
         let draw = random.random::<f64>();
         let glances: Vec<f64> = kitchen.locations.iter().map(|_| random.random()).collect();
+        future.see(kitchen, |place| glances[place.index()] < other_looks);
         let mut deed = self.deed(cost, &future.person, draw, random);
         if let Some(button) = deed {
             // The robot may be bringing what is about to be fetched.
@@ -151,10 +172,7 @@ impl ReferencePlanner {
             let robots_hand = fetches.then_some(kitchen.hands[Agent::Robot.index()]);
             let places = kitchen.involved(Agent::Human, button).into_iter().chain(robots_hand);
             let seen: Vec<LocationId> = places.filter(|place| glances[place.index()] < looks).collect();
-            for &place in &seen {
-                let aspect = AspectId::of_location(place);
-                future.person.settle(aspect, kitchen.true_value(future.state, aspect));
-            }
+            future.see(kitchen, |place| seen.contains(&place));
             if !seen.is_empty() {
                 deed = self.deed(cost, &future.person, draw, random);
             }

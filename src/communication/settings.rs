@@ -57,6 +57,12 @@ pub struct RolloutModel {
     /// Looks a second at each place that the next press needs; before something is fetched, also at the robot's hand, which
     /// may be bringing it. Measured on unassisted simulated participants: 1.1 and 0.7.
     pub looks_hz: f64,
+    /// Looks a second at each other place; none, as long as nobody has measured them. Unassisted simulated participants look
+    /// 0.25 to 0.4 times a second at what has changed more than a second ago and was not seen since.
+    pub other_looks_hz: f64,
+    /// Share of the changes by others that draw the eye at once; none, as long as nobody has measured it. Of simulated
+    /// participants, beyond those looks: 0.3 at the robot's hand and at places, 0.4 at orders.
+    pub capture: f64,
     /// No more rollouts of a signal are made when the standard error of its benefit is at most this, in presses, or at most
     /// one and a half times this if the net benefit is below zero by three standard errors.
     pub enough_error: f64,
@@ -72,6 +78,8 @@ impl Default for RolloutModel {
             states: 32,
             human_press_s: 2.0,
             looks_hz: 1.0,
+            other_looks_hz: 0.0,
+            capture: 0.0,
             enough_error: 0.1,
             least_rollouts: 32,
         }
@@ -103,6 +111,8 @@ impl AssistantSpec {
             count("states", rollout.states, 256, "a whole number from 1 to 256"),
             above("human_press_s", rollout.human_press_s),
             not_below("looks_hz", rollout.looks_hz),
+            not_below("other_looks_hz", rollout.other_looks_hz),
+            ("capture", rollout.capture, (0.0..=1.0).contains(&rollout.capture), "a number from 0 to 1"),
             not_below("enough_error", rollout.enough_error),
             count("least_rollouts", rollout.least_rollouts, 65_536, "a whole number from 1 to 65536"),
         ];

@@ -1,6 +1,6 @@
 //! What there is to decide about: the situation in which something could be said.
 
-use crate::kitchen::{ButtonId, State};
+use crate::kitchen::{AspectId, ButtonId, State};
 use crate::mind::dirichlet::DirichletBelief;
 
 /// A moment of a trial, as the assistant knows it: the true state, the arm's errand, and the estimate of the belief.
@@ -8,6 +8,8 @@ use crate::mind::dirichlet::DirichletBelief;
 pub struct Situation<'a> {
     pub state: State,
     pub belief: &'a DirichletBelief,
+    /// The locations that have changed at this very moment, which may draw the eye.
+    pub changed: &'a [AspectId],
     pub robot: RobotOutlook,
     /// How long a press of the robot takes, in seconds.
     pub robot_press_s: f64,

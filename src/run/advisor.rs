@@ -14,7 +14,7 @@ use crate::communication::concept::{Concept, ConceptName, Moment, concept};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::situation::{RobotOutlook, Situation};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Kitchen, State};
+use crate::kitchen::{AspectId, Kitchen, State};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::session::SessionSpec;
 
@@ -26,6 +26,7 @@ pub struct Question {
     pub time: SessionTime,
     state: State,
     belief: DirichletBelief,
+    changed: Vec<AspectId>,
     robot: RobotOutlook,
     robot_press_s: f64,
     /// What may be said.
@@ -50,13 +51,14 @@ impl Question {
         let belief = follower.filter.belief().clone();
         let signals = follower.repeats.allowed(&session.kitchen, session.spec.signals.own_hand);
         let error = follower.judged.last().filter(|press| press.verdict.error).map(|press| press.seq);
-        Question { seq, time, state, belief, robot, robot_press_s, signals, error }
+        let changed = session.changed_at(time).map(AspectId::of_location).collect();
+        Question { seq, time, state, belief, changed, robot, robot_press_s, signals, error }
     }
 
     /// What there is to decide about.
     pub fn situation(&self) -> Situation<'_> {
-        let Question { state, ref belief, robot, robot_press_s, .. } = *self;
-        Situation { state, belief, robot, robot_press_s }
+        let Question { state, ref belief, ref changed, robot, robot_press_s, .. } = *self;
+        Situation { state, belief, changed, robot, robot_press_s }
     }
 
     /// What may be said.

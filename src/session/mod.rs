@@ -192,6 +192,12 @@ pub enum Happening {
 }
 
 impl Session {
+    /// The locations that changed last at this time.
+    pub fn changed_at(&self, time: SessionTime) -> impl Iterator<Item = LocationId> + '_ {
+        let times = self.changed_at[..self.kitchen.locations.len()].iter().enumerate();
+        times.filter(move |(_, at)| **at == time).map(|(index, _)| LocationId(index as u8))
+    }
+
     /// A session before its first event.
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec) -> Session {
         let state = kitchen.empty_state();

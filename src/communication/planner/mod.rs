@@ -137,6 +137,7 @@ impl Planner {
         let model = &self.spec.rollout;
         self.samples.draw(&self.kitchen, situation.state, number, random, &mut self.silent);
         let first_s = random.random::<f64>() * model.human_press_s;
+        let sees = random.random::<f64>() < model.capture;
         self.draws.clear();
         self.draws.extend((0..model.horizon).map(|_| Draws::draw(random)));
         let stage = Stage {
@@ -149,6 +150,7 @@ impl Planner {
             robot_press_s: situation.robot_press_s,
             foresight: self.foresight,
             looks: -(-model.looks_hz * model.human_press_s).exp_m1(),
+            other_looks: -(-model.other_looks_hz * model.human_press_s).exp_m1(),
         };
         let mut rollout = Rollout { stage: &stage, cost, policy: &mut self.policy, draws: &self.draws, first_s };
         let mut is_silent_known = false;
@@ -163,11 +165,11 @@ impl Planner {
                 continue;
             }
             if !is_silent_known {
-                self.moment.begin(situation, &self.silent);
+                self.moment.begin(&self.kitchen, situation, &self.silent, sees);
                 rollout.silent(&mut self.moment, &mut self.trace);
                 is_silent_known = true;
             }
-            self.moment.begin(situation, &self.told);
+            self.moment.begin(&self.kitchen, situation, &self.told, sees);
             let outcome = rollout.told(&mut self.moment, &self.trace);
             arm.tally.add(f64::from(self.trace.value - outcome.value), outcome.parted);
         }

@@ -13,12 +13,12 @@ use crate::communication::settings::RolloutModel;
 use crate::communication::situation::{RobotOutlook, Situation};
 use crate::kitchen::cost_to_go::{Care, CostToGo};
 use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, Recipes, State};
+use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, Recipes, State};
 
 /// So many presses of the robot between two decisions have random numbers of their own.
 const ROBOT_DRAWS: usize = 4;
 
-/// The random numbers of one decision of the human, and of the robot until then.
+/// The random numbers of one decision of the human, and of the robot until then; `looks` by location.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Draws {
     decision: f64,
@@ -26,6 +26,7 @@ pub struct Draws {
     looks: [f64; MAX_LOCATIONS],
     choices: [f64; ROBOT_DRAWS],
     predictions: [f64; ROBOT_DRAWS],
+    captures: [f64; ROBOT_DRAWS],
 }
 
 impl Draws {
@@ -34,6 +35,7 @@ impl Draws {
         draws.looks.iter_mut().for_each(|draw| *draw = random.random());
         draws.choices.iter_mut().for_each(|draw| *draw = random.random());
         draws.predictions.iter_mut().for_each(|draw| *draw = random.random());
+        draws.captures.iter_mut().for_each(|draw| *draw = random.random());
         draws
     }
 }
@@ -51,6 +53,8 @@ pub struct Stage<'a> {
     pub robot_press_s: f64,
     /// The chance that a place which is needed is looked at before a press.
     pub looks: f64,
+    /// The chance that any other place is looked at before a decision.
+    pub other_looks: f64,
     /// The chance that the human thinks a press of the robot through.
     pub foresight: f64,
 }
@@ -84,16 +88,27 @@ pub struct Outcome {
 }
 
 impl Moment {
-    /// The rollout's beginning, when the human holds these cases for possible.
-    pub fn begin(&mut self, situation: &Situation, cases: &Cases) {
+    /// The rollout's beginning, when the human holds these cases for possible; `sees`: what has just changed draws its eye.
+    pub fn begin(&mut self, kitchen: &Kitchen, situation: &Situation, cases: &Cases, sees: bool) {
         self.state = situation.state;
         self.cases.copy_from(cases);
+        for &aspect in situation.changed.iter().filter(|_| sees) {
+            self.cases.learn(kitchen, aspect, self.state);
+        }
         self.is_still = situation.robot == RobotOutlook::Still;
         self.errand = match situation.robot {
             RobotOutlook::Busy { button, remaining_s, driven } => Some(Errand { button, due_s: remaining_s, driven }),
             RobotOutlook::Free | RobotOutlook::Still => None,
         };
         (self.presses, self.now_s) = (0, 0.0);
+    }
+
+    /// The eye is drawn to what was otherwise before.
+    fn see_changes(&mut self, kitchen: &Kitchen, before: State) {
+        let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
+        for location in locations.filter(|&location| before.code(location) != self.state.code(location)) {
+            self.cases.learn(kitchen, AspectId::of_location(location), self.state);
+        }
     }
 
     fn copy_from(&mut self, other: &Moment) {
@@ -173,12 +188,16 @@ impl Rollout<'_> {
             moment.errand = None;
             let choices = self.choices(moment.state);
             if errand.holds(choices) {
-                moment.state = robot::press(self.stage.kitchen, moment.state, &self.stage.recipes, errand.button);
+                let before = moment.state;
+                moment.state = robot::press(self.stage.kitchen, before, &self.stage.recipes, errand.button);
                 moment.presses += 1;
                 let draw = self.draws[step].predictions[presses % ROBOT_DRAWS];
                 if draw < self.stage.foresight {
                     let draw = draw / self.stage.foresight;
                     moment.cases.robot_pressed(self.stage.kitchen, self.cost, self.policy, draw);
+                }
+                if self.draws[step].captures[presses % ROBOT_DRAWS] < self.stage.model.capture {
+                    moment.see_changes(self.stage.kitchen, before);
                 }
                 presses += 1;
             }
@@ -204,9 +223,14 @@ impl Rollout<'_> {
         }
     }
 
-    /// The human looks at what its next press needs, decides, and presses.
+    /// The human looks around and at what its next press needs, decides, and presses.
     fn decide(&mut self, moment: &mut Moment, step: usize) -> Deed {
         let (stage, draws) = (self.stage, &self.draws[step]);
+        for (index, &draw) in draws.looks[..stage.kitchen.locations.len()].iter().enumerate() {
+            if draw < stage.other_looks {
+                moment.cases.learn(stage.kitchen, AspectId(index as u8), moment.state);
+            }
+        }
         let inclination = stage.decider.inclination(self.cost, &moment.cases);
         let mut meant = stage.decider.meant(&inclination, draws.decision);
         if let Deed::Press(button) = meant {

@@ -138,7 +138,8 @@ impl Scenario {
         let kitchen = self.kitchen();
         let state = self.state(&kitchen);
         let belief = self.belief(&kitchen, state);
-        let situation = Situation { state, belief: &belief, changed: &[], robot: self.outlook(&kitchen), robot_press_s: 2.4 };
+        let situation =
+            Situation { state, belief: &belief, changed: &[], robot: self.outlook(&kitchen), robot_press_s: 2.4 };
         let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
         let moment = Moment { seq: 0, time: SessionTime::ZERO, situation, signals: &signals, error };
         concept.advise(&mut CostToGo::new(kitchen), &moment)
@@ -242,6 +243,36 @@ fn an_answer_depends_on_nothing_that_was_asked_before() {
             );
         }
     }
+}
+
+#[test]
+fn what_will_be_seen_anyway_is_not_worth_saying() {
+    let scenario = named("finished_rice_unseen");
+    let kitchen = scenario.kitchen();
+    let state = scenario.state(&kitchen);
+    let belief = scenario.belief(&kitchen, state);
+    let pot = AspectId::of_location(kitchen.location_named("cooking_pot").expect("a pot"));
+    let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
+    let benefit = |other_looks_hz: f64, capture: f64, changed: &[AspectId]| {
+        let mut spec = AssistantSpec::default();
+        (spec.rollout.other_looks_hz, spec.rollout.capture) = (other_looks_hz, capture);
+        let mut planner = Planner::new(kitchen.clone(), &HumanModel::default(), spec, 1);
+        let situation =
+            Situation { state, belief: &belief, changed, robot: scenario.outlook(&kitchen), robot_press_s: 2.4 };
+        let mut cost = CostToGo::new(kitchen.clone());
+        let answer = planner.advise(&mut cost, &situation, &signals, 0, SessionTime::ZERO);
+        let option = answer.options.iter().find(|option| option.signal.target() == "cooking_pot");
+        option.expect("the pot may be highlighted").benefit
+    };
+    let unseen = benefit(0.0, 0.0, &[pot]);
+    let (around, drawn) = (benefit(0.25, 0.0, &[]), benefit(0.0, 0.5, &[pot]));
+    println!(
+        "{unseen:.2} saved if nobody looks, {around:.2} if people look around, {drawn:.2} if half of the changes are seen"
+    );
+    assert!(around < 0.8 * unseen && drawn < 0.8 * unseen, "who may see it needs it less");
+    assert_eq!(benefit(0.0, 0.5, &[]), benefit(0.0, 0.0, &[]), "the robot stands still, and nothing has changed");
+    assert_eq!(benefit(1e9, 0.0, &[]), 0.0, "who sees everything needs nothing");
+    assert_eq!(benefit(0.0, 1.0, &[pot]), 0.0, "who saw it happen needs nothing");
 }
 
 fn named(name: &str) -> Scenario {

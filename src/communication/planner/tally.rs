@@ -9,8 +9,24 @@ pub struct Tally {
     count: u32,
     sum: f64,
     squares: f64,
-    /// What was done without the signal and with it where they first differ, and what that saved in all.
-    partings: Vec<(Deed, Deed, f64)>,
+    partings: Vec<Parting>,
+}
+
+/// Where rollouts with the signal and without it first differ.
+#[derive(Clone, Copy, Debug)]
+struct Parting {
+    silent: Deed,
+    told: Deed,
+    /// What that saved in all, and the sum of its squares.
+    sum: f64,
+    squares: f64,
+}
+
+impl Parting {
+    /// What it saved at least, by a standard error: what saved much by chance, once, is no reason.
+    fn surely_saved(&self) -> f64 {
+        self.sum - self.squares.sqrt()
+    }
 }
 
 impl Tally {
@@ -20,9 +36,12 @@ impl Tally {
         self.sum += saved;
         self.squares += saved * saved;
         if let Some((silent, told)) = parted {
-            match self.partings.iter_mut().find(|(a, b, _)| *a == silent && *b == told) {
-                Some((_, _, sum)) => *sum += saved,
-                None => self.partings.push((silent, told, saved)),
+            match self.partings.iter_mut().find(|parting| parting.silent == silent && parting.told == told) {
+                Some(parting) => {
+                    parting.sum += saved;
+                    parting.squares += saved * saved;
+                }
+                None => self.partings.push(Parting { silent, told, sum: saved, squares: saved * saved }),
             }
         }
     }
@@ -53,12 +72,12 @@ impl Tally {
 
     /// The press that the signal prevents where that saves most, and what is pressed instead (nothing: waiting).
     pub fn turning_point(&self) -> Option<(ButtonId, Option<ButtonId>)> {
-        let presses = self.partings.iter().filter_map(|&(silent, told, saved)| match (silent, told) {
-            (Deed::Press(silent), Deed::Press(told)) => Some((silent, Some(told), saved)),
-            (Deed::Press(silent), Deed::Wait) => Some((silent, None, saved)),
+        let presses = self.partings.iter().filter_map(|parting| match (parting.silent, parting.told) {
+            (Deed::Press(silent), Deed::Press(told)) => Some((silent, Some(told), parting)),
+            (Deed::Press(silent), Deed::Wait) => Some((silent, None, parting)),
             (Deed::Wait, _) => None,
         });
-        let most = presses.reduce(|best, one| if one.2 > best.2 { one } else { best })?;
-        (most.2 > 0.0).then_some((most.0, most.1))
+        let most = presses.reduce(|best, one| if one.2.surely_saved() > best.2.surely_saved() { one } else { best })?;
+        (most.2.sum > 0.0).then_some((most.0, most.1))
     }
 }

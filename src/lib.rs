@@ -12,4 +12,5 @@ pub mod mind;
 pub mod participant;
 pub mod robot;
 pub mod run;
+pub mod scene;
 pub mod session;

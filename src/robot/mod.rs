@@ -1,5 +1,7 @@
 //! The robot: its task policy, and the arm that carries it out.
 
+pub mod kinematics;
+pub mod motion;
 pub mod policy;
 pub mod timed;
 

@@ -1,0 +1,112 @@
+//! The motion of the timed arm: it knows when it touches a button, this says where its joints are in between.
+//!
+//! From pose to pose the joints go together, slowly at both ends (a quintic; Craig, Introduction to Robotics): up from the
+//! last button, above the next one, down on it.
+
+use super::kinematics::{Arm, JOINTS, Joints};
+use crate::base::time::SessionTime;
+use crate::kitchen::{Agent, Button, ButtonId, Kitchen};
+
+/// The height of a button above the table, in metres.
+pub const BUTTON_M: f64 = 0.02;
+/// The tip goes from button to button so high above them, in metres.
+const ABOVE_M: f64 = 0.08;
+/// Of the time until it touches, the arm goes up for the first part, and down for the last.
+const UP: f64 = 0.15;
+const DOWN: f64 = 0.2;
+/// How long it takes to go up without another button to go to, in seconds.
+const UP_S: f64 = 0.4;
+/// Where a search for a pose begins: elbow up, stick down.
+const BENT: Joints = [0.0, -1.6, 1.8, -1.8, -1.57, 0.0];
+
+/// The poses at a button.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct AtButton {
+    above: Joints,
+    touching: Joints,
+}
+
+/// Where the joints of an arm are from moment to moment.
+#[derive(Clone, Debug)]
+pub struct ArmMotion {
+    /// By button of the robot; none for one out of reach, over which the arm stays where it is.
+    buttons: Vec<Option<AtButton>>,
+    /// Poses with the times at which they are taken; never empty.
+    way: Vec<(SessionTime, Joints)>,
+    /// The button that the tip touches, goes down on or comes up from, so that it has to go up first.
+    down_on: Option<ButtonId>,
+}
+
+impl ArmMotion {
+    /// An arm at rest above the middle of its buttons.
+    pub fn new(kitchen: &Kitchen, arm: &Arm) -> ArmMotion {
+        let at_button = |button: &Button| {
+            let [x, y] = button.at_m;
+            let top_m = kitchen.table_height_m + BUTTON_M;
+            let start = Joints::from([y.atan2(x), BENT[1], BENT[2], BENT[3], BENT[4], BENT[5]]);
+            let above = arm.pointing_down([x, y, top_m + ABOVE_M], &start)?;
+            Some(AtButton { above, touching: arm.pointing_down([x, y, top_m], &above)? })
+        };
+        let buttons: Vec<Option<AtButton>> = kitchen.buttons[Agent::Robot.index()].iter().map(at_button).collect();
+        let above: Vec<&Joints> = buttons.iter().flatten().map(|poses| &poses.above).collect();
+        let mean = |joint: usize| above.iter().map(|pose| pose[joint]).sum::<f64>() / above.len() as f64;
+        let rest = if above.is_empty() { BENT } else { std::array::from_fn(mean) };
+        ArmMotion { buttons, way: vec![(SessionTime::ZERO, rest)], down_on: None }
+    }
+
+    /// The joint angles at a moment.
+    pub fn at(&self, now: SessionTime) -> Joints {
+        let next = self.way.partition_point(|(time, _)| *time <= now);
+        let ((since, from), Some((until, to))) = (self.way[next.saturating_sub(1)], self.way.get(next)) else {
+            return self.way[next - 1].1;
+        };
+        let length_s = until.secs_since(since);
+        let share = if length_s > 0.0 { (now.secs_since(since) / length_s).clamp(0.0, 1.0) } else { 1.0 };
+        let eased = share.powi(3) * (10.0 - 15.0 * share + 6.0 * share * share);
+        std::array::from_fn::<f64, JOINTS, _>(|joint| from[joint] + (to[joint] - from[joint]) * eased)
+    }
+
+    /// When it comes to rest, if nothing comes between.
+    pub fn rests_at(&self) -> SessionTime {
+        self.way.last().map_or(SessionTime::ZERO, |(time, _)| *time)
+    }
+
+    /// Sets out to touch a button at `until`.
+    pub fn set_out(&mut self, now: SessionTime, button: ButtonId, until: SessionTime) {
+        let Some(Some(goal)) = self.buttons.get(button.index()).copied() else { return };
+        let takes_s = until.secs_since(now).max(0.0);
+        let after = |share: f64| now + SessionTime::from_secs_f64(takes_s * share);
+        let here = self.at(now);
+        let mut way = vec![(now, here)];
+        if let Some(AtButton { above, .. }) = self.poses_below().filter(|poses| poses.above != here) {
+            way.push((after(UP), above));
+        }
+        way.extend([(after(1.0 - DOWN), goal.above), (until.max(now), goal.touching)]);
+        self.way = way;
+        self.down_on = Some(button);
+    }
+
+    /// Goes up where it is: the press is made or given up. On the way to a button it is up, and stops.
+    pub fn go_up(&mut self, now: SessionTime) {
+        let here = self.at(now);
+        let goes_down = self.way.iter().rev().nth(1).is_none_or(|(since, _)| *since <= now);
+        match self.poses_below().filter(|_| goes_down) {
+            Some(AtButton { above, .. }) => {
+                self.way = vec![(now, here), (now + SessionTime::from_secs_f64(UP_S), above)];
+            }
+            None => {
+                self.way = vec![(now, here)];
+                self.down_on = None;
+            }
+        }
+    }
+
+    /// Stops where it is.
+    pub fn stand(&mut self, now: SessionTime) {
+        self.way = vec![(now, self.at(now))];
+    }
+
+    fn poses_below(&self) -> Option<AtButton> {
+        self.down_on.and_then(|button| self.buttons[button.index()])
+    }
+}

@@ -1,0 +1,160 @@
+//! What the participant believes: as it is estimated, and of simulated participants as it is.
+
+use super::colours;
+use super::shown::{Row, Series, Shown, slug};
+use crate::base::time::SessionTime;
+use crate::console::words;
+use crate::kitchen::{Aspect, AspectId, Kitchen, State};
+use crate::measures::sequences::FALSE_BELOW;
+use crate::mind::dirichlet::DirichletBelief;
+use crate::mind::witness::EstimateWitness;
+use crate::mind::{AspectBelief, BeliefWitness};
+use crate::session::{Event, Session, Stamped};
+
+/// Between two presses the estimate is shown five times a second.
+const EVERY_NS: u64 = 200_000_000;
+/// What is known at least so well is no news.
+const KNOWN: f64 = 0.95;
+
+/// What is held of an aspect.
+struct Held<'a> {
+    believes: &'a str,
+    p_truth: f64,
+}
+
+/// The beliefs as they are shown.
+#[derive(Clone, Debug, Default)]
+pub struct BeliefScene {
+    /// When the estimate was shown last, in steps of [`EVERY_NS`].
+    tick: Option<u64>,
+    page: String,
+    /// By aspect, what it is taken for wrongly.
+    taken_for: Vec<String>,
+}
+
+fn estimated(aspect: &str) -> String {
+    format!("human/belief/estimated/{}", slug(aspect))
+}
+
+fn held_truly(aspect: &str) -> String {
+    format!("human/belief/true/{}", slug(aspect))
+}
+
+fn wrong(aspect: &str) -> String {
+    format!("human/belief/wrong/{}", slug(aspect))
+}
+
+/// How the series are drawn.
+pub fn fixed(kitchen: &Kitchen) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (nth, aspect) in kitchen.aspects.iter().enumerate() {
+        let series = Series { name: words::location(&aspect.name), colour: colours::of_series(nth) };
+        rows.push(Row::new(estimated(&aspect.name), Shown::Line(series.clone())));
+        rows.push(Row::new(held_truly(&aspect.name), Shown::Line(series)));
+    }
+    rows
+}
+
+impl BeliefScene {
+    /// Whether the estimate is shown at this time.
+    pub fn is_due(&self, now: SessionTime) -> bool {
+        self.tick.is_none_or(|last| last < now.0 / EVERY_NS)
+    }
+
+    /// What an event that was just applied tells of beliefs; `belief` is the estimate after it.
+    pub fn follow(&mut self, session: &Session, stamped: &Stamped, belief: Option<&DirichletBelief>) -> Vec<Row> {
+        match &stamped.event {
+            Event::ParticipantBelieves(witness) => truly(witness),
+            Event::BeliefEstimated(witness) => self.before_press(session, witness),
+            _ => belief.map_or_else(Vec::new, |belief| self.between(session, stamped.time, belief)),
+        }
+    }
+
+    fn before_press(&mut self, session: &Session, witness: &EstimateWitness) -> Vec<Row> {
+        let aspects = || witness.aspects.iter();
+        let mut rows: Vec<Row> =
+            aspects().map(|told| Row::new(estimated(&told.aspect), Shown::Value(told.p_truth))).collect();
+        let held: Vec<Held> = aspects().map(|told| Held { believes: &told.believes, p_truth: told.p_truth }).collect();
+        if held.len() == session.kitchen.aspects.len() {
+            rows.extend(self.in_words(session, &held));
+        }
+        rows
+    }
+
+    fn between(&mut self, session: &Session, now: SessionTime, belief: &DirichletBelief) -> Vec<Row> {
+        if !self.is_due(now) {
+            return Vec::new();
+        }
+        self.tick = Some(now.0 / EVERY_NS);
+        let kitchen = &session.kitchen;
+        let p_truth = |index: usize| belief.p_truth(kitchen, session.state, AspectId(index as u8));
+        let held: Vec<Held> = (0..kitchen.aspects.len())
+            .map(|index| {
+                let believes = &kitchen.aspects[index].labels[belief.aspects[index].most_likely()];
+                Held { believes, p_truth: p_truth(index) }
+            })
+            .collect();
+        let value = |(aspect, held): (&Aspect, &Held)| Row::new(estimated(&aspect.name), Shown::Value(held.p_truth));
+        let mut rows: Vec<Row> = kitchen.aspects.iter().zip(&held).map(value).collect();
+        rows.extend(self.in_words(session, &held));
+        rows
+    }
+
+    /// The page and the lanes, where they say something else than before.
+    fn in_words(&mut self, session: &Session, held: &[Held]) -> Vec<Row> {
+        let kitchen = &session.kitchen;
+        let mut rows = Vec::new();
+        self.taken_for.resize(held.len(), String::new());
+        for (index, taken_for) in self.taken_for.iter_mut().enumerate() {
+            let (aspect, is_wrong) = (&kitchen.aspects[index], held[index].p_truth < FALSE_BELOW);
+            let now_taken_for = if is_wrong { taken_for_what(session, index, &held[index]) } else { "" };
+            if now_taken_for != taken_for {
+                *taken_for = now_taken_for.to_string();
+                rows.push(Row::new(wrong(&aspect.name), Shown::State(taken_for.clone())));
+            }
+        }
+        let page = page(session, held);
+        if page != self.page {
+            self.page.clone_from(&page);
+            rows.push(Row::new("human/belief/page", Shown::Page(page)));
+        }
+        rows
+    }
+}
+
+/// What a simulated participant believes.
+fn truly(witness: &BeliefWitness) -> Vec<Row> {
+    let value = |told: &AspectBelief| Row::new(held_truly(&told.aspect), Shown::Value(told.p_truth));
+    witness.aspects.iter().map(value).collect()
+}
+
+/// What is believed wrong or not surely, the wrongest first.
+fn page(session: &Session, held: &[Held]) -> String {
+    let kitchen = &session.kitchen;
+    let mut doubtful: Vec<usize> = (0..held.len()).filter(|&index| held[index].p_truth < KNOWN).collect();
+    doubtful.sort_by(|&a, &b| held[a].p_truth.total_cmp(&held[b].p_truth));
+    let mut text = String::from("| what | is taken for | truly | knows it |\n|:--|:--|:--|--:|\n");
+    for index in doubtful {
+        let aspect = &kitchen.aspects[index];
+        let p_truth = held[index].p_truth;
+        let (believes, truth) = (taken_for_what(session, index, &held[index]), truth(kitchen, session.state, index));
+        let percent = (p_truth * 100.0).round();
+        let name = words::location(&aspect.name);
+        let line = match p_truth < FALSE_BELOW {
+            true => format!("| **{name}** | **{believes}** | **{truth}** | **{percent} %** |\n"),
+            false => format!("| {name} | {believes} | {truth} | {percent} % |\n"),
+        };
+        text.push_str(&line);
+    }
+    text.push_str("\nAll else is known as it is.\n");
+    text
+}
+
+/// What an aspect is taken for, where it is not known surely.
+fn taken_for_what<'a>(session: &Session, aspect: usize, held: &Held<'a>) -> &'a str {
+    if held.believes == truth(&session.kitchen, session.state, aspect) { "not sure" } else { held.believes }
+}
+
+fn truth(kitchen: &Kitchen, state: State, aspect: usize) -> &str {
+    &kitchen.aspects[aspect].labels[kitchen.true_value(state, AspectId(aspect as u8))]
+}

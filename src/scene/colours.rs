@@ -1,0 +1,61 @@
+//! Colours on a dark ground. The same agent has the same colour everywhere; ingredients that look alike have like ones.
+
+use crate::kitchen::{Agent, ContentId, Kitchen};
+
+/// Red, green, blue, opacity.
+pub type Colour = [u8; 4];
+
+pub const FRAME: Colour = [72, 78, 90, 255];
+pub const EMPTY: Colour = [104, 112, 126, 255];
+pub const FULL: Colour = [236, 239, 244, 255];
+pub const HUMAN: Colour = [94, 190, 255, 255];
+pub const ROBOT: Colour = [255, 166, 77, 255];
+pub const SIGNAL: Colour = [255, 221, 51, 255];
+pub const WIZARD: Colour = [214, 140, 255, 255];
+pub const ASSISTANT: Colour = [110, 231, 160, 255];
+pub const ERROR: Colour = [255, 84, 84, 255];
+pub const QUIET: Colour = [150, 156, 168, 255];
+/// A gaze sample that tells nothing.
+pub const LOST: Colour = [120, 120, 120, 255];
+pub const TABLE: Colour = [92, 84, 76, 255];
+pub const BUTTON: Colour = [176, 58, 58, 255];
+pub const STEEL: Colour = [176, 186, 200, 255];
+pub const JOINT: Colour = [82, 132, 190, 255];
+
+/// Of ingredients that do not look alike: yellow, green, orange, blue, pink, violet, cyan, lime.
+const HUES: [f64; 8] = [0.13, 0.38, 0.06, 0.58, 0.93, 0.75, 0.48, 0.22];
+
+/// The colour of an agent.
+pub fn of(agent: Agent) -> Colour {
+    match agent {
+        Agent::Human => HUMAN,
+        Agent::Robot => ROBOT,
+    }
+}
+
+/// The colour of an ingredient item: a hue for all that look alike, paler the further it is processed.
+pub fn of_item(kitchen: &Kitchen, item: ContentId) -> Colour {
+    let content = kitchen.content(item);
+    let own = content.ingredient.unwrap_or_default();
+    let alike = content.look_alikes.iter().filter_map(|&other| kitchen.content(other).ingredient);
+    let family = alike.fold(own, usize::min);
+    let states = || (0..item.index()).filter(|&other| kitchen.contents[other].ingredient == Some(own));
+    let paler = states().count() as f64;
+    let hue = (HUES[family % HUES.len()] + if own == family { 0.0 } else { 0.94 }).fract();
+    of_hue(hue, (0.85 - 0.22 * paler).max(0.25), 0.98)
+}
+
+/// The colour of the nth of several series.
+pub fn of_series(nth: usize) -> Colour {
+    of_hue((0.02 + nth as f64 * 0.618).fract(), if nth.is_multiple_of(2) { 0.75 } else { 0.45 }, 0.95)
+}
+
+/// The colour of this hue, saturation and value, each from 0 to 1.
+fn of_hue(hue: f64, saturation: f64, value: f64) -> Colour {
+    let channel = |shift: f64| {
+        let k = (shift + hue * 6.0) % 6.0;
+        let part = value - value * saturation * k.min(4.0 - k).clamp(0.0, 1.0);
+        (part * 255.0).round() as u8
+    };
+    [channel(5.0), channel(3.0), channel(1.0), 255]
+}

@@ -1,0 +1,150 @@
+//! The kitchen from above, as on the wall display: places and what lies there, what the participant is shown, and where
+//! it looks.
+
+use super::colours::{self, Colour};
+use super::shown::{Area, Disc, Row, Shown, slug};
+use crate::communication::Signal;
+use crate::console::words;
+use crate::gaze::{GazeSample, MIN_CONFIDENCE};
+use crate::kitchen::layout::Storage;
+use crate::kitchen::{self, Agent, ContentId, Kitchen, Location, LocationId, LocationKind, OrderContent, State};
+use crate::session::Session;
+
+/// Half the widths of lines, in millimetres.
+const THIN: f64 = 2.0;
+const THICK: f64 = 6.0;
+/// Words begin below their point: those above a place so far above its edge, in millimetres.
+const ABOVE_MM: f64 = 52.0;
+
+const MM: f64 = 1000.0;
+
+fn area(kitchen: &Kitchen, on: kitchen::Area, colour: Colour) -> Area {
+    let [width_mm, height_mm] = kitchen.display_m.map(|length| length * MM);
+    Area {
+        left: on.x * width_mm,
+        top: on.y * height_mm,
+        width: on.w * width_mm,
+        height: on.h * height_mm,
+        colour,
+        line: THIN,
+    }
+}
+
+fn words_at(at: [f64; 2], words: &str, colour: Colour) -> Disc {
+    Disc { at, radius: 0.0, words: words.to_string(), colour }
+}
+
+/// The display's edge, the names of the places, and the storages.
+pub fn fixed(kitchen: &Kitchen) -> Vec<Row> {
+    let whole = kitchen::Area { x: 0.0, y: 0.0, w: 1.0, h: 1.0 };
+    let name = |location: &Location| {
+        let Area { left, top, width, .. } = area(kitchen, location.display, colours::QUIET);
+        words_at([left + width / 2.0, top - ABOVE_MM], &location.label(), colours::QUIET)
+    };
+    let mut rows = vec![
+        Row::new("kitchen/display", Shown::Areas(vec![area(kitchen, whole, colours::FRAME)])),
+        Row::new("kitchen/names", Shown::Discs(kitchen.locations.iter().map(name).collect())),
+    ];
+    for agent in Agent::BOTH {
+        let own = || kitchen.storages.iter().filter(|storage| storage.agent == agent);
+        let entity = format!("kitchen/storage/{}", agent.name());
+        let areas = own().map(|storage| area(kitchen, storage.display, dimmed(colours::of(agent))));
+        rows.push(Row::new(&entity, Shown::Areas(areas.collect())));
+        let content =
+            |storage: &Storage| content(kitchen, storage.display, &[storage.item], &storage.label, colours::QUIET);
+        rows.push(Row::new(format!("{entity}/items"), Shown::Discs(own().flat_map(content).collect())));
+    }
+    rows
+}
+
+fn dimmed([red, green, blue, opacity]: Colour) -> Colour {
+    [red / 2, green / 2, blue / 2, opacity]
+}
+
+/// What lies where, for the places where it is something else than `before`; for all of them without a before.
+pub fn contents(kitchen: &Kitchen, before: Option<State>, state: State) -> impl Iterator<Item = Row> {
+    let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
+    let changed = locations.filter(move |&id| before.is_none_or(|before| before.code(id) != state.code(id)));
+    changed.flat_map(move |id| {
+        let location = kitchen.location(id);
+        let items = items(kitchen, state, id);
+        let is_order = location.kind == LocationKind::Order;
+        let words = if items.is_empty() && !is_order { "" } else { kitchen.content_label(state, id) };
+        let colour = match (items.is_empty(), location.kind) {
+            (true, _) => colours::EMPTY,
+            (false, LocationKind::Hand(agent)) => colours::of(agent),
+            (false, _) => colours::FULL,
+        };
+        let entity = format!("kitchen/{}", slug(&location.name));
+        let discs = content(kitchen, location.display, &items, words, colour);
+        [
+            Row::new(&entity, Shown::Areas(vec![area(kitchen, location.display, colour)])),
+            Row::new(format!("{entity}/items"), Shown::Discs(discs)),
+        ]
+    })
+}
+
+/// The ingredient items that lie at a location; those of the dish that an order wants.
+fn items(kitchen: &Kitchen, state: State, id: LocationId) -> Vec<ContentId> {
+    let content = match kitchen.location(id).kind {
+        LocationKind::Order => match state.order(id) {
+            OrderContent::Dish(dish) => kitchen.dish(dish).stack(),
+            OrderContent::None | OrderContent::Served => ContentId::EMPTY,
+        },
+        _ => state.content(id),
+    };
+    if content.is_empty() { Vec::new() } else { kitchen.content(content).items.clone() }
+}
+
+/// A disc for each item, side by side in an area, and words below it.
+fn content(kitchen: &Kitchen, on: kitchen::Area, items: &[ContentId], words: &str, colour: Colour) -> Vec<Disc> {
+    let Area { left, top, width, height, .. } = area(kitchen, on, colour);
+    let share = width / (items.len() as f64 + 1.0);
+    let radius = (height * 0.34).min(share * 0.6);
+    let disc = |(nth, &item): (usize, &ContentId)| Disc {
+        at: [left + share * (nth as f64 + 1.0), top + height / 2.0],
+        radius,
+        words: String::new(),
+        colour: colours::of_item(kitchen, item),
+    };
+    let below = words_at([left + width / 2.0, top + height], words, colour);
+    items.iter().enumerate().map(disc).chain((!words.is_empty()).then_some(below)).collect()
+}
+
+/// What the participant is shown now: a place, or a recipe at its order.
+pub fn shown_signal(session: &Session) -> Vec<Row> {
+    let outline = |areas| Row::new("kitchen/shown", Shown::Areas(areas));
+    let label = |words| Row::new("kitchen/shown/words", Shown::Discs(words));
+    let target = session.shown.as_ref().and_then(|shown| {
+        let location = session.kitchen.location_named(shown.signal.target())?;
+        Some((&shown.signal, location))
+    });
+    let Some((signal, location)) = target else { return vec![outline(Vec::new()), label(Vec::new())] };
+    let words = match signal {
+        Signal::Highlight(_) => "look here".to_string(),
+        Signal::ShowRecipe(_) => {
+            words::recipe(session, location).map_or_else(String::new, |recipe| format!("recipe: {recipe}"))
+        }
+    };
+    let inner = area(&session.kitchen, session.kitchen.location(location).display, colours::SIGNAL);
+    let (gap, line) = (4.0 * THIN, THICK);
+    let outer = Area {
+        left: inner.left - gap,
+        top: inner.top - gap,
+        width: inner.width + 2.0 * gap,
+        height: inner.height + 2.0 * gap,
+        line,
+        ..inner
+    };
+    let below = [outer.left + outer.width / 2.0, outer.top + outer.height + ABOVE_MM];
+    vec![outline(vec![outer]), label(vec![words_at(below, &words, colours::SIGNAL)])]
+}
+
+/// Where the participant looks, with the area around it that it can read.
+pub fn gaze(session: &Session, sample: GazeSample) -> Row {
+    let [width_m, height_m] = session.kitchen.display_m;
+    let at = [sample.x * width_m * MM, sample.y * height_m * MM];
+    let around = session.spec.human.perception.radius_m() * MM;
+    let colour = if sample.confidence >= MIN_CONFIDENCE { colours::SIGNAL } else { colours::LOST };
+    Row::new("human/gaze", Shown::Sight { at, around, colour })
+}

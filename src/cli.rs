@@ -171,6 +171,7 @@ fn new_session(session: Option<&Path>, flags: &OperateFlags, compare: Option<Req
         participant: flags.participant.map(|participant| match participant {
             Participant::Simulated => ParticipantKind::Simulated,
             Participant::Keyboard => ParticipantKind::Keyboard,
+            Participant::Display => ParticipantKind::Display,
         }),
         gaze: flags.gaze.map(|gaze| match gaze {
             Gaze::Simulated => GazeSource::Simulated,
@@ -185,6 +186,7 @@ fn new_session(session: Option<&Path>, flags: &OperateFlags, compare: Option<Req
         }),
         concept: flags.concept.map(ConceptName::from),
         seed: flags.seed,
+        listen: flags.listen,
         code: flags.code.clone(),
     };
     overrides.apply(&mut files).map_err(wrong_setting)?;

@@ -4,6 +4,7 @@ pub mod base;
 pub mod cli;
 pub mod communication;
 pub mod console;
+pub mod display;
 pub mod edge;
 pub mod gaze;
 pub mod kitchen;

@@ -11,7 +11,7 @@ const FLOORS: [&[&str]; 13] = [
     &["measures"],
     &["communication"],
     &["participant", "session"],
-    &["console", "study"],
+    &["console", "study", "display"],
     &["scene"],
     &["edge"],
     &["run"],

@@ -80,7 +80,7 @@ impl Stage {
     }
 
     fn press(&mut self, seconds: f64, agent: Agent, button: &str) {
-        self.at(seconds, Event::Press { agent, button: button.to_string() });
+        self.at(seconds, Event::Press { agent, button: button.to_string(), at_ns: None });
     }
 
     fn look(&mut self, seconds: f64, x: f64, y: f64) {

@@ -118,7 +118,7 @@ fn after(kitchen: &Kitchen, mut state: State, event: &Event) -> State {
             state.set_order(order(name), OrderContent::Dish(DishId(dish as u8)));
         }
         Event::OrderCleared { order: name } => state.set_order(order(name), OrderContent::None),
-        Event::Press { agent, button } => {
+        Event::Press { agent, button, .. } => {
             let button = kitchen.button_named(*agent, button).expect("a button");
             return kitchen.press(state, &kitchen.true_recipes(), *agent, button).unwrap_or(state);
         }
@@ -149,7 +149,7 @@ fn measure(kitchen: &Kitchen, cost: &mut CostToGo, engine: &Engine, events: &[St
         }
         match &stamped.event {
             Event::ParticipantBelieves(belief) => witness = belief.clone(),
-            Event::Press { agent: Agent::Human, button } => {
+            Event::Press { agent: Agent::Human, button, .. } => {
                 let press = judged.next_if(|press| press.seq == stamped.seq).expect("a verdict for every press");
                 presses += 1;
                 if press.verdict.error {

@@ -93,7 +93,7 @@ fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
         }
         _ => {
             let button = buttons[random.random_range(0..buttons.len())].name.clone();
-            Event::Press { agent: Agent::Human, button }
+            Event::Press { agent: Agent::Human, button, at_ns: None }
         }
     }
 }
@@ -424,7 +424,7 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionFiles, Vec<Stamped>
     let buttons = &kitchen.buttons[Agent::Human.index()];
     inputs.extend((1..40).map(|number| {
         let button = buttons[random.random_range(0..buttons.len())].name.clone();
-        (2.0 * f64::from(number), Event::Press { agent: Agent::Human, button })
+        (2.0 * f64::from(number), Event::Press { agent: Agent::Human, button, at_ns: None })
     }));
     inputs.extend(sent.iter().map(|(time_s, signal)| {
         (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None })

@@ -58,7 +58,7 @@ fn at(seconds: f64) -> SessionTime {
 }
 
 fn press(button: &str) -> Event {
-    Event::Press { agent: Agent::Human, button: button.to_string() }
+    Event::Press { agent: Agent::Human, button: button.to_string(), at_ns: None }
 }
 
 fn highlight(location: &str) -> Event {

@@ -1,5 +1,6 @@
 //! What can be typed: commands and their arguments.
 
+use std::net::IpAddr;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -57,7 +58,7 @@ pub(super) struct OperateArgs {
     /// The session file; by default sessions/default.toml, or the one that the program carries.
     pub(super) session: Option<PathBuf>,
     /// Take up this recording, which was cut, in a new part beside it; its session is the same, a running trial is paused.
-    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "condition", "concept", "seed", "out"])]
+    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "listen", "condition", "concept", "seed", "out"])]
     pub(super) recording: Option<PathBuf>,
     #[command(flatten)]
     pub(super) flags: OperateFlags,
@@ -80,6 +81,10 @@ pub(super) struct OperateFlags {
     /// By what the assistant decides, instead of the session file's concept.
     #[arg(long, value_enum)]
     pub(super) concept: Option<ConceptArg>,
+    /// Serve the wall display at this address of this machine, not on localhost alone; the page then asks for the code that
+    /// the console shows.
+    #[arg(long, value_name = "ADDRESS")]
+    pub(super) listen: Option<IpAddr>,
     /// Everything random follows from it; by default the session file's.
     #[arg(long)]
     pub(super) seed: Option<u64>,
@@ -94,13 +99,15 @@ pub(super) enum Participant {
     Simulated,
     /// Somebody at this keyboard: tab switches between the wizard's and the participant's keys.
     Keyboard,
+    /// Somebody at the wall display: a page in a browser, with keys, gamepad or touch.
+    Display,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum Gaze {
     /// The simulated person's.
     Simulated,
-    /// The mouse pointer over the kitchen.
+    /// The mouse pointer over the kitchen, at the console or on the wall display.
     Mouse,
     /// Lines of JSON over TCP on localhost.
     Json,

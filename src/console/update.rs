@@ -247,7 +247,7 @@ pub(super) fn act(model: &mut Model, session: &Session, action: Action) -> Optio
         Action::Accept => accept(model, session),
         Action::Press(button) => {
             let button = session.kitchen.button(Agent::Human, button).name.clone();
-            send(model, session, Event::Press { agent: Agent::Human, button }, Level::Done, "")
+            send(model, session, Event::Press { agent: Agent::Human, button, at_ns: None }, Level::Done, "")
         }
         Action::TakeBack => {
             send(model, session, Event::SignalEnded { reason: SignalEnd::TakenBack }, Level::Done, "taken back")

@@ -73,6 +73,8 @@ pub struct Button {
     pub at_m: [f64; 2],
     /// The human's key for it.
     pub key: Option<char>,
+    /// The number of the human's gamepad button for it.
+    pub gamepad: Option<u8>,
 }
 
 impl Kitchen {

@@ -1,5 +1,7 @@
 //! What can lie at a location: nothing, an ingredient item, or a stack of items.
 
+use super::look::Look;
+
 /// An index into [`super::Kitchen::contents`]; 0 is "empty".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ContentId(pub u8);
@@ -29,6 +31,8 @@ pub struct Content {
     pub ingredient: Option<usize>,
     /// The contents that look like it: the same with one ingredient exchanged for a look-alike.
     pub look_alikes: Vec<ContentId>,
+    /// How the display draws it, if it is an item and its file says so.
+    pub look: Option<Look>,
 }
 
 impl Content {

@@ -5,6 +5,7 @@ use toml::Spanned;
 
 use super::action::Agent;
 use super::content::ContentId;
+use super::look::Look;
 
 /// An index into [`super::Kitchen::locations`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -70,6 +71,8 @@ pub struct Location {
     pub display: Area,
     /// The wizard's key for the signal about it.
     pub signal_key: Option<char>,
+    /// How the display draws it, if its file says so.
+    pub look: Option<Look>,
 }
 
 impl Location {
@@ -156,6 +159,9 @@ pub struct ButtonSpec {
     pub at_m: Spanned<[f64; 2]>,
     #[serde(default)]
     pub key: Option<Spanned<char>>,
+    /// The number of the gamepad's button (W3C Gamepad), 0 the first.
+    #[serde(default)]
+    pub gamepad: Option<Spanned<u8>>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -193,6 +199,9 @@ pub struct PlaceSpec {
     #[serde(default)]
     pub signal: Option<Spanned<char>>,
     pub button: ButtonSpec,
+    /// How the display draws it, a shape and colours.
+    #[serde(default)]
+    pub look: Option<Spanned<String>>,
 }
 
 #[derive(Clone, Debug, Deserialize)]

@@ -8,6 +8,7 @@ pub mod compile;
 pub mod content;
 pub mod cost_to_go;
 pub mod layout;
+pub mod look;
 pub mod recipe;
 pub mod rules;
 pub mod state;
@@ -17,6 +18,7 @@ pub use action::{Action, Agent, Button, ButtonId};
 pub use aspect::{Aspect, AspectId, AspectKind};
 pub use content::{Content, ContentId};
 pub use layout::{Area, Location, LocationId, LocationKind};
+pub use look::Look;
 pub use recipe::{Dish, DishId};
 pub use state::{OrderContent, Recipes, State};
 

@@ -6,6 +6,7 @@ use toml::Spanned;
 
 use super::content::ContentId;
 use super::layout::LocationId;
+use super::look::Look;
 
 /// An index into [`super::Kitchen::dishes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -25,6 +26,8 @@ pub struct Dish {
     pub name: String,
     /// What may be taken for its recipe: full stacks, the true one first.
     pub variants: Vec<ContentId>,
+    /// How the display draws the final product, if its file says so.
+    pub look: Option<Look>,
 }
 
 impl Dish {
@@ -71,6 +74,9 @@ pub struct IngredientSpec {
     pub states: Vec<Spanned<String>>,
     #[serde(default)]
     pub looks_like: Vec<Spanned<String>>,
+    /// How the display draws it, a shape and colours for each state.
+    #[serde(default)]
+    pub look: Vec<Spanned<String>>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -109,6 +115,9 @@ pub struct GroupSpec {
 pub struct DishSpec {
     pub name: Spanned<String>,
     pub items: Spanned<Vec<Spanned<String>>>,
+    /// How the display draws the final product: it must not tell the recipe.
+    #[serde(default)]
+    pub look: Option<Spanned<String>>,
 }
 
 #[derive(Clone, Debug, Deserialize)]

@@ -99,7 +99,7 @@ fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView)> {
                 let fits = Belief::of_witness(&kitchen, before.state, witness).is_some();
                 held = fits.then(|| witness.aspects.iter().map(|aspect| aspect.p_truth).collect());
             }
-            Event::Press { agent: Agent::Human, button } => {
+            Event::Press { agent: Agent::Human, button, .. } => {
                 let counted = replay.follower.judged.last().filter(|press| press.seq == line.stamped.seq).copied();
                 if let (Some(judged), Some(button)) = (counted, kitchen.button_named(Agent::Human, button)) {
                     let estimated = replay.follower.estimated.as_ref().filter(|one| one.press == line.stamped.seq);

@@ -189,7 +189,7 @@ impl Engine {
             Some(Deed::Press { button, belief }) => {
                 let button = self.session().kitchen.button(Agent::Human, button).name.clone();
                 self.record_own(now, Event::ParticipantBelieves(belief));
-                self.record_own(now, Event::Press { agent: Agent::Human, button });
+                self.record_own(now, Event::Press { agent: Agent::Human, button, at_ns: None });
             }
         }
     }
@@ -240,7 +240,7 @@ impl Engine {
         let name = |button: ButtonId| kitchen.button(Agent::Robot, button).name.clone();
         let event = match deed {
             RobotDeed::Intend { button, until } => Event::RobotIntends { button: name(button), until_ns: until },
-            RobotDeed::Press(button) => Event::Press { agent: Agent::Robot, button: name(button) },
+            RobotDeed::Press(button) => Event::Press { agent: Agent::Robot, button: name(button), at_ns: None },
             RobotDeed::Abort(button, reason) => Event::RobotAborts { button: name(button), reason },
             RobotDeed::Idle(reason) => Event::RobotIdles { reason },
         };
@@ -366,7 +366,7 @@ impl Engine {
         let (now, state, kitchen) = (stamped.time, session.state, &session.kitchen);
         match &stamped.event {
             Event::TrialStarted => participant.on_trial_start(now, state),
-            Event::Press { agent, button } if session.is_running() => {
+            Event::Press { agent, button, .. } if session.is_running() => {
                 if let Some(button) = kitchen.button_named(*agent, button) {
                     // A press that has an effect changes the state.
                     participant.on_press(now, *agent, button, before, (state != before).then_some(state));

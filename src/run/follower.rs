@@ -115,7 +115,7 @@ impl Follower {
                 self.judge.others_changed(stamped.time, before, self.session.state);
             }
             Event::KitchenCorrected { .. } => self.judge.others_changed(stamped.time, before, self.session.state),
-            Event::Press { agent: Agent::Human, button } if counts => {
+            Event::Press { agent: Agent::Human, button, .. } if counts => {
                 if let Some(button) = self.session.kitchen.button_named(Agent::Human, button) {
                     self.human_pressed(stamped, button, before);
                 }
@@ -173,7 +173,7 @@ impl Follower {
                 let taken = sample.taken_ns.map_or(stamped.time, |taken| taken.min(stamped.time));
                 Some(Observed::Gaze { sample: self.session.corrected(*sample), taken })
             }
-            Event::Press { agent, button } if counts => {
+            Event::Press { agent, button, .. } if counts => {
                 let button = kitchen.button_named(*agent, button)?;
                 // A press that has an effect changes the state.
                 let after = (state != before).then_some(state);

@@ -1,5 +1,6 @@
 //! What `tomcom operate` is asked for, and what the command line changes in a session file.
 
+use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -40,6 +41,8 @@ pub struct Series {
 pub struct Overrides {
     pub participant: Option<ParticipantKind>,
     pub gaze: Option<GazeSource>,
+    /// Where the display is served.
+    pub listen: Option<IpAddr>,
     pub condition: Option<Condition>,
     pub concept: Option<ConceptName>,
     pub seed: Option<u64>,
@@ -63,12 +66,13 @@ impl Overrides {
         spec.seed = self.seed.unwrap_or(spec.seed);
         spec.trial.condition = self.condition.unwrap_or(spec.trial.condition);
         spec.assistant.concept = self.concept.unwrap_or(spec.assistant.concept);
+        spec.display.listen = self.listen.unwrap_or(spec.display.listen);
         let participant = &mut spec.participant;
         participant.code = self.code.unwrap_or(std::mem::take(&mut participant.code));
         participant.kind = self.participant.unwrap_or(participant.kind);
         participant.gaze = match (self.gaze, self.participant, participant.gaze) {
             (Some(gaze), _, _) => gaze,
-            (None, Some(ParticipantKind::Keyboard), GazeSource::Simulated) => GazeSource::Mouse,
+            (None, Some(ParticipantKind::Keyboard | ParticipantKind::Display), GazeSource::Simulated) => GazeSource::Mouse,
             (None, _, gaze) => gaze,
         };
         spec.check()

@@ -15,6 +15,7 @@ use crate::measures::attribution::Cause;
 use crate::mind::BeliefWitness;
 use crate::mind::witness::EstimateWitness;
 use crate::robot::{AbortReason, IdleReason};
+use crate::session::display::DisplayEvent;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::preflight::{Check, Verdict};
 use crate::session::screen::Screen;
@@ -104,13 +105,14 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::TrialIncluded => "trial no longer excluded".to_string(),
         Event::Preflight { checks, overridden } => preflight(checks, *overridden),
         Event::Screen(screen) => on_screen(screen),
+        Event::Display(event) => on_display(event),
         Event::Unblinded { concepts } => {
             let names: Vec<&str> = concepts.iter().map(|concept| concept.title()).collect();
             format!("the wizard sees what {} would say", names.join(", "))
         }
         Event::FocusLost => "the terminal lost the keyboard".to_string(),
         Event::FocusRegained => "the terminal has the keyboard again".to_string(),
-        Event::Press { agent, button } => format!("{} presses {button}{}", agent.name(), verdict(stamped, follower)),
+        Event::Press { agent, button, .. } => format!("{} presses {button}{}", agent.name(), verdict(stamped, follower)),
         Event::OrderShown { order, dish } => format!("{order} wants {dish}"),
         Event::OrderCleared { order } => format!("{order} is cleared"),
         Event::RobotIntends { button, .. } => format!("robot sets out for {button}"),
@@ -155,6 +157,16 @@ fn preflight(checks: &[Check], overridden: bool) -> String {
         (true, _) => format!("preflight: {} ok", count(checks.len() as u64, "check", "checks")),
         (false, true) => format!("preflight overridden: {}", not_ok.join(", ")),
         (false, false) => format!("preflight: not ok: {}", not_ok.join(", ")),
+    }
+}
+
+fn on_display(event: &DisplayEvent) -> String {
+    match event {
+        DisplayEvent::Connected { width_px, height_px } => {
+            format!("the participant's display is there, {width_px} x {height_px}")
+        }
+        DisplayEvent::Lost => "the participant's display is gone".to_string(),
+        DisplayEvent::Drawn { cue, .. } => format!("the participant's display drew event {cue}"),
     }
 }
 

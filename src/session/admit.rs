@@ -107,6 +107,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::TrialIncluded
         | Event::Preflight { .. }
         | Event::Screen(_)
+        | Event::Display(_)
         | Event::Unblinded { .. }
         | Event::SignalDrawn { .. }
         | Event::FocusLost

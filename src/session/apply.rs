@@ -67,7 +67,10 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
     let named = Named { session, seq: stamped.seq };
     let mut effects = Vec::new();
     match &stamped.event {
-        Event::TrialStarted => start(session, now, &mut effects),
+        Event::TrialStarted => {
+            session.cue = Some(stamped.seq);
+            start(session, now, &mut effects);
+        }
         Event::TrialPaused => pause(session, now),
         Event::TrialResumed => resume(session, now, &mut effects),
         Event::TrialEnded { reason } => end_trial(session, now, *reason, &mut effects),
@@ -88,7 +91,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
         Event::Gaze(sample) => gaze(session, now, *sample),
         Event::Tracker(event) => session.tracker.apply(now, event),
         Event::Calibration(event) => calibration::apply(session, now, event),
-        Event::Press { agent, button } => {
+        Event::Press { agent, button, .. } => {
             let button = named.button(*agent, button)?;
             press(session, now, *agent, button, &mut effects);
         }
@@ -135,13 +138,14 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
         Event::Advised(advice) => session.advice = Some(advice.clone()),
         Event::SignalShown { by, signal, .. } => {
             named.location(signal.target())?;
+            session.cue = Some(stamped.seq);
             show(session, now, *by, signal, &mut effects);
         }
         Event::SignalEnded { reason } => end_signal(session, now, *reason, &mut effects),
         Event::Marker { note: text } => note(session, now, Happening::Marker(text.clone())),
         Event::Protocol(event) => protocol::apply(session, event),
         Event::Unblinded { .. } => session.unblinded = true,
-        Event::Preflight { .. } | Event::Screen(_) | Event::SignalDrawn { .. } => {}
+        Event::Preflight { .. } | Event::Screen(_) | Event::Display(_) | Event::SignalDrawn { .. } => {}
         Event::ClockJumped { .. } | Event::ParticipantBelieves(_) | Event::BeliefEstimated(_) => {}
         Event::SessionEnded => close(session, now, &mut effects),
     }

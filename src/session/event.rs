@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::calibration::CalibrationEvent;
+use super::display::DisplayEvent;
 use super::preflight::Check;
 use super::protocol::ProtocolEvent;
 use super::screen::Screen;
@@ -69,6 +70,10 @@ pub enum Event {
     Press {
         agent: Agent,
         button: String,
+        /// When it went down by the clock of the display that it is at, aligned to session time; a little before the
+        /// stamp, which is when the session took it and never runs back.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        at_ns: Option<SessionTime>,
     },
     /// An order location shows a wanted dish.
     OrderShown {
@@ -146,6 +151,8 @@ pub enum Event {
     ClockJumped {
         by_ms: i64,
     },
+    /// Witness: what the participant's display tells of itself.
+    Display(DisplayEvent),
     /// Witness: what is on the wizard's screen from now on.
     Screen(Screen),
     /// Witness: the wizard sees from now on what these concepts would say, beside what is sent.
@@ -198,6 +205,7 @@ impl Event {
             Event::Marker { .. } => "marker",
             Event::Protocol(_) => "protocol",
             Event::ClockJumped { .. } => "clock_jumped",
+            Event::Display(_) => "display",
             Event::Screen(_) => "screen",
             Event::Unblinded { .. } => "unblinded",
             Event::FocusLost => "focus_lost",

@@ -4,6 +4,7 @@
 pub mod admit;
 pub mod apply;
 pub mod calibration;
+pub mod display;
 pub mod event;
 mod hands;
 pub mod header;
@@ -73,6 +74,8 @@ pub struct Session {
     pub shown: Option<ShownSignal>,
     /// The newest advice of the assistant in the running trial.
     pub advice: Option<Recommendation>,
+    /// The number of the newest event that the display marks with a flash: a start, a signal.
+    pub cue: Option<u64>,
     /// When the wizard last sent a signal.
     pub signalled_at: Option<SessionTime>,
     /// The wizard saw what assistants would say, beside what was sent.
@@ -218,6 +221,7 @@ impl Session {
             robot: RobotStatus::default(),
             shown: None,
             advice: None,
+            cue: None,
             signalled_at: None,
             unblinded: false,
             aborted: None,

@@ -71,6 +71,7 @@ pub fn participant(session: &Session, now: SessionTime) -> Vec<Check> {
     let who = match spec.kind {
         ParticipantKind::Simulated => "simulated",
         ParticipantKind::Keyboard => "at this keyboard",
+        ParticipantKind::Display => "at the wall display",
     };
     let mut checks = vec![Check::ok("participant", format!("{}, {who}", spec.code))];
     match spec.gaze {

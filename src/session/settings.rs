@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::display::DisplaySpec;
 use super::plan::{PlanSpec, StepSpec};
 use super::tracker::TrackerSpec;
 use crate::communication::settings::{AssistantSpec, Shadow};
@@ -30,6 +31,8 @@ pub struct SessionSpec {
     pub assistant: AssistantSpec,
     #[serde(default)]
     pub console: ConsoleSpec,
+    #[serde(default)]
+    pub display: DisplaySpec,
     /// The file with the parameters of the human model, relative to the session file; none: those in [`Self::human`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub human_model: Option<String>,
@@ -117,6 +120,7 @@ impl SessionSpec {
         }
         self.tracker.check(self.participant.gaze)?;
         self.console.check()?;
+        self.display.check()?;
         match self.human.fault().or_else(|| self.assistant.fault()) {
             Some((key, found, remedy)) => Err(SettingError::new(key, found, remedy)),
             None => Ok(()),
@@ -212,6 +216,8 @@ pub enum ParticipantKind {
     Simulated,
     /// Somebody at the keyboard of the console.
     Keyboard,
+    /// Somebody at the wall display, a page in a browser.
+    Display,
 }
 
 /// Where gaze samples come from.
@@ -219,7 +225,7 @@ pub enum ParticipantKind {
 #[serde(rename_all = "snake_case")]
 pub enum GazeSource {
     Simulated,
-    /// The mouse pointer over the console's kitchen.
+    /// The mouse pointer over the kitchen: the console's, or the display's if the participant is there.
     Mouse,
     /// Pupil Core, through Pupil Capture's network API.
     Pupil,

@@ -9,6 +9,9 @@ use crate::kitchen::action::{Action, Agent, Button};
 use crate::kitchen::layout::{ButtonSpec, LayoutSpec, Location, LocationId, is_same_key};
 use crate::kitchen::recipe::{Process, RecipesSpec};
 
+/// No gamepad or button box has a button of a higher number.
+const MAX_GAMEPAD: u8 = 63;
+
 /// The buttons of both agents: own storage, places, processes, own trash, orders.
 pub(super) fn buttons(
     layout: &LayoutSpec,
@@ -84,5 +87,19 @@ fn button(agent: Agent, name: String, action: Action, spec: &ButtonSpec, others:
             Some(*key.get_ref())
         }
     };
-    Ok(Button { name, action, at_m, key })
+    let gamepad = gamepad(agent, &name, spec, others)?;
+    Ok(Button { name, action, at_m, key, gamepad })
+}
+
+/// The gamepad's button, each of the human's once.
+fn gamepad(agent: Agent, name: &str, spec: &ButtonSpec, others: &[Button]) -> Result<Option<u8>> {
+    let Some(number) = spec.gamepad.as_ref().filter(|_| agent == Agent::Human) else { return Ok(None) };
+    let twin = others.iter().find(|other| other.gamepad == Some(*number.get_ref()));
+    if *number.get_ref() > MAX_GAMEPAD || twin.is_some() {
+        let whose = twin.map_or(String::new(), |other| format!(", which \"{}\" has already", other.name));
+        let found = format!("gamepad = {} for \"{name}\"{whose}", number.get_ref());
+        let remedy = "the number of a gamepad button, 0 to 63, each once";
+        return Err(wrong(SpecFile::Layout, number.span(), found, remedy));
+    }
+    Ok(Some(*number.get_ref()))
 }

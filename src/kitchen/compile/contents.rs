@@ -2,8 +2,9 @@
 
 use toml::Spanned;
 
-use super::{Result, SpecFile, wrong, wrong_file};
+use super::{Result, SpecFile, look, wrong, wrong_file};
 use crate::kitchen::content::{Content, ContentId};
+use crate::kitchen::look::Look;
 use crate::kitchen::recipe::{DishSpec, RecipesSpec};
 
 /// At most so many contents: one byte, and one value of it means "none".
@@ -78,7 +79,22 @@ pub(super) fn contents(spec: &RecipesSpec, items: &Items) -> Result<Vec<Content>
     for (content, alike) in contents.iter_mut().zip(look_alikes) {
         content.look_alikes = alike;
     }
+    for (item, content) in contents.iter_mut().skip(1).take(items.names.len()).enumerate() {
+        content.look = item_look(spec, items, item)?;
+    }
     Ok(contents)
+}
+
+/// How an item looks; an ingredient without looks is drawn by its name.
+fn item_look(spec: &RecipesSpec, items: &Items, item: usize) -> Result<Option<Look>> {
+    let ingredient = &spec.ingredient[items.ingredient[item]];
+    let (looks, states) = (&ingredient.look, ingredient.states.len().max(1));
+    if !looks.is_empty() && looks.len() != states {
+        let found = format!("{} looks of \"{}\"", looks.len(), ingredient.name.get_ref());
+        let remedy = format!("one for each of its states: {states}");
+        return Err(wrong(SpecFile::Recipes, looks[0].span(), found, remedy));
+    }
+    looks.get(items.state[item]).map(|text| look(SpecFile::Recipes, text)).transpose()
 }
 
 /// All stacks of two and more, small ones first.
@@ -115,7 +131,7 @@ fn content(set: &[ContentId], items: &Items, dish_names: &[(Vec<ContentId>, Stri
         None => names.join(" + "),
     };
     let ingredient = (set.len() == 1).then(|| items.ingredient[set[0].index() - 1]);
-    Content { name, items: set.to_vec(), ingredient, look_alikes: Vec::new() }
+    Content { name, items: set.to_vec(), ingredient, look_alikes: Vec::new(), look: None }
 }
 
 pub(super) fn dish_names(spec: &RecipesSpec, items: &Items) -> Result<Vec<(Vec<ContentId>, String)>> {

@@ -2,7 +2,7 @@
 
 use super::contents::Items;
 use super::places::stored;
-use super::{Result, SpecFile, wrong, wrong_file};
+use super::{Result, SpecFile, look, wrong, wrong_file};
 use crate::kitchen::action::Agent;
 use crate::kitchen::content::{Content, ContentId};
 use crate::kitchen::layout::{LayoutSpec, Location, LocationId, LocationKind};
@@ -65,7 +65,8 @@ pub(super) fn dishes(spec: &RecipesSpec, items: &Items, contents: &[Content]) ->
             let found = format!("the dish \"{}\" a second time", dish.name.get_ref());
             return Err(wrong(SpecFile::Recipes, dish.name.span(), found, "each name and each recipe once"));
         }
-        dishes.push(Dish { name: dish.name.get_ref().clone(), variants });
+        let look = dish.look.as_ref().map(|text| look(SpecFile::Recipes, text)).transpose()?;
+        dishes.push(Dish { name: dish.name.get_ref().clone(), variants, look });
     }
     Ok(dishes)
 }

@@ -15,6 +15,7 @@ use super::aspect::{Aspect, AspectKind};
 use super::content::{Content, ContentId};
 use super::cost_to_go::MAX_BUTTONS;
 use super::layout::{LayoutSpec, Location, LocationId, LocationKind};
+use super::look::Look;
 use super::recipe::{Dish, DishId, Process, RecipesSpec};
 use super::rules::Tables;
 use super::state::OrderContent;
@@ -53,6 +54,11 @@ type Result<T> = std::result::Result<T, SpecError>;
 
 fn wrong(file: SpecFile, span: Range<usize>, found: impl Into<String>, remedy: impl Into<String>) -> SpecError {
     SpecError { file, span: Some(span), found: found.into(), remedy: remedy.into() }
+}
+
+/// Reads how something looks.
+fn look(file: SpecFile, text: &Spanned<String>) -> Result<Look> {
+    Look::read(text.get_ref()).map_err(|remedy| wrong(file, text.span(), format!("look = \"{}\"", text.get_ref()), remedy))
 }
 
 fn wrong_file(file: SpecFile, found: impl Into<String>, remedy: impl Into<String>) -> SpecError {

@@ -3,7 +3,7 @@
 use toml::Spanned;
 
 use super::contents::Items;
-use super::{MAX_ORDERS, MIN_GAP_M, Result, SpecFile, wrong, wrong_file};
+use super::{MAX_ORDERS, MIN_GAP_M, Result, SpecFile, look, wrong, wrong_file};
 use crate::kitchen::action::Agent;
 use crate::kitchen::content::ContentId;
 use crate::kitchen::layout::{
@@ -18,6 +18,7 @@ pub(super) fn locations(layout: &LayoutSpec) -> Result<Vec<Location>> {
         kind,
         display: *display.get_ref(),
         signal_key: signal.as_ref().map(|key| *key.get_ref()),
+        look: None,
     };
     let orders = layout.order.iter().map(|o| (&o.name, location(&o.name, LocationKind::Order, &o.display, &o.signal)));
     let hands = layout
@@ -40,6 +41,10 @@ pub(super) fn locations(layout: &LayoutSpec) -> Result<Vec<Location>> {
     if layout.order.is_empty() || layout.order.len() > MAX_ORDERS {
         let found = format!("{} orders", layout.order.len());
         return Err(wrong_file(SpecFile::Layout, found, format!("1 to {MAX_ORDERS} tables [[order]]")));
+    }
+    let first_place = layout.order.len() + layout.hand.len();
+    for (location, place) in locations.iter_mut().skip(first_place).zip(&layout.place) {
+        location.look = place.look.as_ref().map(|text| look(SpecFile::Layout, text)).transpose()?;
     }
     Ok(locations)
 }

@@ -1,0 +1,10 @@
+//! What the participant may see: made from the session by two functions, and from nothing else. [`scene`] is what stays
+//! the same during a recording, [`sight`] what changes. They pick what is shown; whatever they do not pick (beliefs, advice,
+//! recipes, the robot's intention) has no way to the page.
+
+mod scene;
+mod sight;
+pub mod words;
+
+pub use scene::{Scene, scene};
+pub use sight::{Sight, Stage, sight};

@@ -1,0 +1,156 @@
+//! What stays the same during a recording: where things are, how they look, what the buttons are called.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::words::Words;
+use crate::kitchen::{Action, Agent, Kitchen, LocationKind, Look};
+use crate::session::display::Names;
+use crate::session::settings::GazeSource;
+use crate::session::{Session, SessionSpec};
+
+/// Where something is on the display: fractions of its width and height, the origin at the top left.
+type Rect = [f64; 4];
+
+/// The display as it is built once.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Scene {
+    pub title: String,
+    /// "en": for the browser.
+    pub language: String,
+    /// Width and height in metres.
+    pub display_m: [f64; 2],
+    /// In the order of [`super::Sight::contents`].
+    pub locations: Vec<Spot>,
+    pub storages: Vec<Shelf>,
+    /// The human's.
+    pub buttons: Vec<Knob>,
+    /// How items and dishes look, by their names. No dish says here what it is made of.
+    pub items: BTreeMap<String, Picture>,
+    pub dishes: BTreeMap<String, Picture>,
+    /// The page's own words.
+    pub words: BTreeMap<String, String>,
+    pub names: Names,
+    pub keys: bool,
+    pub flash: bool,
+    /// The mouse pointer stands for the gaze.
+    pub pointer: bool,
+}
+
+/// A location.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Spot {
+    pub name: String,
+    pub label: String,
+    /// "order", "human_hand", "robot_hand", "place".
+    pub kind: &'static str,
+    pub area: Rect,
+    pub look: Option<Look>,
+}
+
+/// A storage.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Shelf {
+    pub agent: Agent,
+    pub item: String,
+    pub label: String,
+    pub area: Rect,
+}
+
+/// A button of the human.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Knob {
+    pub name: String,
+    pub label: String,
+    pub key: Option<char>,
+    pub gamepad: Option<u8>,
+    /// What it does: "take", "use", "process", "trash", "serve".
+    pub does: &'static str,
+    /// The location that it is at; of a storage, its place in [`Scene::storages`].
+    pub at: usize,
+}
+
+/// How something looks, and what it is called.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Picture {
+    pub label: String,
+    pub look: Option<Look>,
+}
+
+/// The scene of a session.
+pub fn scene(session: &Session) -> Scene {
+    let (kitchen, spec) = (&session.kitchen, &session.spec);
+    let words = Words::of(&spec.display);
+    let rect = |area: crate::kitchen::Area| [area.x, area.y, area.w, area.h];
+    let spot = |location: &crate::kitchen::Location| Spot {
+        name: location.name.clone(),
+        label: words.of_name(&location.name),
+        kind: kind(location.kind),
+        area: rect(location.display),
+        look: location.look.clone(),
+    };
+    let shelf = |storage: &crate::kitchen::layout::Storage| Shelf {
+        agent: storage.agent,
+        item: kitchen.content(storage.item).name.clone(),
+        label: words.of_name(&storage.label),
+        area: rect(storage.display),
+    };
+    let items = kitchen.contents.iter().filter(|content| content.items.len() == 1);
+    let picture = |name: &str, look: &Option<Look>| {
+        (name.to_string(), Picture { label: words.of_name(name), look: look.clone() })
+    };
+    Scene {
+        title: words.of_name(&kitchen.title),
+        language: words.language.clone(),
+        display_m: kitchen.display_m,
+        locations: kitchen.locations.iter().map(spot).collect(),
+        storages: kitchen.storages.iter().map(shelf).collect(),
+        buttons: knobs(kitchen, &words),
+        items: items.map(|item| picture(&item.name, &item.look)).collect(),
+        dishes: kitchen.dishes.iter().map(|dish| picture(&dish.name, &dish.look)).collect(),
+        words: words.of_page(),
+        names: spec.display.names,
+        keys: spec.display.keys,
+        flash: spec.display.flash,
+        pointer: has_pointer(spec),
+    }
+}
+
+fn has_pointer(spec: &SessionSpec) -> bool {
+    spec.participant.gaze == GazeSource::Mouse
+}
+
+fn kind(kind: LocationKind) -> &'static str {
+    match kind {
+        LocationKind::Order => "order",
+        LocationKind::Hand(Agent::Human) => "human_hand",
+        LocationKind::Hand(Agent::Robot) => "robot_hand",
+        LocationKind::Place => "place",
+    }
+}
+
+fn knobs(kitchen: &Kitchen, words: &Words) -> Vec<Knob> {
+    let hand = kitchen.hands[Agent::Human.index()].index();
+    let shelf = |item| {
+        let is_it = |storage: &crate::kitchen::layout::Storage| storage.agent == Agent::Human && storage.item == item;
+        kitchen.storages.iter().position(is_it).unwrap_or_default()
+    };
+    let knob = |button: &crate::kitchen::Button| {
+        let (does, at) = match button.action {
+            Action::Take(item) => ("take", shelf(item)),
+            Action::Use(location) => ("use", location.index()),
+            Action::Process(process) => {
+                ("process", kitchen.processes[usize::from(process)].place.map_or(hand, |place| place.index()))
+            }
+            Action::Trash => ("trash", hand),
+            Action::Serve(order) => ("serve", order.index()),
+        };
+        let label = match does {
+            "serve" => words.of_name("serve"),
+            _ => words.of_name(&button.name),
+        };
+        Knob { name: button.name.clone(), label, key: button.key, gamepad: button.gamepad, does, at }
+    };
+    kitchen.buttons[Agent::Human.index()].iter().map(knob).collect()
+}

@@ -1,0 +1,35 @@
+//! The pairing code.
+
+use std::collections::hash_map::RandomState;
+use std::hash::BuildHasher;
+
+/// Letters and digits that nobody takes for one another.
+const SIGNS: &[u8; 32] = b"ABCDEFGHJKLMNPQRSTUVWXYZ23456789";
+
+/// Six signs that nobody can know before: from the system's own randomness, with which the maps of the standard library
+/// are seeded, and not from the session's seed, which is written in files.
+pub(super) fn pairing_code() -> String {
+    let bits = RandomState::new().hash_one("pairing code");
+    (0..6).map(|place| char::from(SIGNS[(bits >> (5 * place)) as usize % SIGNS.len()])).collect()
+}
+
+/// Whether what was typed is the code; case and spaces do not count. It looks at all of it, whatever is wrong where.
+pub(super) fn is_code(typed: &str, code: &str) -> bool {
+    let typed: Vec<u8> = typed.bytes().filter(u8::is_ascii_alphanumeric).map(|byte| byte.to_ascii_uppercase()).collect();
+    let differing = typed.iter().zip(code.bytes()).filter(|(a, b)| **a != *b).count();
+    typed.len() == code.len() && differing == 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_code_is_known_by_its_signs() {
+        let code = pairing_code();
+        assert_eq!(code.len(), 6);
+        assert!(is_code(&format!(" {} ", code.to_lowercase()), &code));
+        assert!(!is_code(&code[1..], &code) && !is_code("", &code) && !is_code(&format!("{code}A"), &code));
+        assert_ne!(code, pairing_code());
+    }
+}

@@ -1,0 +1,118 @@
+//! The messages between page and program, one JSON object each. Times are milliseconds on the server's clock.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::display::{Scene, Sight};
+
+/// No message of a page is longer, in bytes.
+pub(super) const MAX_BYTES: usize = 1024;
+/// No text in it is longer.
+const MAX_TEXT: usize = 64;
+/// No screen is larger, in pixels.
+const MAX_PIXELS: u32 = 100_000;
+
+/// What a page says.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub(super) enum FromPage {
+    /// First: who it is (a number of its own, which it keeps when it is loaded again), and how large.
+    Hello { page: String, width: u32, height: u32, code: Option<String> },
+    /// Its own time, in milliseconds, and how long the last one took there and back.
+    Ping { t: f64, took: Option<f64> },
+    /// A button went down; presses of a page are numbered.
+    Press { number: u64, button: String, at: f64 },
+    Pointer { x: f64, y: f64 },
+    Answer { item: String, rated: Option<u8> },
+    Back { item: String },
+    Confirm,
+    /// The screen shows what the event of this number brought.
+    Drawn { cue: u64, at: f64 },
+    /// From a press to its effect on the screen, in milliseconds.
+    Redrawn { took: f64 },
+}
+
+/// What is said to a page, beside scene and sight.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub(super) enum ToPage {
+    /// Its ping's own time, and the server's.
+    Pong { t: f64, at: f64 },
+    /// Whether its presses count.
+    Role { acts: bool },
+    /// "code": the pairing code is asked for; "wrong": it was not that.
+    Pairing { why: &'static str },
+}
+
+/// Reads a message; nothing, if it is none.
+pub(super) fn read(text: &str) -> Option<FromPage> {
+    let message: FromPage = serde_json::from_str(text).ok()?;
+    let is_time = |ms: &f64| ms.is_finite() && ms.abs() < 1e13;
+    let is_text = |text: &String| !text.is_empty() && text.len() <= MAX_TEXT && !text.chars().any(char::is_control);
+    let is_fine = match &message {
+        FromPage::Hello { page, width, height, code } => {
+            let sizes = (1..=MAX_PIXELS).contains(width) && (1..=MAX_PIXELS).contains(height);
+            is_text(page) && sizes && code.as_ref().is_none_or(|code| code.len() <= MAX_TEXT)
+        }
+        FromPage::Ping { t, took } => is_time(t) && took.is_none_or(|took| (0.0..1e6).contains(&took)),
+        FromPage::Press { button, at, .. } => is_text(button) && is_time(at),
+        FromPage::Pointer { x, y } => (-1.0..=2.0).contains(x) && (-1.0..=2.0).contains(y),
+        FromPage::Answer { item, .. } | FromPage::Back { item } => is_text(item),
+        FromPage::Drawn { at, .. } => is_time(at),
+        FromPage::Redrawn { took } => (0.0..1e6).contains(took),
+        FromPage::Confirm => true,
+    };
+    is_fine.then_some(message)
+}
+
+/// The message that builds a page.
+pub(super) fn scene(scene: &Scene) -> Arc<str> {
+    #[derive(Serialize)]
+    struct Message<'a> {
+        kind: &'static str,
+        scene: &'a Scene,
+    }
+    text(&Message { kind: "scene", scene })
+}
+
+/// The message that shows what is now.
+pub(super) fn sight(sight: &Sight) -> Arc<str> {
+    #[derive(Serialize)]
+    struct Message<'a> {
+        kind: &'static str,
+        sight: &'a Sight,
+    }
+    text(&Message { kind: "sight", sight })
+}
+
+pub(super) fn text(message: &impl Serialize) -> Arc<str> {
+    // Nothing of what is said has maps with other keys than strings: it can be written.
+    Arc::from(serde_json::to_string(message).unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_message_is_refused() {
+        assert!(read(r#"{"kind": "press", "number": 1, "button": "cut", "at": 12.5}"#).is_some());
+        assert!(read(r#"{"kind": "confirm"}"#).is_some());
+        for wrong in [
+            "",
+            "nonsense",
+            "[]",
+            r#"{"kind": "press"}"#,
+            r#"{"kind": "press", "number": -1, "button": "cut", "at": 1}"#,
+            r#"{"kind": "press", "number": 1, "button": "", "at": 1}"#,
+            r#"{"kind": "press", "number": 1, "button": "cut", "at": 1e300}"#,
+            r#"{"kind": "press", "number": 1, "button": "cut", "at": 1, "agent": "robot"}"#,
+            r#"{"kind": "trial_ended", "reason": "time"}"#,
+            r#"{"kind": "pointer", "x": 1e9, "y": 0}"#,
+            r#"{"kind": "hello", "page": "a", "width": 0, "height": 1, "code": null}"#,
+        ] {
+            assert_eq!(read(wrong), None, "{wrong}");
+        }
+    }
+}

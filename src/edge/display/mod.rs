@@ -1,0 +1,126 @@
+//! The participant's wall display: a page in a browser, served on a thread of its own, so that whatever connects there
+//! delays no session, and no session a page.
+//!
+//! The page is told the scene and the whole sight, as JSON over a WebSocket; it tells presses, answers, the pointer. One page
+//! acts, all others watch.
+
+mod code;
+mod connection;
+mod listener;
+mod message;
+mod server;
+mod status;
+
+use std::io;
+use std::net::{IpAddr, SocketAddr};
+use std::sync::Arc;
+use std::time::Instant;
+
+use tokio::net::TcpListener;
+use tokio::sync::mpsc::{Receiver, channel};
+use tokio::sync::watch;
+
+use self::server::{Hub, serve};
+use self::status::Status;
+pub use self::status::{Counts, Page};
+use crate::display::{Scene, Sight};
+
+/// So many inputs of the page may wait to be taken.
+const WAITING: usize = 1024;
+
+/// What the page that acts tells.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PageInput {
+    /// It is there, of this size in pixels.
+    Connected { width_px: u32, height_px: u32 },
+    Lost,
+    /// A button went down at this moment.
+    Press { button: String, at: Instant },
+    /// The pointer was at this point of the display, in fractions.
+    Pointer { x: f64, y: f64 },
+    /// An item of a questionnaire was rated, or left out.
+    Answer { item: String, rated: Option<u8> },
+    /// Back to this item.
+    Back { item: String },
+    /// The answers are as they were meant.
+    Confirm,
+    /// What the event of this number brought was drawn at this moment.
+    Drawn { cue: u64, at: Instant },
+}
+
+/// The display, as a session has it: where it is served, and what comes from it. It is served until this is dropped.
+pub struct Display {
+    address: SocketAddr,
+    code: Option<String>,
+    inputs: Receiver<PageInput>,
+    screen: PageScreen,
+}
+
+/// What the pages show, and how they are; copies are about the same pages.
+#[derive(Clone)]
+pub struct PageScreen {
+    scene: watch::Sender<Arc<str>>,
+    sight: watch::Sender<Arc<str>>,
+    status: Arc<Status>,
+}
+
+impl Display {
+    /// Serves the page at this address. What is not localhost asks for a pairing code.
+    ///
+    /// # Errors
+    /// The address cannot be listened on.
+    pub async fn open(listen: IpAddr, port: u16) -> io::Result<Display> {
+        let listener = TcpListener::bind((listen, port)).await?;
+        let address = listener.local_addr()?;
+        let listener = listener.into_std()?;
+        let code = (!listen.is_loopback()).then(code::pairing_code);
+        let (send, inputs) = channel(WAITING);
+        let status = Arc::new(Status::default());
+        let screen = PageScreen {
+            scene: watch::Sender::new(Arc::from("")),
+            sight: watch::Sender::new(Arc::from("")),
+            status: status.clone(),
+        };
+        let hub = Hub::new(code.clone(), send, screen.scene.subscribe(), screen.sight.subscribe(), status);
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+        std::thread::Builder::new().name("display".to_string()).spawn(move || runtime.block_on(serve(listener, hub)))?;
+        Ok(Display { address, code, inputs, screen })
+    }
+
+    /// The next input of the page that acts.
+    pub async fn next(&mut self) -> Option<PageInput> {
+        self.inputs.recv().await
+    }
+
+    /// Where the page is: "http://127.0.0.1:50022".
+    pub fn url(&self) -> String {
+        format!("http://{}", self.address)
+    }
+
+    /// What the page asks for, if the network reaches it.
+    pub fn code(&self) -> Option<&str> {
+        self.code.as_deref()
+    }
+
+    /// What the pages show.
+    pub fn screen(&self) -> PageScreen {
+        self.screen.clone()
+    }
+}
+
+impl PageScreen {
+    /// Builds the pages anew.
+    pub fn build(&self, scene: &Scene) {
+        self.scene.send_replace(message::scene(scene));
+    }
+
+    /// Shows what the participant may see now.
+    pub fn show(&self, sight: &Sight) {
+        self.sight.send_replace(message::sight(sight));
+    }
+
+    /// How the pages are.
+    pub fn counts(&self) -> Counts {
+        self.status.counts()
+    }
+}

@@ -1,0 +1,143 @@
+//! The server: the page's files, and the place where pages connect.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use axum::Router;
+use axum::extract::State;
+use axum::extract::ws::WebSocketUpgrade;
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use tokio::net::TcpListener;
+use tokio::sync::mpsc::Sender;
+use tokio::sync::watch;
+
+use super::PageInput;
+use super::connection::talk;
+use super::listener::Bounded;
+use super::message::MAX_BYTES;
+use super::status::{Status, count};
+
+/// The page may load nothing from elsewhere, and nobody may frame it.
+const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+
+/// The page's files: path, kind, text.
+const FILES: [(&str, &str, &str); 6] = [
+    ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
+    ("/display.css", "text/css; charset=utf-8", include_str!("page/display.css")),
+    ("/display.js", "text/javascript; charset=utf-8", include_str!("page/display.js")),
+    ("/stage.js", "text/javascript; charset=utf-8", include_str!("page/stage.js")),
+    ("/hands.js", "text/javascript; charset=utf-8", include_str!("page/hands.js")),
+    ("/art.js", "text/javascript; charset=utf-8", include_str!("page/art.js")),
+];
+
+/// What all connections share.
+pub(super) struct Hub {
+    /// What a page is asked for, if the network reaches it.
+    pub code: Option<String>,
+    pub inputs: Sender<PageInput>,
+    pub scene: watch::Receiver<Arc<str>>,
+    pub sight: watch::Receiver<Arc<str>>,
+    pub status: Arc<Status>,
+    /// The connection that acts, and the page that it is of.
+    pub acting: watch::Sender<Option<(u64, String)>>,
+    connections: AtomicU64,
+    began: Instant,
+}
+
+impl Hub {
+    pub fn new(
+        code: Option<String>,
+        inputs: Sender<PageInput>,
+        scene: watch::Receiver<Arc<str>>,
+        sight: watch::Receiver<Arc<str>>,
+        status: Arc<Status>,
+    ) -> Hub {
+        let (acting, connections, began) = (watch::Sender::new(None), AtomicU64::new(0), Instant::now());
+        Hub { code, inputs, scene, sight, status, acting, connections, began }
+    }
+
+    /// The server's clock, in milliseconds.
+    pub fn now_ms(&self) -> f64 {
+        self.began.elapsed().as_secs_f64() * 1000.0
+    }
+
+    /// The moment of a time on it. What comes from a page was no later than now, and not long ago.
+    pub fn moment(&self, at_ms: f64) -> Instant {
+        /// No press waits longer than so many milliseconds on its way.
+        const OLDEST_MS: f64 = 2000.0;
+        let now = Instant::now();
+        let age_ms = (self.now_ms() - at_ms).clamp(0.0, OLDEST_MS);
+        now.checked_sub(Duration::from_secs_f64(age_ms / 1000.0)).unwrap_or(now)
+    }
+}
+
+/// Serves until nobody wants inputs any more.
+pub(super) async fn serve(listener: std::net::TcpListener, hub: Hub) -> io::Result<()> {
+    let listener = TcpListener::from_std(listener)?;
+    let hub = Arc::new(hub);
+    let mut router = Router::new().route("/talk", get(connect));
+    for (path, kind, text) in FILES {
+        let headers = [
+            (header::CONTENT_TYPE, kind),
+            (header::CACHE_CONTROL, "no-store"),
+            (header::CONTENT_SECURITY_POLICY, POLICY),
+            (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        ];
+        router = router.route(path, get(move || async move { (headers, text) }));
+    }
+    let inputs = hub.inputs.clone();
+    let server = axum::serve(Bounded::new(listener), router.with_state(hub));
+    // The session is over: its connections end with it, without waiting for what they may still say.
+    tokio::select! {
+        done = server => done,
+        () = inputs.closed() => Ok(()),
+    }
+}
+
+/// Lets a page connect: of this server, and of no other that a browser may have open.
+async fn connect(State(hub): State<Arc<Hub>>, headers: HeaderMap, upgrade: WebSocketUpgrade) -> Response {
+    if !is_own(&headers, hub.code.is_some()) {
+        count(&hub.status.refused);
+        return StatusCode::FORBIDDEN.into_response();
+    }
+    let number = hub.connections.fetch_add(1, Ordering::Relaxed);
+    let upgrade = upgrade.max_message_size(MAX_BYTES).max_frame_size(MAX_BYTES);
+    upgrade.on_upgrade(move |socket| talk(socket, hub, number))
+}
+
+/// Whether a request comes from a page of this server. On localhost the name counts, too: another name that leads there
+/// belongs to somebody else (DNS rebinding); in the network the code keeps them out.
+fn is_own(headers: &HeaderMap, has_code: bool) -> bool {
+    let text = |name| headers.get(name).and_then(|value| value.to_str().ok());
+    let Some(host) = text(header::HOST) else { return false };
+    let is_same = text(header::ORIGIN).is_none_or(|origin| origin.strip_prefix("http://") == Some(host));
+    let name = host.rsplit_once(':').map_or(host, |(name, _)| name);
+    let is_local = name.starts_with("127.") || ["localhost", "[::1]"].contains(&name);
+    is_same && (has_code || is_local)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_its_own_pages_may_connect() {
+        let is_own = |host: &'static str, origin: Option<&'static str>, has_code| {
+            let mut headers = HeaderMap::new();
+            headers.insert(header::HOST, host.parse().expect("a header"));
+            origin.map(|origin| headers.insert(header::ORIGIN, origin.parse().expect("a header")));
+            super::is_own(&headers, has_code)
+        };
+        assert!(is_own("127.0.0.1:50022", Some("http://127.0.0.1:50022"), false));
+        assert!(is_own("localhost:50022", Some("http://localhost:50022"), false));
+        assert!(is_own("localhost:50022", None, false));
+        assert!(!is_own("localhost:50022", Some("http://somewhere.example"), false));
+        assert!(!is_own("somewhere.example:50022", Some("http://somewhere.example:50022"), false));
+        assert!(is_own("10.0.0.7:50022", Some("http://10.0.0.7:50022"), true));
+        assert!(!is_own("10.0.0.7:50022", Some("http://10.0.0.8:50022"), true));
+    }
+}

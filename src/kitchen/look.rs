@@ -1,0 +1,42 @@
+//! How things look on the participant's display: a shape and its colours, as the files say. The shapes are drawn by the page.
+
+use serde::Serialize;
+
+/// The shapes that the display can draw: of ingredients, of dishes, of places.
+pub const SHAPES: [&str; 32] = [
+    "grains", "heap", "block", "sheet", "fillet", "slices", "prawn", "claw", "morsels", "bun", "cheese", "patty",
+    "grilled", "round", "bell", "rings", "leaf", "jar", "nigiri", "roll", "burger", "toast", "bowl", "board", "plate",
+    "counter", "cutting", "pot", "mat", "grill", "shelf", "tray",
+];
+
+/// How something looks: "fillet #f58a5f".
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Look {
+    /// One of [`SHAPES`].
+    pub shape: String,
+    /// "#rrggbb"; without any, the shape has its own.
+    pub colours: Vec<String>,
+}
+
+impl Look {
+    /// Reads a shape and up to four colours.
+    ///
+    /// # Errors
+    /// What would be right.
+    pub fn read(text: &str) -> Result<Look, String> {
+        let mut words = text.split_whitespace();
+        let shape = words.next().unwrap_or_default().to_string();
+        let colours: Vec<String> = words.map(str::to_string).collect();
+        if !SHAPES.contains(&shape.as_str()) {
+            return Err(format!("a shape, one of {}, and colours: \"fillet #f58a5f\"", SHAPES.join(", ")));
+        }
+        let is_colour = |word: &String| {
+            let digits = word.strip_prefix('#').unwrap_or_default();
+            digits.len() == 6 && digits.bytes().all(|byte| byte.is_ascii_hexdigit())
+        };
+        match colours.len() <= 4 && colours.iter().all(is_colour) {
+            true => Ok(Look { shape, colours }),
+            false => Err("up to four colours of six hexadecimal digits: \"fillet #f58a5f\"".to_string()),
+        }
+    }
+}

@@ -6,6 +6,7 @@ pub mod belief;
 pub mod calibration;
 pub mod chord;
 pub mod comparison;
+pub mod display;
 pub mod form;
 pub mod hands;
 pub mod keymap;

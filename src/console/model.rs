@@ -6,6 +6,7 @@ use crossterm::event::KeyCode;
 
 use super::belief::BeliefTrack;
 use super::comparison::Compared;
+use super::display::DisplayHealth;
 use super::keys::{Keys, Layer};
 use super::note::Line;
 use super::panels::Panel;
@@ -112,6 +113,8 @@ pub struct Model {
     pub pointer: Option<[f64; 2]>,
     /// The newest gaze samples with their times, oldest first, for the gaze map.
     pub trail: VecDeque<(SessionTime, GazeSample)>,
+    /// The participant's display, if there is one.
+    pub display: Option<DisplayHealth>,
     /// Lines of the gaze input that were no samples.
     pub malformed: u64,
     /// The times of the human presses that were errors, in order.
@@ -149,6 +152,7 @@ impl Model {
             focused: true,
             pointer: None,
             trail: VecDeque::with_capacity(TRAIL),
+            display: None,
             malformed: 0,
             errors: Vec::new(),
             belief: BeliefTrack::default(),

@@ -3,6 +3,7 @@
 
 use crossterm::event::KeyCode;
 
+use super::display::DisplayHealth;
 use super::hands::Hand;
 use super::keys::Action;
 use super::message::Command;
@@ -17,6 +18,7 @@ pub const OVERRIDE: char = 'o';
 /// Looks at everything.
 pub fn checks(session: &Session, model: &Model) -> Vec<Check> {
     let mut checks = participant(session, model.now);
+    checks.extend(model.display.as_ref().map(DisplayHealth::check));
     checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);
     checks
 }

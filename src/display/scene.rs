@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::words::Words;
+use crate::gaze::tags::Tags;
 use crate::kitchen::{Action, Agent, Kitchen, LocationKind, Look};
 use crate::session::display::Names;
 use crate::session::settings::GazeSource;
@@ -26,6 +27,8 @@ pub struct Scene {
     pub storages: Vec<Shelf>,
     /// The human's.
     pub buttons: Vec<Knob>,
+    /// AprilTags: none, if the session wants none or there is no room for them.
+    pub tags: Vec<Mark>,
     /// How items and dishes look, by their names. No dish says here what it is made of.
     pub items: BTreeMap<String, Picture>,
     pub dishes: BTreeMap<String, Picture>,
@@ -36,6 +39,13 @@ pub struct Scene {
     pub flash: bool,
     /// The mouse pointer stands for the gaze.
     pub pointer: bool,
+}
+
+/// An AprilTag with its white border: rows from the top, "#" for black cells.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Mark {
+    pub area: Rect,
+    pub rows: Vec<String>,
 }
 
 /// A location.
@@ -107,6 +117,7 @@ pub fn scene(session: &Session) -> Scene {
         locations: kitchen.locations.iter().map(spot).collect(),
         storages: kitchen.storages.iter().map(shelf).collect(),
         buttons: knobs(kitchen, &words),
+        tags: if spec.display.tags { marks(kitchen) } else { Vec::new() },
         items: items.map(|item| picture(&item.name, &item.look)).collect(),
         dishes: kitchen.dishes.iter().map(|dish| picture(&dish.name, &dish.look)).collect(),
         words: words.of_page(),
@@ -128,6 +139,16 @@ fn kind(kind: LocationKind) -> &'static str {
         LocationKind::Hand(Agent::Robot) => "robot_hand",
         LocationKind::Place => "place",
     }
+}
+
+fn marks(kitchen: &Kitchen) -> Vec<Mark> {
+    let Ok(tags) = Tags::place(kitchen) else { return Vec::new() };
+    let row = |cells: &[bool]| cells.iter().map(|is_black| if *is_black { '#' } else { ' ' }).collect();
+    let mark = |tag: &crate::gaze::tags::Tag| Mark {
+        area: [tag.area.x, tag.area.y, tag.area.w, tag.area.h],
+        rows: tag.cells().iter().map(|cells| row(cells)).collect(),
+    };
+    tags.corners.iter().map(mark).collect()
 }
 
 fn knobs(kitchen: &Kitchen, words: &Words) -> Vec<Knob> {

@@ -80,7 +80,11 @@ pub struct Pressed {
 #[serde(rename_all = "snake_case")]
 pub enum Told {
     /// The recipe of what an order wants.
-    Recipe { order: usize, dish: String, items: Vec<String> },
+    Recipe {
+        order: usize,
+        dish: String,
+        items: Vec<String>,
+    },
     Highlight(usize),
 }
 
@@ -116,7 +120,8 @@ pub fn sight(session: &Session) -> Sight {
         contents: contents.collect(),
         served: session.served.len(),
         presses: Agent::BOTH.map(|agent| pressed(session, agent)),
-        intention: intention.map(|(button, ..)| spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action)),
+        intention: intention
+            .map(|(button, ..)| spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action)),
         signal: session.shown.as_ref().and_then(|shown| told(session, &shown.signal)),
         cue: session.cue,
         question: question(session),

@@ -40,7 +40,11 @@ impl Words {
         let parts: Vec<&str> = plain.split(' ').collect();
         let known = parts.iter().all(|part| self.words.contains_key(*part) || part.parse::<u32>().is_ok());
         match known {
-            true => parts.iter().map(|part| self.words.get(*part).map_or(*part, String::as_str)).collect::<Vec<_>>().join(" "),
+            true => parts
+                .iter()
+                .map(|part| self.words.get(*part).map_or(*part, String::as_str))
+                .collect::<Vec<_>>()
+                .join(" "),
             false => plain,
         }
     }

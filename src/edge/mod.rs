@@ -2,6 +2,7 @@
 
 pub mod ask;
 pub mod clock;
+pub mod display;
 pub mod doctor;
 pub mod files;
 pub mod gaze_json;

@@ -12,10 +12,12 @@ use super::live::LiveError;
 use crate::console::Message;
 use crate::console::question::{Question, Reply};
 use crate::console::view::theme::Theme;
+use crate::edge::display::{Display, PageInput};
 use crate::edge::gaze_json::{self, GazeLine};
 use crate::edge::terminal::{Hands, Screen, asked_to_end, outlive_file_limits, theme};
 use crate::session::SessionSpec;
-use crate::session::settings::GazeSource;
+use crate::session::display::DisplaySpec;
+use crate::session::settings::{GazeSource, ParticipantKind};
 
 /// A question is drawn so often.
 const REDRAW: Duration = Duration::from_millis(100);
@@ -26,6 +28,7 @@ pub(super) struct Desk {
     theme: Theme,
     pub seat: Seat,
     pub tracker: Tracker,
+    pub wall: Wall,
 }
 
 /// Whoever sits there, and what asks the program to end.
@@ -33,6 +36,9 @@ pub(super) struct Seat {
     hands: Hands,
     end: Pin<Box<dyn Future<Output = io::Result<()>>>>,
 }
+
+/// The participant's display, if the participant is at one.
+pub(super) struct Wall(Option<Display>);
 
 /// Lines of the tracker's program, if the gaze comes from one.
 pub(super) struct Tracker(Option<Receiver<GazeLine>>);
@@ -51,10 +57,17 @@ impl Desk {
             }
             _ => None,
         };
+        let wall = match (participant.kind, &spec.display) {
+            (ParticipantKind::Display, DisplaySpec { listen, port, .. }) => {
+                let opened = Display::open(*listen, *port).await;
+                Some(opened.map_err(|reason| LiveError::Display { address: *listen, port: *port, reason })?)
+            }
+            _ => None,
+        };
         let screen = Screen::take().map_err(LiveError::Terminal)?;
         let theme = theme(&spec.console, screen.ground);
         let seat = Seat { hands: Hands::default(), end: Box::pin(asked_to_end()) };
-        Ok(Desk { screen, theme, seat, tracker: Tracker(gaze) })
+        Ok(Desk { screen, theme, seat, tracker: Tracker(gaze), wall: Wall(wall) })
     }
 
     /// Asks before a recording begins; the place of the answer, nothing if the program is to be left.
@@ -69,6 +82,7 @@ impl Desk {
                 message = self.seat.next() => message,
                 // Read all the same, or it would be read later as if it had just come.
                 Some(_) = self.tracker.next() => continue,
+                Some(_) = self.wall.next() => continue,
                 // A terminal that was still busy with a frame gets the question now.
                 () = sleep(REDRAW) => continue,
             };
@@ -95,6 +109,20 @@ impl Seat {
             biased;
             _ = &mut self.end => None,
             message = self.hands.next() => message,
+        }
+    }
+}
+
+impl Wall {
+    pub fn display(&self) -> Option<&Display> {
+        self.0.as_ref()
+    }
+
+    /// The next input of the participant's page; never, if there is none.
+    pub async fn next(&mut self) -> Option<PageInput> {
+        match &mut self.0 {
+            Some(display) => display.next().await,
+            None => std::future::pending().await,
         }
     }
 }

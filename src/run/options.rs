@@ -72,7 +72,9 @@ impl Overrides {
         participant.kind = self.participant.unwrap_or(participant.kind);
         participant.gaze = match (self.gaze, self.participant, participant.gaze) {
             (Some(gaze), _, _) => gaze,
-            (None, Some(ParticipantKind::Keyboard | ParticipantKind::Display), GazeSource::Simulated) => GazeSource::Mouse,
+            (None, Some(ParticipantKind::Keyboard | ParticipantKind::Display), GazeSource::Simulated) => {
+                GazeSource::Mouse
+            }
             (None, _, gaze) => gaze,
         };
         spec.check()

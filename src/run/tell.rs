@@ -112,7 +112,9 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         }
         Event::FocusLost => "the terminal lost the keyboard".to_string(),
         Event::FocusRegained => "the terminal has the keyboard again".to_string(),
-        Event::Press { agent, button, .. } => format!("{} presses {button}{}", agent.name(), verdict(stamped, follower)),
+        Event::Press { agent, button, .. } => {
+            format!("{} presses {button}{}", agent.name(), verdict(stamped, follower))
+        }
         Event::OrderShown { order, dish } => format!("{order} wants {dish}"),
         Event::OrderCleared { order } => format!("{order} is cleared"),
         Event::RobotIntends { button, .. } => format!("robot sets out for {button}"),

@@ -129,6 +129,9 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
     if room > Room::Small || model.playback.is_none() {
         healths.push(gaze(session, model));
     }
+    if let Some((text, is_fine)) = model.display.as_ref().map(|display| display.line()) {
+        healths.push((text, if is_fine { Role::Text } else { Role::Alarm }));
+    }
     let robot = match (session.robot.stopped, session.robot.held) {
         (true, _) => ("ROBOT STOPPED", Role::Alarm),
         (false, true) => ("ROBOT HELD", Role::Strong),

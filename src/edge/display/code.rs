@@ -15,7 +15,8 @@ pub(super) fn pairing_code() -> String {
 
 /// Whether what was typed is the code; case and spaces do not count. It looks at all of it, whatever is wrong where.
 pub(super) fn is_code(typed: &str, code: &str) -> bool {
-    let typed: Vec<u8> = typed.bytes().filter(u8::is_ascii_alphanumeric).map(|byte| byte.to_ascii_uppercase()).collect();
+    let typed: Vec<u8> =
+        typed.bytes().filter(u8::is_ascii_alphanumeric).map(|byte| byte.to_ascii_uppercase()).collect();
     let differing = typed.iter().zip(code.bytes()).filter(|(a, b)| **a != *b).count();
     typed.len() == code.len() && differing == 0
 }

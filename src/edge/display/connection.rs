@@ -16,6 +16,8 @@ use super::status::{Page, count};
 
 /// A page says who it is within this time.
 const HELLO: Duration = Duration::from_secs(5);
+/// Who has to type a code first, within this one.
+const TYPING: Duration = Duration::from_secs(120);
 /// A page pings every second; one that is silent so long is gone.
 const SILENCE: Duration = Duration::from_secs(8);
 /// A page that takes nothing for so long is gone.
@@ -47,7 +49,7 @@ struct Talk {
 pub(super) async fn talk(socket: WebSocket, hub: Arc<Hub>, number: u64) {
     let allowed = (PER_SECOND, Instant::now());
     let mut talk = Talk { socket, hub, number, faults: 0, allowed, pressed: 0, last: None };
-    let Ok(Some((page, width_px, height_px))) = timeout(HELLO * 24, talk.greet()).await else { return };
+    let Some((page, width_px, height_px)) = talk.greet().await else { return };
     talk.hub.status.pages.fetch_add(1, Ordering::Relaxed);
     let size = Page { width_px, height_px, round_trip_ms: None, redraw_ms: None };
     talk.take_seat(page, size).await;
@@ -80,12 +82,11 @@ impl Talk {
 
     /// A message before the page is let in. Who is asked for a code has time to type it.
     async fn first(&mut self) -> Option<Option<FromPage>> {
-        let patience = if self.hub.code.is_some() { HELLO * 24 } else { HELLO };
+        let patience = if self.hub.code.is_some() { TYPING } else { HELLO };
         match timeout(patience, self.socket.recv()).await {
             Ok(Some(Ok(Message::Text(text)))) => Some(read(&text)),
-            Ok(Some(Ok(Message::Ping(_) | Message::Pong(_)))) => Some(Some(FromPage::Confirm)),
-            Ok(Some(Ok(Message::Binary(_)))) => Some(None),
-            _ => None,
+            Ok(Some(Ok(Message::Close(_)) | Err(_)) | None) | Err(_) => None,
+            Ok(Some(Ok(_))) => Some(None),
         }
     }
 

@@ -18,19 +18,44 @@ const MAX_PIXELS: u32 = 100_000;
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub(super) enum FromPage {
     /// First: who it is (a number of its own, which it keeps when it is loaded again), and how large.
-    Hello { page: String, width: u32, height: u32, code: Option<String> },
+    Hello {
+        page: String,
+        width: u32,
+        height: u32,
+        code: Option<String>,
+    },
     /// Its own time, in milliseconds, and how long the last one took there and back.
-    Ping { t: f64, took: Option<f64> },
+    Ping {
+        t: f64,
+        took: Option<f64>,
+    },
     /// A button went down; presses of a page are numbered.
-    Press { number: u64, button: String, at: f64 },
-    Pointer { x: f64, y: f64 },
-    Answer { item: String, rated: Option<u8> },
-    Back { item: String },
+    Press {
+        number: u64,
+        button: String,
+        at: f64,
+    },
+    Pointer {
+        x: f64,
+        y: f64,
+    },
+    Answer {
+        item: String,
+        rated: Option<u8>,
+    },
+    Back {
+        item: String,
+    },
     Confirm,
     /// The screen shows what the event of this number brought.
-    Drawn { cue: u64, at: f64 },
+    Drawn {
+        cue: u64,
+        at: f64,
+    },
     /// From a press to its effect on the screen, in milliseconds.
-    Redrawn { took: f64 },
+    Redrawn {
+        took: f64,
+    },
 }
 
 /// What is said to a page, beside scene and sight.

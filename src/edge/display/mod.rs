@@ -32,20 +32,37 @@ const WAITING: usize = 1024;
 #[derive(Clone, Debug, PartialEq)]
 pub enum PageInput {
     /// It is there, of this size in pixels.
-    Connected { width_px: u32, height_px: u32 },
+    Connected {
+        width_px: u32,
+        height_px: u32,
+    },
     Lost,
     /// A button went down at this moment.
-    Press { button: String, at: Instant },
+    Press {
+        button: String,
+        at: Instant,
+    },
     /// The pointer was at this point of the display, in fractions.
-    Pointer { x: f64, y: f64 },
+    Pointer {
+        x: f64,
+        y: f64,
+    },
     /// An item of a questionnaire was rated, or left out.
-    Answer { item: String, rated: Option<u8> },
+    Answer {
+        item: String,
+        rated: Option<u8>,
+    },
     /// Back to this item.
-    Back { item: String },
+    Back {
+        item: String,
+    },
     /// The answers are as they were meant.
     Confirm,
     /// What the event of this number brought was drawn at this moment.
-    Drawn { cue: u64, at: Instant },
+    Drawn {
+        cue: u64,
+        at: Instant,
+    },
 }
 
 /// The display, as a session has it: where it is served, and what comes from it. It is served until this is dropped.
@@ -83,7 +100,9 @@ impl Display {
         };
         let hub = Hub::new(code.clone(), send, screen.scene.subscribe(), screen.sight.subscribe(), status);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-        std::thread::Builder::new().name("display".to_string()).spawn(move || runtime.block_on(serve(listener, hub)))?;
+        std::thread::Builder::new()
+            .name("display".to_string())
+            .spawn(move || runtime.block_on(serve(listener, hub)))?;
         Ok(Display { address, code, inputs, screen })
     }
 

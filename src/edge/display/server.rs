@@ -22,7 +22,7 @@ use super::message::MAX_BYTES;
 use super::status::{Status, count};
 
 /// The page may load nothing from elsewhere, and nobody may frame it.
-const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+const POLICY: &str = "default-src 'self'; connect-src 'self' ws:; img-src data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 
 /// The page's files: path, kind, text.
 const FILES: [(&str, &str, &str); 6] = [

@@ -58,7 +58,8 @@ fn wrong(file: SpecFile, span: Range<usize>, found: impl Into<String>, remedy: i
 
 /// Reads how something looks.
 fn look(file: SpecFile, text: &Spanned<String>) -> Result<Look> {
-    Look::read(text.get_ref()).map_err(|remedy| wrong(file, text.span(), format!("look = \"{}\"", text.get_ref()), remedy))
+    Look::read(text.get_ref())
+        .map_err(|remedy| wrong(file, text.span(), format!("look = \"{}\"", text.get_ref()), remedy))
 }
 
 fn wrong_file(file: SpecFile, found: impl Into<String>, remedy: impl Into<String>) -> SpecError {

@@ -1,19 +1,21 @@
 //! A live session: real time, a wizard at the console, every event recorded as it happens.
 
 mod calibration;
+mod display;
 mod inputs;
 mod recording;
 mod showing;
 
 use std::io;
+use std::net::IpAddr;
 use std::time::Duration;
 
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
+use self::display::OnDisplay;
 use crate::console::comparison::Compared;
 use crate::console::keys::KeyError;
 use crate::console::model::Recording;
-use crate::console::view::theme::Ground;
 use crate::console::{Keys, Model};
 use crate::edge::clock::{SessionClock, WallTime};
 use crate::edge::doctor::free_bytes;
@@ -62,6 +64,9 @@ pub enum LiveError {
     #[error("nothing can listen on port {port} of localhost for gaze: {reason}")]
     #[diagnostic(help("another port as gaze_port in the session file"))]
     Gaze { port: u16, reason: io::Error },
+    #[error("nothing can listen on {address}, port {port}, for the participant's display: {reason}")]
+    #[diagnostic(help("another port in the session file (port under [display]), or an address of this computer"))]
+    Display { address: IpAddr, port: u16, reason: io::Error },
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] WriteError),
@@ -88,6 +93,8 @@ struct Live {
     advisor: Option<AdvisorDesk>,
     /// Who compares wizard and assistants, if somebody does.
     watch: Option<WatchDesk>,
+    /// The participant's display, if there is one.
+    display: Option<OnDisplay>,
     model: Model,
     /// Of this recording.
     header: Header,
@@ -112,11 +119,11 @@ struct Live {
 /// # Errors
 /// The session cannot be recorded, or the terminal is gone.
 pub(in crate::run) async fn run(begun: Begun, desk: &mut Desk) -> Result<LiveEnd, LiveError> {
-    Live::open(begun, desk.screen.ground)?.run(desk).await
+    Live::open(begun, desk)?.run(desk).await
 }
 
 impl Live {
-    fn open(begun: Begun, ground: Ground) -> Result<Live, LiveError> {
+    fn open(begun: Begun, desk: &Desk) -> Result<Live, LiveError> {
         let Begun { engine, mut header, first, consent, time, compare, place } = begun;
         let (kitchen, spec) = (engine.session().kitchen.clone(), engine.session().spec.clone());
         let keys = Keys::live(&kitchen, &spec, &key_map(header.keys.as_ref())?)?;
@@ -128,17 +135,20 @@ impl Live {
             Place::After(folder, lock) => (LogWriter::create_part(&folder, &header)?, Some(lock)),
         };
         let size = Screen::size().map_err(LiveError::Terminal)?;
-        let mut model = Model::new(keys, theme(&spec.console, ground), size);
+        let mut model = Model::new(keys, theme(&spec.console, desk.screen.ground), size);
         model.recording = Recording::On(log.folder().display().to_string());
         model.comparison = compare.as_ref().map(|_| Compared::default());
         let watch = compare.as_ref().map(|request| Watcher::new(kitchen.clone(), &spec, request));
         let watch = watch.map(|watcher| watcher.without_causes().on_thread());
+        let (display, health) = OnDisplay::at(desk);
+        model.display = health;
         let clock = SessionClock::start(time);
         let advisor = spec.asks_assistant().then(|| engine.advisor().on_thread());
         let mut live = Live {
             engine,
             advisor,
             watch,
+            display,
             model,
             header,
             log,
@@ -156,12 +166,15 @@ impl Live {
         if let Some(request) = compare {
             live.input(Event::Unblinded { concepts: request.concepts(&spec) });
         }
+        live.build_display();
         live.begin_protocol(consent);
         Ok(live)
     }
 
     async fn run(mut self, desk: &mut Desk) -> Result<LiveEnd, LiveError> {
-        let with_pointer = self.engine.session().spec.participant.gaze == GazeSource::Mouse;
+        let participant = &self.engine.session().spec.participant;
+        // With a display, the pointer is on it.
+        let with_pointer = participant.gaze == GazeSource::Mouse && self.display.is_none();
         let mut pointer = interval(POINTER);
         pointer.set_missed_tick_behavior(MissedTickBehavior::Skip);
         let mut flush = interval(FLUSH);
@@ -187,6 +200,7 @@ impl Live {
                     self.record(&events);
                 }
                 () = sleep_until(target.unwrap_or_else(Instant::now)), if target.is_some() => self.show_target(),
+                Some(input) = desk.wall.next() => self.hear(input),
                 Some(advice) = next_advice(&mut self.advisor) => self.advise(advice),
                 _ = pointer.tick(), if with_pointer => self.look(),
                 _ = flush.tick() => self.flush(),

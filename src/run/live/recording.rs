@@ -26,6 +26,7 @@ impl Live {
                 self.fail(error);
             }
         }
+        self.show_participant();
         if let Some(last) = events.last() {
             let by_gaze = events.iter().all(|stamped| matches!(stamped.event, Event::Gaze(_)));
             let session = self.engine.session();
@@ -54,6 +55,7 @@ impl Live {
 
     /// Whether the recording is still where it should be, and whether the clock jumped.
     pub(super) fn watch(&mut self) {
+        self.look_at_display();
         if let Some(by_ms) = self.clock.jump() {
             self.input(Event::ClockJumped { by_ms });
             let text = format!("the clock jumped by {:.1} s: session time did not", by_ms as f64 / 1000.0);

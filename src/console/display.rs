@@ -1,0 +1,78 @@
+//! The participant's display, as far as the wizard has to know: where it is, whether somebody is there, how quick it is.
+
+use crate::session::Session;
+use crate::session::preflight::{Check, Verdict};
+use crate::session::settings::ParticipantKind;
+
+/// The participant's display.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DisplayHealth {
+    /// "http://127.0.0.1:50022".
+    pub url: String,
+    /// What the page asks for, if the network reaches it.
+    pub code: Option<String>,
+    /// The page that takes part: its size in pixels.
+    pub page: Option<[u32; 2]>,
+    /// There and back, in milliseconds.
+    pub round_trip_ms: Option<f64>,
+    /// From the last press to its effect on the screen, in milliseconds.
+    pub redraw_ms: Option<f64>,
+    /// Pages that only watch.
+    pub watching: u64,
+    /// Messages that were none, and what was not let in.
+    pub malformed: u64,
+    pub refused: u64,
+}
+
+/// Smaller screens are hard to read from where the participant stands, in pixels.
+const SMALL_PX: [u32; 2] = [1280, 720];
+/// A page that needs longer there and back delays presses, in milliseconds.
+const SLOW_MS: f64 = 30.0;
+
+impl DisplayHealth {
+    /// Where to open it.
+    pub fn place(&self) -> String {
+        let code = self.code.as_ref().map_or(String::new(), |code| format!(", pairing code {code}"));
+        format!("{}{code}", self.url)
+    }
+
+    /// For the line of what is alive; true: it is as it should be.
+    pub fn line(&self) -> (String, bool) {
+        match (self.page, self.redraw_ms.or(self.round_trip_ms)) {
+            (None, _) => ("NO DISPLAY".to_string(), false),
+            (Some(_), None) => ("display ok".to_string(), true),
+            (Some(_), Some(ms)) => (format!("display {ms:.0} ms"), true),
+        }
+    }
+
+    /// What is looked at before a trial.
+    pub fn check(&self) -> Check {
+        let open = format!("open {} in a browser, full screen", self.place());
+        let Some([width, height]) = self.page else {
+            return Check::new("display", Verdict::Failed, "no page is connected", open);
+        };
+        let trip = self.round_trip_ms.map_or(String::new(), |ms| format!(", {ms:.0} ms there and back"));
+        let others = match self.watching {
+            0 => String::new(),
+            watching => format!(", {watching} more watching"),
+        };
+        let wrong = match self.malformed + self.refused {
+            0 => String::new(),
+            _ => format!(", {} messages malformed, {} refused", self.malformed, self.refused),
+        };
+        let found = format!("{width}x{height}{trip}{others}{wrong}");
+        let is_small = width < SMALL_PX[0] || height < SMALL_PX[1];
+        let is_slow = self.round_trip_ms.is_some_and(|ms| ms > SLOW_MS);
+        let (verdict, remedy) = match (is_small, is_slow) {
+            (true, _) => (Verdict::Warning, "full screen (F11) on a display of at least 1280x720"),
+            (false, true) => (Verdict::Warning, "a page on this computer, or a wire instead of radio"),
+            (false, false) => (Verdict::Ok, ""),
+        };
+        Check::new("display", verdict, found, remedy)
+    }
+}
+
+/// Whether the participant is at the display.
+pub fn is_wanted(session: &Session) -> bool {
+    session.spec.participant.kind == ParticipantKind::Display
+}

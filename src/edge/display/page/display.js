@@ -1,0 +1,137 @@
+"use strict";
+// The connection: what comes goes to the stage, what the hands do goes to the program. If it is lost it comes back by
+// itself, and brings the whole state.
+
+(() => {
+  const PING_MS = 1000, FIRST_PINGS = 5, FIRST_PING_MS = 60, SILENCE_MS = 4000, AGAIN_MS = 500, POINTER_MS = 16;
+  let socket = null, code = new URLSearchParams(location.search).get("code"), number = 0, heard = 0, acts = false;
+  let trips = [], took = null, cue = null, pointed = null, pinger = 0;
+  // Presses whose effect is not on the screen yet.
+  const waiting = [];
+
+  /** A page keeps its name when it is loaded again, so that it acts in its own place. */
+  const page = (() => {
+    let name = sessionStorage.getItem("page");
+    if (!name) {
+      name = [...crypto.getRandomValues(new Uint8Array(12))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+      sessionStorage.setItem("page", name);
+    }
+    return name;
+  })();
+
+  const isOpen = () => socket && socket.readyState === WebSocket.OPEN;
+  const say = (message) => isOpen() && socket.send(JSON.stringify(message));
+
+  /** The server's clock: of the last answers the one that was quickest says how far it is from ours. */
+  const serverTime = (at) => {
+    const best = trips.reduce((a, b) => (b.took < a.took ? b : a));
+    return at + best.offset;
+  };
+
+  function ping() {
+    const first = trips.length < FIRST_PINGS;
+    say({ kind: "ping", t: performance.now(), took });
+    clearTimeout(pinger);
+    pinger = setTimeout(ping, first ? FIRST_PING_MS : PING_MS);
+  }
+
+  function hear({ data }) {
+    const now = performance.now(), message = JSON.parse(data);
+    heard = now;
+    if (message.kind === "pong") {
+      took = now - message.t;
+      trips = [...trips.slice(-19), { took, offset: message.at - (message.t + now) / 2 }];
+    } else if (message.kind === "pairing") {
+      Stage.askCode(message.why === "wrong", (typed) => { code = typed; hello(); });
+    } else if (message.kind === "role") {
+      acts = message.acts;
+      Stage.mark({ acts });
+    } else if (message.kind === "scene") {
+      Stage.build(message.scene);
+      Stage.mark({ acts });
+      cue = null;
+    } else if (message.kind === "sight") {
+      see(message.sight);
+    }
+  }
+
+  function see(sight) {
+    const before = Stage.shown(), count = (one) => (one && one.presses[0] ? one.presses[0].number : 0);
+    const isAnswer = before && count(sight) > count(before);
+    Stage.show(sight);
+    const isNew = before && sight.cue !== null && sight.cue !== cue;
+    cue = sight.cue;
+    if (isNew) Stage.flash();
+    const at = isAnswer ? waiting.shift() : undefined;
+    if (isNew || at !== undefined) afterPaint(() => {
+      if (isNew) say({ kind: "drawn", cue: sight.cue, at: serverTime(performance.now()) });
+      if (at !== undefined) say({ kind: "redrawn", took: performance.now() - at });
+    });
+  }
+
+  /** Once what was changed just now is on the screen. */
+  function afterPaint(then) {
+    requestAnimationFrame(() => {
+      const channel = new MessageChannel();
+      channel.port1.onmessage = then;
+      channel.port2.postMessage(null);
+    });
+  }
+
+  function hello() {
+    const width = Math.round(window.innerWidth * devicePixelRatio), height = Math.round(window.innerHeight * devicePixelRatio);
+    say({ kind: "hello", page, width: Math.max(1, width), height: Math.max(1, height), code });
+    trips = [];
+    number = 0;
+    waiting.length = 0;
+    ping();
+  }
+
+  function connect() {
+    const made = new WebSocket(`ws://${location.host}/talk`);
+    socket = made;
+    heard = performance.now();
+    made.onopen = () => { Stage.mark({ lost: false }); hello(); };
+    made.onmessage = hear;
+    made.onclose = () => {
+      if (socket !== made) return;
+      Stage.mark({ lost: true });
+      setTimeout(connect, AGAIN_MS);
+    };
+  }
+
+  function press(button, at) {
+    // Without the program's clock nobody knows when it was; without the connection it does not happen.
+    if (!isOpen() || !trips.length || !acts) return;
+    number += 1;
+    const stage = Stage.shown() && Stage.shown().stage;
+    if (stage === "running") waiting.push(at);
+    say({ kind: "press", number, button, at: serverTime(at) });
+  }
+
+  function point(x, y) {
+    const now = performance.now(), scene = Stage.scene();
+    if (!scene || !scene.pointer || !acts) return;
+    pointed = Stage.point(x, y).map((value) => Math.min(2, Math.max(-1, Number(value.toFixed(5)))));
+    if (now - (point.at || 0) < POINTER_MS) return;
+    point.at = now;
+    say({ kind: "pointer", x: pointed[0], y: pointed[1] });
+  }
+
+  // A pointer that rests is still where it is: as a tracker that goes on sending.
+  setInterval(() => {
+    const scene = Stage.scene();
+    if (pointed && scene && scene.pointer && acts && performance.now() - (point.at || 0) >= POINTER_MS) {
+      point.at = performance.now();
+      say({ kind: "pointer", x: pointed[0], y: pointed[1] });
+    }
+  }, POINTER_MS);
+  // A connection that says nothing any more is none, although nobody closed it.
+  setInterval(() => isOpen() && performance.now() - heard > SILENCE_MS && socket.close(), 500);
+  // The screen stays on; where the browser does not do that, nothing is lost.
+  const stayOn = () => navigator.wakeLock && navigator.wakeLock.request("screen").catch(() => {});
+  document.addEventListener("visibilitychange", () => document.visibilityState === "visible" && stayOn());
+  stayOn();
+  Hands.begin(press, say, point);
+  connect();
+})();

@@ -1,0 +1,94 @@
+"use strict";
+// The hands: keys, gamepad, touch. Each press is told once, with the time at which it happened.
+
+const Hands = (() => {
+  // The same button within so many milliseconds is a contact that bounces.
+  const BOUNCE_MS = 50;
+  const down = new Set(), pads = new Map(), last = new Map();
+  let tell = () => {}, answer = () => {};
+
+  function press(button, at) {
+    if (at - (last.get(button) ?? -Infinity) < BOUNCE_MS) return;
+    last.set(button, at);
+    const drawn = document.querySelector(`[data-button="${CSS.escape(button)}"]`);
+    if (drawn) {
+      drawn.classList.remove("pushed");
+      void drawn.offsetWidth;
+      drawn.classList.add("pushed");
+    }
+    tell(button, at);
+  }
+
+  /** An event's own time; one that is not on the page's clock counts as now. */
+  function timeOf(stamp) {
+    const now = performance.now();
+    return stamp > 0 && stamp <= now && now - stamp < 1000 ? stamp : now;
+  }
+
+  function typed(event) {
+    const scene = Stage.scene();
+    if (!scene || event.target instanceof HTMLInputElement || event.ctrlKey || event.altKey || event.metaKey) return;
+    const isHeld = event.repeat || down.has(event.code || event.key);
+    down.add(event.code || event.key);
+    const question = Stage.shown() && Stage.shown().question;
+    if (question) {
+      if (!isHeld) answerBy(event.key, question);
+      return;
+    }
+    const button = scene.buttons.find(({ key }) => key && key.toLowerCase() === event.key.toLowerCase());
+    if (!button) return;
+    event.preventDefault();
+    if (!isHeld) press(button.name, timeOf(event.timeStamp));
+  }
+
+  function answerBy(key, question) {
+    const digit = /^[0-9]$/.test(key) ? Number(key) : null;
+    if (question.item && digit === 0) answer({ kind: "answer", item: question.item, rated: null });
+    else if (question.item && digit !== null && digit <= question.points) answer({ kind: "answer", item: question.item, rated: digit });
+    else if (question.before && ["ArrowLeft", "Backspace"].includes(key)) answer({ kind: "back", item: question.before });
+    else if (!question.item && key === "Enter") answer({ kind: "confirm" });
+  }
+
+  function touched(event) {
+    const hit = event.target.closest("[data-button], [data-rate], [data-does]");
+    if (!hit || event.button > 0) return;
+    event.preventDefault();
+    const question = Stage.shown() && Stage.shown().question;
+    if (hit.dataset.button) press(hit.dataset.button, timeOf(event.timeStamp));
+    else if (question && hit.dataset.rate) answer({ kind: "answer", item: question.item, rated: Number(hit.dataset.rate) });
+    else if (question && hit.dataset.does === "skip") answer({ kind: "answer", item: question.item, rated: null });
+    else if (question && hit.dataset.does === "back") answer({ kind: "back", item: question.before });
+    else if (question && hit.dataset.does === "confirm") answer({ kind: "confirm" });
+  }
+
+  /** Looks at gamepads and button boxes: they do not say by themselves when a button goes down. */
+  function poll() {
+    const scene = Stage.scene();
+    for (const pad of navigator.getGamepads ? navigator.getGamepads() : []) {
+      if (!pad) continue;
+      const before = pads.get(pad.index) || [];
+      const now = [...pad.buttons].map((button) => (typeof button === "object" ? button.pressed : button > 0.5));
+      now.forEach((isDown, number) => {
+        if (!isDown || before[number] || !scene) return;
+        const button = scene.buttons.find(({ gamepad }) => gamepad === number);
+        if (button) press(button.name, timeOf(pad.timestamp));
+      });
+      pads.set(pad.index, now);
+    }
+  }
+
+  function begin(toTell, toAnswer, toPoint) {
+    tell = toTell;
+    answer = toAnswer;
+    window.addEventListener("keydown", typed);
+    window.addEventListener("keyup", (event) => down.delete(event.code || event.key));
+    window.addEventListener("blur", () => down.clear());
+    window.addEventListener("pointerdown", touched);
+    window.addEventListener("contextmenu", (event) => event.preventDefault());
+    window.addEventListener("pointermove", (event) => event.pointerType === "mouse" && toPoint(event.clientX, event.clientY));
+    // More often than frames: a press must not wait for the next one.
+    setInterval(poll, 4);
+  }
+
+  return { begin };
+})();

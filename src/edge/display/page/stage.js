@@ -1,0 +1,337 @@
+"use strict";
+// The stage: built once from a scene, then changed by every sight. It shows what it is told and knows nothing else.
+
+const Stage = (() => {
+  const root = document.getElementById("stage");
+  let scene = null, shown = null, parts = null;
+  let marks = { lost: false, acts: true };
+
+  function element(kind, className, inside = "") {
+    const made = document.createElement(kind);
+    made.className = className;
+    if (inside instanceof Node) made.append(inside);
+    else if (inside) made.innerHTML = inside;
+    return made;
+  }
+
+  function text(kind, className, words) {
+    const made = document.createElement(kind);
+    made.className = className;
+    made.textContent = words;
+    return made;
+  }
+
+  const percent = (value) => `${(100 * value).toFixed(3)}%`;
+  function put(made, [x, y, w, h]) {
+    Object.assign(made.style, { left: percent(x), top: percent(y), width: percent(w), height: percent(h) });
+    return made;
+  }
+
+  const overlaps = ([ax, ay, aw, ah], [bx, by, bw, bh]) => ax < bx + bw && bx < ax + aw && ay < by + bh && by < ay + ah;
+  const around = (rects) => {
+    const x = Math.min(...rects.map((r) => r[0])), y = Math.min(...rects.map((r) => r[1]));
+    return [x, y, Math.max(...rects.map((r) => r[0] + r[2])) - x, Math.max(...rects.map((r) => r[1] + r[3])) - y];
+  };
+  const grown = ([x, y, w, h], [left, top, right, bottom]) => {
+    const to = (low, high) => [Math.max(0.006, low), Math.min(0.994, high)];
+    const [x0, x1] = to(x - left, x + w + right), [y0, y1] = to(y - top, y + h + bottom);
+    return [x0, y0, x1 - x0, y1 - y0];
+  };
+  // Height above a place that its name takes, and the size of an action's button, in fractions of the stage.
+  const NAME = 0.04, PILL = [0.096, 0.05];
+
+  const of = (kind) => scene.locations.filter((spot) => spot.kind === kind).map((spot) => spot.area);
+  /** The areas of robot and human, equally high. */
+  function sides() {
+    const both = ["robot", "human"].map((agent) => around([...of(`${agent}_hand`), ...scene.storages.filter((shelf) => shelf.agent === agent).map((shelf) => shelf.area)]));
+    const top = Math.min(...both.map(([, y]) => y)), bottom = Math.max(...both.map(([, y, , h]) => y + h));
+    return both.map(([x, , w]) => grown([x, top, w, bottom - top], [0.022, 0.085, 0.022, 0.035]));
+  }
+
+  const titles = () => sides().map(([x, y, w]) => [x, y, w, 0.065]);
+
+  /** Everything that is there already, for what still needs a place. */
+  function taken() {
+    const named = scene.locations.map(({ kind, area: [x, y, w, h] }) => (kind === "order" ? [x, y, w, h] : [x, y - NAME, w, h + NAME]));
+    return [...named, ...scene.storages.map((shelf) => shelf.area), ...titles(), ...scene.tags.map((tag) => tag.area)];
+  }
+
+  /** The nearest free place for an action's button: below its place, above it, or beside it. */
+  function freeFor(area, others) {
+    const [x, y, w, h] = area, [pw, ph] = PILL, gap = 0.012;
+    const middle = x + w / 2 - pw / 2;
+    const tries = [[middle, y + h + gap], [middle, y - NAME - gap - ph], [x + w + gap, y + h / 2 - ph / 2], [x - gap - pw, y + h / 2 - ph / 2]];
+    for (let step = 1; step < 5; step += 1) tries.push([middle, y + h + gap + step * (ph + gap)], [x + w + gap, y + h / 2 - ph / 2 + step * (ph + gap)]);
+    const rects = tries.map(([px, py]) => [px, py, pw, ph]);
+    const fits = (rect) => rect[0] >= 0 && rect[1] >= 0 && rect[0] + pw <= 1 && rect[1] + ph <= 1 && !others.some((other) => overlaps(rect, other));
+    return rects.find(fits) || rects[0];
+  }
+
+  function key(knob) {
+    return scene.keys && knob && knob.key ? text("kbd", "key", knob.key.toUpperCase()) : "";
+  }
+
+  function knobOf(does, at) {
+    return scene.buttons.find((button) => button.does === does && button.at === at);
+  }
+
+  function makeTouch(made, knob) {
+    if (!knob) return;
+    made.dataset.button = knob.name;
+    made.setAttribute("role", "button");
+    made.setAttribute("aria-label", knob.label);
+  }
+
+  function buildZone(className, area, label) {
+    const zone = put(element("section", `zone ${className}`), area);
+    zone.append(text("h2", "", label));
+    return zone;
+  }
+
+  function buildLocation(spot, index) {
+    const [, , w, h] = spot.area;
+    const wide = (100 * w * scene.display_m[0]) / (h * scene.display_m[1]);
+    const made = put(element("div", `spot ${spot.kind}`), spot.area);
+    const shape = spot.kind === "place" ? spot.look && spot.look.shape : spot.kind;
+    if (spot.kind !== "order") {
+      made.append(element("div", "furniture", Art.place(shape, wide)));
+      made.append(text("div", "name", spot.label));
+    }
+    const content = element("div", "content");
+    made.append(content, element("div", "ring"));
+    if (spot.kind === "place") {
+      const knob = knobOf("use", index);
+      makeTouch(made, knob);
+      made.append(key(knob));
+    }
+    return { made, content, drawn: null };
+  }
+
+  function buildStorage(shelf, index) {
+    const made = put(element("div", `shelf ${shelf.agent} ${scene.names === "none" ? "bare" : ""}`), shelf.area);
+    made.append(element("div", "content", Art.item(scene, shelf.item)), element("div", "ring"));
+    if (scene.names !== "none") made.append(text("div", "name", shelf.label));
+    if (shelf.agent === "human") {
+      const knob = knobOf("take", index);
+      makeTouch(made, knob);
+      made.append(key(knob));
+    }
+    return { made };
+  }
+
+  /** Buttons of actions, each beside the place that it works on. */
+  function buildPills() {
+    const others = taken();
+    const makePill = (knob) => {
+      const area = freeFor(scene.locations[knob.at].area, others);
+      others.push(area);
+      const made = put(element("div", `pill ${knob.does}`), area);
+      made.append(text("span", "", knob.label), key(knob));
+      makeTouch(made, knob);
+      return made;
+    };
+    return scene.buttons.filter(({ does }) => ["process", "trash", "serve"].includes(does)).map(makePill);
+  }
+
+  /** The tallest free band between the two sides: where a recipe hides nothing that lies somewhere. */
+  function band() {
+    const [robot, human] = sides();
+    const left = robot[0] + robot[2] + 0.012, right = human[0] - 0.012;
+    const rows = scene.locations.map((spot) => spot.area).filter(([x, , w]) => x < right && x + w > left);
+    const edges = [...rows.map(([, y, , h]) => [y, y + h]), [1, 1]].sort((a, b) => a[0] - b[0]);
+    let best = [0, 0], low = 0;
+    for (const [top, bottom] of edges) {
+      if (top - low > best[1] - best[0]) best = [low, top];
+      low = Math.max(low, bottom);
+    }
+    const gap = 0.008;
+    return [left, best[0] + gap, right - left, best[1] - best[0] - 2 * gap];
+  }
+
+  function build(next) {
+    scene = next;
+    shown = null;
+    document.documentElement.lang = scene.language;
+    document.title = scene.title;
+    root.replaceChildren();
+    root.style.setProperty("--ratio", scene.display_m[0] / scene.display_m[1]);
+    const kitchen = element("div", "kitchen");
+    const [robot, human] = sides();
+    kitchen.append(buildZone("robot", robot, scene.words.robot), buildZone("human", human, scene.words.human));
+    kitchen.append(put(element("section", "zone table"), grown(around(of("place")), [0.03, 0.085, 0.03, 0.03])));
+    const locations = scene.locations.map(buildLocation), storages = scene.storages.map(buildStorage);
+    kitchen.append(...locations.map((l) => l.made), ...storages.map((s) => s.made), ...buildPills());
+    const recipe = put(element("div", "recipe"), band());
+    kitchen.append(recipe);
+    const sheet = element("div", "sheet"), toast = element("div", "toast"), served = element("div", "served");
+    root.append(kitchen, served, sheet, toast, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
+    const flash = element("div", "flash");
+    if (scene.flash) {
+      const tag = scene.tags[2] ? scene.tags[2].area : [0.99, 0.98, 0, 0];
+      root.append(put(flash, [tag[0] - 0.033, 1 - 0.0267 * Number(scene.display_m[0] / scene.display_m[1]) * 0.9375 - 0.004, 0.025, 0.025 * (scene.display_m[0] / scene.display_m[1])]));
+    }
+    parts = { kitchen, locations, storages, recipe, sheet, toast, served, flash };
+    mark({});
+  }
+
+  function contentOf(what, isOrder) {
+    if (what === "empty") return isOrder ? [`<span class="none">–</span>`, "empty"] : ["", "empty"];
+    if (what === "served") return [`<span class="done">✓</span>`, "served"];
+    if (what.item) return [Art.item(scene, what.item), "item"];
+    if (what.stack) return [Art.stack(scene, what.stack), "stack"];
+    return [Art.dish(scene, what.dish), "dish"];
+  }
+
+  function drawLocation(index, what) {
+    const part = parts.locations[index], now = JSON.stringify(what), isOrder = scene.locations[index].kind === "order";
+    if (part.drawn === now) return;
+    const isNew = part.drawn !== null;
+    part.drawn = now;
+    const [inside, kind] = contentOf(what, isOrder);
+    part.made.dataset.holds = kind;
+    part.content.innerHTML = inside;
+    part.content.dataset.shown = now;
+    if (isOrder) {
+      const words = what === "served" ? scene.words.served : what.dish && scene.names === "orders" ? scene.dishes[what.dish].label : "";
+      part.content.append(text("span", "dish", words));
+    }
+    if (isNew) replay(part.content, "arrives");
+  }
+
+  /** Starts an animation anew. */
+  function replay(made, className) {
+    made.classList.remove(className);
+    void made.offsetWidth;
+    made.classList.add(className);
+  }
+
+  function partOf(spot) {
+    return "storage" in spot ? parts.storages[spot.storage] : parts.locations[spot.location];
+  }
+
+  function drawPresses(presses) {
+    ["human", "robot"].forEach((agent, index) => {
+      const now = presses[index], before = shown && shown.presses[index];
+      if (!now || !shown || (before && before.number === now.number)) return;
+      const { made } = partOf(now.at);
+      made.querySelector(".ring").className = `ring ${agent} ${now.effective ? "works" : "fails"}`;
+      replay(made.querySelector(".ring"), "pulse");
+      if (!now.effective && agent === "human") replay(made, "shakes");
+    });
+  }
+
+  function drawSignal(signal) {
+    parts.locations.forEach(({ made }, index) => {
+      made.classList.toggle("highlight", Boolean(signal && signal.highlight === index));
+      made.classList.toggle("asked", Boolean(signal && signal.recipe && signal.recipe.order === index));
+    });
+    const recipe = signal && signal.recipe;
+    parts.recipe.classList.toggle("open", Boolean(recipe));
+    if (!recipe) return;
+    const dish = element("figure", "of", Art.dish(scene, recipe.dish));
+    dish.append(text("figcaption", "", scene.dishes[recipe.dish].label));
+    const items = recipe.items.flatMap((name, index) => {
+      const made = element("figure", "", Art.item(scene, name));
+      made.append(text("figcaption", "", scene.items[name].label));
+      return index ? [text("span", "sign", "+"), made] : [made];
+    });
+    parts.recipe.replaceChildren(dish, text("span", "sign", "="), ...items);
+  }
+
+  function drawIntention(spot) {
+    for (const part of [...parts.locations, ...parts.storages]) part.made.classList.remove("intended");
+    if (spot) partOf(spot).made.classList.add("intended");
+  }
+
+  const BIG = ["welcome", "questionnaire", "thanks"];
+  function drawSheet(sight) {
+    const { stage, practice } = sight;
+    root.dataset.stage = stage;
+    const name = stage === "ready" && practice ? "practice" : stage;
+    const title = scene.words[name], words = scene.words[`${name} text`];
+    parts.sheet.className = `sheet ${stage === "running" ? "" : "open"} ${BIG.includes(stage) ? "big" : ""} ${stage}`;
+    if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
+    const card = element("div", "card");
+    card.append(text("h1", "", title || ""), text("p", "", words || ""));
+    parts.sheet.replaceChildren(card);
+  }
+
+  function show(sight) {
+    if (!scene) return;
+    sight.contents.forEach((what, index) => drawLocation(index, what));
+    drawPresses(sight.presses);
+    drawIntention(sight.intention);
+    if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal);
+    if (!shown || JSON.stringify([shown.stage, shown.practice, shown.question]) !== JSON.stringify([sight.stage, sight.practice, sight.question])) drawSheet(sight);
+    parts.served.textContent = sight.served ? `✓ ${sight.served}` : "";
+    shown = sight;
+  }
+
+  /** The square that a video from outside sees. */
+  function flash() {
+    if (parts) replay(parts.flash, "on");
+  }
+
+  /** Whether the connection is there, and whether this page acts. */
+  function mark(change) {
+    marks = { ...marks, ...change };
+    root.classList.toggle("lost", marks.lost);
+    if (!parts) return;
+    const words = marks.lost ? scene.words.lost : marks.acts ? "" : scene.words.watches;
+    parts.toast.textContent = words;
+    parts.toast.classList.toggle("open", Boolean(words));
+  }
+
+  /** Asks for the pairing code; there are no words of the session yet. */
+  function askCode(isWrong, then) {
+    scene = shown = parts = null;
+    const german = (navigator.language || "").startsWith("de");
+    const card = element("form", "card");
+    const field = element("input", "");
+    Object.assign(field, { maxLength: 12, autocomplete: "off", spellcheck: false, autofocus: true });
+    field.setAttribute("aria-label", german ? "Kopplungscode" : "Pairing code");
+    const hint = german ? ["Das ist nicht der Code.", "Er steht auf der Konsole."] : ["That is not the code.", "It stands on the console."];
+    card.append(text("h1", "", german ? "Kopplungscode" : "Pairing code"), field, text("p", isWrong ? "wrong" : "", hint[isWrong ? 0 : 1]));
+    card.addEventListener("submit", (event) => { event.preventDefault(); then(field.value); });
+    const sheet = element("div", "sheet open big", card);
+    root.replaceChildren(sheet);
+    field.focus();
+  }
+
+  /** A point of the window in fractions of the stage. */
+  function point(x, y) {
+    const box = root.getBoundingClientRect();
+    return [(x - box.left) / box.width, (y - box.top) / box.height];
+  }
+
+  return { build, show, flash, mark, askCode, point, scene: () => scene, shown: () => shown };
+})();
+
+/** An item of a questionnaire, to be touched or answered with digits. */
+const Questions = {
+  draw(sheet, question, words, { element, text }) {
+    const card = element("div", "card question");
+    card.append(text("h2", "", question.title));
+    if (question.item) {
+      card.append(text("p", "count", `${question.number} / ${question.of}`), text("p", "item", question.text));
+      const scale = element("div", "scale");
+      for (let point = 1; point <= question.points; point += 1) {
+        const made = text("button", point === question.answer ? "chosen" : "", point);
+        made.dataset.rate = point;
+        scale.append(made);
+      }
+      const ends = element("div", "ends");
+      ends.append(text("span", "", question.low), text("span", "", question.high));
+      card.append(scale, ends);
+    } else {
+      card.append(text("p", "item", question.text));
+    }
+    const row = element("div", "row");
+    const button = (does, label) => { const made = text("button", does, label); made.dataset.does = does; row.append(made); };
+    if (question.before) button("back", words.back);
+    if (question.item) button("skip", words.skip);
+    else button("confirm", words.confirm);
+    card.append(row);
+    sheet.replaceChildren(card);
+  },
+};

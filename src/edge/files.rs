@@ -9,6 +9,7 @@ use miette::{Diagnostic, NamedSource, SourceSpan};
 use serde::de::DeserializeOwned;
 use toml::Spanned;
 
+use super::language::read_words;
 use crate::console::KeyMap;
 use crate::console::keys::{self, KeyError, KeyPlace, Layer};
 use crate::kitchen::Kitchen;
@@ -99,6 +100,7 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
         }
         spec.human = read_human_model(&model)?;
     }
+    read_words(path, &text, &mut spec)?;
     spec.check().map_err(|error| wrong_setting(path, &text, error))?;
     if let Some(step) = &spec.step {
         let found = format!("the place of a recording in the plan \"{}\"", step.plan);
@@ -131,7 +133,13 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
 }
 
 /// The error about a file that a session file names and that cannot be read.
-fn missing(session: &Path, text: &str, (key, name): (&str, &str), reason: io::Error, remedy: &str) -> FileError {
+pub(super) fn missing(
+    session: &Path,
+    text: &str,
+    (key, name): (&str, &str),
+    reason: io::Error,
+    remedy: &str,
+) -> FileError {
     let found = format!("{key} = \"{name}\", which cannot be read: {reason}");
     FileError::at(session, text, line_of(text, key, 0), found, remedy.to_string())
 }
@@ -310,6 +318,7 @@ pub enum Kind {
     HumanModel,
     Keys,
     Questionnaire,
+    Language,
 }
 
 impl Kind {
@@ -318,10 +327,11 @@ impl Kind {
         let table: toml::Table = text.parse().ok()?;
         let has = |keys: &[&str]| keys.iter().any(|key| table.contains_key(*key));
         match () {
-            () if has(&["recipes", "display", "storage", "place"]) => Some(Kind::Layout),
+            () if has(&["recipes", "storage", "place"]) => Some(Kind::Layout),
             () if has(&["ingredient", "slot", "dish"]) => Some(Kind::Recipes),
             () if has(&["scale", "item"]) => Some(Kind::Questionnaire),
             () if has(&["layout"]) => Some(Kind::Session),
+            () if has(&["language"]) => Some(Kind::Language),
             () if has(&["prior", "perception", "transition", "decision"]) => Some(Kind::HumanModel),
             () if has(&["console", "replay", "signals", "buttons"]) => Some(Kind::Keys),
             () => None,
@@ -336,6 +346,7 @@ impl Kind {
             Kind::HumanModel => "a file with parameters of the human model",
             Kind::Keys => "a key file",
             Kind::Questionnaire => "a questionnaire",
+            Kind::Language => "words of the participant's display",
         }
     }
 
@@ -345,6 +356,7 @@ impl Kind {
             Kind::Layout => "a layout file, like layouts/sushi.toml",
             Kind::Recipes => "a recipe file, like recipes/sushi.toml",
             Kind::Questionnaire => "a questionnaire, like sessions/questionnaires/acceptance.toml",
+            Kind::Language => "words of the participant's display, lines like \"rice\" = \"riz\"",
             Kind::HumanModel => "parameters of the human model, like those that tomcom fit writes",
             Kind::Keys => "a key file, as tomcom keys prints it",
         }

@@ -6,6 +6,7 @@ pub mod display;
 pub mod doctor;
 pub mod files;
 pub mod gaze_json;
+pub mod language;
 pub mod log;
 pub mod recordings;
 pub mod terminal;

@@ -1,0 +1,39 @@
+//! Files with the words of the participant's display, for languages that the program does not carry.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Deserialize;
+
+use super::files::{FileResult, Kind, OfKind, missing, parse, read_text};
+use crate::session::SessionSpec;
+use crate::session::display::DisplaySpec;
+
+/// A file with words: each by what it is in English.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(transparent)]
+pub struct Language(pub BTreeMap<String, String>);
+
+impl OfKind for Language {
+    const KIND: Kind = Kind::Language;
+}
+
+/// Reads the words of a session's display, where they are in a file; those in the session file stand above them.
+///
+/// # Errors
+/// The file is not there, or has no words.
+pub(super) fn read_words(session: &Path, text: &str, spec: &mut SessionSpec) -> FileResult<()> {
+    let language = &spec.display.language;
+    if DisplaySpec::LANGUAGES.contains(&language.as_str()) {
+        return Ok(());
+    }
+    let path = session.parent().unwrap_or(Path::new(".")).join(language);
+    if let Err(reason) = std::fs::metadata(&path) {
+        let remedy = "\"en\", \"de\", or the path of a file with words, relative to the session file";
+        return Err(missing(session, text, ("language", language), reason, remedy));
+    }
+    let Language(mut words) = parse(&path, &read_text(&path)?)?;
+    words.append(&mut spec.display.words);
+    spec.display.words = words;
+    Ok(())
+}

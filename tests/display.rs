@@ -1,0 +1,361 @@
+//! The participant's display: what is told to the page, in whole sessions, and what may never be.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use serde_json::Value;
+use tomcom::base::time::SessionTime;
+use tomcom::communication::{Sender, Signal, signals};
+use tomcom::display::words::Words;
+use tomcom::display::{Stage, scene, sight};
+use tomcom::edge::files::{SessionFiles, parse, read_session};
+use tomcom::edge::language::Language;
+use tomcom::edge::log::{LOG_NAME, LogWriter};
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::kitchen::{Agent, Kitchen};
+use tomcom::run::engine::Engine;
+use tomcom::run::verify::verify;
+use tomcom::session::display::{Answering, DisplayEvent, DisplaySpec};
+use tomcom::session::event::EndReason;
+use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
+use tomcom::session::settings::{Condition, GazeSource, ParticipantKind};
+use tomcom::session::{Event, Header, Session};
+
+const SESSIONS: [&str; 2] = ["sessions/default.toml", "sessions/burger.toml"];
+
+/// A session file of the project, with an inference that is coarse and quick.
+fn files(path: &str) -> SessionFiles {
+    let mut files = read_session(Path::new(path)).expect("a session file of the project");
+    let inference = &mut files.spec.human.inference;
+    (inference.beliefs, inference.states, inference.max_beliefs) = (16, 8, 32);
+    files
+}
+
+fn engine(files: SessionFiles) -> Engine {
+    let kitchen = Arc::new(files.kitchen.kitchen);
+    Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen))
+}
+
+/// Lets a session run until its trial is over, or so many seconds; after each step the wizard does something, and somebody
+/// looks at what the page is told.
+fn run(
+    engine: &mut Engine,
+    seconds: f64,
+    mut wizard: impl FnMut(u32, &Session) -> Option<Event>,
+    mut look: impl FnMut(&Session),
+) {
+    let mut advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
+    let give = |engine: &mut Engine, event| drop(engine.input(engine.session().time, event));
+    give(engine, Event::TrialStarted);
+    let end = SessionTime::from_secs_f64(seconds);
+    for step in 0.. {
+        for question in engine.take_questions() {
+            if let Some(advisor) = &mut advisor {
+                let advice = Event::Advised(advisor.answer(&question));
+                give(engine, advice);
+            }
+        }
+        if let Some(event) = wizard(step, engine.session()) {
+            give(engine, event);
+        }
+        look(engine.session());
+        if !engine.session().is_running() || engine.session().time > end {
+            return;
+        }
+        engine.fire();
+    }
+}
+
+/// Every text in a JSON value, with the name of its field.
+fn texts(value: &Value, field: &str, found: &mut Vec<(String, String)>) {
+    match value {
+        Value::String(text) => found.push((field.to_string(), text.clone())),
+        Value::Array(values) => values.iter().for_each(|value| texts(value, field, found)),
+        Value::Object(fields) => {
+            for (name, value) in fields {
+                found.push(("field".to_string(), name.clone()));
+                texts(value, name, found);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Lists of names in a JSON value.
+fn lists(value: &Value, found: &mut Vec<Vec<String>>) {
+    match value {
+        Value::Array(values) => {
+            found.push(values.iter().filter_map(|value| value.as_str().map(str::to_string)).collect());
+            values.iter().for_each(|value| lists(value, found));
+        }
+        Value::Object(fields) => fields.values().for_each(|value| lists(value, found)),
+        _ => {}
+    }
+}
+
+/// Whether a list has all items of a dish of the menu.
+fn has_recipe(kitchen: &Kitchen, list: &[String]) -> bool {
+    kitchen.dishes.iter().any(|dish| {
+        let items = &kitchen.content(dish.stack()).items;
+        items.iter().all(|item| list.contains(&kitchen.content(*item).name))
+    })
+}
+
+/// Holds a sight against the session: every text in it is one that the participant may see now, and nothing else.
+fn check(session: &Session) {
+    let (kitchen, now) = (&session.kitchen, sight(session));
+    let value = serde_json::to_value(&now).expect("a sight is JSON");
+    let mut found = Vec::new();
+    texts(&value, "", &mut found);
+    let fields = [
+        "stage",
+        "practice",
+        "contents",
+        "served",
+        "presses",
+        "intention",
+        "signal",
+        "cue",
+        "question",
+        "item",
+        "stack",
+        "dish",
+        "number",
+        "at",
+        "effective",
+        "location",
+        "storage",
+        "recipe",
+        "highlight",
+        "order",
+        "items",
+    ];
+    let on_display = |name: &String| {
+        let places = (0..kitchen.locations.len()).map(|index| tomcom::kitchen::LocationId(index as u8));
+        places.into_iter().any(|place| {
+            let label = kitchen.content_label(session.state, place);
+            let is_order = kitchen.orders.contains(&place);
+            let items = if is_order { &[][..] } else { &kitchen.content(session.state.content(place)).items[..] };
+            label == name || items.iter().any(|item| kitchen.content(*item).name == *name)
+        })
+    };
+    for (field, text) in &found {
+        let is_fine = match field.as_str() {
+            "field" => fields.contains(&text.as_str()),
+            "stage" => true,
+            "contents" => ["empty", "served"].contains(&text.as_str()),
+            "item" | "stack" | "dish" => on_display(text),
+            "items" => value.pointer("/signal/recipe").is_some(),
+            _ => false,
+        };
+        assert!(is_fine, "{field}: {text} in {value}");
+    }
+    // A recipe is told by the signal about its order alone, and only while that is shown.
+    let recipe = value.pointer("/signal/recipe/items").is_some();
+    let asked = matches!(session.shown.as_ref().map(|shown| &shown.signal), Some(Signal::ShowRecipe(_)));
+    assert!(!recipe || asked, "{value}");
+    let mut all = Vec::new();
+    lists(&value, &mut all);
+    assert!(recipe || !all.iter().any(|list| has_recipe(kitchen, list)), "a recipe in {value}");
+    let intends = session.robot.intention.is_some() && session.spec.display.intention;
+    assert!(now.intention.is_none() || intends, "{value}");
+}
+
+#[test]
+fn the_page_is_told_what_may_be_seen_and_nothing_else() {
+    for path in SESSIONS {
+        for condition in [Condition::Assistant, Condition::Wizard] {
+            let mut files = files(path);
+            files.spec.trial.condition = condition;
+            let mut engine = engine(files);
+            let signals = signals(&engine.session().kitchen.clone(), false);
+            let contents = engine.session().kitchen.contents.len();
+            let (mut told, mut looked) = (0, 0);
+            let wizard = |step: u32, session: &Session| match step % 41 {
+                7 | 23 if condition == Condition::Wizard => {
+                    let signal = signals[(step as usize / 16) % signals.len()].1.clone();
+                    Some(Event::SignalShown { by: Sender::Wizard, signal, accepted: None })
+                }
+                // Whatever lies there: complete stacks, too, on the menu and not.
+                13 => {
+                    let content = &session.kitchen.contents[(step as usize * 7) % contents];
+                    let location = session.kitchen.location(session.kitchen.board).name.clone();
+                    Some(Event::KitchenCorrected { location, content: content.name.clone() })
+                }
+                _ => None,
+            };
+            run(&mut engine, 100.0, wizard, |session| {
+                check(session);
+                looked += 1;
+                told += usize::from(sight(session).signal.is_some());
+            });
+            println!("{path}, {condition:?}: {looked} messages, {told} of them with a signal");
+            assert!(looked > 100 && told > 0, "{path}, {condition:?}: {looked} messages, {told} with a signal");
+        }
+    }
+}
+
+#[test]
+fn the_scene_tells_no_recipe_and_no_wizards_keys() {
+    for path in SESSIONS {
+        let engine = engine(files(path));
+        let kitchen = engine.session().kitchen.clone();
+        let value = serde_json::to_value(scene(engine.session())).expect("a scene is JSON");
+        let mut all = Vec::new();
+        lists(&value, &mut all);
+        assert!(!all.iter().any(|list| has_recipe(&kitchen, list)), "a recipe in {value}");
+        let mut found = Vec::new();
+        texts(&value, "", &mut found);
+        let said = |word: &str| found.iter().any(|(_, text)| text.contains(word));
+        for word in ["variant", "belief", "signal", "advi", "recommend", "deviation", "cost", "seed", "P01"] {
+            assert!(!said(word), "{word} in the scene");
+        }
+        assert_eq!(value["tags"].as_array().map(Vec::len), Some(4));
+    }
+}
+
+#[test]
+fn the_robots_intention_is_shown_where_the_session_says_so() {
+    let mut shown = [0, 0];
+    for allowed in [false, true] {
+        let mut files = files(SESSIONS[0]);
+        files.spec.display.intention = allowed;
+        let mut engine = engine(files);
+        let count = |session: &Session| shown[usize::from(allowed)] += usize::from(sight(session).intention.is_some());
+        run(&mut engine, 60.0, |_, _| None, count);
+    }
+    assert!(shown[0] == 0 && shown[1] > 10, "{shown:?}");
+}
+
+#[test]
+fn phases_of_a_plan_are_those_of_the_display() {
+    let mut files = files("sessions/study.toml");
+    files.spec.participant.kind = ParticipantKind::Display;
+    files.spec.participant.gaze = GazeSource::Mouse;
+    files.spec.display.questionnaire = Answering::Display;
+    let study = files.study().expect("a plan");
+    // The second trial of somebody: trial, questionnaire, debriefing of the wizard.
+    let wanted = tomcom::session::plan::Wanted { participant: 0, slot: 2, attempt: 1, instructed: true };
+    let (spec, trial) = study.settings(wanted);
+    let kitchen = Arc::new(files.kitchen.kitchen);
+    let mut engine = Engine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
+    let give = |engine: &mut Engine, event: Event| {
+        let outcome = engine.input(engine.session().time, event.clone());
+        assert_eq!(outcome.refused, None, "{event:?}");
+    };
+    let phase = |phase, number| Event::Protocol(ProtocolEvent::PhaseStarted { phase, number });
+    let stage = |engine: &Engine| sight(engine.session()).stage;
+    assert_eq!(stage(&engine), Stage::Welcome);
+    give(&mut engine, phase(StudyPhase::Trial, 1));
+    assert_eq!(stage(&engine), Stage::Ready);
+    give(&mut engine, Event::TrialStarted);
+    assert_eq!(stage(&engine), Stage::Running);
+    give(&mut engine, Event::TrialPaused);
+    assert_eq!(stage(&engine), Stage::Paused);
+    give(&mut engine, Event::TrialEnded { reason: EndReason::Wizard });
+    assert_eq!(stage(&engine), Stage::Over);
+    give(&mut engine, phase(StudyPhase::Questionnaire, 2));
+    assert_eq!(stage(&engine), Stage::Questionnaire);
+    let mut asked = Vec::new();
+    while let Some(item) = sight(engine.session()).question.expect("a question").item {
+        asked.push(item.clone());
+        give(&mut engine, Event::Protocol(ProtocolEvent::ItemAnswered { item, answer: 3 }));
+    }
+    let question = sight(engine.session()).question.expect("a question");
+    assert!(asked.len() > 3 && question.number == question.of && asked.last() == question.before.as_ref(), "{asked:?}");
+    give(&mut engine, Event::Protocol(ProtocolEvent::AnswersConfirmed));
+    assert_eq!(sight(engine.session()).question, None);
+    give(&mut engine, phase(StudyPhase::Debriefing, 3));
+    assert_eq!(stage(&engine), Stage::Thanks);
+}
+
+#[test]
+fn what_the_display_tells_is_recorded_and_verified() {
+    let mut files = files(SESSIONS[0]);
+    files.spec.participant.kind = ParticipantKind::Display;
+    files.spec.participant.gaze = GazeSource::Mouse;
+    let header = Header::new(files.spec.clone(), 0, files.kitchen.layout.clone(), files.kitchen.recipes.clone());
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("display");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let mut log = LogWriter::create_live(&folder, "2026-03-14", &header).expect("the folder can be written");
+    let mut engine = engine(files);
+    let at = SessionTime::from_secs_f64;
+    let press = |button: &str, pressed_s| Event::Press {
+        agent: Agent::Human,
+        button: button.to_string(),
+        at_ns: Some(at(pressed_s)),
+    };
+    let signal = Signal::Highlight("counter".to_string());
+    for (seconds, event) in [
+        (0.5, Event::Display(DisplayEvent::Connected { width_px: 1920, height_px: 1080 })),
+        (1.0, Event::TrialStarted),
+        (1.02, Event::Display(DisplayEvent::Drawn { cue: 1, at_ns: at(1.015) })),
+        (2.0, press("take rice", 1.98)),
+        (3.0, press("cooking_pot", 2.995)),
+        (3.5, Event::SignalShown { by: Sender::Wizard, signal, accepted: None }),
+        (4.0, Event::Display(DisplayEvent::Lost)),
+        (5.0, Event::TrialEnded { reason: EndReason::Wizard }),
+        (5.0, Event::SessionEnded),
+    ] {
+        let outcome = engine.input(at(seconds), event);
+        assert_eq!(outcome.refused, None);
+        outcome.events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
+    }
+    assert_eq!(sight(engine.session()).presses[0].map(|press| (press.number, press.effective)), Some((2, true)));
+    log.flush().expect("the log can be written");
+    let path = log.folder().join(LOG_NAME);
+    drop(log);
+    let text = std::fs::read_to_string(&path).expect("a recording");
+    assert!(text.contains(r#""button":"take rice","at_ns":1980000000"#), "{text}");
+    assert!(verify(&path).expect("a recording").verified);
+}
+
+#[test]
+fn every_shape_is_drawn() {
+    let art = include_str!("../src/edge/display/page/art.js");
+    for shape in tomcom::kitchen::look::SHAPES {
+        assert!(art.contains(&format!("    {shape}(")) || art.contains(&format!("    {shape}: (")), "{shape}");
+    }
+}
+
+#[test]
+fn german_has_every_word_of_the_page_and_of_both_kitchens() {
+    let read = |text: &str| parse::<Language>(Path::new("words"), text).expect("words").0;
+    let english = read(include_str!("../src/display/languages/en.toml"));
+    let german = read(include_str!("../src/display/languages/de.toml"));
+    for key in english.keys() {
+        assert!(german.contains_key(key), "{key}");
+    }
+    let words = Words::of(&DisplaySpec { language: "de".to_string(), ..DisplaySpec::default() });
+    for path in SESSIONS {
+        let mut files = files(path);
+        files.spec.display.language = "de".to_string();
+        let scene = scene(engine(files).session());
+        let labels =
+            scene.locations.iter().map(|spot| &spot.label).chain(scene.storages.iter().map(|shelf| &shelf.label));
+        let pictures = scene.items.values().chain(scene.dishes.values()).map(|picture| &picture.label);
+        let known: Vec<&String> = german.values().collect();
+        for label in labels.chain(pictures).filter(|label| *label != "Nori") {
+            assert!(known.contains(&label), "{path}: {label}");
+        }
+    }
+    assert_eq!(words.of_name("assembly_board"), "Arbeitsbrett");
+    assert_eq!(words.of_name("toaster"), "toaster");
+}
+
+#[test]
+fn a_language_may_come_from_a_file() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("language");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let layout = Path::new("layouts/sushi.toml").canonicalize().expect("a layout");
+    let session = folder.join("session.toml");
+    std::fs::write(folder.join("fr.toml"), "\"language\" = \"fr\"\n\"rice\" = \"riz\"\n").expect("written");
+    std::fs::write(&session, format!("layout = {layout:?}\n[display]\nlanguage = \"fr.toml\"\n")).expect("written");
+    let files = read_session(&session).expect("a session file");
+    let scene = scene(engine(files).session());
+    assert_eq!((scene.language.as_str(), scene.storages[0].label.as_str()), ("fr", "riz"));
+    std::fs::write(&session, format!("layout = {layout:?}\n[display]\nlanguage = \"fi.toml\"\n")).expect("written");
+    let error = format!("{:?}", miette::Report::new(read_session(&session).expect_err("no such file")));
+    assert!(error.contains("session.toml:3:") && error.contains("\"en\", \"de\""), "{error}");
+}

@@ -1,0 +1,91 @@
+"""The participant's page in a real browser: Chromium of the system, driven by Playwright."""
+
+import json
+import re
+import shutil
+import threading
+from contextlib import contextmanager
+
+from playwright.sync_api import sync_playwright
+
+# A gamepad with the standard buttons, which a test presses by setting `pressed`.
+GAMEPAD = """
+const pad = { index: 0, id: "mock", connected: true, mapping: "standard", timestamp: 0, axes: [],
+  buttons: Array.from({ length: 17 }, () => ({ pressed: false, touched: false, value: 0 })) };
+window.pad = pad;
+navigator.getGamepads = () => [pad, null, null, null];
+"""
+
+
+@contextmanager
+def browser():
+    path = shutil.which("chromium")
+    assert path, "Debian's package chromium is needed"
+    arguments = ["--no-sandbox", "--disable-background-networking", "--disable-sync", "--disable-component-update"]
+    with sync_playwright() as playwright:
+        made = playwright.chromium.launch(executable_path=path, args=arguments)
+        try:
+            yield made
+        finally:
+            made.close()
+
+
+class Page:
+    """A page of the display, with what it says to the program."""
+
+    def __init__(self, browser, url, size=(1920, 1080), touch=False, code=None):
+        self.context = browser.new_context(viewport={"width": size[0], "height": size[1]}, has_touch=touch)
+        self.context.add_init_script(GAMEPAD)
+        self.page = self.context.new_page()
+        self.errors, self.said, self.lock = [], [], threading.Lock()
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.on("websocket", lambda socket: socket.on("framesent", self.note))
+        self.page.goto(url + (f"/?code={code}" if code else ""))
+
+    def note(self, payload):
+        with self.lock:
+            self.said.append(json.loads(payload))
+
+    def wait_for(self, script, seconds=15):
+        self.page.wait_for_function(script, timeout=1000 * seconds)
+
+    def ask(self, script):
+        return self.page.evaluate(script)
+
+    def stage(self, name):
+        self.wait_for(f"document.getElementById('stage').dataset.stage === '{name}'")
+
+    def presses(self):
+        return self.ask("Stage.shown().presses[0] ? Stage.shown().presses[0].number : 0")
+
+    def orders(self):
+        """What the orders want, as the page shows it."""
+        return self.ask("""Stage.scene().locations.map((spot, index) => [spot.kind, Stage.shown().contents[index]])
+            .filter(([kind]) => kind === "order").map(([, what]) => what.dish || null)""")
+
+    def press(self, button, way):
+        """Presses a button in this way, and waits until the page shows that it was taken."""
+        before = self.presses()
+        knob = self.ask(f"Stage.scene().buttons.find((button) => button.name === {json.dumps(button)})")
+        if way == "keyboard":
+            self.page.keyboard.press(knob["key"])
+        elif way == "touch":
+            self.page.locator(f'[data-button="{button}"]').tap()
+        else:
+            self.ask(f"pad.buttons[{knob['gamepad']}].pressed = true")
+            self.page.wait_for_timeout(20)
+            self.ask(f"pad.buttons[{knob['gamepad']}].pressed = false")
+        self.wait_for(f"Stage.shown().presses[0] && Stage.shown().presses[0].number > {before}")
+        self.page.wait_for_timeout(60)
+
+    def screenshot(self, path):
+        self.page.screenshot(path=str(path))
+
+    def close(self):
+        assert not self.errors, self.errors
+        self.context.close()
+
+
+def plain(text):
+    """Words of a screen without what breaks lines."""
+    return re.sub(r"\s+", " ", text)

@@ -129,6 +129,8 @@ fn check(session: &Session) {
         "highlight",
         "order",
         "items",
+        "target",
+        "checks",
     ];
     let on_display = |name: &String| {
         let places = (0..kitchen.locations.len()).map(|index| tomcom::kitchen::LocationId(index as u8));

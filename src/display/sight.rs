@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::words::Words;
 use crate::communication::Signal;
 use crate::kitchen::{Action, Agent, ContentId, Kitchen, LocationId, LocationKind, OrderContent};
+use crate::session::calibration::Check;
 use crate::session::display::Answering;
 use crate::session::plan::PhaseSpec;
 use crate::session::protocol::Answer;
@@ -28,6 +29,10 @@ pub struct Sight {
     /// The number of the newest event to be marked by a flash.
     pub cue: Option<u64>,
     pub question: Option<Question>,
+    /// Where the eyes are asked to look while the gaze is checked, in fractions of the display.
+    pub target: Option<[f64; 2]>,
+    /// The gaze is being checked: nothing else is shown.
+    pub checks: bool,
 }
 
 /// What the display is for now.
@@ -125,6 +130,8 @@ pub fn sight(session: &Session) -> Sight {
         signal: session.shown.as_ref().and_then(|shown| told(session, &shown.signal)),
         cue: session.cue,
         question: question(session),
+        target: session.calibration.as_ref().and_then(Check::target),
+        checks: session.calibration.as_ref().is_some_and(|check| check.result.is_none()),
     }
 }
 

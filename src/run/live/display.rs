@@ -90,7 +90,7 @@ impl Live {
             PageInput::Press { button, at } => self.press(button, at),
             PageInput::Pointer { x, y } => {
                 if self.engine.session().spec.participant.gaze == GazeSource::Mouse {
-                    self.input(Event::Gaze(GazeSample { x, y, confidence: 1.0, device_ns: None }));
+                    self.input(Event::Gaze(GazeSample::new(x, y, 1.0)));
                 }
             }
             PageInput::Answer { item, rated: Some(answer) } => {

@@ -163,14 +163,14 @@ const Stage = (() => {
     kitchen.append(...locations.map((l) => l.made), ...storages.map((s) => s.made), ...buildPills());
     const recipe = put(element("div", "recipe"), band());
     kitchen.append(recipe);
-    const sheet = element("div", "sheet"), toast = element("div", "toast"), served = element("div", "served");
-    root.append(kitchen, served, sheet, toast, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
+    const sheet = element("div", "sheet"), toast = element("div", "toast"), served = element("div", "served"), target = element("div", "target", "<i></i>");
+    root.append(kitchen, served, sheet, toast, target, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
     const flash = element("div", "flash");
     if (scene.flash) {
       const tag = scene.tags[2] ? scene.tags[2].area : [0.99, 0.98, 0, 0];
       root.append(put(flash, [tag[0] - 0.033, 1 - 0.0267 * Number(scene.display_m[0] / scene.display_m[1]) * 0.9375 - 0.004, 0.025, 0.025 * (scene.display_m[0] / scene.display_m[1])]));
     }
-    parts = { kitchen, locations, storages, recipe, sheet, toast, served, flash };
+    parts = { kitchen, locations, storages, recipe, sheet, toast, served, flash, target };
     mark({});
   }
 
@@ -256,6 +256,18 @@ const Stage = (() => {
     parts.sheet.replaceChildren(card);
   }
 
+  /** The target of a check of the gaze: it is alone on the screen, so that the eyes have nowhere else to go. */
+  function drawTarget({ target, checks }) {
+    root.classList.toggle("checks", checks);
+    const [x, y] = target || [0, 0], is = JSON.stringify(target);
+    parts.target.classList.toggle("open", Boolean(target));
+    if (target && parts.target.dataset.is !== is) {
+      Object.assign(parts.target.style, { left: percent(x), top: percent(y) });
+      replay(parts.target, "draws");
+    }
+    parts.target.dataset.is = is;
+  }
+
   function show(sight) {
     if (!scene) return;
     sight.contents.forEach((what, index) => drawLocation(index, what));
@@ -263,6 +275,7 @@ const Stage = (() => {
     drawIntention(sight.intention);
     if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal);
     if (!shown || JSON.stringify([shown.stage, shown.practice, shown.question]) !== JSON.stringify([sight.stage, sight.practice, sight.question])) drawSheet(sight);
+    drawTarget(sight);
     parts.served.textContent = sight.served ? `✓ ${sight.served}` : "";
     shown = sight;
   }

@@ -1,0 +1,325 @@
+"""Whole orders on the participant's display: the real program, a real browser, hands that a test moves.
+
+    tests/outside/display.py TOMCOM FOLDER [--presses 200]
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import tags
+from console import Console, percentile
+from page import Page, browser, plain
+
+PORT = 50331
+# Sessions whose first order a person can serve alone: the seed, and the presses for each such dish.
+BASES = {
+    "maki": ["take rice", "cooking_pot", "cook", "cooking_pot", "assembly_board", "take nori", "assembly_board"],
+    "nigiri": ["take rice", "cooking_pot", "cook", "cooking_pot", "shape", "assembly_board", "take nori", "assembly_board"],
+}
+CUT = ["cutting_board", "cut", "cutting_board", "assembly_board"]
+TOPPINGS = {
+    "salmon": ["take salmon", *CUT],
+    "shrimp": ["take shrimp", "cooking_pot", "cook", "cooking_pot", *CUT],
+    "crab": ["take crab", "cooking_pot", "cook", "cooking_pot", *CUT],
+}
+BURGER = ["take light bun", "board", "take cheese", "board", "take soy", "grill_plate", "grill", "grill_plate", "board",
+          "take pepper", "slice", "board", "board", "tray", "serve 1"]
+# At most so long from a press to its effect on the screen, in milliseconds, at the 99th percentile.
+LIMIT_MS = 50
+
+
+def presses_for(kitchen, dish, order):
+    if kitchen == "burger":
+        assert dish == "garden burger", dish
+        return BURGER
+    topping, base = dish.split()
+    return [*BASES[base], *TOPPINGS[topping], "assembly_board", "plate", f"serve {order}"]
+
+
+def session_file(folder, kitchen, seed, display="", participant="", plan=""):
+    folder.mkdir(parents=True, exist_ok=True)
+    layout = Path(f"layouts/{kitchen}.toml").resolve()
+    path = folder / "session.toml"
+    path.write_text(f'layout = "{layout}"\nseed = {seed}\n[participant]\nkind = "display"\ngaze = "mouse"\n{participant}\n'
+                    f"[display]\nport = {PORT}\n{display}\n[signals]\ncool_down_s = 0.0\n{plan}")
+    return path
+
+
+def url():
+    return f"http://127.0.0.1:{PORT}"
+
+
+def operate(tomcom, session, folder, *more):
+    console = Console(tomcom, [session, "--out", folder / "recordings", *more])
+    console.wait_for("READY|NO DISPLAY")
+    return console
+
+
+def start(console, page, robot_held=True):
+    """Starts the trial; where the robot is held, the person works alone."""
+    page.stage("welcome")
+    page.page.mouse.move(960, 500)
+    if robot_held:
+        console.key("\x10")
+        console.wait_for("ROBOT HELD")
+    time.sleep(1.5)
+    console.key(".")
+    if robot_held:
+        console.wait_for("Before the trial")
+        console.key("o")
+    page.stage("running")
+    page.wait_for("Stage.shown().contents.some((what) => what.dish)")
+
+
+def recorded(folder):
+    (recording,) = (folder / "recordings").iterdir()
+    lines = (recording / "events.jsonl").read_text().splitlines()
+    return recording, [json.loads(line) for line in lines[1:]]
+
+
+def verify(tomcom, recording):
+    subprocess.run([tomcom, "replay", recording, "--verify"], check=True, stdout=subprocess.DEVNULL)
+
+
+def seed_of(tomcom, folder, kitchen):
+    """A seed whose first order a person can serve alone."""
+    for seed in range(1, 60):
+        session = session_file(folder / "seed", kitchen, seed)
+        text = session.read_text().replace('kind = "display"\ngaze = "mouse"', 'kind = "simulated"')
+        session.write_text(text + "[trial]\nseconds = 1.0\n")
+        out = folder / "seed" / str(seed)
+        subprocess.run([tomcom, "simulate", session, "--trials", "1", "--out", out], check=True, stdout=subprocess.DEVNULL)
+        (recording,) = out.iterdir()
+        shown = [json.loads(line) for line in (recording / "events.jsonl").read_text().splitlines()[1:]]
+        first = next(event["dish"] for event in shown if event["kind"] == "order_shown")
+        if first == "garden burger" or kitchen == "sushi" and "tuna" not in first:
+            return seed
+    raise AssertionError("no such seed")
+
+
+def plays_an_order(tomcom, browser, folder, kitchen, seed, way):
+    console = operate(tomcom, session_file(folder, kitchen, seed), folder)
+    with console:
+        page = Page(browser, url(), touch=way == "touch")
+        start(console, page)
+        presses = presses_for(kitchen, page.orders()[0], 1)
+        for button in presses:
+            page.press(button, way)
+        page.wait_for("Stage.shown().served === 1")
+        assert page.ask("document.querySelector('.spot.order').dataset.holds") == "served"
+        page.close()
+        console.wait_for("NO DISPLAY")
+        console.quit()
+    recording, events = recorded(folder)
+    told = [event for event in events if event["kind"] == "press" and event["agent"] == "human"]
+    assert [event["button"] for event in told] == presses, told
+    late_ms = [(event["t_ns"] - event["at_ns"]) / 1e6 for event in told]
+    assert all(0 <= late < 1000 for late in late_ms), late_ms
+    kinds = [event.get("what") for event in events if event["kind"] == "display"]
+    assert kinds[0] == "connected" and "drawn" in kinds and kinds[-1] == "lost", kinds
+    verify(tomcom, recording)
+    print(f"{kitchen} by {way}: an order served with {len(presses)} presses, stamped at most {max(late_ms):.1f} ms after "
+          "they happened; the recording verifies", flush=True)
+
+
+def shows_signals(tomcom, browser, folder, seed):
+    console = operate(tomcom, session_file(folder, "sushi", seed), folder)
+    with console:
+        page = Page(browser, url())
+        start(console, page)
+        is_open = "document.querySelector('.recipe').classList.contains('open')"
+        assert not page.ask(is_open)
+        page.page.keyboard.press("e")
+        page.page.keyboard.press("e")
+        console.key("q")
+        page.wait_for(is_open)
+        words = plain(page.ask("document.querySelector('.recipe').innerText"))
+        dish = page.orders()[0]
+        assert dish in words and "nori" in words and "rice" in words, words
+        page.screenshot(folder / "recipe-1920.png")
+        console.key("a")
+        page.wait_for("document.querySelector('.highlight .name')?.textContent === 'assembly board'")
+        assert not page.ask(is_open)
+        page.screenshot(folder / "highlight-1920.png")
+        console.key("\x7f")
+        page.wait_for("!document.querySelector('.highlight')")
+        # A second page only watches.
+        other = Page(browser, url(), size=(1280, 720))
+        other.stage("running")
+        other.wait_for("document.querySelector('.toast').textContent.includes('only watches')")
+        before = page.presses()
+        other.page.keyboard.press("r")
+        other.page.wait_for_timeout(300)
+        assert page.presses() == before
+        other.close()
+        page.page.set_viewport_size({"width": 1280, "height": 720})
+        page.page.wait_for_timeout(400)
+        page.screenshot(folder / "running-1280.png")
+        for script in ["scrollHeight <= innerHeight", "scrollWidth <= innerWidth"]:
+            assert page.ask(f"document.documentElement.{script.replace('inner', 'window.inner')}"), script
+        page.close()
+        console.quit()
+    recording, events = recorded(folder)
+    drawn = [event["cue"] for event in events if event["kind"] == "display" and event["what"] == "drawn"]
+    cues = [event["seq"] for event in events if event["kind"] in ("trial_started", "signal_shown")]
+    assert drawn == cues, (drawn, cues)
+    verify(tomcom, recording)
+    print("signals: recipe and highlight appear, are taken back, are told to be drawn; a second page only watches", flush=True)
+
+
+def comes_back(tomcom, browser, folder, seed):
+    """The server is killed in the middle and started again: the page comes back by itself, with the whole state."""
+    console = operate(tomcom, session_file(folder, "sushi", seed), folder)
+    with console:
+        page = Page(browser, url())
+        start(console, page)
+        page.press("take rice", "keyboard")
+        page.press("cooking_pot", "keyboard")
+        before = page.ask("JSON.stringify(Stage.shown().contents)")
+        page.page.evaluate("document.body.dataset.same = 'page'")
+        console.process.kill()
+        console.process.wait()
+        page.wait_for("document.getElementById('stage').classList.contains('lost')")
+    (recording,) = (folder / "recordings").iterdir()
+    console = Console(tomcom, ["--continue", recording])
+    with console:
+        page.stage("paused")
+        assert page.ask("document.body.dataset.same") == "page", "the page was loaded again"
+        assert page.ask("JSON.stringify(Stage.shown().contents)") == before
+        console.wait_for("PAUSED")
+        console.key(".")
+        page.stage("running")
+        page.press("cook", "keyboard")
+        page.close()
+        console.quit()
+    print("the program killed and started again: the page comes back by itself with the whole state", flush=True)
+
+
+def asks_for_a_code(tomcom, browser, folder, seed):
+    console = operate(tomcom, session_file(folder, "sushi", seed), folder, "--listen", "0.0.0.0")
+    with console:
+        console.key("\x06")
+        console.wait_for(r"pairing code [A-Z0-9]{6}")
+        code = plain(console.text()).split("pairing code ")[1][:6]
+        page = Page(browser, url())
+        page.wait_for("document.querySelector('input')")
+        assert not page.ask("document.querySelector('.spot')")
+        page.page.fill("input", "WRONG1")
+        page.page.keyboard.press("Enter")
+        page.wait_for("document.querySelector('.wrong')")
+        page.page.fill("input", code.lower())
+        page.page.keyboard.press("Enter")
+        page.stage("welcome")
+        page.close()
+        console.quit()
+    print("served to the network it asks for the pairing code, and takes no other", flush=True)
+
+
+def is_quick(tomcom, browser, folder, seed, presses):
+    """From press to screen, alone and with 200 connections that send nonsense a thousand times a second."""
+    console = operate(tomcom, session_file(folder, "sushi", seed), folder)
+    with console:
+        page = Page(browser, url())
+        start(console, page, robot_held=False)
+        measure(page, presses, "alone")
+        abuse = subprocess.Popen([sys.executable, Path(__file__).with_name("abuse.py"), str(PORT)], stdout=subprocess.PIPE, text=True)
+        assert abuse.stdout.readline().strip() == "200 connections"
+        measure(page, presses, "with 200 connections that send 1,000 messages of nonsense a second")
+        assert abuse.poll() is None, "the connections were all lost"
+        abuse.kill()
+        abuse.wait()
+        page.close()
+        console.quit()
+    recording, _ = recorded(folder)
+    verify(tomcom, recording)
+
+
+def measure(page, presses, how):
+    first = len(page.said)
+    for number in range(presses):
+        page.press("take rice" if number % 2 == 0 else "trash", "keyboard")
+    page.page.wait_for_timeout(300)
+    took = [message["took"] for message in page.said[first:] if message["kind"] == "redrawn"]
+    assert len(took) >= 0.95 * presses, f"{len(took)} of {presses} presses were drawn"
+    p99 = percentile(took, 0.99)
+    print(f"{len(took)} presses {how}: press to screen p50 {percentile(took, 0.5):.1f} ms, p99 {p99:.1f} ms", flush=True)
+    assert p99 <= LIMIT_MS, "a press took too long"
+
+
+def has_phases(tomcom, browser, folder):
+    """A plan's questionnaire is answered on the display, in German."""
+    text = Path("sessions/study.toml").read_text()
+    layout, questionnaires = Path("layouts/sushi.toml").resolve(), Path("sessions/questionnaires").resolve()
+    text = text.replace("../layouts/sushi.toml", str(layout)).replace('"questionnaires/', f'"{questionnaires}/')
+    text = text.replace('kind = "simulated"', 'kind = "display"').replace('gaze = "simulated"', 'gaze = "none"')
+    text = text[: text.index("[plan.familiarisation]")] + text[text.index("[[plan.questionnaire]]"):]
+    folder.mkdir(parents=True, exist_ok=True)
+    session = folder / "session.toml"
+    session.write_text(f'{text}\n[display]\nport = {PORT}\nlanguage = "de"\nquestionnaire = "display"\n')
+    console = Console(tomcom, [session, "--code", "P01", "--out", folder / "recordings"])
+    with console:
+        console.wait_for("agrees")
+        page = Page(browser, url())
+        console.key("\r")
+        page.stage("instruction")
+        page.screenshot(folder / "instruction-1920.png")
+        for _ in range(12):
+            time.sleep(0.9)
+            console.key("\r")
+            if page.ask("document.getElementById('stage').dataset.stage") == "ready":
+                break
+        page.stage("ready")
+        assert "Bereit?" in page.ask("document.querySelector('.sheet').innerText")
+        console.key(".")
+        page.stage("running")
+        console.key("\x05")
+        console.wait_for("End the trial")
+        console.key("y")
+        page.stage("over")
+        time.sleep(1)
+        console.key(".")
+        page.stage("questionnaire")
+        page.wait_for("Stage.shown().question")
+        page.screenshot(folder / "question-1920.png")
+        count = page.ask("Stage.shown().question.of")
+        for number in range(count):
+            page.wait_for(f"!Stage.shown().question.item || Stage.shown().question.number === {number + 1}")
+            page.page.keyboard.press("6") if number % 2 else page.page.click('[data-rate="4"]')
+        page.wait_for("!Stage.shown().question.item")
+        page.page.click('[data-does="confirm"]')
+        page.wait_for("!Stage.shown().question")
+        page.close()
+        console.quit()
+    _, events = recorded(folder)
+    answers = [event["answer"] for event in events if event.get("what") == "item_answered"]
+    assert answers == [6 if number % 2 else 4 for number in range(count)], answers
+    print(f"phases of a plan in German; {count} items answered on the display by keys and touch", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tomcom")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--presses", type=int, default=200, help="whose way to the screen is measured")
+    arguments = parser.parse_args()
+    tomcom, folder = arguments.tomcom, arguments.folder
+    with browser() as chromium:
+        seeds = {kitchen: seed_of(tomcom, folder / kitchen, kitchen) for kitchen in ("sushi", "burger")}
+        for kitchen, seed in seeds.items():
+            for way in ("keyboard", "touch", "gamepad"):
+                plays_an_order(tomcom, chromium, folder / kitchen / way, kitchen, seed, way)
+        shows_signals(tomcom, chromium, folder / "signals", seeds["sushi"])
+        comes_back(tomcom, chromium, folder / "restart", seeds["sushi"])
+        asks_for_a_code(tomcom, chromium, folder / "code", seeds["sushi"])
+        has_phases(tomcom, chromium, folder / "phases")
+        is_quick(tomcom, chromium, folder / "quick", seeds["sushi"], arguments.presses)
+    for name in ("recipe-1920.png", "highlight-1920.png", "running-1280.png"):
+        tags.check(str(folder / "signals" / name))
+
+
+if __name__ == "__main__":
+    main()

@@ -90,7 +90,7 @@ impl ArmScene {
                 self.motion.stand(now);
                 Vec::new()
             }
-            Event::Press { agent: Agent::Human, button } => {
+            Event::Press { agent: Agent::Human, button, .. } => {
                 let button = kitchen.button_named(Agent::Human, button);
                 let points = button.map(|button| mark(kitchen, Agent::Human, button));
                 vec![Row::new("human/hand", Shown::Points(points.into_iter().collect()))]

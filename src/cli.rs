@@ -2,6 +2,7 @@
 
 mod args;
 mod estimates;
+mod review;
 mod wizard;
 
 use std::io::{IsTerminal, Write};
@@ -27,7 +28,8 @@ use crate::run::live::LiveError;
 use crate::run::options::{self, Beginning, Overrides, Series};
 use crate::run::plan::{self, Overview};
 use crate::run::replay::Replay;
-use crate::run::review::{self, ReviewError};
+use crate::run::rerun::save as save_stream;
+use crate::run::review::{self as console_over, ReviewError};
 use crate::run::series::{self, Sitting};
 use crate::run::simulate::SimulateError;
 use crate::run::standing::{self, Standing};
@@ -126,6 +128,7 @@ pub fn main() -> ExitCode {
         Command::Compare(args) => wizard::compare(&args),
         Command::Train(args) => wizard::train(&args),
         Command::Replay(args) => replay(&args),
+        Command::Review(args) => review::review(&args),
         Command::Simulate(args) => simulate(&args),
         Command::Plan(args) => show_plan(&args),
         Command::Fit(args) => estimates::fit(&args),
@@ -188,6 +191,7 @@ fn new_session(session: Option<&Path>, flags: &OperateFlags, compare: Option<Req
         seed: flags.seed,
         listen: flags.listen,
         code: flags.code.clone(),
+        rerun_listen: flags.rerun_listen.clone(),
     };
     overrides.apply(&mut files).map_err(wrong_setting)?;
     let out = flags.out.clone();
@@ -237,7 +241,7 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         return print(args.format, &figures, || timing::describe(&figures));
     }
     if args.format == Format::Text && std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
-        return Ok(review::review(recording, args.follow, None)?);
+        return Ok(console_over::review(recording, args.follow, None)?);
     }
     let mut replay = Replay::open(recording)?;
     let mut events = 0;
@@ -302,6 +306,11 @@ fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let bar = progress(trials, "trials");
     let figures = simulate::simulate(&simulation, || bar.inc(1))?;
     bar.finish_and_clear();
+    if args.rerun {
+        for recording in &figures.recordings {
+            save_stream(Path::new(recording))?;
+        }
+    }
     print(args.format, &figures, || simulate::describe(&figures))
 }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::review::ReviewArgs;
 use super::wizard::{CompareArgs, TrainArgs};
 use crate::communication::concept::ConceptName;
 use crate::mind::fitting::Parameter;
@@ -28,6 +29,7 @@ pub(super) enum Command {
     Compare(CompareArgs),
     Train(TrainArgs),
     Replay(ReplayArgs),
+    Review(ReviewArgs),
     Simulate(SimulateArgs),
     Plan(PlanArgs),
     Fit(FitArgs),
@@ -58,7 +60,7 @@ pub(super) struct OperateArgs {
     /// The session file; by default sessions/default.toml, or the one that the program carries.
     pub(super) session: Option<PathBuf>,
     /// Take up this recording, which was cut, in a new part beside it; its session is the same, a running trial is paused.
-    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "listen", "condition", "concept", "seed", "out"])]
+    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "listen", "condition", "concept", "seed", "rerun_listen", "out"])]
     pub(super) recording: Option<PathBuf>,
     #[command(flatten)]
     pub(super) flags: OperateFlags,
@@ -88,6 +90,9 @@ pub(super) struct OperateFlags {
     /// Everything random follows from it; by default the session file's.
     #[arg(long)]
     pub(super) seed: Option<u64>,
+    /// Where Rerun viewers connect, instead of the session file's address: 0.0.0.0:9876 for other machines.
+    #[arg(long, value_name = "ADDRESS")]
+    pub(super) rerun_listen: Option<String>,
     /// Where the recording's folder is made.
     #[arg(long, default_value = "sessions")]
     pub(super) out: PathBuf,
@@ -227,6 +232,9 @@ pub(super) struct SimulateArgs {
     /// Let the assistant advise in unassisted trials too; its advice is recorded and shown to nobody.
     #[arg(long)]
     pub(super) shadow: bool,
+    /// Write the stream for Rerun's viewer beside every log, too, as recording.rrd.
+    #[arg(long)]
+    pub(super) rerun: bool,
     /// Where the recordings go, one folder a trial.
     #[arg(long, default_value = "sessions/simulated")]
     pub(super) out: PathBuf,

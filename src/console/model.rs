@@ -73,6 +73,16 @@ pub enum Recording {
     Lost,
 }
 
+/// How the stream to Rerun's viewers fares.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Viewers {
+    /// Where they connect; none: the stream is only written to its file.
+    pub address: Option<String>,
+    /// Rows that were written, and that were dropped because it was too slow.
+    pub written: u64,
+    pub dropped: u64,
+}
+
 /// A key that went down, with times on [`Model::clock`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pressed {
@@ -98,6 +108,8 @@ pub struct Model {
     pub dialog: Option<Dialog>,
     pub notice: Option<Notice>,
     pub recording: Recording,
+    /// The stream to Rerun's viewers, if there is one.
+    pub viewers: Option<Viewers>,
     /// Bytes that are free where the recording is; none: not known.
     pub free_bytes: Option<u64>,
     /// The panel that is shown alone, if one is.
@@ -144,6 +156,7 @@ impl Model {
             dialog: None,
             notice: None,
             recording: Recording::Off,
+            viewers: None,
             free_bytes: None,
             alone: None,
             help_from: 0,

@@ -7,7 +7,7 @@ use super::display::DisplayHealth;
 use super::hands::Hand;
 use super::keys::Action;
 use super::message::Command;
-use super::model::{Dialog, Level, Model, Recording};
+use super::model::{Dialog, Level, Model, Recording, Viewers};
 use crate::session::admit::admit;
 use crate::session::preflight::{Check, Verdict, participant, space};
 use crate::session::{Event, Session};
@@ -20,6 +20,7 @@ pub fn checks(session: &Session, model: &Model) -> Vec<Check> {
     let mut checks = participant(session, model.now);
     checks.extend(model.display.as_ref().map(DisplayHealth::check));
     checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);
+    checks.extend(model.viewers.as_ref().map(viewers));
     checks
 }
 
@@ -47,6 +48,21 @@ fn recording(model: &Model) -> Check {
         Recording::On(folder) => Check::ok("recording", folder.clone()),
         Recording::Off => Check::new("recording", Verdict::Failed, "nothing is recorded", "start the program anew"),
         Recording::Lost => Check::new("recording", Verdict::Failed, "it cannot be written", "start the program anew"),
+    }
+}
+
+fn viewers(viewers: &Viewers) -> Check {
+    let Viewers { address, dropped, .. } = viewers;
+    let found = match address {
+        Some(address) => format!("viewers connect at {address}"),
+        None => "recorded, no viewer can connect".to_string(),
+    };
+    match dropped {
+        0 => Check::ok("rerun", found),
+        dropped => {
+            let remedy = "end what else keeps the processor busy; tomcom review makes the stream from the log";
+            Check::new("rerun", Verdict::Warning, format!("{found}; {dropped} rows dropped"), remedy)
+        }
     }
 }
 

@@ -14,6 +14,7 @@ use super::ask::ask;
 use super::clock::WallTime;
 use super::log::Lock;
 use super::terminal::theme;
+use super::viewer::{self, Viewer};
 use crate::console::view::theme::Ground;
 use crate::session::preflight::{Check, Verdict, space};
 use crate::session::settings::ConsoleSpec;
@@ -38,7 +39,7 @@ pub fn examine(out: &Path) -> Findings {
     let mut checks = terminal();
     checks.push(folder(out));
     checks.push(space(free_bytes(&existing(out)).ok()));
-    checks.extend([wall_clock(), timer()]);
+    checks.extend([wall_clock(), timer(), viewer()]);
     let healthy = checks.iter().all(|check| check.verdict != Verdict::Failed);
     Findings { healthy, checks }
 }
@@ -170,6 +171,21 @@ fn wall_clock() -> Check {
     let verdict = if now.date().as_str() >= WRITTEN { Verdict::Ok } else { Verdict::Failed };
     let remedy = "set the clock: recordings are named by date (session time does not depend on it)";
     Check::new("wall clock", verdict, now.rfc3339(), remedy)
+}
+
+/// Whether recordings can be looked at in a window; without it, in a browser.
+fn viewer() -> Check {
+    let (verdict, found, remedy) = match Viewer::find() {
+        Viewer::Ready(path) => (Verdict::Ok, format!("{} {}", path.display(), super::rerun::VERSION), ""),
+        Viewer::NoScreen => {
+            (Verdict::Ok, "there, but no screen: tomcom review serves it for a browser".to_string(), "")
+        }
+        Viewer::Other(version) => (Verdict::Warning, format!("rerun {version}: another version"), viewer::REMEDY),
+        Viewer::None => {
+            (Verdict::Warning, "no rerun in PATH: tomcom review serves it for a browser".to_string(), viewer::REMEDY)
+        }
+    };
+    Check::new("viewer", verdict, found, remedy)
 }
 
 /// Whether the machine wakes a program in time: presses and gaze are stamped when it is awake.

@@ -19,6 +19,7 @@ pub mod options;
 mod parallel;
 pub mod plan;
 pub mod replay;
+pub mod rerun;
 pub mod resume;
 pub mod review;
 pub mod series;

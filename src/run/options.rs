@@ -47,6 +47,7 @@ pub struct Overrides {
     pub concept: Option<ConceptName>,
     pub seed: Option<u64>,
     pub code: Option<String>,
+    pub rerun_listen: Option<String>,
 }
 
 impl Overrides {
@@ -67,6 +68,10 @@ impl Overrides {
         spec.trial.condition = self.condition.unwrap_or(spec.trial.condition);
         spec.assistant.concept = self.concept.unwrap_or(spec.assistant.concept);
         spec.display.listen = self.listen.unwrap_or(spec.display.listen);
+        if let Some(listen) = self.rerun_listen {
+            spec.rerun.address = listen;
+            spec.rerun.live = true;
+        }
         let participant = &mut spec.participant;
         participant.code = self.code.unwrap_or(std::mem::take(&mut participant.code));
         participant.kind = self.participant.unwrap_or(participant.kind);

@@ -31,6 +31,11 @@ impl Replay {
         Ok(Replay { log, follower })
     }
 
+    /// The same without looking for the causes of errors.
+    pub fn without_causes(self) -> Replay {
+        Replay { follower: self.follower.without_causes(), ..self }
+    }
+
     /// Applies the next event and hands it out; `None` where the log ends for now.
     ///
     /// # Errors

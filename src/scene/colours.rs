@@ -1,20 +1,20 @@
-//! Colours on a dark ground. The same agent has the same colour everywhere; ingredients that look alike have like ones.
+//! Colours that can be told apart and read on dark and on light ground. The same agent has the same colour everywhere; ingredients that look alike have like ones.
 
 use crate::kitchen::{Agent, ContentId, Kitchen};
 
 /// Red, green, blue, opacity.
 pub type Colour = [u8; 4];
 
-pub const FRAME: Colour = [72, 78, 90, 255];
-pub const EMPTY: Colour = [104, 112, 126, 255];
-pub const FULL: Colour = [236, 239, 244, 255];
-pub const HUMAN: Colour = [94, 190, 255, 255];
-pub const ROBOT: Colour = [255, 166, 77, 255];
-pub const SIGNAL: Colour = [255, 221, 51, 255];
-pub const WIZARD: Colour = [214, 140, 255, 255];
-pub const ASSISTANT: Colour = [110, 231, 160, 255];
-pub const ERROR: Colour = [255, 84, 84, 255];
-pub const QUIET: Colour = [150, 156, 168, 255];
+pub const FRAME: Colour = [104, 110, 122, 255];
+pub const EMPTY: Colour = [124, 130, 142, 255];
+pub const FULL: Colour = [0, 172, 160, 255];
+pub const HUMAN: Colour = [52, 152, 235, 255];
+pub const ROBOT: Colour = [236, 136, 32, 255];
+pub const SIGNAL: Colour = [236, 184, 0, 255];
+pub const WIZARD: Colour = [180, 100, 230, 255];
+pub const ASSISTANT: Colour = [40, 176, 104, 255];
+pub const ERROR: Colour = [232, 60, 60, 255];
+pub const QUIET: Colour = [134, 140, 152, 255];
 /// A gaze sample that tells nothing.
 pub const LOST: Colour = [120, 120, 120, 255];
 pub const TABLE: Colour = [92, 84, 76, 255];

@@ -14,6 +14,7 @@ pub mod preflight;
 pub mod protocol;
 pub mod screen;
 pub mod settings;
+pub mod stream;
 pub mod timers;
 pub mod tracker;
 

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::display::DisplaySpec;
 use super::plan::{PlanSpec, StepSpec};
+use super::stream::RerunSpec;
 use super::tracker::TrackerSpec;
 use crate::communication::settings::{AssistantSpec, Shadow};
 use crate::mind::model::HumanModel;
@@ -33,6 +34,8 @@ pub struct SessionSpec {
     pub console: ConsoleSpec,
     #[serde(default)]
     pub display: DisplaySpec,
+    #[serde(default)]
+    pub rerun: RerunSpec,
     /// The file with the parameters of the human model, relative to the session file; none: those in [`Self::human`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub human_model: Option<String>,
@@ -121,6 +124,7 @@ impl SessionSpec {
         self.tracker.check(self.participant.gaze)?;
         self.console.check()?;
         self.display.check()?;
+        self.rerun.check()?;
         match self.human.fault().or_else(|| self.assistant.fault()) {
             Some((key, found, remedy)) => Err(SettingError::new(key, found, remedy)),
             None => Ok(()),

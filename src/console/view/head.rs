@@ -3,7 +3,7 @@
 use super::paint::{Brush, width};
 use super::regions::{ROOMY_COLUMNS, Regions, Room};
 use super::theme::Role;
-use crate::console::model::{Model, Recording};
+use crate::console::model::{Model, Recording, Viewers};
 use crate::console::words;
 use crate::session::settings::{Condition, GazeSource};
 use crate::session::{Phase, Session};
@@ -88,17 +88,18 @@ fn facts(session: &Session, model: &Model) -> Vec<String> {
     let served = format!("{} served", session.served.len());
     let code = session.spec.participant.code.clone();
     if session.step().is_some() && model.playback.is_none() {
-        return vec![served, session.kitchen.title.clone()];
+        return [served, session.kitchen.title.clone()].into_iter().chain(streamed(model)).collect();
     }
     let mut facts = match &model.playback {
         None => vec![code, condition.to_string(), served],
         Some(playback) => vec![served, code, condition.to_string(), playback.name.clone()],
     };
     facts.push(session.kitchen.title.clone());
+    facts.extend(streamed(model));
     facts
 }
 
-/// Recording, gaze and robot: each with its state in words.
+/// Recording, gaze, stream and robot: each with its state in words.
 fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> {
     let mut healths = Vec::new();
     if !model.focused && model.playback.is_none() {
@@ -132,6 +133,9 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
     if let Some((text, is_fine)) = model.display.as_ref().map(|display| display.line()) {
         healths.push((text, if is_fine { Role::Text } else { Role::Alarm }));
     }
+    if let Some(Viewers { dropped: dropped @ 1.., .. }) = &model.viewers {
+        healths.push((format!("RERUN {dropped} DROPPED"), Role::Alarm));
+    }
     let robot = match (session.robot.stopped, session.robot.held) {
         (true, _) => ("ROBOT STOPPED", Role::Alarm),
         (false, true) => ("ROBOT HELD", Role::Strong),
@@ -141,6 +145,13 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
         healths.push((robot.0.to_string(), robot.1));
     }
     healths
+}
+
+/// Where Rerun's viewers connect, as long as they and the stream's file get everything.
+fn streamed(model: &Model) -> Option<String> {
+    let viewers = model.viewers.as_ref().filter(|viewers| viewers.dropped == 0)?;
+    let port = viewers.address.as_ref().and_then(|address| address.rsplit(':').next());
+    Some(port.map_or("rerun ok".to_string(), |port| format!("rerun :{port} ok")))
 }
 
 fn gaze(session: &Session, model: &Model) -> (String, Role) {

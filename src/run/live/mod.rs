@@ -5,6 +5,7 @@ mod display;
 mod inputs;
 mod recording;
 mod showing;
+mod viewing;
 
 use std::io;
 use std::net::IpAddr;
@@ -99,6 +100,8 @@ struct Live {
     /// Of this recording.
     header: Header,
     log: LogWriter,
+    /// What Rerun's viewers see.
+    viewing: Option<viewing::Viewing>,
     /// The part that is continued is not to be written by anybody else.
     _before: Option<Lock>,
     /// The log cannot be written any more.
@@ -130,6 +133,7 @@ impl Live {
         let keys = if compare.is_some() { keys.with_comparison() } else { keys };
         let wall = WallTime::now();
         header.started = Some(wall.rfc3339());
+        let is_new = matches!(place, Place::In(_));
         let (log, before) = match place {
             Place::In(root) => (LogWriter::create_live(&root, &wall.date(), &header)?, None),
             Place::After(folder, lock) => (LogWriter::create_part(&folder, &header)?, Some(lock)),
@@ -152,6 +156,7 @@ impl Live {
             model,
             header,
             log,
+            viewing: None,
             _before: before,
             failed: None,
             clock,
@@ -161,6 +166,7 @@ impl Live {
             dirty: true,
         };
         live.model.free_bytes = free_bytes(live.log.folder()).ok();
+        live.begin_viewing(is_new, first.last().map_or(0, |last| last.seq + 1));
         live.record(&first);
         live.tick();
         if let Some(request) = compare {
@@ -203,7 +209,10 @@ impl Live {
                 Some(input) = desk.wall.next() => self.hear(input),
                 Some(advice) = next_advice(&mut self.advisor) => self.advise(advice),
                 _ = pointer.tick(), if with_pointer => self.look(),
-                _ = flush.tick() => self.flush(),
+                _ = flush.tick() => {
+                    self.flush();
+                    self.view_motion();
+                }
                 _ = watch.tick() => self.watch(),
                 () = sleep_until(next_frame.max(next_move)), if !self.dirty => self.dirty = true,
                 () = sleep_until(next_frame), if self.dirty => {
@@ -246,6 +255,9 @@ impl Live {
                 self.input(Event::SessionEnded);
             }
             self.flush();
+        }
+        if let Some(viewing) = self.viewing.take() {
+            viewing.close();
         }
         let folder = self.log.folder().to_path_buf();
         match self.failed {

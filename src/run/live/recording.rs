@@ -43,6 +43,7 @@ impl Live {
         let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
         self.model.errors.extend(new);
         self.judged = judged.len();
+        self.view(events);
     }
 
     pub(super) fn flush(&mut self) {
@@ -61,6 +62,7 @@ impl Live {
             let text = format!("the clock jumped by {:.1} s: session time did not", by_ms as f64 / 1000.0);
             self.model.say(Level::Alarm, text);
         }
+        self.tell_viewing();
         if self.engine.session().phase == Phase::Ready {
             self.model.free_bytes = free_bytes(self.log.folder()).ok();
         }

@@ -1,0 +1,383 @@
+//! Rerun: the one file that knows it. Moments of a scene become rows of a stream, which goes to a file, to viewers that
+//! connect to a server of the program, or both.
+//!
+//! The program never connects to a viewer: one that is slow or stopped would hold up the stream, and the file with it.
+//! Viewers connect to the program, and take what the server keeps for them.
+
+use std::io;
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use nalgebra::Isometry3;
+use rerun::blueprint::components::PanelState;
+use rerun::blueprint::{
+    Blueprint, BlueprintPanel, ContainerLike, Horizontal, SelectionPanel, Spatial2DView, Spatial3DView,
+    StateTimelineView, Tabs, TextDocumentView, TextLogView, TimePanel, TimeSeriesView, Vertical,
+};
+use rerun::components::{InterpolationMode, MarkerShape};
+use rerun::external::re_grpc_server::{MemoryLimit, ServerOptions};
+use rerun::grpc_server::GrpcServerSink;
+use rerun::log::ChunkBatcherConfig;
+use rerun::sink::FileSink;
+use rerun::web_viewer::WebViewerConfig;
+use rerun::{AsComponents, Color, FillMode, Quaternion, RecordingStream, RecordingStreamBuilder, TextLogLevel};
+
+use crate::base::time::SessionTime;
+use crate::robot::kinematics::{Shape, Solid};
+use crate::scene::shown::{Area, Disc, Level, Point, Series};
+use crate::scene::{Moment, Row, Shown};
+
+/// The version of Rerun that streams are written with; viewers of the same version read them.
+pub const VERSION: &str = "0.36.3";
+/// All recordings share one blueprint.
+const APPLICATION: &str = "tomcom";
+/// What viewers see is so old at most.
+const PIECE: Duration = Duration::from_millis(300);
+/// Every piece of every entity costs some 2 kB beside its rows: in a file they are longer.
+const PIECE_OF_FILE: Duration = Duration::from_secs(5);
+/// For viewers that connect later a server keeps so much, in bytes.
+const KEPT_BYTES: u64 = 256 << 20;
+/// Nothing of it is forgotten where a recording is only looked at.
+const ALL_BYTES: u64 = 4 << 30;
+
+/// Radius of the mark where somebody looks, and half the width of the circle around it, in millimetres.
+const SIGHT_MM: f32 = 9.0;
+const LINE_MM: f32 = 2.0;
+
+/// What a stream is of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// Tells it from all other streams.
+    pub id: String,
+    /// What the viewer calls it.
+    pub name: String,
+}
+
+/// Where a stream goes.
+#[derive(Clone, Debug, Default)]
+pub struct Outlets {
+    pub file: Option<PathBuf>,
+    /// Where viewers connect; `true`: they are given all of it, however much that is.
+    pub server: Option<(SocketAddr, bool)>,
+}
+
+/// One of the recordings in a stream.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Lane {
+    /// Its entities are below this one; empty: at the top.
+    pub root: String,
+    /// Its time 0, where several are aligned.
+    pub origin: SessionTime,
+}
+
+/// A stream that is being written: to each of its outlets by itself, so that none holds up another.
+pub struct Writer {
+    streams: Vec<RecordingStream>,
+}
+
+impl Writer {
+    /// Opens a stream that goes to these outlets, and lays it out: opened in a viewer, it shows these lanes side by side.
+    ///
+    /// # Errors
+    /// The file cannot be made, or the address is none of this machine.
+    pub fn open(identity: &Identity, outlets: &Outlets, lanes: &[Lane]) -> io::Result<Writer> {
+        let mut streams = Vec::new();
+        if let Some(path) = &outlets.file {
+            let stream = stream(identity, PIECE_OF_FILE)?;
+            stream.set_sinks((FileSink::new(path).map_err(io::Error::other)?,));
+            streams.push(stream);
+        }
+        if let Some((address, all)) = outlets.server {
+            let stream = stream(identity, PIECE)?;
+            stream.set_sinks((server(address, all)?,));
+            streams.push(stream);
+        }
+        for stream in &streams {
+            blueprint(lanes).send(stream, Default::default()).map_err(io::Error::other)?;
+        }
+        Ok(Writer { streams })
+    }
+
+    /// Writes what stays as it is.
+    pub fn fixed(&self, lane: &Lane, rows: &[Row]) {
+        rows.iter().for_each(|row| self.row(lane, row, true));
+    }
+
+    /// Writes a moment; the number of its rows.
+    pub fn moment(&self, lane: &Lane, moment: &Moment) -> u64 {
+        let since_origin = moment.time.0 as i64 - lane.origin.0 as i64;
+        for stream in &self.streams {
+            stream.set_time("session_time", rerun::TimeCell::from_duration_nanos(since_origin));
+            stream.set_time_sequence("step", i64::try_from(moment.step).unwrap_or(i64::MAX));
+        }
+        moment.rows.iter().for_each(|row| self.row(lane, row, false));
+        moment.rows.len() as u64
+    }
+
+    /// Ends the file, if there is one; viewers that are connected keep what they have.
+    pub fn finish(&self) {
+        self.streams.iter().for_each(RecordingStream::finalize_deferred_sinks);
+    }
+
+    fn row(&self, lane: &Lane, row: &Row, is_fixed: bool) {
+        let entity = match lane.root.as_str() {
+            "" => row.entity.clone(),
+            root => format!("{root}/{}", row.entity),
+        };
+        let parts = parts(&row.shown);
+        let components: Vec<_> = parts.iter().flat_map(|part| part.as_serialized_batches()).collect();
+        for stream in &self.streams {
+            // It fails where components cannot be written down, and these can.
+            let _ = stream.log_serialized_batches(entity.as_str(), is_fixed, components.iter().cloned());
+        }
+    }
+}
+
+/// A stream that goes nowhere yet, and is handed on in pieces of this length.
+fn stream(identity: &Identity, piece: Duration) -> io::Result<RecordingStream> {
+    let config = ChunkBatcherConfig { flush_tick: piece, ..ChunkBatcherConfig::DEFAULT };
+    // The environment variable of Rerun's tools does not switch it off.
+    let stream = RecordingStreamBuilder::new(APPLICATION)
+        .recording_id(identity.id.as_str())
+        .recording_name(identity.name.as_str())
+        .enabled(true)
+        .batcher_config(config)
+        .buffered()
+        .map_err(io::Error::other)?;
+    // Times are those of the session alone.
+    stream.set_log_time_enabled(false);
+    stream.set_log_tick_enabled(false);
+    Ok(stream)
+}
+
+fn server(address: SocketAddr, all: bool) -> io::Result<GrpcServerSink> {
+    let bytes = if all { ALL_BYTES } else { KEPT_BYTES };
+    let options = ServerOptions { memory_limit: MemoryLimit::from_bytes(bytes), ..ServerOptions::default() };
+    GrpcServerSink::new(&address.ip().to_string(), address.port(), options).map_err(io::Error::other)
+}
+
+/// Where viewers connect to a server.
+pub fn uri(address: SocketAddr) -> String {
+    format!("rerun+http://{address}/proxy")
+}
+
+/// A server of the viewer for browsers, until it is dropped.
+pub struct WebViewer {
+    _server: Box<dyn std::any::Any>,
+}
+
+impl WebViewer {
+    /// Serves the viewer on this port of this machine.
+    ///
+    /// # Errors
+    /// The port is taken.
+    pub fn serve(port: u16) -> io::Result<WebViewer> {
+        let config = WebViewerConfig {
+            bind_ip: "127.0.0.1".to_string(),
+            web_port: port.into(),
+            open_browser: false,
+            ..WebViewerConfig::default()
+        };
+        let server = rerun::serve_web_viewer(config).map_err(io::Error::other)?;
+        Ok(WebViewer { _server: Box::new(server) })
+    }
+}
+
+type Part = Box<dyn AsComponents>;
+
+/// What Rerun calls it.
+fn parts(shown: &Shown) -> Vec<Part> {
+    match shown {
+        Shown::Areas(areas) => vec![Box::new(areas_in_2d(areas))],
+        Shown::Discs(discs) => vec![Box::new(discs_in_2d(discs))],
+        Shown::Sight { at, around, colour } => sight_in_2d(*at, *around, colour_of(*colour)),
+        Shown::Points(points) => vec![Box::new(points_in_3d(points))],
+        Shown::Solids(solids, colour) => solids_in_3d(solids, colour_of(*colour)),
+        Shown::Place(place) => vec![Box::new(transform(place))],
+        Shown::Value(value) => vec![Box::new(rerun::Scalars::single(*value))],
+        Shown::Line(Series { name, colour }) => {
+            let line = rerun::SeriesLines::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
+            vec![Box::new(line.with_widths([2.0]).with_interpolation_mode(InterpolationMode::StepAfter))]
+        }
+        Shown::Marks(Series { name, colour }) => {
+            let marks = rerun::SeriesPoints::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
+            vec![Box::new(marks.with_markers([MarkerShape::Cross]).with_marker_sizes([4.0]))]
+        }
+        Shown::Words { level, text, colour } => {
+            let level = match level {
+                Level::Info => TextLogLevel::INFO,
+                Level::Warning => TextLogLevel::WARN,
+                Level::Error => TextLogLevel::ERROR,
+            };
+            vec![Box::new(rerun::TextLog::new(text.as_str()).with_level(level).with_color(colour_of(*colour)))]
+        }
+        Shown::Page(text) => vec![Box::new(rerun::TextDocument::from_markdown(text.as_str()))],
+        Shown::State(text) => vec![Box::new(rerun::StateChange::single(text.as_str()))],
+    }
+}
+
+fn colour_of([red, green, blue, opacity]: [u8; 4]) -> Color {
+    Color::from_unmultiplied_rgba(red, green, blue, opacity)
+}
+
+fn areas_in_2d(areas: &[Area]) -> rerun::Boxes2D {
+    let corners = areas.iter().map(|area| [area.left as f32, area.top as f32]);
+    let sizes = areas.iter().map(|area| [area.width as f32, area.height as f32]);
+    rerun::Boxes2D::from_mins_and_sizes(corners, sizes)
+        .with_colors(areas.iter().map(|area| colour_of(area.colour)))
+        .with_radii(areas.iter().map(|area| area.line as f32))
+}
+
+fn discs_in_2d(discs: &[Disc]) -> rerun::Points2D {
+    rerun::Points2D::new(discs.iter().map(|disc| disc.at.map(|length| length as f32)))
+        .with_radii(discs.iter().map(|disc| disc.radius as f32))
+        .with_colors(discs.iter().map(|disc| colour_of(disc.colour)))
+        .with_labels(discs.iter().map(|disc| disc.words.as_str()))
+        .with_show_labels(true)
+}
+
+/// One row of two archetypes: a point, and the circle around it.
+fn sight_in_2d(at: [f64; 2], around: f64, colour: Color) -> Vec<Part> {
+    let at = at.map(|length| length as f32);
+    let circle = rerun::Ellipses2D::from_half_sizes([[around as f32; 2]]).with_centers([at]).with_colors([colour]);
+    let point = rerun::Points2D::new([at]).with_radii([SIGHT_MM]).with_colors([colour]);
+    vec![Box::new(circle.with_line_radii([LINE_MM])), Box::new(point)]
+}
+
+fn points_in_3d(points: &[Point]) -> rerun::Points3D {
+    rerun::Points3D::new(points.iter().map(|point| point.at_m.map(|length| length as f32)))
+        .with_radii(points.iter().map(|point| point.radius_m as f32))
+        .with_colors(points.iter().map(|point| colour_of(point.colour)))
+        .with_labels(points.iter().map(|point| point.words.as_str()))
+}
+
+fn metres(place: &Isometry3<f64>) -> [f32; 3] {
+    place.translation.vector.cast::<f32>().into()
+}
+
+fn turn(place: &Isometry3<f64>) -> Quaternion {
+    Quaternion::from_xyzw(place.rotation.cast::<f32>().coords.into())
+}
+
+fn transform(place: &Isometry3<f64>) -> rerun::Transform3D {
+    rerun::Transform3D::from_translation_rotation(metres(place), turn(place))
+}
+
+/// Shapes of one kind are one archetype.
+fn solids_in_3d(solids: &[Solid], colour: Color) -> Vec<Part> {
+    let mut parts: Vec<Part> = Vec::new();
+    let (mut cylinders, mut boxes, mut balls) = (Vec::new(), Vec::new(), Vec::new());
+    for Solid { shape, link_from_solid: place } in solids {
+        match shape {
+            Shape::Cylinder { radius_m, length_m } => cylinders.push((place, *radius_m as f32, *length_m as f32)),
+            Shape::Box { half_m } => boxes.push((place, half_m.map(|length| length as f32))),
+            Shape::Sphere { radius_m } => balls.push((place, *radius_m as f32)),
+        }
+    }
+    if !cylinders.is_empty() {
+        let all = || cylinders.iter();
+        let shapes = rerun::Cylinders3D::from_lengths_and_radii(all().map(|one| one.2), all().map(|one| one.1));
+        let placed = shapes.with_centers(all().map(|one| metres(one.0))).with_quaternions(all().map(|one| turn(one.0)));
+        parts.push(Box::new(placed.with_colors([colour]).with_fill_mode(FillMode::Solid)));
+    }
+    if !boxes.is_empty() {
+        let all = || boxes.iter();
+        let shapes =
+            rerun::Boxes3D::from_centers_and_half_sizes(all().map(|one| metres(one.0)), all().map(|one| one.1));
+        let placed = shapes.with_quaternions(all().map(|one| turn(one.0)));
+        parts.push(Box::new(placed.with_colors([colour]).with_fill_mode(FillMode::Solid)));
+    }
+    if !balls.is_empty() {
+        let all = || balls.iter();
+        let shapes = rerun::Points3D::new(all().map(|one| metres(one.0)));
+        parts.push(Box::new(shapes.with_radii(all().map(|one| one.1)).with_colors([colour])));
+    }
+    parts
+}
+
+/// What a viewer shows without a click: kitchen and arm above, beliefs and what signals are worth below, what happened at
+/// the side; several lanes beside each other.
+fn blueprint(lanes: &[Lane]) -> Blueprint {
+    let root: ContainerLike = match lanes {
+        [only] => alone(only),
+        lanes => Horizontal::new(lanes.iter().map(beside)).into(),
+    };
+    let hidden = PanelState::Hidden;
+    Blueprint::new(root)
+        .with_blueprint_panel(BlueprintPanel::from_state(hidden))
+        .with_selection_panel(SelectionPanel::from_state(hidden))
+        .with_time_panel(TimePanel::new().with_state(PanelState::Collapsed).with_timeline("session_time"))
+        .with_auto_views(false)
+}
+
+/// One recording.
+fn alone(lane: &Lane) -> ContainerLike {
+    let above = Horizontal::new([kitchen(lane), arm(lane)]).with_column_shares([3.0, 2.0]);
+    let wrong = StateTimelineView::new("Believed wrong")
+        .with_origin(path(lane, "human/belief/wrong"))
+        .with_contents([path(lane, "human/belief/wrong/**")]);
+    let beliefs = Tabs::new([
+        series(lane, "Estimated belief: p(truth)", &["human/belief/estimated/**", "human/errors/**"]),
+        series(lane, "True belief (simulated)", &["human/belief/true/**", "human/errors/**"]),
+        wrong.into(),
+    ]);
+    let benefit = series(lane, "Net benefit of signals (presses)", &["assistant/benefit/**"]);
+    let below = Horizontal::new([beliefs.into(), benefit]);
+    let side = Vertical::new([believed(lane), log(lane)]).with_row_shares([2.0, 3.0]);
+    let left = Vertical::new([above.into(), below.into()]).with_row_shares([5.0, 3.0]);
+    Horizontal::new([left.into(), side.into()]).with_column_shares([5.0, 2.0]).into()
+}
+
+/// One of several recordings.
+fn beside(lane: &Lane) -> ContainerLike {
+    let belief = series(lane, "Estimated belief", &["human/belief/estimated/**", "human/errors/**"]);
+    let all = [kitchen(lane), arm(lane), belief, believed(lane), log(lane)];
+    Vertical::new(all).with_name(&lane.root).with_row_shares([3.0, 2.0, 2.0, 2.0, 3.0]).into()
+}
+
+fn path(lane: &Lane, entities: &str) -> String {
+    let path = format!("{}/{entities}", lane.root);
+    format!("/{}", path.trim_matches('/'))
+}
+
+fn kitchen(lane: &Lane) -> ContainerLike {
+    let contents = ["kitchen/**", "human/gaze"].map(|entities| path(lane, entities));
+    Spatial2DView::new(titled(lane, "Kitchen")).with_origin(path(lane, "kitchen")).with_contents(contents).into()
+}
+
+fn arm(lane: &Lane) -> ContainerLike {
+    let contents = ["robot/**", "human/hand"].map(|entities| path(lane, entities));
+    Spatial3DView::new(titled(lane, "Arm")).with_origin(path(lane, "robot")).with_contents(contents).into()
+}
+
+fn series(lane: &Lane, name: &str, entities: &[&str]) -> ContainerLike {
+    let contents: Vec<String> = entities.iter().map(|entities| path(lane, entities)).collect();
+    TimeSeriesView::new(titled(lane, name)).with_origin(path(lane, "")).with_contents(contents).into()
+}
+
+fn believed(lane: &Lane) -> ContainerLike {
+    let page = path(lane, "human/belief/page");
+    TextDocumentView::new(titled(lane, "What the participant believes"))
+        .with_origin(page.clone())
+        .with_contents([page])
+        .into()
+}
+
+fn log(lane: &Lane) -> ContainerLike {
+    let entities = [
+        "human/presses",
+        "human/errors",
+        "robot/presses",
+        "wizard/**",
+        "assistant/signals",
+        "assistant/advice",
+        "trial/events",
+    ];
+    let contents = entities.map(|entities| path(lane, entities));
+    TextLogView::new(titled(lane, "What happened")).with_origin(path(lane, "")).with_contents(contents).into()
+}
+
+fn titled(lane: &Lane, name: &str) -> String {
+    if lane.root.is_empty() { name.to_string() } else { format!("{name}: {}", lane.root) }
+}

@@ -1,0 +1,153 @@
+//! A live stream of moments to viewers and a file, from a thread of its own. Whoever tells it something never waits: where
+//! the thread does not keep up, moments are dropped and counted.
+
+use std::fs;
+use std::io;
+use std::net::{SocketAddr, TcpListener};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
+use std::time::Duration;
+
+use super::rerun::{Identity, Lane, Outlets, Writer};
+use crate::scene::{Moment, Row};
+
+/// So many pieces of news may wait; at 200 gaze samples a second they are those of 20 seconds.
+const WAITING: usize = 4096;
+/// So long the end of a session waits for its file to be written.
+const END: Duration = Duration::from_secs(5);
+/// So many ports are tried after the one that is asked for.
+const PORTS: u16 = 20;
+
+/// How the stream fares.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Fares {
+    /// Rows that were written, and that were dropped.
+    pub written: u64,
+    pub dropped: u64,
+}
+
+/// The counters that both sides look at.
+#[derive(Debug, Default)]
+struct Counters {
+    written: AtomicU64,
+    dropped: AtomicU64,
+}
+
+/// A stream that is open.
+#[derive(Debug)]
+pub struct Stream {
+    /// Where viewers connect, if they can.
+    pub server: Option<SocketAddr>,
+    file: Option<PathBuf>,
+    news: SyncSender<Vec<Moment>>,
+    counters: Arc<Counters>,
+    done: Receiver<()>,
+}
+
+impl Stream {
+    /// Opens a stream that begins with these rows. Where the port is taken, the server takes one of the next.
+    ///
+    /// # Errors
+    /// The file cannot be made, or nothing can listen at the address.
+    pub fn open(
+        identity: &Identity,
+        file: Option<&Path>,
+        server: Option<SocketAddr>,
+        fixed: Vec<Row>,
+        opening: Moment,
+    ) -> io::Result<Stream> {
+        let server = server.map(free_port).transpose()?;
+        let outlets = Outlets { file: file.map(Path::to_path_buf), server: server.map(|address| (address, false)) };
+        let lane = Lane::default();
+        let writer = Writer::open(identity, &outlets, std::slice::from_ref(&lane))?;
+        let (news, told) = sync_channel::<Vec<Moment>>(WAITING);
+        let (end, done) = channel();
+        let counters = Arc::new(Counters::default());
+        let counted = counters.clone();
+        std::thread::Builder::new().name("rerun".to_string()).spawn(move || {
+            writer.fixed(&lane, &fixed);
+            counted.written.fetch_add(writer.moment(&lane, &opening), Relaxed);
+            for moment in told.iter().flatten() {
+                counted.written.fetch_add(writer.moment(&lane, &moment), Relaxed);
+            }
+            // The file first: a viewer that does not listen may hold up the rest.
+            writer.finish();
+            let _ = end.send(());
+        })?;
+        Ok(Stream { server, file: outlets.file, news, counters, done })
+    }
+
+    /// Tells what is to be shown.
+    pub fn tell(&self, moments: Vec<Moment>) {
+        if moments.is_empty() {
+            return;
+        }
+        if let Err(TrySendError::Full(moments) | TrySendError::Disconnected(moments)) = self.news.try_send(moments) {
+            let rows: usize = moments.iter().map(|moment| moment.rows.len()).sum();
+            self.counters.dropped.fetch_add(rows as u64, Relaxed);
+        }
+    }
+
+    pub fn fares(&self) -> Fares {
+        Fares { written: self.counters.written.load(Relaxed), dropped: self.counters.dropped.load(Relaxed) }
+    }
+
+    /// Ends the stream, and waits a moment for its file. One that is not whole is taken away: it can be made from the log.
+    pub fn close(self) {
+        let Stream { file, news, counters, done, .. } = self;
+        drop(news);
+        let is_written = done.recv_timeout(END).is_ok();
+        if let Some(file) = file.filter(|_| !is_written || counters.dropped.load(Relaxed) > 0) {
+            let _ = fs::remove_file(file);
+        }
+    }
+}
+
+/// This address, or that with the next free port.
+///
+/// # Errors
+/// Nothing can listen there.
+pub fn free_port(wanted: SocketAddr) -> io::Result<SocketAddr> {
+    let ports = wanted.port()..=wanted.port().saturating_add(PORTS);
+    let mut tried = ports.map(|port| {
+        let address = SocketAddr::new(wanted.ip(), port);
+        TcpListener::bind(address).and_then(|listener| listener.local_addr())
+    });
+    let first = tried.next().unwrap_or_else(|| Err(io::ErrorKind::AddrInUse.into()));
+    first.or_else(|error| tried.find_map(Result::ok).ok_or(error))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::Ipv4Addr;
+
+    use super::*;
+    use crate::base::time::SessionTime;
+    use crate::edge::rrd::{self, RRD_NAME, RrdState};
+    use crate::scene::Shown;
+
+    #[test]
+    fn what_is_told_is_in_the_file_when_the_stream_is_closed_and_a_taken_port_is_no_trouble() {
+        let folder = std::env::temp_dir().join(format!("tomcom-stream-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let path = folder.join(RRD_NAME);
+        let other = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+        let taken = other.local_addr().unwrap();
+        let identity = Identity { id: rrd::mark(), name: "test".to_string() };
+        let moment = |step: u64| {
+            let rows = vec![Row::new("a", Shown::Value(step as f64))];
+            Moment { time: SessionTime(step * 1_000_000), step, rows }
+        };
+        let stream = Stream::open(&identity, Some(&path), Some(taken), Vec::new(), moment(0)).unwrap();
+        let server = stream.server.unwrap();
+        assert!(server.port() != taken.port() && server.ip() == taken.ip());
+        (1..1000).for_each(|step| stream.tell(vec![moment(step)]));
+        assert_eq!(rrd::state(&path).unwrap(), RrdState::Cut, "it is not written to its end yet");
+        assert_eq!(stream.fares().dropped, 0);
+        stream.close();
+        assert_eq!(rrd::state(&path).unwrap(), RrdState::Whole);
+        fs::remove_dir_all(folder).unwrap();
+    }
+}

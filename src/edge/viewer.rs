@@ -1,0 +1,135 @@
+//! The viewer: the program `rerun`, if it is installed and there is a screen.
+
+use std::env;
+use std::io::{self, Read, Write};
+use std::net::{Ipv4Addr, SocketAddr, TcpStream};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use super::rerun::VERSION;
+use super::stream::free_port;
+
+/// A viewer that is opened listens on this port, or one of the next.
+const PORT: u16 = 9900;
+/// So long it is waited for, and asked so often.
+const READY: Duration = Duration::from_secs(30);
+const RETRY: Duration = Duration::from_millis(500);
+/// So long, and so many bytes, its answer may take.
+const ANSWER: Duration = Duration::from_secs(5);
+const ANSWER_BYTES: u64 = 1 << 16;
+
+/// What can be found of a viewer on this machine.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Viewer {
+    /// Of the version that reads our streams.
+    Ready(PathBuf),
+    /// Of another version, which is told.
+    Other(String),
+    /// There is no screen that it could open a window on.
+    NoScreen,
+    None,
+}
+
+/// How to get the viewer.
+pub const REMEDY: &str = "pip install rerun-sdk==0.36.3, or cargo install rerun-cli --locked --version 0.36.3";
+
+impl Viewer {
+    /// Looks for it in the folders of `PATH`.
+    pub fn find() -> Viewer {
+        let name = format!("rerun{}", env::consts::EXE_SUFFIX);
+        let folders = env::var_os("PATH").unwrap_or_default();
+        let there = env::split_paths(&folders).map(|folder| folder.join(&name)).find(|path| path.is_file());
+        let Some(path) = there else { return Viewer::None };
+        match version_of(&path) {
+            Some(version) if version != VERSION => Viewer::Other(version),
+            None => Viewer::None,
+            Some(_) if !has_screen() => Viewer::NoScreen,
+            Some(_) => Viewer::Ready(path),
+        }
+    }
+}
+
+/// The version that the program at this path says it has: "rerun-cli 0.36.3 …".
+fn version_of(path: &Path) -> Option<String> {
+    let said = Command::new(path).arg("--version").stdin(Stdio::null()).output().ok()?;
+    let text = String::from_utf8_lossy(&said.stdout).into_owned();
+    let line = text.lines().find_map(|line| line.strip_prefix("rerun-cli "))?;
+    line.split_whitespace().next().map(str::to_string)
+}
+
+/// Whether windows can be opened.
+pub fn has_screen() -> bool {
+    let is_set = |name| env::var_os(name).is_some_and(|value| !value.is_empty());
+    !cfg!(target_os = "linux") || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")
+}
+
+/// Opens the viewer on a file; it stays when this program ends, and writes nothing into its terminal. With a time in
+/// nanoseconds on the timeline of the session, it is shown that moment as soon as it is ready.
+///
+/// # Errors
+/// It cannot be started, or it cannot be shown the moment.
+pub fn open(viewer: &Path, file: &Path, at_ns: Option<u64>) -> io::Result<()> {
+    let port = free_port(SocketAddr::from((Ipv4Addr::LOCALHOST, PORT)))?.port();
+    let mut command = Command::new(viewer);
+    command.arg(file).args(["--port", &port.to_string()]);
+    command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
+    let Some(at_ns) = at_ns else { return Ok(()) };
+    let began = Instant::now();
+    loop {
+        match go_to(port, at_ns) {
+            Err(error) if began.elapsed() > READY => return Err(error),
+            Err(_) => std::thread::sleep(RETRY),
+            Ok(()) => return Ok(()),
+        }
+    }
+}
+
+/// Asks the viewer that listens on this port to show a moment: its service `ViewerControlService`, by gRPC-Web.
+fn go_to(port: u16, at_ns: u64) -> io::Result<()> {
+    let mut viewer = TcpStream::connect((Ipv4Addr::LOCALHOST, port))?;
+    viewer.set_read_timeout(Some(ANSWER))?;
+    // SetTimeCursorRequest { timeline (2): Timeline { name (1) }, time (3): TimelineTime { time (1) } }
+    let mut request = field(2, &field(1, b"session_time"));
+    request.extend(field(3, &[&[0x08], &varint(at_ns)[..]].concat()));
+    let length = (request.len() as u32).to_be_bytes();
+    let head = format!(
+        "POST /rerun.sdk_comms.v1alpha1.ViewerControlService/SetTimeCursor HTTP/1.1\r\nhost: 127.0.0.1\r\n\
+         content-type: application/grpc-web+proto\r\nx-grpc-web: 1\r\ncontent-length: {}\r\nconnection: close\r\n\r\n",
+        request.len() + 5
+    );
+    viewer.write_all(&[head.as_bytes(), &[0], &length, &request].concat())?;
+    let mut answer = Vec::new();
+    viewer.take(ANSWER_BYTES).read_to_end(&mut answer)?;
+    let answer = String::from_utf8_lossy(&answer);
+    if answer.contains("grpc-status:0") { Ok(()) } else { Err(io::Error::other("the viewer does not go there")) }
+}
+
+/// A field of a message of Protocol Buffers with a length.
+fn field(number: u8, body: &[u8]) -> Vec<u8> {
+    [&[number << 3 | 2], &varint(body.len() as u64)[..], body].concat()
+}
+
+/// A number as Protocol Buffers write it: seven bits a byte, the lowest first.
+fn varint(mut number: u64) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    while number > 0x7f {
+        bytes.push(number as u8 | 0x80);
+        number >>= 7;
+    }
+    bytes.push(number as u8);
+    bytes
+}
+
+/// Opens the browser on a page, where there is a screen and a way to do that.
+pub fn browse(url: &str) {
+    let opener = match env::consts::OS {
+        "macos" => "open",
+        "windows" => "explorer",
+        _ => "xdg-open",
+    };
+    if has_screen() {
+        // Without one the address, which is printed, has to do.
+        let _ = Command::new(opener).arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+    }
+}

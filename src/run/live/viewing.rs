@@ -1,0 +1,84 @@
+//! The session in Rerun while it runs: every event goes to the scene, and what that shows to a stream that never waits.
+
+use std::net::SocketAddr;
+
+use super::Live;
+use crate::base::time::SessionTime;
+use crate::console::model::{Level, Viewers};
+use crate::edge::rerun::Identity;
+use crate::edge::rrd::{self, RRD_NAME};
+use crate::edge::stream::Stream;
+use crate::scene::{Derived, Scene};
+use crate::session::Stamped;
+
+/// What moves between events is shown so late, so that no event of before is still to come.
+const BEHIND: SessionTime = SessionTime(100_000_000);
+
+/// A session that is streamed.
+pub(super) struct Viewing {
+    scene: Scene,
+    stream: Stream,
+}
+
+impl Viewing {
+    /// Ends the stream.
+    pub(super) fn close(self) {
+        self.stream.close();
+    }
+}
+
+impl Live {
+    /// Opens the stream, where the session asks for one; the recording begins here, unless it goes on from an earlier part.
+    /// Its next event has the number `next`. A stream that cannot be opened is told, and the session goes on without it.
+    pub(super) fn begin_viewing(&mut self, is_new: bool, next: u64) {
+        let session = self.engine.session();
+        let spec = session.spec.rerun.clone();
+        if !spec.is_on() {
+            return;
+        }
+        let mut scene = Scene::new(session, next);
+        let (fixed, opening) = (scene.fixed(), scene.opening());
+        let folder = self.log.folder();
+        let file = spec.record.then(|| folder.join(RRD_NAME));
+        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let began = self.header.started.as_deref().unwrap_or_default();
+        let whole = if is_new { rrd::mark() } else { "part".to_string() };
+        let identity = Identity { id: format!("{name} {began} {whole}"), name };
+        let address = spec.live.then(|| spec.address.parse::<SocketAddr>()).transpose();
+        let opened = address.map_err(|error| format!("{}: {error}", spec.address)).and_then(|server| {
+            Stream::open(&identity, file.as_deref(), server, fixed, opening).map_err(|error| error.to_string())
+        });
+        match opened {
+            Ok(stream) => self.viewing = Some(Viewing { scene, stream }),
+            Err(reason) => self.model.say(Level::Alarm, format!("the session goes on without Rerun: {reason}")),
+        }
+        self.tell_viewing();
+    }
+
+    /// Shows what has just been recorded.
+    pub(super) fn view(&mut self, events: &[Stamped]) {
+        let Some(Viewing { scene, stream }) = &mut self.viewing else { return };
+        let judged = self.engine.judged();
+        for (index, stamped) in events.iter().enumerate() {
+            let belief = (index + 1 == events.len()).then(|| self.engine.belief());
+            stream.tell(scene.see(stamped, Derived { judged, belief }));
+        }
+    }
+
+    /// Shows what moved since the last event.
+    pub(super) fn view_motion(&mut self) {
+        let until = self.clock.now() - BEHIND;
+        if let Some(Viewing { scene, stream }) = &mut self.viewing {
+            stream.tell(scene.until(until));
+        }
+    }
+
+    /// Tells the console how the stream fares.
+    pub(super) fn tell_viewing(&mut self) {
+        self.model.viewers = self.viewing.as_ref().map(|Viewing { stream, .. }| {
+            let fares = stream.fares();
+            let address = stream.server.map(|address| address.to_string());
+            Viewers { address, written: fares.written, dropped: fares.dropped }
+        });
+    }
+}

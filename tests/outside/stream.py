@@ -1,0 +1,129 @@
+"""Holds the stream for Rerun against the log that it was made of: Rerun's own tools read it, and rows are counted anew.
+
+    stream.py PATH_OF_tomcom SCRATCH_FOLDER
+"""
+
+import json
+import subprocess
+import sys
+from collections import Counter
+from importlib.util import find_spec
+from pathlib import Path
+
+from kitchen import Kitchen, Trial
+from rerun.experimental import RrdReader
+
+RERUN = Path(find_spec("rerun_sdk").submodule_search_locations[0]) / "rerun_cli" / "rerun"
+LEAST_PRESSES = 20
+
+
+def run(*command):
+    return subprocess.run([str(part) for part in command], check=True, capture_output=True, text=True).stdout
+
+
+def rows_of(path):
+    """For every entity, the (session time in ns, step) of every row that is not static."""
+    rows = {}
+    for chunk in RrdReader(path).stream():
+        if chunk.is_static or str(chunk.entity_path).startswith("/__"):
+            continue
+        batch = chunk.to_record_batch()
+        names = batch.schema.names
+        if "session_time" not in names:
+            continue
+        times = batch.column("session_time").cast("int64").to_pylist()
+        steps = batch.column("step").to_pylist()
+        rows.setdefault(str(chunk.entity_path).strip("/"), []).extend(zip(times, steps))
+    return {entity: sorted(places) for entity, places in rows.items()}
+
+
+def expected(log):
+    """What the log says: for every entity, the (time, number) of the events that change it."""
+    lines = [json.loads(line) for line in log.read_text().splitlines()]
+    header, events = lines[0], lines[1:]
+    kitchen = Kitchen(header["layout"]["text"], header["recipes"]["text"])
+    trial = Trial(kitchen)
+    found, running, shown = {}, False, {}
+    places = [*kitchen.orders, *trial.content]
+    # How everything is at the beginning.
+    for place in places:
+        found.setdefault(f"kitchen/{place}", []).append((0, 0))
+    contents = lambda: dict(trial.content) | {order: shown.get(order) for order in kitchen.orders}
+    for event in events:
+        at, before = (event["t_ns"], event["seq"]), contents()
+        add = lambda entity: found.setdefault(entity, []).append(at)
+        match event["kind"]:
+            case "trial_started" | "trial_resumed":
+                running = True
+            case "trial_paused" | "trial_ended" | "trial_aborted":
+                running = False
+            case "gaze":
+                add("human/gaze")
+            case "press" if running:
+                add(f"{event['agent']}/presses")
+                _, served = trial.press(event["agent"], event["button"])
+                if served:
+                    shown[served] = "served"
+            case "order_shown":
+                trial.wanted[event["order"]] = shown[event["order"]] = event["dish"]
+            case "order_cleared":
+                shown[event["order"]] = None
+            case "signal_shown":
+                add(f"{event['by']}/signals")
+            case "advised":
+                add("assistant/benefit/cost_line")
+            case "belief_estimated":
+                for aspect in event["aspects"]:
+                    add("human/belief/estimated/" + aspect["aspect"].replace(" ", "_"))
+            case "participant_believes":
+                for aspect in event["aspects"]:
+                    add("human/belief/true/" + aspect["aspect"].replace(" ", "_"))
+        for place, content in contents().items():
+            if content != before[place]:
+                add(f"kitchen/{place}")
+    return found
+
+
+def compare(stream, log):
+    rows, wanted = rows_of(stream), expected(log)
+    assert len(wanted["human/presses"]) >= LEAST_PRESSES, "too few presses to compare anything"
+    for entity, places in sorted(wanted.items()):
+        got = rows.get(entity, [])
+        if entity.startswith("human/belief/estimated/"):
+            # Between presses the estimate is shown five times a second; those at presses are told by the log.
+            steps = {step for _, step in places}
+            between = [place for place in got if place[1] not in steps]
+            assert len(between) > len(places) / 10, f"{entity}: {len(between)} rows between presses"
+            got = [place for place in got if place[1] in steps]
+        assert got == sorted(places), f"{entity}: {len(got)} rows, {len(places)} events; {set(got) ^ set(places)}"
+    print(f"  {len(wanted)} entities, {sum(map(len, wanted.values()))} rows as the log has them")
+
+
+def main():
+    tomcom, scratch = sys.argv[1], Path(sys.argv[2])
+    run(RERUN, "analytics", "disable")
+    for session in ("default", "burger"):
+        out = scratch / session
+        run(tomcom, "simulate", f"sessions/{session}.toml", "--trials", "1", "--condition", "assistant", "--rerun", "--out", out)
+        (recording,) = out.iterdir()
+        stream, log = recording / "recording.rrd", recording / "events.jsonl"
+        print(f"{session}: {stream.stat().st_size / 1e6:.1f} MB")
+        run(RERUN, "rrd", "verify", stream)
+        compare(stream, log)
+        assert "is there already" in run(tomcom, "review", recording, "--save"), "a whole stream is not made again"
+        stream.write_bytes(stream.read_bytes()[:-1000])
+        assert "made from the log" in run(tomcom, "review", recording, "--save"), "a cut stream is made again"
+        run(RERUN, "rrd", "verify", stream)
+        compare(stream, log)
+    both = scratch / "both.rrd"
+    recordings = [next((scratch / session).iterdir()) for session in ("default", "burger")]
+    run(tomcom, "review", *recordings, f"--save={both}")
+    run(RERUN, "rrd", "verify", both)
+    roots = Counter(entity.split("/")[0] for entity in rows_of(both))
+    assert len(roots) == 2, roots
+    starts = {root: min(place[0] for entity, places in rows_of(both).items() if entity.startswith(root) for place in places) for root in roots}
+    assert set(starts.values()) == {0}, f"trials begin at the same time: {starts}"
+    print("  two recordings side by side, from their trials' starts on")
+
+
+main()

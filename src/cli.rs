@@ -179,9 +179,12 @@ fn new_session(session: Option<&Path>, flags: &OperateFlags, compare: Option<Req
         gaze: flags.gaze.map(|gaze| match gaze {
             Gaze::Simulated => GazeSource::Simulated,
             Gaze::Mouse => GazeSource::Mouse,
+            Gaze::Pupil => GazeSource::Pupil,
+            Gaze::File => GazeSource::File,
             Gaze::Json => GazeSource::Json,
             Gaze::None => GazeSource::None,
         }),
+        gaze_file: flags.gaze_file.clone(),
         condition: flags.condition.map(|condition| match condition {
             ConditionArg::None => Condition::None,
             ConditionArg::Wizard => Condition::Wizard,

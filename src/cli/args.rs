@@ -60,7 +60,7 @@ pub(super) struct OperateArgs {
     /// The session file; by default sessions/default.toml, or the one that the program carries.
     pub(super) session: Option<PathBuf>,
     /// Take up this recording, which was cut, in a new part beside it; its session is the same, a running trial is paused.
-    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "listen", "condition", "concept", "seed", "rerun_listen", "out"])]
+    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "gaze_file", "listen", "condition", "concept", "seed", "rerun_listen", "out"])]
     pub(super) recording: Option<PathBuf>,
     #[command(flatten)]
     pub(super) flags: OperateFlags,
@@ -77,6 +77,9 @@ pub(super) struct OperateFlags {
     /// Where gaze samples come from, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) gaze: Option<Gaze>,
+    /// Replay gaze from this file: Pupil Player's gaze_positions_on_surface_NAME.csv, or the folder of a recording.
+    #[arg(long, value_name = "PATH")]
+    pub(super) gaze_file: Option<PathBuf>,
     /// Who sends signals, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) condition: Option<ConditionArg>,
@@ -114,7 +117,11 @@ pub(super) enum Gaze {
     Simulated,
     /// The mouse pointer over the kitchen, at the console or on the wall display.
     Mouse,
-    /// Lines of JSON over TCP on localhost.
+    /// Pupil Core, through Pupil Capture.
+    Pupil,
+    /// What was recorded before: see --gaze-file.
+    File,
+    /// Lines of JSON over TCP or UDP on localhost.
     Json,
     /// No gaze at all.
     None,

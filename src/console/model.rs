@@ -127,8 +127,6 @@ pub struct Model {
     pub trail: VecDeque<(SessionTime, GazeSample)>,
     /// The participant's display, if there is one.
     pub display: Option<DisplayHealth>,
-    /// Lines of the gaze input that were no samples.
-    pub malformed: u64,
     /// The times of the human presses that were errors, in order.
     pub errors: Vec<SessionTime>,
     /// What is estimated of the participant's belief.
@@ -166,7 +164,6 @@ impl Model {
             pointer: None,
             trail: VecDeque::with_capacity(TRAIL),
             display: None,
-            malformed: 0,
             errors: Vec::new(),
             belief: BeliefTrack::default(),
             comparison: None,

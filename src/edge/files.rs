@@ -87,6 +87,9 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     let text = read_text(path)?;
     let mut spec: SessionSpec = parse(path, &text)?;
     let folder = path.parent().unwrap_or(Path::new("."));
+    if let Some(file) = &mut spec.tracker.file {
+        *file = path.parent().unwrap_or(Path::new(".")).join(&*file).display().to_string();
+    }
     if let Some(file) = &spec.human_model {
         if spec.human != HumanModel::default() {
             let found = "human_model, beside parameters of the human model in the session file".to_string();

@@ -1,28 +1,22 @@
-//! Gaze from any other program: lines {"t": seconds, "x": 0..1, "y": 0..1, "confidence": 0..1} over TCP on localhost.
-//! Coordinates are fractions of the wall display, the origin at the top left. Lines that are no samples are counted.
+//! Gaze from any other program: lines {"t": seconds, "x": 0..1, "y": 0..1, "confidence": 0..1} over TCP or UDP on
+//! localhost. Coordinates are fractions of the wall display, the origin at the top left; t is the tracker's own clock.
+//! Lines that are no samples are counted.
 
 use std::io;
 use std::net::Ipv4Addr;
 
 use serde::Deserialize;
 use tokio::io::AsyncReadExt;
-use tokio::net::{TcpListener, TcpStream};
+use tokio::net::{TcpListener, TcpStream, UdpSocket};
 use tokio::sync::mpsc::{Receiver, Sender, channel};
 
+use super::gaze_input::{GazeNews, WAITING};
 use crate::gaze::GazeSample;
 
 /// A line may be so long, in bytes.
 const MAX_LINE: usize = 4096;
-/// So many samples may wait to be taken.
-const WAITING: usize = 1024;
-
-/// A line of the gaze input.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum GazeLine {
-    Sample(GazeSample),
-    /// It was no sample.
-    Malformed,
-}
+/// And a datagram, with one line or several.
+const MAX_DATAGRAM: usize = 1 << 16;
 
 #[derive(Deserialize)]
 struct Line {
@@ -33,13 +27,15 @@ struct Line {
     confidence: f64,
 }
 
-/// Listens on this port of localhost; trackers may come and go.
+/// Listens on this port of localhost, for connections and for datagrams; trackers may come and go.
 ///
 /// # Errors
 /// The port cannot be listened on.
-pub async fn listen(port: u16) -> io::Result<Receiver<GazeLine>> {
+pub async fn listen(port: u16) -> io::Result<Receiver<GazeNews>> {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).await?;
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, port)).await?;
     let (sender, receiver) = channel(WAITING);
+    tokio::spawn(take_datagrams(socket, sender.clone()));
     tokio::spawn(async move {
         while !sender.is_closed() {
             match listener.accept().await {
@@ -52,20 +48,45 @@ pub async fn listen(port: u16) -> io::Result<Receiver<GazeLine>> {
     Ok(receiver)
 }
 
-/// Reads lines until the tracker goes; one that never ends a line cannot fill the memory.
-async fn read(mut stream: TcpStream, lines: Sender<GazeLine>) {
+/// Reads datagrams for ever; what nobody takes in time is counted.
+async fn take_datagrams(socket: UdpSocket, news: Sender<GazeNews>) {
+    let mut buffer = vec![0; MAX_DATAGRAM];
+    let (mut lost, mut from) = (0, None);
+    while !news.is_closed() {
+        let Ok((count, sender)) = socket.recv_from(&mut buffer).await else {
+            // Somebody who sent has gone: that is told here, and nothing else.
+            tokio::time::sleep(std::time::Duration::from_millis(1)).await;
+            continue;
+        };
+        let began = (from.replace(sender) != Some(sender)).then_some(GazeNews::Began);
+        let found = buffer[..count].split(|&byte| byte == b'\n').filter_map(parse);
+        for news_of in began.into_iter().chain(found) {
+            lost += u64::from(news.try_send(news_of).is_err());
+        }
+        if lost > 0 && news.try_send(GazeNews::Overrun(lost)).is_ok() {
+            lost = 0;
+        }
+    }
+}
+
+/// Reads lines until the tracker goes; one that never ends a line cannot fill the memory. One that sends faster than it is
+/// read has to wait.
+async fn read(mut stream: TcpStream, news: Sender<GazeNews>) {
     let mut buffer = vec![0; MAX_LINE];
     let mut line: Vec<u8> = Vec::new();
     let mut too_long = false;
+    if news.send(GazeNews::Began).await.is_err() {
+        return;
+    }
     while let Ok(count @ 1..) = stream.read(&mut buffer).await {
         for &byte in &buffer[..count] {
             match byte {
                 b'\n' => {
-                    let found = if too_long { Some(GazeLine::Malformed) } else { parse(&line) };
+                    let found = if too_long { Some(GazeNews::Malformed(1)) } else { parse(&line) };
                     line.clear();
                     too_long = false;
                     if let Some(found) = found
-                        && lines.send(found).await.is_err()
+                        && news.send(found).await.is_err()
                     {
                         return;
                     }
@@ -78,17 +99,18 @@ async fn read(mut stream: TcpStream, lines: Sender<GazeLine>) {
 }
 
 /// What a line says; nothing for an empty one.
-fn parse(line: &[u8]) -> Option<GazeLine> {
+pub fn parse(line: &[u8]) -> Option<GazeNews> {
     if line.trim_ascii().is_empty() {
         return None;
     }
-    let Ok(found) = serde_json::from_slice::<Line>(line) else { return Some(GazeLine::Malformed) };
+    let Ok(found) = serde_json::from_slice::<Line>(line) else { return Some(GazeNews::Malformed(1)) };
     // Beside the display is a place, too; a confidence beyond its scale is a tracker that speaks another language.
     if !(found.x.is_finite() && found.y.is_finite() && (0.0..=1.0).contains(&found.confidence)) {
-        return Some(GazeLine::Malformed);
+        return Some(GazeNews::Malformed(1));
     }
     let device_ns = found.t.filter(|t| (0.0..1e10).contains(t)).map(|t| (t * 1e9) as u64);
-    Some(GazeLine::Sample(GazeSample { device_ns, ..GazeSample::new(found.x, found.y, found.confidence) }))
+    let sample = GazeSample { device_ns, ..GazeSample::new(found.x, found.y, found.confidence) };
+    Some(GazeNews::Sample(sample, None))
 }
 
 #[cfg(test)]
@@ -123,10 +145,11 @@ mod tests {
             found.push(line);
         }
         let sample = |x, y, confidence, device_ns| {
-            GazeLine::Sample(GazeSample { device_ns, ..GazeSample::new(x, y, confidence) })
+            GazeNews::Sample(GazeSample { device_ns, ..GazeSample::new(x, y, confidence) }, None)
         };
+        assert_eq!(found.remove(0), GazeNews::Began);
         let expected = [sample(0.25, 0.5, 0.9, Some(1_500_000_000)), sample(0.1, 2.0, 0.0, None)];
         assert_eq!(found[..2], expected);
-        assert_eq!(found[2..], [GazeLine::Malformed; 6]);
+        assert_eq!(found[2..], vec![GazeNews::Malformed(1); 6]);
     }
 }

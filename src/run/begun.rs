@@ -10,6 +10,7 @@ use super::options::Beginning;
 use super::resume::resume;
 use crate::base::time::SessionTime;
 use crate::edge::log::Lock;
+use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::{Header, SessionSpec, Stamped};
 
@@ -89,6 +90,11 @@ impl Begun {
     /// With wizard and assistants side by side, where that is asked for.
     pub fn comparing(self, compare: Option<Request>) -> Begun {
         Begun { compare, ..self }
+    }
+
+    /// The kitchen that is worked in.
+    pub fn kitchen(&self) -> &Kitchen {
+        &self.engine.session().kitchen
     }
 
     /// Its settings.

@@ -2,25 +2,36 @@
 //! once, and every recording of a series is made at it.
 
 use std::io;
+use std::path::Path;
 use std::pin::Pin;
+use std::sync::Arc;
 use std::time::Duration;
 
-use tokio::sync::mpsc::Receiver;
-use tokio::time::sleep;
+use tokio::sync::mpsc::{Receiver, Sender};
+use tokio::sync::oneshot;
+use tokio::time::{sleep, timeout};
 
 use super::live::LiveError;
 use crate::console::Message;
 use crate::console::question::{Question, Reply};
 use crate::console::view::theme::Theme;
 use crate::edge::display::{Display, PageInput};
-use crate::edge::gaze_json::{self, GazeLine};
+use crate::edge::gaze_file::{self, GazeFile};
+use crate::edge::gaze_input::GazeNews;
+use crate::edge::gaze_json;
+use crate::edge::pupil::{self, Capture, Order};
 use crate::edge::terminal::{Hands, Screen, asked_to_end, outlive_file_limits, theme};
+use crate::gaze::surface::SurfaceMap;
+use crate::gaze::tags::{TagError, Tags};
+use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
 use crate::session::display::DisplaySpec;
 use crate::session::settings::{GazeSource, ParticipantKind};
 
 /// A question is drawn so often.
 const REDRAW: Duration = Duration::from_millis(100);
+/// So long Capture may take for what it was told last.
+const SETTLE: Duration = Duration::from_secs(1);
 
 /// What the recordings of a series share.
 pub(super) struct Desk {
@@ -40,24 +51,27 @@ pub(super) struct Seat {
 /// The participant's display, if the participant is at one.
 pub(super) struct Wall(Option<Display>);
 
-/// Lines of the tracker's program, if the gaze comes from one.
-pub(super) struct Tracker(Option<Receiver<GazeLine>>);
+/// Where the gaze comes from, if it comes from outside.
+#[derive(Default)]
+pub(super) struct Tracker {
+    news: Option<Receiver<GazeNews>>,
+    /// Where Pupil Capture takes orders.
+    orders: Option<Sender<Order>>,
+    file: Option<Arc<GazeFile>>,
+    /// What is known of the tracker: a recording that begins later was not told.
+    link: Option<GazeNews>,
+    sees_display: Option<GazeNews>,
+}
 
 impl Desk {
     /// Opens the devices that these settings need, and takes the terminal.
     ///
     /// # Errors
-    /// There is no terminal, or nothing can listen for gaze.
-    pub async fn take(spec: &SessionSpec) -> Result<Desk, LiveError> {
-        let participant = &spec.participant;
+    /// There is no terminal, nothing can listen for gaze, a file with gaze cannot be read, or the tags have no room.
+    pub async fn take(spec: &SessionSpec, kitchen: &Kitchen) -> Result<Desk, LiveError> {
         outlive_file_limits().map_err(LiveError::Terminal)?;
-        let gaze = match (participant.gaze, participant.gaze_port) {
-            (GazeSource::Json, port) => {
-                Some(gaze_json::listen(port).await.map_err(|reason| LiveError::Gaze { port, reason })?)
-            }
-            _ => None,
-        };
-        let wall = match (participant.kind, &spec.display) {
+        let tracker = Tracker::open(spec, kitchen).await?;
+        let wall = match (spec.participant.kind, &spec.display) {
             (ParticipantKind::Display, DisplaySpec { listen, port, .. }) => {
                 let opened = Display::open(*listen, *port).await;
                 Some(opened.map_err(|reason| LiveError::Display { address: *listen, port: *port, reason })?)
@@ -67,7 +81,7 @@ impl Desk {
         let screen = Screen::take().map_err(LiveError::Terminal)?;
         let theme = theme(&spec.console, screen.ground);
         let seat = Seat { hands: Hands::default(), end: Box::pin(asked_to_end()) };
-        Ok(Desk { screen, theme, seat, tracker: Tracker(gaze), wall: Wall(wall) })
+        Ok(Desk { screen, theme, seat, tracker, wall: Wall(wall) })
     }
 
     /// Asks before a recording begins; the place of the answer, nothing if the program is to be left.
@@ -128,11 +142,82 @@ impl Wall {
 }
 
 impl Tracker {
-    /// The next line of the gaze input; never, if there is none.
-    pub async fn next(&mut self) -> Option<GazeLine> {
-        match &mut self.0 {
-            Some(lines) => lines.recv().await,
-            None => std::future::pending().await,
+    async fn open(spec: &SessionSpec, kitchen: &Kitchen) -> Result<Tracker, LiveError> {
+        let (participant, tracker) = (&spec.participant, &spec.tracker);
+        let surface = || {
+            let hull = || Tags::place(kitchen).map(|tags| tags.hull()).map_err(LiveError::Tags);
+            let corners = tracker.corners.map_or_else(hull, Ok)?;
+            let found = format!("corners = {corners:?}");
+            let remedy = "a convex quadrangle".to_string();
+            SurfaceMap::new(corners).ok_or(LiveError::Tags(TagError { found, remedy }))
+        };
+        match participant.gaze {
+            GazeSource::Json => {
+                let port = participant.gaze_port;
+                let news = gaze_json::listen(port).await.map_err(|reason| LiveError::Gaze { port, reason })?;
+                Ok(Tracker { news: Some(news), ..Tracker::default() })
+            }
+            GazeSource::Pupil => {
+                let (address, surface_name) = (tracker.address.clone(), tracker.surface.clone());
+                let (port, records) = (tracker.port, tracker.record);
+                let capture = Capture { address, port, surface: surface_name, map: surface()?, records };
+                let (news, orders) = pupil::follow(capture);
+                Ok(Tracker { news: Some(news), orders: Some(orders), ..Tracker::default() })
+            }
+            GazeSource::File => {
+                let path = tracker.file.as_deref().unwrap_or_default();
+                let file = Arc::new(gaze_file::read(Path::new(path), &surface()?)?);
+                Ok(Tracker { file: Some(file), ..Tracker::default() })
+            }
+            GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => Ok(Tracker::default()),
+        }
+    }
+
+    /// The next news of the tracker; never, if there are none.
+    pub async fn next(&mut self) -> Option<GazeNews> {
+        let Some(news) = &mut self.news else { return std::future::pending().await };
+        let news = news.recv().await;
+        self.know(news)
+    }
+
+    /// The next news, if there are some already.
+    pub fn ready(&mut self) -> Option<GazeNews> {
+        let news = self.news.as_mut()?.try_recv().ok();
+        self.know(news)
+    }
+
+    fn know(&mut self, news: Option<GazeNews>) -> Option<GazeNews> {
+        match &news {
+            Some(GazeNews::Connected(_)) => self.link = news.clone(),
+            Some(GazeNews::Lost(_)) => (self.link, self.sees_display) = (news.clone(), None),
+            Some(GazeNews::SeesDisplay(_)) => self.sees_display = news.clone(),
+            _ => {}
+        }
+        news
+    }
+
+    /// What a recording has to be told that begins now.
+    pub fn known(&self) -> impl Iterator<Item = GazeNews> {
+        self.link.iter().chain(&self.sees_display).cloned().collect::<Vec<_>>().into_iter()
+    }
+
+    pub fn file(&self) -> Option<Arc<GazeFile>> {
+        self.file.clone()
+    }
+
+    pub fn orders(&self) -> Option<Sender<Order>> {
+        self.orders.clone()
+    }
+
+    /// Waits for Capture to have done what it was told, not for long.
+    pub async fn settle(&self) {
+        let Some(orders) = self.orders.as_ref().filter(|_| matches!(self.link, Some(GazeNews::Connected(_)))) else {
+            return;
+        };
+        let (sender, done) = oneshot::channel();
+        if orders.try_send(Order::Report(sender)).is_ok() {
+            // It may just be gone.
+            let _ = timeout(SETTLE, done).await;
         }
     }
 }

@@ -43,6 +43,8 @@ pub struct Overrides {
     pub gaze: Option<GazeSource>,
     /// Where the display is served.
     pub listen: Option<IpAddr>,
+    /// The file that gaze is replayed from.
+    pub gaze_file: Option<PathBuf>,
     pub condition: Option<Condition>,
     pub concept: Option<ConceptName>,
     pub seed: Option<u64>,
@@ -72,10 +74,14 @@ impl Overrides {
             spec.rerun.address = listen;
             spec.rerun.live = true;
         }
+        if let Some(file) = &self.gaze_file {
+            spec.tracker.file = Some(file.display().to_string());
+        }
         let participant = &mut spec.participant;
         participant.code = self.code.unwrap_or(std::mem::take(&mut participant.code));
         participant.kind = self.participant.unwrap_or(participant.kind);
-        participant.gaze = match (self.gaze, self.participant, participant.gaze) {
+        let gaze = self.gaze.or(self.gaze_file.is_some().then_some(GazeSource::File));
+        participant.gaze = match (gaze, self.participant, participant.gaze) {
             (Some(gaze), _, _) => gaze,
             (None, Some(ParticipantKind::Keyboard | ParticipantKind::Display), GazeSource::Simulated) => {
                 GazeSource::Mouse

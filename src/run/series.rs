@@ -29,7 +29,7 @@ pub fn operate(beginning: Beginning, compare: Option<Request>) -> Result<Sitting
     in_runtime(async {
         // Before the terminal is taken and a recording is made: a session that cannot start leaves nothing behind.
         let mut begun = Begun::new(beginning)?.comparing(compare.clone());
-        let mut desk = Desk::take(begun.spec()).await?;
+        let mut desk = Desk::take(begun.spec(), begun.kitchen()).await?;
         let mut done = Vec::new();
         loop {
             let mut end = live::run(begun, &mut desk).await?;
@@ -94,7 +94,7 @@ impl Planned {
         if progress.next == Next::Finished {
             return Ok(Sitting { done, remark: Some(stands(&progress)) });
         }
-        let mut desk = Desk::take(&self.series.files.spec).await?;
+        let mut desk = Desk::take(&self.series.files.spec, &self.series.files.kitchen.kitchen).await?;
         while progress.next != Next::Finished {
             let begun = match self.choose(&progress, &mut desk).await? {
                 Choice::Begin(begun) => begun,

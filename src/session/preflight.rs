@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Session;
 use super::settings::{GazeSource, ParticipantKind};
-use super::tracker::Link;
+use super::tracker::{Link, faults};
 use crate::base::time::SessionTime;
 use crate::gaze::calibration::{GOOD_DEG, USABLE_DEG};
 
@@ -117,7 +117,17 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<Check> {
             Check::new("gaze quality", Verdict::Warning, found, "set the tracker up anew, or calibrate it")
         }
     };
-    vec![rate, quality]
+    let mut checks = vec![rate, quality];
+    let faults = faults(session);
+    let (samples, wrong) = (session.gaze.samples, faults.iter().map(|(count, _)| count).sum::<u64>());
+    if wrong > 0 {
+        // Real streams have some; what is wrong is not read, and does not matter before it is much.
+        let verdict = if wrong * 20 > samples { Verdict::Warning } else { Verdict::Ok };
+        let kinds: Vec<String> = faults.iter().map(|(count, kind)| format!("{count} {kind}")).collect();
+        let found = format!("{samples} samples; {}", kinds.join(", "));
+        checks.push(Check::new("gaze stream", verdict, found, "less load on the tracker's computer, a better network"));
+    }
+    checks
 }
 
 /// Whether the eye tracker is there, and sees the display.

@@ -3,6 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Session;
 use super::settings::{GazeSource, SettingError};
 use crate::base::time::SessionTime;
 use crate::gaze::quality::DropCounts;
@@ -82,10 +83,10 @@ pub enum TrackerEvent {
     DisplayLost,
     /// What came and could not be recorded, since the session began; at most once a second.
     Dropped(DropCounts),
-    /// A fixation that is over, as the tracker finds them: place in fractions of the display.
+    /// A fixation that is over, as the tracker finds them; its place in fractions of the display, if it was there.
     Fixation {
-        x: f64,
-        y: f64,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        at: Option<[f64; 2]>,
         duration_ms: f64,
         dispersion_deg: f64,
         confidence: f64,
@@ -150,8 +151,9 @@ impl TrackerStatus {
 /// The reason why it does not.
 pub(super) fn admit(event: &TrackerEvent) -> Result<(), &'static str> {
     let numbers = match event {
-        TrackerEvent::Fixation { x, y, duration_ms, dispersion_deg, confidence, .. } => {
-            vec![*x, *y, *duration_ms, *dispersion_deg, *confidence]
+        TrackerEvent::Fixation { at, duration_ms, dispersion_deg, confidence, .. } => {
+            let [x, y] = at.unwrap_or_default();
+            vec![x, y, *duration_ms, *dispersion_deg, *confidence]
         }
         TrackerEvent::Blink { confidence, .. } => vec![*confidence],
         _ => Vec::new(),
@@ -160,4 +162,18 @@ pub(super) fn admit(event: &TrackerEvent) -> Result<(), &'static str> {
         true => Ok(()),
         false => Err("what the tracker tells is not a number"),
     }
+}
+
+/// What is wrong with the stream of gaze so far: counts that are not 0, and what they count.
+pub fn faults(session: &Session) -> Vec<(u64, &'static str)> {
+    let (dropped, read) = (session.tracker.dropped, session.gaze.judge.counts);
+    let all = [
+        (dropped.malformed, "malformed"),
+        (dropped.too_frequent, "too frequent"),
+        (dropped.overrun, "overrun"),
+        (read.duplicate, "twice"),
+        (read.too_old, "too old"),
+        (read.out_of_order, "out of order"),
+    ];
+    all.into_iter().filter(|(count, _)| *count > 0).collect()
 }

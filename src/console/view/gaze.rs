@@ -9,6 +9,7 @@ use crate::console::model::Model;
 use crate::gaze::nearest_location;
 use crate::kitchen::LocationId;
 use crate::session::Session;
+use crate::session::tracker::faults;
 
 /// How long the trail of the gaze map is, in seconds.
 const TRAIL_S: f64 = 2.0;
@@ -26,9 +27,11 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         return;
     }
     let source = Model::gaze_label(session.spec.participant.gaze);
-    let remark = match model.malformed {
-        0 => source.to_string(),
-        lines => format!("{source}, {lines} malformed"),
+    // The most frequent fault; all of them are in the list before a trial and in the figures.
+    let worst = faults(session).into_iter().max_by_key(|(count, _)| *count);
+    let remark = match worst {
+        None => source.to_string(),
+        Some((count, kind)) => format!("{source}, {count} {kind}"),
     };
     let inside = brush.panel(area, "Gaze", &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));

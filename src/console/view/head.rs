@@ -6,6 +6,7 @@ use super::theme::Role;
 use crate::console::model::{Model, Recording, Viewers};
 use crate::console::words;
 use crate::session::settings::{Condition, GazeSource};
+use crate::session::tracker::Link;
 use crate::session::{Phase, Session};
 
 /// Draws the head line.
@@ -157,6 +158,13 @@ fn streamed(model: &Model) -> Option<String> {
 fn gaze(session: &Session, model: &Model) -> (String, Role) {
     if session.spec.participant.gaze == GazeSource::None {
         return ("no gaze".to_string(), Role::Quiet);
+    }
+    match (&session.tracker.link, session.tracker.sees_display) {
+        (Link::Lost { since, .. }, _) => {
+            return (format!("NO TRACKER {:.0} s", model.now.secs_since(*since)), Role::Alarm);
+        }
+        (Link::Connected { .. }, Some(false)) => return ("TAGS NOT SEEN".to_string(), Role::Alarm),
+        _ => {}
     }
     let usable = session.gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= 1.0);
     match (session.gaze_hz(model.now), session.gaze.arrived) {

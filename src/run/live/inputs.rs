@@ -3,7 +3,6 @@
 use super::Live;
 use crate::communication::recommendation::Recommendation;
 use crate::console::{Command, Message, update};
-use crate::edge::gaze_json::GazeLine;
 use crate::gaze::GazeSample;
 use crate::run::leaving::Leaving;
 use crate::session::Event;
@@ -40,13 +39,6 @@ impl Live {
     pub(super) fn advise(&mut self, advice: Recommendation) {
         let outcome = self.engine.input(self.clock.now(), Event::Advised(advice));
         self.record(&outcome.events);
-    }
-
-    pub(super) fn gaze(&mut self, line: GazeLine) {
-        match line {
-            GazeLine::Sample(sample) => self.input(Event::Gaze(sample)),
-            GazeLine::Malformed => self.model.malformed += 1,
-        }
     }
 
     /// The pointer as a gaze sample; nobody has moved it yet: no sample.

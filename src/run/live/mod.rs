@@ -2,6 +2,7 @@
 
 mod calibration;
 mod display;
+mod gaze;
 mod inputs;
 mod recording;
 mod showing;
@@ -23,6 +24,7 @@ use crate::edge::doctor::free_bytes;
 use crate::edge::files::{FileError, key_map};
 use crate::edge::log::{Lock, LogWriter, WriteError};
 use crate::edge::terminal::{Screen, theme};
+use crate::gaze::tags::TagError;
 use crate::run::advisor::{AdvisorDesk, next_advice};
 use crate::run::begun::{Begun, Place};
 use crate::run::compare::{WatchDesk, Watcher};
@@ -68,6 +70,9 @@ pub enum LiveError {
     #[error("nothing can listen on {address}, port {port}, for the participant's display: {reason}")]
     #[diagnostic(help("another port in the session file (port under [display]), or an address of this computer"))]
     Display { address: IpAddr, port: u16, reason: io::Error },
+    #[error("the eye tracker has no surface to look for: found {}", .0.found)]
+    #[diagnostic(help("{}; or a surface of your own, with its corners in [tracker]", .0.remedy))]
+    Tags(TagError),
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] WriteError),
@@ -107,6 +112,7 @@ struct Live {
     /// The log cannot be written any more.
     failed: Option<WriteError>,
     clock: SessionClock,
+    gaze: gaze::GazeIn,
     /// The signal that no frame shows yet, by its number.
     undrawn: Option<u64>,
     /// What the wizard sees, as it was recorded last.
@@ -160,6 +166,7 @@ impl Live {
             _before: before,
             failed: None,
             clock,
+            gaze: gaze::GazeIn::default(),
             undrawn: None,
             seen: None,
             judged: 0,
@@ -186,12 +193,13 @@ impl Live {
         let mut flush = interval(FLUSH);
         let mut watch = interval(WATCH);
         let mut leaving = Leaving::Quit;
+        self.greet(&desk.tracker);
         let mut next_frame = Instant::now();
         let mut next_move = Instant::now();
         while !desk.screen.is_lost() {
             self.tick();
             let due = self.engine.next_due().map(|due| Instant::from_std(self.clock.instant_of(due)));
-            let target = self.next_target();
+            let (target, recorded) = (self.next_target(), self.next_recorded());
             tokio::select! {
                 biased;
                 message = desk.seat.next() => match message {
@@ -221,10 +229,13 @@ impl Live {
                     self.draw(&mut desk.screen).map_err(LiveError::Terminal)?;
                 }
                 // Last: a tracker that sends more than can be read delays itself, and neither robot, log nor screen.
-                Some(line) = desk.tracker.next() => self.gaze(line),
+                () = sleep_until(recorded.unwrap_or_else(Instant::now)), if recorded.is_some() => self.take_recorded(),
+                Some(news) = desk.tracker.next() => self.take_all(news, &mut desk.tracker),
             }
         }
-        self.close(leaving)
+        let end = self.close(leaving);
+        desk.tracker.settle().await;
+        end
     }
 
     /// Begins the first phase of a plan; without consent nothing is recorded, so that comes first.

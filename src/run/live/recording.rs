@@ -17,6 +17,7 @@ impl Live {
                 Event::SignalShown { .. } => self.undrawn = Some(stamped.seq),
                 _ => {}
             }
+            self.tell_tracker(stamped);
             if let Some(watch) = &self.watch {
                 watch.tell(stamped);
             }
@@ -63,6 +64,7 @@ impl Live {
             self.model.say(Level::Alarm, text);
         }
         self.tell_viewing();
+        self.tell_drops();
         if self.engine.session().phase == Phase::Ready {
             self.model.free_bytes = free_bytes(self.log.folder()).ok();
         }

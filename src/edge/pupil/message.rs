@@ -1,0 +1,191 @@
+//! What Pupil Capture's messages say: gaze and fixations on a surface, blinks. Payloads are msgpack maps; whatever is in
+//! them, reading takes no more memory than a multiple of their length, and answers with what is right in them.
+
+use rmpv::Value;
+use rmpv::decode::read_value_with_max_depth;
+
+/// Messages are maps in lists in maps, not deeper.
+const MAX_DEPTH: usize = 16;
+/// A datum of a frame has a few items; more are not taken.
+const MAX_ITEMS: usize = 4096;
+
+/// Gaze on a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceGaze {
+    /// In fractions of the surface, the origin at the bottom left, y up; may lie outside.
+    pub norm_pos: [f64; 2],
+    /// 0 to 1.
+    pub confidence: f64,
+    /// Pupil time, in seconds.
+    pub timestamp: f64,
+}
+
+/// A fixation; the same id comes again while it lasts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fixation {
+    pub id: u64,
+    /// On the surface; nothing if it is told in the scene camera's picture.
+    pub on_surface: Option<[f64; 2]>,
+    pub confidence: f64,
+    /// When it began, in Pupil time in seconds.
+    pub timestamp: f64,
+    pub duration_ms: f64,
+    pub dispersion_deg: f64,
+}
+
+/// The beginning (onset) or end of a blink.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blink {
+    pub is_onset: bool,
+    pub confidence: f64,
+    pub timestamp: f64,
+}
+
+/// What a message says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Told {
+    /// It was about the surface that was asked for: the tracker sees it.
+    pub sees_surface: bool,
+    /// In the order in which they were taken.
+    pub gaze: Vec<SurfaceGaze>,
+    pub fixations: Vec<Fixation>,
+    pub blink: Option<Blink>,
+    /// Items that are none, or the whole message.
+    pub malformed: u64,
+}
+
+/// Reads a message with this topic; others than those that were subscribed to say nothing.
+pub fn read(topic: &[u8], payload: &[u8], surface: &str) -> Told {
+    let is_surface = topic.strip_prefix(b"surfaces.") == Some(surface.as_bytes());
+    if !is_surface && topic != b"fixations" && topic != b"blinks" {
+        return Told::default();
+    }
+    let mut rest = payload;
+    let found = match read_value_with_max_depth(&mut rest, MAX_DEPTH) {
+        Ok(found @ Value::Map(_)) if rest.is_empty() => found,
+        _ => return Told { malformed: 1, ..Told::default() },
+    };
+    match topic {
+        _ if is_surface => of_surface(&found),
+        b"fixations" => match fixation(&found, false) {
+            Some(fixation) => Told { fixations: vec![fixation], ..Told::default() },
+            None => Told { malformed: 1, ..Told::default() },
+        },
+        _ => match blink(&found) {
+            Some(blink) => Told { blink: Some(blink), ..Told::default() },
+            None => Told { malformed: 1, ..Told::default() },
+        },
+    }
+}
+
+fn of_surface(datum: &Value) -> Told {
+    let mut told = Told { sees_surface: true, ..Told::default() };
+    for item in items(datum, "gaze_on_surfaces", &mut told.malformed) {
+        match gaze(item) {
+            Some(gaze) => told.gaze.push(gaze),
+            None => told.malformed += 1,
+        }
+    }
+    // The samples of both eyes come interleaved, and not always in order.
+    told.gaze.sort_by(|a, b| a.timestamp.total_cmp(&b.timestamp));
+    for item in items(datum, "fixations_on_surfaces", &mut told.malformed) {
+        match fixation(item, true) {
+            Some(fixation) => told.fixations.push(fixation),
+            None => told.malformed += 1,
+        }
+    }
+    told
+}
+
+/// The list of this name; one that is missing is empty, one that is none is malformed.
+fn items<'a>(datum: &'a Value, name: &str, malformed: &mut u64) -> &'a [Value] {
+    match field(datum, name) {
+        Some(Value::Array(items)) => {
+            *malformed += items.len().saturating_sub(MAX_ITEMS) as u64;
+            &items[..items.len().min(MAX_ITEMS)]
+        }
+        None => &[],
+        Some(_) => {
+            *malformed += 1;
+            &[]
+        }
+    }
+}
+
+fn gaze(item: &Value) -> Option<SurfaceGaze> {
+    Some(SurfaceGaze { norm_pos: place(item)?, confidence: confidence(item)?, timestamp: time(item)? })
+}
+
+fn fixation(item: &Value, is_on_surface: bool) -> Option<Fixation> {
+    let on_surface = if is_on_surface { Some(place(item)?) } else { None };
+    Some(Fixation {
+        id: field(item, "id")?.as_u64()?,
+        on_surface,
+        confidence: confidence(item)?,
+        timestamp: time(item)?,
+        duration_ms: number(item, "duration").filter(|duration| *duration >= 0.0)?,
+        dispersion_deg: number(item, "dispersion").filter(|dispersion| *dispersion >= 0.0)?,
+    })
+}
+
+fn blink(item: &Value) -> Option<Blink> {
+    let is_onset = match field(item, "type")?.as_str()? {
+        "onset" => true,
+        "offset" => false,
+        _ => return None,
+    };
+    Some(Blink { is_onset, confidence: confidence(item)?, timestamp: time(item)? })
+}
+
+fn field<'a>(item: &'a Value, name: &str) -> Option<&'a Value> {
+    item.as_map()?.iter().find(|(key, _)| key.as_str() == Some(name)).map(|(_, value)| value)
+}
+
+/// A number that is one; integers count as such.
+fn number(item: &Value, name: &str) -> Option<f64> {
+    field(item, name)?.as_f64().filter(|value| value.is_finite())
+}
+
+fn place(item: &Value) -> Option<[f64; 2]> {
+    let [x, y] = field(item, "norm_pos")?.as_array()?.as_slice() else { return None };
+    let place = [x.as_f64()?, y.as_f64()?];
+    // Beside the surface is a place, too; as far as this, nobody looks at it.
+    place.iter().all(|value| value.abs() < 1e3).then_some(place)
+}
+
+fn confidence(item: &Value) -> Option<f64> {
+    number(item, "confidence").filter(|value| (0.0..=1.0).contains(value))
+}
+
+/// Pupil time begins anywhere; where it does not fit nanoseconds, it is none.
+fn time(item: &Value) -> Option<f64> {
+    number(item, "timestamp").filter(|value| (0.0..1e10).contains(value))
+}
+
+/// The payload of a notification that starts a plugin of Capture.
+pub fn start_plugin(name: &str) -> Vec<u8> {
+    let text = |text: &str| Value::from(text);
+    encode(vec![
+        (text("subject"), text("start_plugin")),
+        (text("name"), text(name)),
+        (text("args"), Value::Map(Vec::new())),
+    ])
+}
+
+/// The payload of an annotation, at this Pupil time.
+pub fn annotation(label: &str, timestamp: f64) -> Vec<u8> {
+    let text = |text: &str| Value::from(text);
+    encode(vec![
+        (text("topic"), text("annotation")),
+        (text("label"), text(label)),
+        (text("timestamp"), Value::from(timestamp)),
+        (text("duration"), Value::from(0.0)),
+        (text("source"), text("tomcom")),
+    ])
+}
+
+fn encode(map: Vec<(Value, Value)>) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    rmpv::encode::write_value(&mut bytes, &Value::Map(map)).expect("a vector takes every byte");
+    bytes
+}

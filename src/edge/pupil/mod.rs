@@ -1,0 +1,392 @@
+//! Pupil Core through Pupil Capture's network API: it is asked for its ports and its time, subscribed to, told to record,
+//! and annotated. A Capture that is not there, ends, hangs or begins again is tried again for ever.
+
+pub mod message;
+pub mod zmtp;
+
+use std::io;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use tokio::sync::mpsc::{Receiver, Sender, channel};
+use tokio::sync::oneshot;
+use tokio::time::{interval, sleep, timeout};
+
+use super::gaze_input::{Fixation, GazeNews, Taken, WAITING};
+use crate::gaze::GazeSample;
+use crate::gaze::surface::SurfaceMap;
+use message::Told;
+use zmtp::{Connection, Message, Role};
+
+/// From one try to the next.
+const RETRY: Duration = Duration::from_millis(300);
+/// The surface that was not told of for so long is not seen.
+const UNSEEN: Duration = Duration::from_secs(1);
+/// Capture's time is asked for so often, and so many answers make the offset (as Pupil Labs does it).
+const ASK_TIME: Duration = Duration::from_secs(1);
+const OFFSETS: usize = 10;
+/// So many orders may wait for Capture.
+const ORDERS: usize = 256;
+
+/// Where Capture is, and what of it is wanted.
+#[derive(Clone, Debug)]
+pub struct Capture {
+    pub address: String,
+    /// Of Pupil Remote.
+    pub port: u16,
+    pub surface: String,
+    /// From the surface to the display.
+    pub map: SurfaceMap,
+    /// Whether it is told to record, and annotated.
+    pub records: bool,
+}
+
+/// What Capture is told to do.
+#[derive(Debug)]
+pub enum Order {
+    /// Record under this name.
+    Record(String),
+    StopRecording,
+    /// Annotate its recording with what happened at this moment.
+    Annotate(String, Instant),
+    /// Say when all orders before this one were carried out.
+    Report(oneshot::Sender<()>),
+}
+
+/// Follows Capture from now on; its news, and where orders are taken. Ends when the news are no longer wanted.
+pub fn follow(capture: Capture) -> (Receiver<GazeNews>, Sender<Order>) {
+    let (news, receiver) = channel(WAITING);
+    let (sender, orders) = channel(ORDERS);
+    tokio::spawn(async move {
+        let mut follower = Follower { capture, news, orders, recording: None, lost: 0, waiting: None };
+        while !follower.news.is_closed() {
+            let was_there = follower.once().await;
+            if let Err(reason) = was_there {
+                follower.tell_lost(&reason).await;
+            }
+            sleep(RETRY).await;
+        }
+    });
+    (receiver, sender)
+}
+
+/// What Capture calls itself, if it answers at this port.
+///
+/// # Errors
+/// Why it does not.
+pub async fn version(address: &str, port: u16) -> io::Result<String> {
+    let mut remote = Connection::open(address, port, Role::Req).await?;
+    Ok(format!("Pupil Capture {}", remote.ask(&[b"v"]).await?))
+}
+
+/// How Capture's clock stands to ours: mean of the newest answers.
+#[derive(Debug)]
+struct Clock {
+    anchor: Instant,
+    /// Pupil time less seconds since the anchor, newest last.
+    offsets: Vec<f64>,
+}
+
+impl Clock {
+    fn new() -> Clock {
+        Clock { anchor: Instant::now(), offsets: Vec::new() }
+    }
+
+    /// Takes an answer to the question for the time, asked and answered then.
+    fn take(&mut self, asked: Instant, answered: Instant, pupil_s: f64) {
+        let since = |at: Instant| at.saturating_duration_since(self.anchor).as_secs_f64();
+        let offset = pupil_s - (since(asked) + since(answered)) / 2.0;
+        // A clock that was set is another clock.
+        if self.offset().is_some_and(|before| (before - offset).abs() > 0.25) {
+            self.offsets.clear();
+        }
+        if self.offsets.len() == OFFSETS {
+            self.offsets.remove(0);
+        }
+        self.offsets.push(offset);
+    }
+
+    fn offset(&self) -> Option<f64> {
+        let count = self.offsets.len();
+        (count > 0).then(|| self.offsets.iter().sum::<f64>() / count as f64)
+    }
+
+    /// Our moment of a Pupil time.
+    fn instant(&self, pupil_s: f64) -> Option<Instant> {
+        let since_s = pupil_s - self.offset()?;
+        match Duration::try_from_secs_f64(since_s.abs()) {
+            Ok(by) if since_s < 0.0 => self.anchor.checked_sub(by),
+            Ok(by) => self.anchor.checked_add(by),
+            Err(_) => None,
+        }
+    }
+
+    /// The Pupil time of one of our moments.
+    fn pupil_s(&self, at: Instant) -> Option<f64> {
+        let since_s = match at.checked_duration_since(self.anchor) {
+            Some(after) => after.as_secs_f64(),
+            None => -self.anchor.duration_since(at).as_secs_f64(),
+        };
+        Some(since_s + self.offset()?)
+    }
+}
+
+struct Follower {
+    capture: Capture,
+    news: Sender<GazeNews>,
+    orders: Receiver<Order>,
+    /// The name under which it is to record now, also after it began again.
+    recording: Option<String>,
+    /// News that nobody took in time, and were not told of yet.
+    lost: u64,
+    /// The fixation that may go on.
+    waiting: Option<Fixation>,
+}
+
+impl Follower {
+    /// Follows Capture as long as it is there; why it is not, and whether it was.
+    async fn once(&mut self) -> Result<(), Lost> {
+        let never = |reason: io::Error| Lost { reason, was_there: false };
+        let (address, port) = (self.capture.address.clone(), self.capture.port);
+        let mut remote = Connection::open(&address, port, Role::Req).await.map_err(never)?;
+        let version = remote.ask(&[b"v"]).await.map_err(never)?;
+        let clock = Mutex::new(Clock::new());
+        for _ in 0..OFFSETS {
+            ask_time(&mut remote, &clock).await.map_err(never)?;
+        }
+        let sub_port = port_of(&remote.ask(&[b"SUB_PORT"]).await.map_err(never)?).map_err(never)?;
+        let pub_port = port_of(&remote.ask(&[b"PUB_PORT"]).await.map_err(never)?).map_err(never)?;
+        let mut backbone = Connection::open(&address, sub_port, Role::Sub).await.map_err(never)?;
+        for topic in [format!("surfaces.{}", self.capture.surface), "fixations".to_string(), "blinks".to_string()] {
+            backbone.subscribe(&topic).await.map_err(never)?;
+        }
+        let annotations = Connection::open(&address, pub_port, Role::Pub).await.map_err(never)?;
+        if self.capture.records {
+            let payload = message::start_plugin("Annotation_Capture");
+            remote.ask(&[b"notify.start_plugin", &payload]).await.map_err(never)?;
+        }
+        self.tell(GazeNews::Connected(format!("Pupil Capture {version}"))).await;
+        let ended = self.attend(remote, backbone, annotations, &clock).await;
+        self.waiting = None;
+        Err(Lost { reason: ended, was_there: true })
+    }
+
+    /// Listens, asks for the time, and passes orders on, until one of it fails.
+    async fn attend(
+        &mut self,
+        remote: Connection,
+        mut backbone: Connection,
+        annotations: Connection,
+        clock: &Mutex<Clock>,
+    ) -> io::Error {
+        let (news, surface) = (self.news.clone(), self.capture.surface.clone());
+        let mut told =
+            Listener { news, map: self.capture.map, lost: &mut self.lost, waiting: &mut self.waiting, sees: None };
+        let listen = async {
+            let mut seen = Instant::now();
+            loop {
+                match timeout(UNSEEN, backbone.receive()).await {
+                    Ok(Ok(message)) => {
+                        let read = read(&message, &surface);
+                        if read.sees_surface {
+                            seen = Instant::now();
+                        }
+                        told.pass(read, clock);
+                    }
+                    Ok(Err(reason)) => return reason,
+                    Err(_) => {}
+                }
+                let sees = seen.elapsed() < UNSEEN;
+                told.sees_display(sees).await;
+                if told.news.is_closed() {
+                    return io::ErrorKind::BrokenPipe.into();
+                }
+            }
+        };
+        let mut desk = Desk { remote, annotations, records: self.capture.records };
+        let order = desk.attend(&mut self.orders, &mut self.recording, clock);
+        tokio::select! {
+            reason = listen => reason,
+            reason = order => reason,
+        }
+    }
+
+    async fn tell(&mut self, news: GazeNews) {
+        // Nobody wants to know any more: the loop outside sees it.
+        let _ = self.news.send(news).await;
+    }
+
+    async fn tell_lost(&mut self, lost: &Lost) {
+        if lost.was_there {
+            let reason = match lost.reason.kind() {
+                io::ErrorKind::UnexpectedEof | io::ErrorKind::ConnectionReset => "Pupil Capture ended".to_string(),
+                io::ErrorKind::TimedOut => "Pupil Capture does not answer".to_string(),
+                _ => format!("Pupil Capture: {}", lost.reason),
+            };
+            self.tell(GazeNews::Lost(reason)).await;
+        }
+    }
+}
+
+/// Why Capture is not followed any more.
+struct Lost {
+    reason: io::Error,
+    /// It was, until then.
+    was_there: bool,
+}
+
+/// What is told of messages.
+struct Listener<'a> {
+    news: Sender<GazeNews>,
+    map: SurfaceMap,
+    lost: &'a mut u64,
+    waiting: &'a mut Option<Fixation>,
+    /// Whether the display was said to be seen.
+    sees: Option<bool>,
+}
+
+impl Listener<'_> {
+    async fn sees_display(&mut self, sees: bool) {
+        if self.sees != Some(sees) {
+            self.sees = Some(sees);
+            let _ = self.news.send(GazeNews::SeesDisplay(sees)).await;
+        }
+    }
+
+    /// Passes on what was read; what nobody takes in time is counted, so that Capture is never kept waiting.
+    fn pass(&mut self, told: Told, clock: &Mutex<Clock>) {
+        let mut malformed = told.malformed;
+        let taken = |timestamp: f64| Taken { device_ns: (timestamp * 1e9) as u64, at: moment(clock, timestamp) };
+        for gaze in told.gaze {
+            let Some([x, y]) = self.map.to_display(gaze.norm_pos) else {
+                malformed += 1;
+                continue;
+            };
+            let taken = taken(gaze.timestamp);
+            let sample = GazeSample { device_ns: Some(taken.device_ns), ..GazeSample::new(x, y, gaze.confidence) };
+            self.offer(GazeNews::Sample(sample, taken.at));
+        }
+        for found in told.fixations {
+            let on_display = found.on_surface.and_then(|place| self.map.to_display(place));
+            let began = taken(found.timestamp);
+            let before = self.waiting.filter(|before| before.id == found.id);
+            let fixation = Fixation {
+                id: found.id,
+                at: on_display.or(before.and_then(|before| before.at)),
+                duration_ms: found.duration_ms,
+                dispersion_deg: found.dispersion_deg,
+                confidence: found.confidence,
+                began,
+            };
+            // The same id lasts on; another one says that the last is over.
+            if let Some(over) = self.waiting.replace(fixation).filter(|over| over.id != fixation.id) {
+                self.offer(GazeNews::Fixation(over));
+            }
+        }
+        if let Some(blink) = told.blink {
+            let taken = taken(blink.timestamp);
+            self.offer(GazeNews::Blink { is_onset: blink.is_onset, confidence: blink.confidence, taken });
+        }
+        if malformed > 0 {
+            self.offer(GazeNews::Malformed(malformed));
+        }
+        if *self.lost > 0 && self.news.try_send(GazeNews::Overrun(*self.lost)).is_ok() {
+            *self.lost = 0;
+        }
+    }
+
+    fn offer(&mut self, news: GazeNews) {
+        if self.news.try_send(news).is_err() {
+            *self.lost += 1;
+        }
+    }
+}
+
+fn read(message: &Message, surface: &str) -> Told {
+    match message.as_slice() {
+        [topic, payload, ..] => message::read(topic, payload, surface),
+        _ => Told { malformed: 1, ..Told::default() },
+    }
+}
+
+fn moment(clock: &Mutex<Clock>, pupil_s: f64) -> Option<Instant> {
+    clock.lock().ok()?.instant(pupil_s)
+}
+
+async fn ask_time(remote: &mut Connection, clock: &Mutex<Clock>) -> io::Result<()> {
+    let asked = Instant::now();
+    let answer = remote.ask(&[b"t"]).await?;
+    let answered = Instant::now();
+    let pupil_s = answer.trim().parse::<f64>().ok().filter(|time| time.is_finite());
+    let pupil_s = pupil_s.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidData, "a time that is no number"))?;
+    if let Ok(mut clock) = clock.lock() {
+        clock.take(asked, answered, pupil_s);
+    }
+    Ok(())
+}
+
+fn port_of(answer: &str) -> io::Result<u16> {
+    answer.trim().parse().map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "a port that is none"))
+}
+
+/// Who asks Capture for its time and tells it what to do.
+struct Desk {
+    remote: Connection,
+    annotations: Connection,
+    records: bool,
+}
+
+impl Desk {
+    async fn attend(
+        &mut self,
+        orders: &mut Receiver<Order>,
+        recording: &mut Option<String>,
+        clock: &Mutex<Clock>,
+    ) -> io::Error {
+        // One that began again records on.
+        if let Some(name) = recording.clone()
+            && let Err(reason) = self.record(&name).await
+        {
+            return reason;
+        }
+        let mut hours = interval(ASK_TIME);
+        loop {
+            let done = tokio::select! {
+                _ = hours.tick() => ask_time(&mut self.remote, clock).await,
+                order = orders.recv() => match order {
+                    Some(order) => self.obey(order, recording, clock).await,
+                    None => return io::ErrorKind::BrokenPipe.into(),
+                },
+            };
+            if let Err(reason) = done {
+                return reason;
+            }
+        }
+    }
+
+    async fn obey(&mut self, order: Order, recording: &mut Option<String>, clock: &Mutex<Clock>) -> io::Result<()> {
+        match order {
+            // Who asked may be gone by now.
+            Order::Report(to) => drop(to.send(())),
+            _ if !self.records => {}
+            Order::Record(name) => {
+                *recording = Some(name.clone());
+                self.record(&name).await?;
+            }
+            Order::StopRecording => {
+                *recording = None;
+                self.remote.ask(&[b"r"]).await?;
+            }
+            Order::Annotate(label, at) => {
+                let pupil_s = clock.lock().ok().and_then(|clock| clock.pupil_s(at));
+                let payload = message::annotation(&label, pupil_s.unwrap_or(0.0));
+                self.annotations.send(&[b"annotation", &payload]).await?;
+            }
+        }
+        Ok(())
+    }
+
+    async fn record(&mut self, name: &str) -> io::Result<()> {
+        self.remote.ask(&[format!("R {name}").as_bytes()]).await.map(drop)
+    }
+}

@@ -1,0 +1,242 @@
+//! As much of ZeroMQ's wire protocol (ZMTP 3.0, <https://rfc.zeromq.org/spec/23/>, without security) as it takes to ask
+//! Pupil Remote, to subscribe to Capture's messages, and to publish annotations. What the other side sends is bounded: no
+//! length that it claims is believed before the bytes are there.
+
+use std::io;
+use std::time::Duration;
+
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
+use tokio::time::timeout;
+
+/// The frames of a message.
+pub type Message = Vec<Vec<u8>>;
+
+/// No message is longer, in bytes of all its frames, and none has more frames.
+const MAX_MESSAGE: usize = 1 << 20;
+const MAX_FRAMES: usize = 16;
+/// So long the other side may take for what is due at once.
+const PATIENCE: Duration = Duration::from_secs(2);
+const GREETING: usize = 64;
+
+const MORE: u8 = 1;
+const LONG: u8 = 2;
+const COMMAND: u8 = 4;
+
+/// What a socket is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Asks, and is answered.
+    Req,
+    /// Receives what it subscribed to.
+    Sub,
+    /// Sends to whoever subscribed.
+    Pub,
+}
+
+impl Role {
+    fn name(self) -> &'static str {
+        match self {
+            Role::Req => "REQ",
+            Role::Sub => "SUB",
+            Role::Pub => "PUB",
+        }
+    }
+}
+
+fn broken(what: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, what)
+}
+
+/// Puts messages together from bytes as they come.
+#[derive(Debug, Default)]
+pub struct Inbox {
+    bytes: Vec<u8>,
+    /// Up to here they were read.
+    read: usize,
+    frames: Message,
+    size: usize,
+}
+
+impl Inbox {
+    /// Takes bytes that arrived.
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.bytes.drain(..self.read);
+        self.read = 0;
+        self.bytes.extend_from_slice(bytes);
+    }
+
+    /// The next message that is complete; commands are left out.
+    ///
+    /// # Errors
+    /// What came is no message, or a larger one than there are.
+    pub fn next_message(&mut self) -> io::Result<Option<Message>> {
+        while let Some((flags, body)) = self.next_frame()? {
+            if flags & COMMAND != 0 {
+                continue;
+            }
+            self.size += body.len();
+            self.frames.push(body);
+            if self.size > MAX_MESSAGE || self.frames.len() > MAX_FRAMES {
+                return Err(broken("a message that is too large"));
+            }
+            if flags & MORE == 0 {
+                self.size = 0;
+                return Ok(Some(std::mem::take(&mut self.frames)));
+            }
+        }
+        Ok(None)
+    }
+
+    fn next_frame(&mut self) -> io::Result<Option<(u8, Vec<u8>)>> {
+        let left = &self.bytes[self.read..];
+        let Some(&flags) = left.first() else { return Ok(None) };
+        if flags & !(MORE | LONG | COMMAND) != 0 {
+            return Err(broken("a frame of another protocol"));
+        }
+        let (length, head) = match flags & LONG != 0 {
+            false => match left.get(1) {
+                Some(&length) => (u64::from(length), 2),
+                None => return Ok(None),
+            },
+            true => match left.get(1..9).and_then(|bytes| bytes.try_into().ok()) {
+                Some(bytes) => (u64::from_be_bytes(bytes), 9),
+                None => return Ok(None),
+            },
+        };
+        let length = usize::try_from(length).ok().filter(|&length| length <= MAX_MESSAGE);
+        let length = length.ok_or_else(|| broken("a frame that is too large"))?;
+        let Some(body) = left.get(head..head + length) else { return Ok(None) };
+        let body = body.to_vec();
+        self.read += head + length;
+        Ok(Some((flags, body)))
+    }
+}
+
+/// A connection to a socket of another program.
+#[derive(Debug)]
+pub struct Connection {
+    stream: TcpStream,
+    inbox: Inbox,
+    chunk: Vec<u8>,
+}
+
+impl Connection {
+    /// Connects, and agrees on the protocol.
+    ///
+    /// # Errors
+    /// Nobody listens there, or nobody who speaks it.
+    pub async fn open(address: &str, port: u16, role: Role) -> io::Result<Connection> {
+        let late = |_| io::Error::new(io::ErrorKind::TimedOut, "no answer");
+        timeout(PATIENCE, Connection::agree(address, port, role)).await.map_err(late)?
+    }
+
+    async fn agree(address: &str, port: u16, role: Role) -> io::Result<Connection> {
+        let mut stream = TcpStream::connect((address, port)).await?;
+        stream.set_nodelay(true)?;
+        let mut greeting = [0u8; GREETING];
+        (greeting[0], greeting[9], greeting[10]) = (0xff, 0x7f, 3);
+        greeting[12..16].copy_from_slice(b"NULL");
+        stream.write_all(&greeting).await?;
+        let mut theirs = [0u8; GREETING];
+        stream.read_exact(&mut theirs).await?;
+        if theirs[0] != 0xff || theirs[9] & 1 != 1 || theirs[10] < 3 {
+            return Err(broken("another protocol than ZMTP 3"));
+        }
+        if theirs[12..32] != greeting[12..32] {
+            return Err(broken("a server that asks for passwords"));
+        }
+        let mut ready = b"\x05READY".to_vec();
+        ready.extend(property("Socket-Type", role.name()));
+        if role == Role::Req {
+            ready.extend(property("Identity", ""));
+        }
+        stream.write_all(&[&[COMMAND, ready.len() as u8], ready.as_slice()].concat()).await?;
+        let mut connection = Connection { stream, inbox: Inbox::default(), chunk: vec![0; 1 << 16] };
+        // Their READY comes before anything else.
+        let flags = loop {
+            match connection.inbox.next_frame()? {
+                Some((flags, body)) if body.starts_with(b"\x05READY") => break flags,
+                Some(_) => return Err(broken("a server that refuses")),
+                None => connection.fill().await?,
+            }
+        };
+        match flags & COMMAND != 0 {
+            true => Ok(connection),
+            false => Err(broken("a server that does not get ready")),
+        }
+    }
+
+    async fn fill(&mut self) -> io::Result<()> {
+        match self.stream.read(&mut self.chunk).await? {
+            0 => Err(io::Error::new(io::ErrorKind::UnexpectedEof, "it ended")),
+            count => {
+                self.inbox.push(&self.chunk[..count]);
+                Ok(())
+            }
+        }
+    }
+
+    /// The next message. Nothing is lost if it is given up in between.
+    ///
+    /// # Errors
+    /// The connection ended, or what came is no message.
+    pub async fn receive(&mut self) -> io::Result<Message> {
+        loop {
+            if let Some(message) = self.inbox.next_message()? {
+                return Ok(message);
+            }
+            self.fill().await?;
+        }
+    }
+
+    /// Sends a message.
+    ///
+    /// # Errors
+    /// The connection ended, or the other side takes nothing any more.
+    pub async fn send(&mut self, frames: &[&[u8]]) -> io::Result<()> {
+        let mut bytes = Vec::new();
+        for (index, frame) in frames.iter().enumerate() {
+            let more = if index + 1 < frames.len() { MORE } else { 0 };
+            match u8::try_from(frame.len()) {
+                Ok(length) => bytes.extend([more, length]),
+                Err(_) => {
+                    bytes.push(more | LONG);
+                    bytes.extend((frame.len() as u64).to_be_bytes());
+                }
+            }
+            bytes.extend_from_slice(frame);
+        }
+        let late = |_| io::Error::new(io::ErrorKind::TimedOut, "it takes nothing");
+        timeout(PATIENCE, self.stream.write_all(&bytes)).await.map_err(late)?
+    }
+
+    /// Asks for all messages whose first frame begins so.
+    ///
+    /// # Errors
+    /// Those of [`Connection::send`].
+    pub async fn subscribe(&mut self, topic: &str) -> io::Result<()> {
+        self.send(&[&[b"\x01", topic.as_bytes()].concat()]).await
+    }
+
+    /// Asks, and waits for the answer.
+    ///
+    /// # Errors
+    /// Those of [`Connection::send`], no answer in time, or one that is no text.
+    pub async fn ask(&mut self, frames: &[&[u8]]) -> io::Result<String> {
+        self.send(&[&[b"".as_slice()], frames].concat()).await?;
+        let late = |_| io::Error::new(io::ErrorKind::TimedOut, "no answer");
+        let answer = timeout(PATIENCE, self.receive()).await.map_err(late)??;
+        let text = answer.into_iter().nth(1).and_then(|frame| String::from_utf8(frame).ok());
+        text.ok_or_else(|| broken("an answer that is no text"))
+    }
+}
+
+/// A property of a READY command.
+fn property(name: &str, value: &str) -> Vec<u8> {
+    let mut bytes = vec![name.len() as u8];
+    bytes.extend(name.as_bytes());
+    bytes.extend((value.len() as u32).to_be_bytes());
+    bytes.extend(value.as_bytes());
+    bytes
+}

@@ -13,11 +13,13 @@ use serde::Serialize;
 use super::ask::ask;
 use super::clock::WallTime;
 use super::log::Lock;
+use super::pupil;
 use super::terminal::theme;
 use super::viewer::{self, Viewer};
 use crate::console::view::theme::Ground;
 use crate::session::preflight::{Check, Verdict, space};
 use crate::session::settings::ConsoleSpec;
+use crate::session::tracker::TrackerSpec;
 
 /// The console breathes from here on, in columns and rows.
 const ROOMY: (u16, u16) = (120, 40);
@@ -39,7 +41,7 @@ pub fn examine(out: &Path) -> Findings {
     let mut checks = terminal();
     checks.push(folder(out));
     checks.push(space(free_bytes(&existing(out)).ok()));
-    checks.extend([wall_clock(), timer(), viewer()]);
+    checks.extend([wall_clock(), timer(), viewer(), eye_tracker()]);
     let healthy = checks.iter().all(|check| check.verdict != Verdict::Failed);
     Findings { healthy, checks }
 }
@@ -186,6 +188,22 @@ fn viewer() -> Check {
         }
     };
     Check::new("viewer", verdict, found, remedy)
+}
+
+/// Whether Pupil Capture answers where it does by default. Nothing is broken if it does not.
+fn eye_tracker() -> Check {
+    let tracker = TrackerSpec::default();
+    let (address, port) = (&tracker.address, tracker.port);
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let answer = runtime.and_then(|runtime| runtime.block_on(pupil::version(address, port)));
+    let remedy =
+        "matters for --gaze pupil only: start Capture, with Pupil Remote on; elsewhere than here, see [tracker]";
+    match answer {
+        Ok(version) => Check::ok("eye tracker", format!("{version} at {address}:{port}")),
+        Err(reason) => {
+            Check::new("eye tracker", Verdict::Warning, format!("none at {address}:{port} ({reason})"), remedy)
+        }
+    }
 }
 
 /// Whether the machine wakes a program in time: presses and gaze are stamped when it is awake.

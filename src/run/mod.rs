@@ -11,6 +11,7 @@ pub mod figures;
 pub mod film;
 pub mod fit;
 pub mod follower;
+pub mod gaze_figures;
 pub mod headless;
 pub mod kitchen;
 pub mod leaving;

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::figures::{BeliefFigures, TrialFigures};
 use super::follower::Follower;
+use super::gaze_figures::{self, GazeFigures};
 use super::standing::Standing;
 use crate::base::words::count;
 use crate::communication::Signal;
@@ -41,6 +42,10 @@ pub struct RecordingFigures {
     pub orders_served: u64,
     /// The trial's length by its own clock, in seconds.
     pub trial_s: f64,
+    pub gaze: GazeFigures,
+    /// What was wrong with the gaze, in words.
+    #[serde(skip)]
+    gaze_faults: Option<String>,
 }
 
 impl RecordingFigures {
@@ -59,6 +64,8 @@ impl RecordingFigures {
             unblinded: follower.session.unblinded,
             orders_served: trial.served.len() as u64,
             trial_s: trial.seconds,
+            gaze: GazeFigures::of(&follower.session),
+            gaze_faults: gaze_figures::describe(&follower.session),
         }
     }
 
@@ -69,8 +76,9 @@ impl RecordingFigures {
             true => String::new(),
             false => format!("left out of the analysis: {}\n", self.standing.describe()),
         };
+        let gaze = self.gaze_faults.as_ref().map_or(String::new(), |faults| format!("{faults}\n"));
         format!(
-            "{standing}{}, {:.0} s of trial{cut}\n{} of the human ({}), {} of the robot, {}, {} served\n{}\n",
+            "{standing}{}, {:.0} s of trial{cut}\n{} of the human ({}), {} of the robot, {}, {} served\n{}\n{gaze}",
             count(self.events, "event", "events"),
             self.trial_s,
             count(self.human_actions, "press", "presses"),

@@ -1,11 +1,14 @@
 //! Everything that reads text which people or other programs wrote: session, layout, recipe, key and parameter files,
-//! questionnaires, logs. Whatever the text, the answer is a value or an error that can be shown; never a panic, a hang or
+//! questionnaires, logs; and everything that eye trackers send. Whatever it is, the answer is a value or an error that can be shown; never a panic, a hang or
 //! memory without bound.
 
 use std::path::{Path, PathBuf};
 
 use tomcom::edge::files::{FileResult, compile_kitchen, key_map, parse};
+use tomcom::edge::gaze_json;
 use tomcom::edge::log::LogReader;
+use tomcom::edge::pupil::message;
+use tomcom::edge::pupil::zmtp::Inbox;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::mind::model::HumanModel;
 use tomcom::session::apply::apply;
@@ -21,7 +24,7 @@ const RECORDING: &str = include_str!("../../../golden/format-1-hand.jsonl");
 pub fn read(data: &[u8]) {
     let Some((kind, rest)) = data.split_first() else { return };
     let text = || String::from_utf8_lossy(rest).into_owned();
-    match kind % 8 {
+    match kind % 12 {
         0 => shown(compile_kitchen((Path::new("layout"), text()), (Path::new("recipes"), RECIPES.to_string())).map(
             |files| {
                 // A kitchen that is accepted can be worked in.
@@ -40,10 +43,33 @@ pub fn read(data: &[u8]) {
         4 => shown(parse::<Questionnaire>(Path::new("questionnaire"), &text()).map(|asked| asked.check().is_ok())),
         5 => shown(parse::<HumanModel>(Path::new("parameters"), &text()).map(|model| model.fault().is_none())),
         6 => shown(key_map(Some(&FileText { path: "keys".to_string(), text: text() })).map(drop)),
+        8 => {
+            let told = message::read(b"surfaces.wall", rest, "wall");
+            assert!(told.gaze.len() + told.fixations.len() <= 2 * rest.len());
+            assert!(told.gaze.iter().all(|gaze| gaze.norm_pos.iter().all(|value| value.is_finite())));
+        }
+        9 => drop((message::read(b"fixations", rest, "wall"), message::read(b"blinks", rest, "wall"))),
+        10 => frames(rest),
+        11 => drop(gaze_json::parse(rest)),
         // Broken events after a header that is right.
         _ => {
             let header = RECORDING.split_inclusive('\n').next().unwrap_or_default();
             replay(&[header.as_bytes(), rest].concat());
+        }
+    }
+}
+
+/// What a sender of frames may send, in pieces.
+fn frames(bytes: &[u8]) {
+    let mut inbox = Inbox::default();
+    for piece in bytes.chunks(7) {
+        inbox.push(piece);
+        loop {
+            match inbox.next_message() {
+                Ok(Some(_)) => {}
+                Ok(None) => break,
+                Err(_) => return,
+            }
         }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use rand::RngExt;
 use rmpv::Value;
-use tomcom::base::rng::{Stream, stream};
+use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::edge::gaze_file;
@@ -441,22 +441,20 @@ fn exports_of_pupil_player_and_own_recordings_are_replayed() {
 }
 
 /// The estimate after a path of fixations, told at this rate; each a point and its length in seconds.
-fn after_path(path: &[([f64; 2], f64)], hz: f64, phase: f64, changes: bool) -> Vec<Vec<f64>> {
+fn after_path(path: &[([f64; 2], f64)], hz: f64) -> Vec<Vec<f64>> {
     let mut engine = engine(|spec| {
         (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
     });
     let at = SessionTime::from_secs_f64;
     assert_eq!(engine.input(at(0.0), Event::TrialStarted).refused, None);
     let mut input = |time_s: f64, event: Event| assert_eq!(engine.input(at(time_s), event).refused, None);
-    if changes {
-        for (place, content) in [("counter", "salmon cut"), ("plate", "nori"), ("cutting_board", "tuna raw")] {
-            input(0.5, Event::KitchenCorrected { location: place.to_string(), content: content.to_string() });
-        }
+    for (place, content) in [("counter", "salmon cut"), ("plate", "nori"), ("cutting_board", "tuna raw")] {
+        input(0.5, Event::KitchenCorrected { location: place.to_string(), content: content.to_string() });
     }
     let total_s: f64 = path.iter().map(|(_, length_s)| length_s).sum();
     let samples = (total_s * hz).round() as usize;
     for sample in 0..samples {
-        let time_s = (sample as f64 + phase) / hz;
+        let time_s = (sample as f64 + 0.5) / hz;
         let mut until_s = 0.0;
         let here = path.iter().find(|(_, length_s)| {
             until_s += length_s;
@@ -477,31 +475,23 @@ fn apart(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
 #[test]
 fn the_same_path_of_gaze_gives_the_same_estimate_at_every_rate() {
     let kitchen = load("layouts/sushi.toml");
-    let (mut aligned, mut any): (f64, Vec<f64>) = (0.0, Vec::new());
+    let (mut slow, mut fast) = (Vec::new(), Vec::new());
     for number in 0..12 {
         let mut random = stream(3, "paths", number);
-        let mut path = |length_s: &mut dyn FnMut(&mut Stream) -> f64| {
-            let mut fixation = || {
-                let location = &kitchen.locations[random.random_range(0..kitchen.locations.len())];
-                (location.display.centre(), length_s(&mut random))
-            };
-            (0..40).map(|_| fixation()).collect::<Vec<_>>()
+        let mut fixation = |_| {
+            let location = &kitchen.locations[random.random_range(0..kitchen.locations.len())];
+            (location.display.centre(), 0.15 + 0.45 * random.random::<f64>())
         };
-        // Fixations that begin and end with a sample at every rate: what is left is the model's.
-        let tenths = path(&mut |random| f64::from(random.random_range(2..6)) / 10.0);
-        let estimates = [30.0, 120.0, 200.0].map(|hz| after_path(&tenths, hz, 0.0, true));
-        aligned = aligned.max(apart(&estimates[0], &estimates[1])).max(apart(&estimates[1], &estimates[2]));
-        aligned = aligned.max(apart(&estimates[0], &estimates[2]));
-        // And any fixations: between two samples nobody knows when the eyes moved on.
-        let lengths = path(&mut |random| 0.15 + 0.45 * random.random::<f64>());
-        let estimates = [30.0, 120.0, 200.0].map(|hz| after_path(&lengths, hz, 0.5, true));
-        any.push(apart(&estimates[1], &estimates[2]));
-        any.push(apart(&estimates[0], &estimates[2]).max(apart(&estimates[0], &estimates[1])));
+        let path: Vec<([f64; 2], f64)> = (0..40).map(&mut fixation).collect();
+        let estimates = [30.0, 120.0, 200.0].map(|hz| after_path(&path, hz));
+        fast.push(apart(&estimates[1], &estimates[2]));
+        slow.push(apart(&estimates[0], &estimates[1]).max(apart(&estimates[0], &estimates[2])));
     }
-    let slow = any.iter().skip(1).step_by(2).copied().fold(0.0, f64::max);
-    let fast = any.iter().step_by(2).copied().fold(0.0, f64::max);
-    println!("largest difference: {aligned:.4}; between samples: {slow:.4} (30 Hz), {fast:.4} (120 and 200 Hz)");
-    assert!(aligned <= 0.02, "{aligned}");
-    assert!(fast <= 0.02, "{fast}");
-    assert!(slow <= 0.08, "{slow}");
+    let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    let within = slow.iter().filter(|difference| **difference <= 0.02).count();
+    println!("largest difference of a probability, 120 and 200 Hz: {:.4}", most(&fast));
+    println!("30 Hz and these: {:.4}; within 0.02 on {within} of {} paths", most(&slow), slow.len());
+    assert!(most(&fast) <= 0.02, "{fast:?}");
+    // Between two samples nobody knows when the eyes moved on: at 30 Hz that is a sixth of a fixation of 0.2 s.
+    assert!(most(&slow) <= 0.03 && within * 4 >= slow.len() * 3, "{slow:?}");
 }

@@ -30,12 +30,6 @@ const SMALL_PX: [u32; 2] = [1280, 720];
 const SLOW_MS: f64 = 30.0;
 
 impl DisplayHealth {
-    /// Where to open it.
-    pub fn place(&self) -> String {
-        let code = self.code.as_ref().map_or(String::new(), |code| format!(", pairing code {code}"));
-        format!("{}{code}", self.url)
-    }
-
     /// For the line of what is alive; true: it is as it should be.
     pub fn line(&self) -> (String, bool) {
         match (self.page, self.redraw_ms.or(self.round_trip_ms)) {
@@ -47,9 +41,10 @@ impl DisplayHealth {
 
     /// What is looked at before a trial.
     pub fn check(&self) -> Check {
-        let open = format!("open {} in a browser, full screen", self.place());
         let Some([width, height]) = self.page else {
-            return Check::new("display", Verdict::Failed, "no page is connected", open);
+            let code = self.code.as_ref().map_or(String::new(), |code| format!(", pairing code {code}"));
+            let open = format!("open {} in a browser, full screen", self.url);
+            return Check::new("display", Verdict::Failed, format!("no page is connected{code}"), open);
         };
         let trip = self.round_trip_ms.map_or(String::new(), |ms| format!(", {ms:.0} ms there and back"));
         let others = match self.watching {

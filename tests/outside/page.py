@@ -34,7 +34,7 @@ class Page:
     """A page of the display, with what it says to the program."""
 
     def __init__(self, browser, url, size=(1920, 1080), touch=False, code=None):
-        self.context = browser.new_context(viewport={"width": size[0], "height": size[1]}, has_touch=touch)
+        self.context = browser.new_context(viewport={"width": size[0], "height": size[1]}, has_touch=touch, bypass_csp=True)
         self.context.add_init_script(GAMEPAD)
         self.page = self.context.new_page()
         self.errors, self.said, self.lock = [], [], threading.Lock()

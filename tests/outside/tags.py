@@ -3,6 +3,7 @@
     tests/outside/tags.py SCREENSHOT...
 """
 
+import functools
 import sys
 
 import numpy as np
@@ -41,11 +42,16 @@ def seen(screen, turn_deg, distance_m=DISTANCE_M):
     return np.clip(image * 0.8 + 20 + noise, 0, 255).astype(np.uint8)
 
 
+@functools.cache
+def detector():
+    """One for all pictures: the library does not survive several."""
+    return Detector(families="tag36h11", quad_decimate=1.0)
+
+
 def check(path):
     screen = np.asarray(Image.open(path).convert("L"), dtype=float)
-    detector = Detector(families="tag36h11", quad_decimate=1.0)
     for turn in TURNS_DEG:
-        found = {tag.tag_id: tag for tag in detector.detect(seen(screen, turn)) if tag.decision_margin > 30}
+        found = {tag.tag_id: tag for tag in detector().detect(seen(screen, turn)) if tag.decision_margin > 30}
         assert sorted(found) == IDS, f"{path} at {turn} degrees: {sorted(found)}"
         assert all(tag.hamming == 0 for tag in found.values()), f"{path} at {turn} degrees: bits are wrong"
         # Top left, top right, bottom right, bottom left.

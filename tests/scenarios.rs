@@ -275,6 +275,37 @@ fn what_will_be_seen_anyway_is_not_worth_saying() {
     assert_eq!(benefit(0.0, 1.0, &[pot]), 0.0, "who saw it happen needs nothing");
 }
 
+/// Planners that go from question to question, dealt out to so many threads; answers in the order of the scenarios.
+fn answers<'a>(scenarios: &'a [Scenario], threads: usize) -> Vec<Recommendation> {
+    let planner = |scenario: &Scenario| {
+        concept(ConceptName::TomCom, scenario.kitchen(), &HumanModel::default(), &AssistantSpec::default(), 1)
+    };
+    let of_thread = move |thread: usize| -> Vec<(usize, Recommendation)> {
+        let mut kept: BTreeMap<&str, Box<dyn Concept>> = BTreeMap::new();
+        let own = scenarios.iter().enumerate().filter(|(index, _)| index % threads == thread);
+        let answer = |(index, scenario): (usize, &'a Scenario)| {
+            let planner = kept.entry(&scenario.layout).or_insert_with(|| planner(scenario));
+            (index, scenario.ask(&mut **planner, None))
+        };
+        own.map(answer).collect()
+    };
+    let mut all: Vec<(usize, Recommendation)> = std::thread::scope(|scope| {
+        let started: Vec<_> = (0..threads).map(|thread| scope.spawn(move || of_thread(thread))).collect();
+        started.into_iter().flat_map(|thread| thread.join().expect("a thread that answers")).collect()
+    });
+    all.sort_by_key(|(index, _)| *index);
+    all.into_iter().map(|(_, answer)| answer).collect()
+}
+
+#[test]
+fn planning_is_the_same_on_one_thread_and_on_two() {
+    let scenarios: Vec<Scenario> = scenarios().iter().map(|path| Scenario::read(path)).collect();
+    let [one, two] = [1, 2].map(|threads| answers(&scenarios, threads));
+    for ((scenario, one), two) in scenarios.iter().zip(&one).zip(&two) {
+        assert_eq!(one, two, "{}", scenario.about);
+    }
+}
+
 fn named(name: &str) -> Scenario {
     Scenario::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/scenarios/{name}.toml")))
 }

@@ -1,5 +1,6 @@
 //! What every room may use: time, random streams, words, and a little numerical mathematics.
 
+pub mod ascent;
 pub mod linear;
 pub mod minimise;
 pub mod rng;

@@ -1,20 +1,25 @@
-//! A quadratic surface through values of a function around its minimum, by least squares over a central composite design
-//! (Box and Wilson 1951): where it is least and how it is curved, even if the values are a little noisy.
+//! A quadratic surface through values of a function, by least squares over a central composite design (Box and Wilson 1951):
+//! where it is least and how it is curved, even if the values are noisy.
 
 use super::linear::inverse;
 
-/// The minimum is looked for within so many steps of the design's centre.
-const REACH: f64 = 1.5;
+/// The surface is trusted for so many steps around its centre.
+pub const REACH: f64 = 1.5;
+/// Sweeps over the variables on the way to the least value.
+const SWEEPS: usize = 60;
 
-/// What a surface says of the function that it goes through.
+/// What a surface says of the function that it goes through; in steps from its centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    /// Where it is least.
-    pub at: Vec<f64>,
-    /// Its value there.
+    /// Its value at the centre.
     pub value: f64,
-    /// The inverse of its second derivatives.
-    pub covariance: Vec<Vec<f64>>,
+    pub slope: Vec<f64>,
+    /// Second derivatives.
+    pub curvature: Vec<Vec<f64>>,
+    /// Standard deviation of the values around it.
+    pub noise: f64,
+    /// What that leaves unknown of the slope: covariance.
+    slope_covariance: Vec<Vec<f64>>,
 }
 
 /// How many values [`surface`] asks for, of a function of so many variables.
@@ -23,35 +28,99 @@ pub fn points(variables: usize) -> usize {
 }
 
 /// The surface through values around `centre`, up to a step of these sizes along each variable and each pair of them.
-/// Values that are not finite are left out. `None` if it is not curved upwards in every direction.
+/// Values that are not finite are left out; `None` if too few are left.
 pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &[f64]) -> Option<Surface> {
     let n = centre.len();
-    let there = |by: &[f64]| -> Vec<f64> { (0..n).map(|index| centre[index] + by[index] * steps[index]).collect() };
     let count = 1 + n + n * (n + 1) / 2;
     let mut squares = vec![vec![0.0; count]; count];
     let mut sums = vec![0.0; count];
+    let mut values = Vec::new();
     for by in design(n) {
-        let value = function(&there(&by));
+        let at: Vec<f64> = (0..n).map(|index| centre[index] + by[index] * steps[index]).collect();
+        let value = function(&at);
         if value.is_finite() {
             let terms = terms(&by);
             for (row, one) in terms.iter().enumerate() {
                 sums[row] += one * value;
                 squares[row].iter_mut().zip(&terms).for_each(|(sum, other)| *sum += one * other);
             }
+            values.push((terms, value));
         }
     }
     let solved = inverse(&squares)?;
-    let times = |row: &[f64], by: &[f64]| row.iter().zip(by).map(|(a, b)| a * b).sum::<f64>();
-    let found: Vec<f64> = solved.iter().map(|row| times(row, &sums)).collect();
+    let found: Vec<f64> = solved.iter().map(|row| product(row, &sums)).collect();
     let mut curvature = vec![vec![0.0; n]; n];
     for (term, (one, other)) in pairs(n).into_iter().enumerate() {
         curvature[one][other] += found[1 + n + term];
         curvature[other][one] += found[1 + n + term];
     }
-    let covariance = inverse(&curvature)?;
-    let least: Vec<f64> = covariance.iter().map(|row| (-times(row, &found[1..=n])).clamp(-REACH, REACH)).collect();
-    let scaled = |row: usize| (0..n).map(|column| covariance[row][column] * steps[row] * steps[column]).collect();
-    Some(Surface { at: there(&least), value: times(&found, &terms(&least)), covariance: (0..n).map(scaled).collect() })
+    let off: f64 = values.iter().map(|(terms, value)| (value - product(terms, &found)).powi(2)).sum();
+    let variance = off / values.len().saturating_sub(count).max(1) as f64;
+    let of_slope = |row: &Vec<f64>| row[1..=n].iter().map(|one| variance * one).collect();
+    Some(Surface {
+        value: found[0],
+        slope: found[1..=n].to_vec(),
+        curvature,
+        noise: variance.sqrt(),
+        slope_covariance: solved[1..=n].iter().map(of_slope).collect(),
+    })
+}
+
+impl Surface {
+    /// Its value so many steps from the centre.
+    pub fn at(&self, by: &[f64]) -> f64 {
+        let bend: f64 = self.curvature.iter().zip(by).map(|(row, one)| one * product(row, by)).sum();
+        self.value + product(&self.slope, by) + bend / 2.0
+    }
+
+    /// Where it is least between these bounds, in steps from the centre: the best of what coordinate descents find from the
+    /// centre and from the ends of each axis.
+    pub fn least(&self, low: &[f64], high: &[f64]) -> Vec<f64> {
+        let n = self.slope.len();
+        let mut starts = vec![vec![0.0; n]];
+        for index in 0..n {
+            for end in [low[index], high[index]] {
+                let mut start = vec![0.0; n];
+                start[index] = end;
+                starts.push(start);
+            }
+        }
+        let ends = starts.into_iter().map(|start| self.descend(start, low, high));
+        let better = |best: Vec<f64>, one: Vec<f64>| if self.at(&one) < self.at(&best) { one } else { best };
+        ends.reduce(better).unwrap_or_default()
+    }
+
+    fn descend(&self, mut by: Vec<f64>, low: &[f64], high: &[f64]) -> Vec<f64> {
+        for _ in 0..SWEEPS {
+            for index in 0..by.len() {
+                let bend = self.curvature[index][index];
+                let slope = self.slope[index] + product(&self.curvature[index], &by) - bend * by[index];
+                let value = |x: f64| slope * x + bend * x * x / 2.0;
+                by[index] = match bend > 0.0 {
+                    true => (-slope / bend).clamp(low[index], high[index]),
+                    false if value(low[index]) < value(high[index]) => low[index],
+                    false => high[index],
+                };
+            }
+        }
+        by
+    }
+
+    /// The covariance of where the least value is: the inverse of the curvature (the observed information, where values are
+    /// negative log likelihoods), and what noise adds. `None` if it is not curved upwards in every direction.
+    pub fn covariance(&self) -> Option<Vec<Vec<f64>>> {
+        let inverse = inverse(&self.curvature)?;
+        let n = inverse.len();
+        let by_noise = |row: usize, column: usize| -> f64 {
+            let inner = |one: usize| product(&self.slope_covariance[one], &inverse[column]);
+            (0..n).map(|one| inverse[row][one] * inner(one)).sum()
+        };
+        Some((0..n).map(|row| (0..n).map(|column| inverse[row][column] + by_noise(row, column)).collect()).collect())
+    }
+}
+
+fn product(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
 /// The points of the design, in steps from its centre.
@@ -93,20 +162,30 @@ mod tests {
             let (a, b) = (x[0] - 1.0, x[1] + 2.0);
             3.0 + 2.0 * a * a + 1.5 * b * b + a * b
         };
-        let found = surface(function, &[0.9, -2.2], &[0.4, 0.3]).expect("a surface");
+        let (centre, steps) = ([0.9, -2.2], [0.4, 0.3]);
+        let found = surface(function, &centre, &steps).expect("a surface");
+        let least = found.least(&[-REACH; 2], &[REACH; 2]);
+        assert!((found.at(&least) - 3.0).abs() < 1e-9 && found.noise < 1e-9, "{found:?}");
+        for (index, expected) in [1.0, -2.0].into_iter().enumerate() {
+            assert!((centre[index] + least[index] * steps[index] - expected).abs() < 1e-9, "{least:?}");
+        }
         // Second derivatives: 4, 3, and 1 across.
         let expected = [[3.0 / 11.0, -1.0 / 11.0], [-1.0 / 11.0, 4.0 / 11.0]];
-        assert!((found.value - 3.0).abs() < 1e-9, "{found:?}");
-        assert!((found.at[0] - 1.0).abs() < 1e-9 && (found.at[1] + 2.0).abs() < 1e-9, "{found:?}");
-        for (row, expected) in found.covariance.iter().zip(&expected) {
-            assert!(row.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?}");
+        let covariance = found.covariance().expect("a covariance");
+        for (row, of_row) in covariance.iter().enumerate() {
+            for (column, one) in of_row.iter().enumerate() {
+                assert!((one * steps[row] * steps[column] - expected[row][column]).abs() < 1e-9, "{covariance:?}");
+            }
         }
         assert_eq!(points(2), 11);
     }
 
     #[test]
-    fn a_valley_has_no_covariance() {
-        assert_eq!(surface(|x| x[0] * x[0], &[0.0, 0.0], &[1.0, 1.0]), None);
-        assert_eq!(surface(|x| x[0] * x[0] - x[1] * x[1], &[0.0, 0.0], &[1.0, 1.0]), None);
+    fn a_valley_has_no_covariance_and_ends_at_a_bound() {
+        let valley = surface(|x| x[0] * x[0], &[0.0, 0.0], &[1.0, 1.0]).expect("a surface");
+        assert_eq!(valley.covariance(), None);
+        let saddle = surface(|x| x[0] * x[0] - x[1] * x[1] - 0.1 * x[1], &[0.0, 0.0], &[1.0, 1.0]);
+        let least = saddle.expect("a surface").least(&[-1.0, -1.0], &[1.0, 1.0]);
+        assert!(least[0].abs() < 1e-9 && least[1] == 1.0, "{least:?}");
     }
 }

@@ -266,7 +266,7 @@ pub(super) struct FitArgs {
     #[arg(long, value_name = "FILE")]
     pub(super) start: Option<PathBuf>,
     /// The search for the best parameters ends after so many tries.
-    #[arg(long, default_value_t = 150, value_parser = clap::value_parser!(u64).range(10..=100_000))]
+    #[arg(long, default_value_t = 600, value_parser = clap::value_parser!(u64).range(10..=100_000))]
     pub(super) tries: u64,
     /// Where to write the parameter file.
     #[arg(long, value_name = "FILE")]

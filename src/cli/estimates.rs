@@ -32,7 +32,7 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
     parameters.dedup();
     let trials = fit::Trials::read(&args.recordings)?;
     let plan = fit::Plan { parameters, start, most_tries: args.tries as usize };
-    let bar = progress(plan.most() as u64, "tries at most");
+    let bar = progress(plan.most_tries as u64, "tries at most");
     let found = fit::fit(&trials, &plan, || bar.inc(1));
     bar.finish_and_clear();
     if let Some(path) = &args.out {

@@ -9,6 +9,9 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen};
 use std::sync::Arc;
 
+/// The scale of tau ends where 1 / tau is as small as this, in presses.
+const STRICT: f64 = 0.1;
+
 /// A parameter that can be fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -79,32 +82,48 @@ impl Parameter {
         }
     }
 
-    fn is_share(self) -> bool {
-        matches!(self, Parameter::Lapse | Parameter::Foresight)
+    /// The values between which it is looked for. Who is stricter than a tau of 20 presses what it holds for the best practically
+    /// always, and no recording tells how strict it is.
+    pub fn bounds(self) -> [f64; 2] {
+        match self {
+            Parameter::Tau => [0.05, 20.0],
+            Parameter::Lapse => [0.001, 0.5],
+            Parameter::RadiusDeg => [0.25, 16.0],
+            Parameter::ReadingRateHz => [0.2, 100.0],
+            Parameter::RecipeHalfLifeS => [5.0, 20_000.0],
+            Parameter::Foresight => [0.001, 0.999],
+        }
     }
 
-    /// On the scale on which it is fitted, where any number is allowed: the logarithm, of a share that of its odds.
+    /// On the scale on which it is fitted: the logarithm, of a share that of its odds; of tau that of 1 / (1 / tau + 0.1), since
+    /// the stricter people are, the less difference a further step makes.
     pub fn to_scale(self, value: f64) -> f64 {
-        match self.is_share() {
-            true => {
+        match self {
+            Parameter::Lapse | Parameter::Foresight => {
                 let p = value.clamp(1e-4, 1.0 - 1e-4);
                 (p / (1.0 - p)).ln()
             }
-            false => value.ln(),
+            Parameter::Tau => (value / (1.0 + STRICT * value)).ln(),
+            _ => value.ln(),
         }
     }
 
     /// The inverse of [`Parameter::to_scale`].
     pub fn from_scale(self, scaled: f64) -> f64 {
-        match self.is_share() {
-            true => 1.0 / (1.0 + (-scaled).exp()),
-            false => scaled.exp(),
+        match self {
+            Parameter::Lapse | Parameter::Foresight => 1.0 / (1.0 + (-scaled).exp()),
+            Parameter::Tau => 1.0 / ((-scaled).exp() - STRICT),
+            _ => scaled.exp(),
         }
     }
 
     /// A standard error of the value, from one on the scale (first order).
     pub fn error_of(self, value: f64, scaled_error: f64) -> f64 {
-        let slope = if self.is_share() { value * (1.0 - value) } else { value };
+        let slope = match self {
+            Parameter::Lapse | Parameter::Foresight => value * (1.0 - value),
+            Parameter::Tau => value * (1.0 + STRICT * value),
+            _ => value,
+        };
         slope * scaled_error
     }
 }

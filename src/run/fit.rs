@@ -1,9 +1,10 @@
 //! `tomcom fit RECORDING...`: the human model's parameters under which the recorded presses are likeliest.
 //!
-//! Maximum likelihood: the sum over all presses of ln p(press | estimate before it). The simplex method comes near it on a
-//! scale without bounds; the filter's random numbers are the same at every try. What is left of chance makes the likelihood a
-//! little rough, and the best try a lucky one: so a quadratic surface is laid through tries all around it, wide enough to
-//! stand out from that. Its maximum is the result, its curvature, the observed information, gives the standard errors.
+//! Maximum likelihood: the sum over all presses of ln p(press | estimate before it), on a scale without bounds, looked for
+//! between bounds. The filter's chance makes the likelihood rough by some nats, so the search goes from one quadratic surface
+//! through tries all around to the next ([`crate::base::ascent`]). The last one's curvature, the observed information, and what
+//! chance leaves unknown of its maximum give the standard errors. A parameter that is best at its bound is not identified:
+//! what is told of it is from where on it is not rejected.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
@@ -12,8 +13,7 @@ use serde::Serialize;
 
 use super::parallel;
 use super::replay::{OneKitchen, Replay};
-use crate::base::minimise::minimise;
-use crate::base::surface::{points, surface};
+use crate::base::ascent::{End, Maximum, Variable, ascend};
 use crate::base::words::count;
 use crate::edge::files::FileResult;
 use crate::kitchen::Kitchen;
@@ -22,14 +22,6 @@ use crate::mind::fitting::{Likelihood, Parameter, likelihood};
 use crate::mind::model::HumanModel;
 use crate::mind::observation::Observation;
 
-/// First steps of the search, on the scale of the parameters.
-const FIRST_STEP: f64 = 0.4;
-/// The search is done when the tries around the best one differ by less, in nats: about as much as is left of chance.
-const TOLERANCE_NATS: f64 = 0.3;
-/// The surface around the best try reaches as far as costs so many nats, about: so far that chance hardly matters; …
-const SURFACE_NATS: [f64; 2] = [2.0, 12.0];
-/// … beginning with this step, on the scale of the parameters, and no further than that.
-const SURFACE_STEP: [f64; 2] = [0.2, 1.6];
 /// Half the width of an interval of 95 %, in standard errors.
 const HALF_WIDTH: f64 = 1.96;
 
@@ -41,14 +33,6 @@ pub struct Plan {
     pub start: HumanModel,
     /// The search ends after so many tries.
     pub most_tries: usize,
-}
-
-impl Plan {
-    /// About how often the likelihood is asked for at most, search and surface.
-    pub fn most(&self) -> usize {
-        let count = self.parameters.len();
-        self.most_tries + 4 * count + points(count)
-    }
 }
 
 /// What `tomcom fit` prints.
@@ -69,17 +53,59 @@ pub struct Fit {
     pub model: HumanModel,
 }
 
-/// A parameter that was fitted. Error and interval are null where the likelihood is not curved in every direction (the
-/// recordings do not tell), and where the search did not come to its end.
+/// A parameter that was fitted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fitted {
     pub name: &'static str,
     pub unit: &'static str,
     pub before: f64,
     pub value: f64,
+    /// Whether the recordings tell it from both sides, within the bounds of the search.
+    pub identified: bool,
+    /// Null where it is not identified, where the likelihood is not curved in every direction (the recordings do not tell
+    /// parameters apart), and where the search did not come to its end.
     pub standard_error: Option<f64>,
-    /// 95 %, symmetric on the scale on which it was fitted.
-    pub interval: Option<[f64; 2]>,
+    /// 95 %: symmetric on the scale on which it was fitted; of a parameter that is best at a bound, the end of its profile
+    /// likelihood interval. An end beyond the bounds of the search is null.
+    pub interval: Option<[Option<f64>; 2]>,
+}
+
+impl Fitted {
+    fn of(parameter: Parameter, before: f64, found: &Variable) -> Fitted {
+        let value = parameter.from_scale(found.at);
+        let [low, high] = parameter.bounds().map(|end| parameter.to_scale(end));
+        let told = |end: f64| (low..=high).contains(&end).then(|| parameter.from_scale(end));
+        let around =
+            found.standard_error.map(|error| [-HALF_WIDTH, HALF_WIDTH].map(|width| told(found.at + width * error)));
+        let limit = found.limit.map(|limit| parameter.from_scale(limit));
+        let interval = match found.end {
+            None => around,
+            Some(End::High) => limit.map(|limit| [Some(limit), None]),
+            Some(End::Low) => limit.map(|limit| [None, Some(limit)]),
+        };
+        let identified = matches!(interval, Some([Some(_), Some(_)]));
+        let error = found.standard_error.filter(|_| identified);
+        Fitted {
+            name: parameter.name(),
+            unit: parameter.unit(),
+            before,
+            value,
+            identified,
+            standard_error: error.map(|error| parameter.error_of(value, error)),
+            interval,
+        }
+    }
+
+    /// The interval in words.
+    fn span(&self) -> String {
+        match self.interval {
+            None => "-".to_string(),
+            Some([Some(from), Some(to)]) => format!("{from:.4} to {to:.4}"),
+            Some([Some(from), None]) => format!("above {from:.4}"),
+            Some([None, Some(to)]) => format!("below {to:.4}"),
+            Some([None, None]) => "anything".to_string(),
+        }
+    }
 }
 
 /// The trials of one kitchen.
@@ -153,69 +179,35 @@ pub fn fit(trials: &Trials, plan: &Plan, tried: impl Fn()) -> Fit {
         tried();
         loss
     };
-    let start: Vec<f64> = plan.parameters.iter().map(|one| one.to_scale(one.get(&plan.start))).collect();
-    let steps = vec![FIRST_STEP; start.len()];
+    let scaled = |parameter: &Parameter, value: f64| parameter.to_scale(value);
+    let start: Vec<f64> = plan.parameters.iter().map(|one| scaled(one, one.get(&plan.start))).collect();
+    let bounds: Vec<[f64; 2]> = plan.parameters.iter().map(|one| one.bounds().map(|end| scaled(one, end))).collect();
     let before = judge.likelihood(&plan.start);
-    let best = minimise(loss, &start, &steps, TOLERANCE_NATS, plan.most_tries);
-    // Away from the maximum, curvature says nothing of errors.
-    let around = || surface(loss, &best.at, &telling_steps(loss, &best.at, best.value));
-    let surface = best.converged.then(around).flatten();
-    let at = surface.as_ref().map_or(&best.at, |surface| &surface.at);
-    let log_p = judge.likelihood(&with(at)).log_p;
+    let Maximum { variables, evaluations, converged } = ascend(loss, &start, &bounds, plan.most_tries);
+    let model = with(&variables.iter().map(|variable| variable.at).collect::<Vec<f64>>());
+    let log_p = judge.likelihood(&model).log_p;
     let presses = before.presses.max(1) as f64;
-    let fitted = |(index, &parameter): (usize, &Parameter)| {
-        let value = parameter.from_scale(at[index]);
-        let error = surface.as_ref().map(|surface| surface.covariance[index][index].sqrt());
-        Fitted {
-            name: parameter.name(),
-            unit: parameter.unit(),
-            before: parameter.get(&plan.start),
-            value,
-            standard_error: error.map(|error| parameter.error_of(value, error)),
-            interval: error
-                .map(|error| [-HALF_WIDTH, HALF_WIDTH].map(|width| parameter.from_scale(at[index] + width * error))),
-        }
-    };
+    let fitted = plan.parameters.iter().zip(&variables);
     Fit {
         recordings: trials.observations.len() as u64,
         human_actions: before.presses,
         log_likelihood_before: before.log_p / presses,
         log_likelihood: log_p / presses,
-        tries: best.evaluations as u64,
-        converged: best.converged,
-        parameters: plan.parameters.iter().enumerate().map(fitted).collect(),
-        model: with(at),
+        tries: evaluations as u64,
+        converged,
+        parameters: fitted.map(|(one, found)| Fitted::of(*one, one.get(&plan.start), found)).collect(),
+        model,
     }
-}
-
-/// Steps along each parameter, from a minimum, that cost enough to stand out from chance.
-fn telling_steps(mut loss: impl FnMut(&[f64]) -> f64, at: &[f64], least: f64) -> Vec<f64> {
-    let mut step_of = |index: usize| {
-        let mut step = SURFACE_STEP[0];
-        loop {
-            let mut beside = |by: f64| {
-                let mut at = at.to_vec();
-                at[index] += by;
-                loss(&at)
-            };
-            let rise = (beside(step) + beside(-step)) / 2.0 - least;
-            if rise < SURFACE_NATS[0] && step < SURFACE_STEP[1] {
-                step *= 2.0;
-            } else if rise > SURFACE_NATS[1] && step > SURFACE_STEP[0] / 8.0 {
-                step /= 2.0;
-            } else {
-                return step;
-            }
-        }
-    };
-    (0..at.len()).map(&mut step_of).collect()
 }
 
 /// What stands above the parameters in a file.
 pub fn comment(fit: &Fit) -> String {
-    let values = fit.parameters.iter().map(|one| match one.standard_error {
-        Some(error) => format!("{} = {:.4}, standard error {error:.4}", one.name, one.value),
-        None => format!("{} = {:.4}, which the recordings do not tell surely", one.name, one.value),
+    let values = fit.parameters.iter().map(|one| match (one.standard_error, one.interval) {
+        (Some(error), _) => format!("{} = {:.4}, standard error {error:.4}", one.name, one.value),
+        (None, Some(_)) => {
+            format!("{} {}: not identified, {:.4} was the end of the search", one.name, one.span(), one.value)
+        }
+        (None, None) => format!("{} = {:.4}, which the recordings do not tell surely", one.name, one.value),
     });
     let values: Vec<String> = values.collect();
     format!(
@@ -244,7 +236,7 @@ pub fn describe(fit: &Fit) -> String {
     );
     for one in &fit.parameters {
         let error = one.standard_error.map_or("-".to_string(), |error| format!("{error:.4}"));
-        let interval = one.interval.map_or("-".to_string(), |[from, to]| format!("{from:.4} to {to:.4}"));
+        let interval = one.span();
         let name = format!("{} ({})", one.name, one.unit);
         text.push_str(&format!("{name:<24}{:>10.4}{:>12.4}{error:>10}{interval:>22}\n", one.before, one.value));
     }

@@ -1,0 +1,312 @@
+//! Maximum likelihood where the likelihood is noisy: from response surface to response surface (Box and Wilson 1951) to the
+//! maximum, within bounds. Noise makes single comparisons worthless, but every surface averages it over its points, and tells
+//! how much of it there is.
+//!
+//! A variable that is best at one of its bounds, or whose bound is not rejected beside the best, is held there, and gets the
+//! end of a profile likelihood interval instead of a standard error (Venzon and Moolgavkar 1988).
+
+use super::surface::{REACH, Surface, points, surface};
+
+/// The first steps.
+const FIRST_STEP: f64 = 0.4;
+/// Steps are so wide that they cost about as much: in nats, and more where there is noise, in standard deviations.
+const STEP_NATS: [f64; 2] = [2.0, 12.0];
+const STEP_NOISE: f64 = 0.5;
+/// Steps stay between these, and change by at most this factor at a time.
+const STEPS: [f64; 2] = [0.02, 1.6];
+const STEP_CHANGE: f64 = 2.5;
+/// Half the quantile of chi squared with one degree of freedom, for 95 %.
+const REJECTED_NATS: f64 = 1.92;
+/// The end of a profile is looked for in steps of this size at first, and told to within a fourth of it.
+const PROFILE_STEP: f64 = 0.3;
+/// Who loses more than so much at a bound, the others as they are at the best, and beyond the noise, would not make up for it
+/// by changing them.
+const HOPELESS_NATS: f64 = 30.0;
+/// That close to a bound is at it.
+const CLOSE: f64 = 1e-9;
+
+/// A bound at which a variable is best.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    Low,
+    High,
+}
+
+/// What is known of a variable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variable {
+    pub at: f64,
+    /// None at a bound, and where the likelihood is not curved in every direction.
+    pub standard_error: Option<f64>,
+    /// The bound at which it is best, if it is at one, …
+    pub end: Option<End>,
+    /// … and how far from there it may be (95 %); nothing if that was not found.
+    pub limit: Option<f64>,
+}
+
+/// A maximum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Maximum {
+    pub variables: Vec<Variable>,
+    /// How often the likelihood was asked for.
+    pub evaluations: usize,
+    /// It came to rest before the evaluations were used up.
+    pub converged: bool,
+}
+
+/// Looks for the maximum of a log likelihood, given by its negative in nats, between bounds. It is asked for at most about
+/// `most` times.
+pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]], most: usize) -> Maximum {
+    let inside = |(at, [low, high]): (&f64, &[f64; 2])| at.clamp(*low, *high);
+    let at: Vec<f64> = start.iter().zip(bounds).map(inside).collect();
+    let count = at.len();
+    let mut search = Search { loss, bounds, at, steps: vec![FIRST_STEP; count], evaluations: 0, most };
+    let mut held = vec![None; count];
+    // What comes to rest at a bound is held there, and the others are looked for again.
+    let last = loop {
+        let free: Vec<usize> = (0..count).filter(|&index| held[index].is_none()).collect();
+        let Some(last) = search.climb(&free) else { break None };
+        let mut ends: Vec<(usize, End)> = free.iter().filter_map(|&index| Some((index, search.end(index)?))).collect();
+        if ends.is_empty() {
+            ends.extend(last.as_ref().and_then(|last| search.open_end(&free, last)));
+        }
+        if ends.is_empty() {
+            break Some((free, last));
+        }
+        for (index, end) in ends {
+            search.at[index] = search.bound(index, end);
+            held[index] = Some(end);
+        }
+    };
+    let converged = last.is_some();
+    let covariance = last.as_ref().and_then(|(_, last)| last.as_ref()?.covariance());
+    let error = |index: usize| {
+        let (free, _) = last.as_ref()?;
+        let place = free.iter().position(|&other| other == index)?;
+        Some(covariance.as_ref()?[place][place].sqrt() * search.steps[index])
+    };
+    let errors: Vec<Option<f64>> = (0..count).map(error).collect();
+    let limits: Vec<Option<f64>> = (0..count)
+        .map(|index| held[index].filter(|_| converged).and_then(|end| search.limit(index, end, &held)))
+        .collect();
+    let variable = |index: usize| Variable {
+        at: search.at[index],
+        standard_error: errors[index],
+        end: held[index].filter(|_| converged),
+        limit: limits[index],
+    };
+    Maximum { variables: (0..count).map(variable).collect(), evaluations: search.evaluations, converged }
+}
+
+struct Search<'a, F> {
+    loss: F,
+    bounds: &'a [[f64; 2]],
+    /// The best so far.
+    at: Vec<f64>,
+    steps: Vec<f64>,
+    evaluations: usize,
+    most: usize,
+}
+
+impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
+    /// Goes to the maximum over some of the variables. Gives the surface around it (none of no variables); nothing if it did not
+    /// come to rest.
+    fn climb(&mut self, free: &[usize]) -> Option<Option<Surface>> {
+        if free.is_empty() {
+            return Some(None);
+        }
+        loop {
+            let (centre, surface) = self.survey(free)?;
+            let by = self.least(free, &centre, &surface);
+            for ((&index, centre), by) in free.iter().zip(&centre).zip(&by) {
+                self.at[index] = (centre + by * self.steps[index]).clamp(self.bounds[index][0], self.bounds[index][1]);
+            }
+            let rests = free.iter().zip(&by).all(|(&index, by)| by.abs() <= 1.0 || self.end(index).is_some());
+            let wanted = self.wanted_steps(free, &surface);
+            let is_telling = free.iter().zip(&wanted).all(|(&index, wanted)| {
+                let change = wanted / self.steps[index];
+                (0.5..=2.0).contains(&change) || self.end(index).is_some()
+            });
+            if rests && is_telling {
+                return Some(Some(surface));
+            }
+            free.iter().zip(wanted).for_each(|(&index, wanted)| self.steps[index] = wanted);
+        }
+    }
+
+    /// A surface over some of the variables around the best so far, all of it between the bounds, and its centre; nothing if
+    /// there are no evaluations left for it.
+    fn survey(&mut self, free: &[usize]) -> Option<(Vec<f64>, Surface)> {
+        if self.evaluations + points(free.len()) > self.most {
+            return None;
+        }
+        for &index in free {
+            let [low, high] = self.bounds[index];
+            self.steps[index] = self.steps[index].min((high - low) / 2.0);
+        }
+        let inside = |&index: &usize| {
+            let ([low, high], step) = (self.bounds[index], self.steps[index]);
+            self.at[index].clamp(low + step, (high - step).max(low + step))
+        };
+        let centre: Vec<f64> = free.iter().map(inside).collect();
+        let steps: Vec<f64> = free.iter().map(|&index| self.steps[index]).collect();
+        let mut whole = self.at.clone();
+        let (loss, evaluations) = (&mut self.loss, &mut self.evaluations);
+        let of_free = |at: &[f64]| {
+            free.iter().zip(at).for_each(|(&index, &at)| whole[index] = at);
+            *evaluations += 1;
+            loss(&whole)
+        };
+        surface(of_free, &centre, &steps).map(|surface| (centre, surface))
+    }
+
+    fn least(&self, free: &[usize], centre: &[f64], surface: &Surface) -> Vec<f64> {
+        let in_steps = |end: usize, reach: f64| -> Vec<f64> {
+            let of = |(&index, centre): (&usize, &f64)| (self.bounds[index][end] - centre) / self.steps[index];
+            free.iter()
+                .zip(centre)
+                .map(of)
+                .map(|by: f64| if end == 0 { by.max(reach) } else { by.min(reach) })
+                .collect()
+        };
+        surface.least(&in_steps(0, -REACH), &in_steps(1, REACH))
+    }
+
+    /// Steps that cost enough to stand out from chance, and no more.
+    fn wanted_steps(&self, free: &[usize], surface: &Surface) -> Vec<f64> {
+        let [least, most] = STEP_NATS.map(|nats| nats + STEP_NOISE * surface.noise);
+        let wanted = |(place, &index): (usize, &usize)| {
+            let rise = surface.curvature[place][place] / 2.0;
+            let change = match rise {
+                _ if rise > most || rise > 0.0 && rise < least => ((least * most).sqrt() / rise).sqrt(),
+                _ if rise > 0.0 => 1.0,
+                _ => STEP_CHANGE,
+            };
+            let [low, high] = self.bounds[index];
+            let step = self.steps[index] * change.clamp(1.0 / STEP_CHANGE, STEP_CHANGE);
+            step.clamp(STEPS[0], STEPS[1].min((high - low) / 2.0))
+        };
+        free.iter().enumerate().map(wanted).collect()
+    }
+
+    /// The bound that a variable is at.
+    fn end(&self, index: usize) -> Option<End> {
+        let [low, high] = self.bounds[index];
+        match self.at[index] {
+            at if at <= low + CLOSE => Some(End::Low),
+            at if at >= high - CLOSE => Some(End::High),
+            _ => None,
+        }
+    }
+
+    fn bound(&self, index: usize, end: End) -> f64 {
+        self.bounds[index][end as usize]
+    }
+
+    /// A bound that is not rejected beside the best.
+    fn open_end(&mut self, free: &[usize], last: &Surface) -> Option<(usize, End)> {
+        let best = self.at.clone();
+        let value = last.at(&last.least(&vec![-REACH; free.len()], &vec![REACH; free.len()]));
+        for &index in free {
+            let others: Vec<usize> = free.iter().copied().filter(|&other| other != index).collect();
+            for end in [End::Low, End::High] {
+                self.at[index] = self.bound(index, end);
+                self.evaluations += 1;
+                let hopeless = (self.loss)(&self.at) - value > HOPELESS_NATS + 3.0 * last.noise;
+                let at_bound = if hopeless { None } else { self.profile(&others) };
+                self.at.clone_from(&best);
+                if at_bound.is_some_and(|(at_bound, noise)| at_bound - value <= REJECTED_NATS + noise) {
+                    return Some((index, end));
+                }
+            }
+        }
+        None
+    }
+
+    /// How far from its bound a variable may be: where the likelihood, the others at their best, is rejected beside that at the
+    /// bound, and beyond its noise.
+    fn limit(&mut self, index: usize, end: End, held: &[Option<End>]) -> Option<f64> {
+        let others: Vec<usize> = (0..held.len()).filter(|&other| other != index && held[other].is_none()).collect();
+        let best = self.at.clone();
+        let (at_bound, _) = self.profile(&others)?;
+        let [low, high] = self.bounds[index];
+        let away = if end == End::Low { 1.0 } else { -1.0 };
+        let (mut near, mut far, mut step) = (0.0, None, PROFILE_STEP);
+        let found = loop {
+            let by = match far {
+                None if near + step > high - low => break None,
+                None => near + step,
+                Some(far) if far - near <= PROFILE_STEP / 4.0 => break Some(best[index] + away * (near + far) / 2.0),
+                Some(far) => (near + far) / 2.0,
+            };
+            self.at.clone_from(&best);
+            self.at[index] = best[index] + away * by;
+            let Some((value, noise)) = self.profile(&others) else { break None };
+            match value - at_bound > REJECTED_NATS + noise {
+                true => far = Some(by),
+                false => (near, step) = (by, 2.0 * step),
+            }
+        };
+        self.at = best;
+        found
+    }
+
+    /// The least loss over these variables near the best so far, and the standard deviation of a difference of two such.
+    fn profile(&mut self, others: &[usize]) -> Option<(f64, f64)> {
+        if others.is_empty() {
+            self.evaluations += 1;
+            return Some(((self.loss)(&self.at), 0.0));
+        }
+        let (centre, surface) = self.survey(others)?;
+        let by = self.least(others, &centre, &surface);
+        let count = others.len() as f64;
+        let terms = 1.0 + count + count * (count + 1.0) / 2.0;
+        let noise = surface.noise * (2.0 * terms / points(others.len()) as f64).sqrt();
+        Some((surface.at(&by), noise))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::base::rng::stream;
+
+    /// Of 2 variables: known with standard errors of 0.1 and 0.2.
+    fn bowl(at: &[f64]) -> f64 {
+        50.0 * (at[0] - 0.7).powi(2) + 12.5 * (at[1] + 1.2).powi(2)
+    }
+
+    #[test]
+    fn finds_the_maximum_and_its_errors_through_noise() {
+        let mut random = stream(4, "noise", 0);
+        let noisy = |at: &[f64]| bowl(at) + 3.0 * (random.random::<f64>() - 0.5);
+        let found = ascend(noisy, &[3.0, 2.0], &[[-5.0, 5.0]; 2], 300);
+        assert!(found.converged, "{found:?}");
+        for (variable, (at, error)) in found.variables.iter().zip([(0.7, 0.1), (-1.2, 0.2)]) {
+            let told = variable.standard_error.expect("an error");
+            assert!((0.7 * error..2.0 * error).contains(&told), "{found:?}");
+            assert!((variable.at - at).abs() < 3.0 * told && variable.end.is_none(), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn what_has_no_maximum_gets_one_end_of_an_interval() {
+        // The second variable makes no difference above 1.
+        let plateau = |at: &[f64]| 50.0 * (at[0] - 0.7).powi(2) + 40.0 * (1.0 - at[1]).max(0.0).powi(2) - 0.1 * at[1];
+        let found = ascend(plateau, &[0.0, 0.0], &[[-5.0, 5.0], [-3.0, 3.0]], 600);
+        let [first, second] = &found.variables[..] else { panic!("{found:?}") };
+        assert!(found.converged && (first.at - 0.7).abs() < 0.05 && first.standard_error.is_some(), "{found:?}");
+        assert_eq!((second.end, second.standard_error), (Some(End::High), None), "{found:?}");
+        // 40 (1 - x)^2 + 0.1 (3 - x) = 1.92 at x = 0.79.
+        assert!((second.limit.expect("a limit") - 0.79).abs() < 0.1, "{found:?}");
+    }
+
+    #[test]
+    fn says_when_it_was_not_done() {
+        let found = ascend(bowl, &[50.0, 50.0], &[[-1e3, 1e3]; 2], 12);
+        assert!(!found.converged && found.evaluations <= 12, "{found:?}");
+        assert!(found.variables.iter().all(|variable| variable.standard_error.is_none()), "{found:?}");
+    }
+}

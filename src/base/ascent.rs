@@ -121,13 +121,17 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
             for ((&index, centre), by) in free.iter().zip(&centre).zip(&by) {
                 self.at[index] = (centre + by * self.steps[index]).clamp(self.bounds[index][0], self.bounds[index][1]);
             }
-            let rests = free.iter().zip(&by).all(|(&index, by)| by.abs() <= 1.0 || self.end(index).is_some());
+            // What is little known moves with the noise, for nothing.
+            let gain = surface.value - surface.at(&by);
+            let is_noise =
+                surface.covariance().is_some() && gain <= REJECTED_NATS + surface.noise * share_of_noise(free.len());
+            let is_near = free.iter().zip(&by).all(|(&index, by)| by.abs() <= 1.0 || self.end(index).is_some());
             let wanted = self.wanted_steps(free, &surface);
             let is_telling = free.iter().zip(&wanted).all(|(&index, wanted)| {
                 let change = wanted / self.steps[index];
                 (0.5..=2.0).contains(&change) || self.end(index).is_some()
             });
-            if rests && is_telling {
+            if (is_near || is_noise) && is_telling {
                 return Some(Some(surface));
             }
             free.iter().zip(wanted).for_each(|(&index, wanted)| self.steps[index] = wanted);
@@ -259,11 +263,15 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         }
         let (centre, surface) = self.survey(others)?;
         let by = self.least(others, &centre, &surface);
-        let count = others.len() as f64;
-        let terms = 1.0 + count + count * (count + 1.0) / 2.0;
-        let noise = surface.noise * (2.0 * terms / points(others.len()) as f64).sqrt();
-        Some((surface.at(&by), noise))
+        Some((surface.at(&by), surface.noise * share_of_noise(others.len())))
     }
+}
+
+/// The standard deviation of a difference of two surfaces over so many variables, by that of the values.
+fn share_of_noise(variables: usize) -> f64 {
+    let count = variables as f64;
+    let terms = 1.0 + count + count * (count + 1.0) / 2.0;
+    (2.0 * terms / points(variables) as f64).sqrt()
 }
 
 #[cfg(test)]

@@ -74,7 +74,7 @@ fn a_tau_that_no_press_tells_is_bounded_from_below() {
     assert!(low.is_none_or(|low| low < 0.05) && high.is_none_or(|high| high > 0.05), "{lapse:?}");
 }
 
-/// All five at once, in the sushi kitchen.
+/// All five at once, in the sushi kitchen, by hand: `cargo test --release --test inference fitting -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes some minutes, in release"]
 fn fitting_recovers_all_usual_parameters() {

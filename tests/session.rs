@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use tomcom::base::time::SessionTime;
+use tomcom::communication::settings::AssistantSpec;
 use tomcom::communication::{Sender, Signal};
 use tomcom::console::{KeyMap, Keys};
 use tomcom::edge::files::{parse, read_session};
@@ -48,9 +49,12 @@ fn the_default_session_spells_out_every_default() {
     let path = Path::new("sessions/default.toml");
     let only_layout: SessionSpec = parse(path, "layout = \"../layouts/sushi.toml\"").expect("a session file");
     let spec = read_session(path).expect("the default session").spec;
-    // But for the human model, which is fitted to its simulated participant.
+    // But for what is fitted to its simulated participant: the human model, and where people look in rollouts.
     assert_ne!(spec.human, only_layout.human);
-    assert_eq!(SessionSpec { human: only_layout.human.clone(), ..spec }, only_layout);
+    assert_ne!(spec.assistant.rollout, only_layout.assistant.rollout);
+    let rollout = only_layout.assistant.rollout.clone();
+    let assistant = AssistantSpec { rollout, ..spec.assistant };
+    assert_eq!(SessionSpec { human: only_layout.human.clone(), assistant, ..spec }, only_layout);
 }
 
 fn at(seconds: f64) -> SessionTime {

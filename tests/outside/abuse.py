@@ -4,6 +4,7 @@
 """
 
 import asyncio
+import contextlib
 import json
 import random
 import sys
@@ -47,8 +48,9 @@ async def one(url, number, ready):
 
 
 async def read(socket):
-    async for _ in socket:
-        pass
+    with contextlib.suppress(WebSocketException):
+        async for _ in socket:
+            pass
 
 
 async def main(port):

@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 import threading
+import time
 from contextlib import contextmanager
 
 from playwright.sync_api import sync_playwright
@@ -39,12 +40,27 @@ class Page:
         self.page = self.context.new_page()
         self.errors, self.said, self.lock = [], [], threading.Lock()
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        self.page.on("websocket", lambda socket: socket.on("framesent", self.note))
+        # From a press until the page knows its effect, in milliseconds, for every press that had one.
+        self.answered_ms, self.pressed = [], None
+        self.page.on("websocket", self.listen)
         self.page.goto(url + (f"/?code={code}" if code else ""))
 
+    def listen(self, socket):
+        socket.on("framesent", self.note)
+        socket.on("framereceived", self.hear)
+
     def note(self, payload):
+        message = json.loads(payload)
         with self.lock:
-            self.said.append(json.loads(payload))
+            self.said.append(message)
+            if message["kind"] == "press":
+                self.pressed = time.perf_counter()
+
+    def hear(self, payload):
+        with self.lock:
+            if self.pressed is not None and json.loads(payload)["kind"] == "sight":
+                self.answered_ms.append(1000 * (time.perf_counter() - self.pressed))
+                self.pressed = None
 
     def wait_for(self, script, seconds=15):
         self.page.wait_for_function(script, timeout=1000 * seconds)

@@ -3,20 +3,25 @@
 
 const Hands = (() => {
   // The same button within so many milliseconds is a contact that bounces.
-  const BOUNCE_MS = 50;
+  const BOUNCE_MS = 50, PUSHED_MS = 8;
   const down = new Set(), pads = new Map(), last = new Map();
   let tell = () => {}, answer = () => {};
 
   function press(button, at) {
     if (at - (last.get(button) ?? -Infinity) < BOUNCE_MS) return;
     last.set(button, at);
-    const drawn = document.querySelector(`[data-button="${CSS.escape(button)}"]`);
-    if (drawn) {
-      drawn.classList.remove("pushed");
-      void drawn.offsetWidth;
-      drawn.classList.add("pushed");
-    }
     tell(button, at);
+    // The program's answer is there sooner: both are drawn in one frame, and the answer does not wait for the next.
+    setTimeout(() => push(button), PUSHED_MS);
+  }
+
+  /** Shows that the button went down. */
+  function push(button) {
+    const drawn = document.querySelector(`[data-button="${CSS.escape(button)}"]`);
+    if (!drawn) return;
+    drawn.classList.remove("pushed");
+    void drawn.offsetWidth;
+    drawn.classList.add("pushed");
   }
 
   /** An event's own time; one that is not on the page's clock counts as now. */

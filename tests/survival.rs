@@ -85,9 +85,10 @@ fn check_kill(number: u64, limit: Duration) {
     let began = Instant::now();
     let mut sent = Vec::new();
     while began.elapsed() < length {
-        let line = format!("{{\"t\": {}, \"x\": 0.4, \"y\": 0.3, \"confidence\": 0.9}}\n", sent.len());
+        let taken_s = began.elapsed().as_millis() as f64 / 1e3;
+        let line = format!("{{\"t\": {taken_s:.3}, \"x\": 0.4, \"y\": 0.3, \"confidence\": 0.9}}\n");
         tracker.write_all(line.as_bytes()).expect("sent");
-        sent.push(Instant::now());
+        sent.push((Instant::now(), (taken_s * 1e3).round() as u64));
         std::thread::sleep(Duration::from_micros(random.random_range(7_000..9_700)));
     }
     let pid = terminal.read("pid");
@@ -96,8 +97,8 @@ fn check_kill(number: u64, limit: Duration) {
     let recording = terminal.recording();
     assert_eq!(verified(&recording)["cut"], true);
     let log = terminal.log();
-    let is_there = |index: usize| log.contains(&format!("\"device_ns\":{index}000000000}}")) || index == 0;
-    let lost = (0..sent.len()).find(|&index| !is_there(index)).map_or(Duration::ZERO, |index| killed - sent[index]);
+    let is_there = |taken_ms: u64| taken_ms == 0 || log.contains(&format!("\"device_ns\":{taken_ms}000000,"));
+    let lost = sent.iter().find(|(_, taken_ms)| !is_there(*taken_ms)).map_or(Duration::ZERO, |(at, _)| killed - *at);
     println!("kill {number}: {} samples, the oldest lost one is {:.1} ms old", sent.len(), lost.as_secs_f64() * 1e3);
     assert!(lost <= limit, "kill {number}: a sample of {lost:?} before the kill is lost");
     let Some(other) = Terminal::open(&format!("kill-{number}-goes-on")) else { return };

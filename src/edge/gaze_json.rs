@@ -108,7 +108,7 @@ pub fn parse(line: &[u8]) -> Option<GazeNews> {
     if !(found.x.is_finite() && found.y.is_finite() && (0.0..=1.0).contains(&found.confidence)) {
         return Some(GazeNews::Malformed(1));
     }
-    let device_ns = found.t.filter(|t| (0.0..1e10).contains(t)).map(|t| (t * 1e9) as u64);
+    let device_ns = found.t.filter(|t| (0.0..1e10).contains(t)).map(|t| (t * 1e9).round() as u64);
     let sample = GazeSample { device_ns, ..GazeSample::new(found.x, found.y, found.confidence) };
     Some(GazeNews::Sample(sample, None))
 }

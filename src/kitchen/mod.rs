@@ -82,6 +82,12 @@ impl Kitchen {
         self.aspects.iter().map(|aspect| aspect.values.len() as u128).product()
     }
 
+    /// The locations that hold something else in one state than in the other.
+    pub fn changed(&self, before: State, after: State) -> impl Iterator<Item = LocationId> + use<> {
+        let locations = (0..self.locations.len()).map(|index| LocationId(index as u8));
+        locations.filter(move |&location| before.code(location) != after.code(location))
+    }
+
     pub fn location(&self, id: LocationId) -> &Location {
         &self.locations[id.index()]
     }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{Action, Agent, ButtonId, Kitchen, LocationId, State};
+use crate::kitchen::{Action, Agent, ButtonId, Kitchen, State};
 
 /// A press so soon after a change by the robot, or by nobody, at the same place cannot have taken the change into account.
 pub const RACE_S: f64 = 0.3;
@@ -44,11 +44,8 @@ impl Judge {
 
     /// Takes note of what a press of the robot, or a correction by hand, changed.
     pub fn others_changed(&mut self, now: SessionTime, before: State, after: State) {
-        for index in 0..self.kitchen.locations.len() {
-            let location = LocationId(index as u8);
-            if before.code(location) != after.code(location) {
-                self.others_changed_at[index] = Some(now);
-            }
+        for location in self.kitchen.changed(before, after) {
+            self.others_changed_at[location.index()] = Some(now);
         }
     }
 

@@ -219,11 +219,8 @@ fn note(session: &mut Session, time: SessionTime, what: Happening) {
 fn change(session: &mut Session, now: SessionTime, how: impl FnOnce(&mut State)) {
     let before = session.state;
     how(&mut session.state);
-    for index in 0..session.kitchen.locations.len() {
-        let location = LocationId(index as u8);
-        if before.code(location) != session.state.code(location) {
-            session.changed_at[index] = now;
-        }
+    for location in session.kitchen.changed(before, session.state) {
+        session.changed_at[location.index()] = now;
     }
 }
 

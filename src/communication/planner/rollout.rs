@@ -13,7 +13,7 @@ use crate::communication::settings::RolloutModel;
 use crate::communication::situation::{RobotOutlook, Situation};
 use crate::kitchen::cost_to_go::{Care, CostToGo};
 use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, Recipes, State};
+use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, Recipes, State};
 
 /// So many presses of the robot between two decisions have random numbers of their own.
 const ROBOT_DRAWS: usize = 4;
@@ -105,8 +105,7 @@ impl Moment {
 
     /// The eye is drawn to what was otherwise before.
     fn see_changes(&mut self, kitchen: &Kitchen, before: State) {
-        let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
-        for location in locations.filter(|&location| before.code(location) != self.state.code(location)) {
+        for location in kitchen.changed(before, self.state) {
             self.cases.learn(kitchen, AspectId::of_location(location), self.state);
         }
     }

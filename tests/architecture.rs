@@ -48,7 +48,7 @@ const BANNED_BELOW_EDGE: [&str; 20] = [
 ];
 
 /// Crates that only some rooms may name; a file name stands for that file alone.
-const ONLY_IN: [(&str, &[&str]); 7] = [
+const ONLY_IN: [(&str, &[&str]); 8] = [
     ("ratatui", &["src/console", "src/edge"]),
     ("crossterm", &["src/console", "src/edge"]),
     ("tokio", &["src/edge", "src/run", "src/main.rs", "src/cli.rs"]),
@@ -56,6 +56,7 @@ const ONLY_IN: [(&str, &[&str]); 7] = [
     ("zeromq", &["src/edge"]),
     ("nalgebra", &["src/robot", "src/scene", "src/edge/rerun.rs"]),
     ("urdf_rs", &["src/robot"]),
+    ("rapier3d", &["src/robot"]),
 ];
 
 struct Source {

@@ -12,11 +12,12 @@ use toml::Spanned;
 use super::language::read_words;
 use crate::console::KeyMap;
 use crate::console::keys::{self, KeyError, KeyPlace, Layer};
-use crate::kitchen::Kitchen;
 use crate::kitchen::compile::{SpecError, SpecFile};
 use crate::kitchen::layout::{LayoutSpec, is_same_key};
 use crate::kitchen::recipe::RecipesSpec;
+use crate::kitchen::{Agent, Kitchen};
 use crate::mind::model::HumanModel;
+use crate::robot::reach::out_of_reach;
 use crate::session::SessionSpec;
 use crate::session::header::FileText;
 use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study};
@@ -292,6 +293,7 @@ pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> Fil
     let recipes_spec: RecipesSpec = parse(recipes.0, &recipes.1)?;
     match Kitchen::compile(&layout_spec, &recipes_spec) {
         Ok(kitchen) => {
+            check_reach(layout.0, &layout.1, &layout_spec, &kitchen)?;
             let layout_text = FileText { path: layout.0.display().to_string(), text: layout.1 };
             let recipes_text = FileText { path: layout_spec.recipes.into_inner(), text: recipes.1 };
             Ok(KitchenFiles { kitchen, layout: layout_text, recipes: recipes_text })
@@ -304,6 +306,17 @@ pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> Fil
             Err(FileError::at(path, text, span, found, remedy))
         }
     }
+}
+
+/// Whether the robot's arm can press all its buttons.
+fn check_reach(path: &Path, text: &str, layout: &LayoutSpec, kitchen: &Kitchen) -> FileResult<()> {
+    let Some((button, why)) = out_of_reach(kitchen) else { return Ok(()) };
+    let button = kitchen.button(Agent::Robot, button);
+    let [x, y] = button.at_m;
+    let place = layout.buttons().find(|spec| *spec.at_m.get_ref() == button.at_m).map(|spec| spec.at_m.span());
+    let found = format!("the robot's button \"{}\" at x = {x} m, y = {y} m, {}", button.name, why.words());
+    let remedy = "a place about 0.2 to 0.75 m from the robot's base, and not beside or behind it".to_string();
+    Err(FileError::at(path, text, place, found, remedy))
 }
 
 /// The text of a file.

@@ -24,7 +24,7 @@ use rerun::web_viewer::WebViewerConfig;
 use rerun::{AsComponents, Color, FillMode, Quaternion, RecordingStream, RecordingStreamBuilder, TextLogLevel};
 
 use crate::base::time::SessionTime;
-use crate::robot::kinematics::{Shape, Solid};
+use crate::robot::urdf::{Shape, Solid};
 use crate::scene::shown::{Area, Disc, Level, Point, Series};
 use crate::scene::{Moment, Row, Shown};
 

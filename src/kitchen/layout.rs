@@ -120,15 +120,19 @@ impl LayoutSpec {
         all.filter_map(|(name, key)| Some((name.get_ref().as_str(), key.as_ref()?)))
     }
 
-    /// The human's keys for buttons.
-    pub fn button_keys(&self) -> impl Iterator<Item = &Spanned<char>> {
+    /// The buttons of both agents.
+    pub fn buttons(&self) -> impl Iterator<Item = &ButtonSpec> {
         let orders = self.order.iter().map(|order| &order.serve);
         let hands = self.hand.iter().map(|hand| &hand.trash);
         let places = self.place.iter().map(|place| &place.button);
         let processes = self.process.iter().map(|process| &process.button);
         let storages = self.storage.iter().map(|storage| &storage.button);
-        let all = orders.chain(hands).chain(places).chain(processes).chain(storages);
-        all.filter_map(|button| button.key.as_ref())
+        orders.chain(hands).chain(places).chain(processes).chain(storages)
+    }
+
+    /// The human's keys for buttons.
+    pub fn button_keys(&self) -> impl Iterator<Item = &Spanned<char>> {
+        self.buttons().filter_map(|button| button.key.as_ref())
     }
 }
 

@@ -1,9 +1,13 @@
 //! The robot: its task policy, and the arm that carries it out.
 
+pub mod clearance;
+pub mod inverse;
 pub mod kinematics;
 pub mod motion;
 pub mod policy;
+pub mod reach;
 pub mod timed;
+pub mod urdf;
 
 use serde::{Deserialize, Serialize};
 

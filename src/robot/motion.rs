@@ -3,29 +3,17 @@
 //! From pose to pose the joints go together, slowly at both ends (a quintic; Craig, Introduction to Robotics): up from the
 //! last button, above the next one, down on it.
 
+use super::clearance::Surroundings;
 use super::kinematics::{Arm, JOINTS, Joints};
+use super::reach::{AtButton, BENT};
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, Button, ButtonId, Kitchen};
 
-/// The height of a button above the table, in metres.
-pub const BUTTON_M: f64 = 0.02;
-/// The tip goes from button to button so high above them, in metres.
-const ABOVE_M: f64 = 0.08;
 /// Of the time until it touches, the arm goes up for the first part, and down for the last.
 const UP: f64 = 0.15;
 const DOWN: f64 = 0.2;
 /// How long it takes to go up without another button to go to, in seconds.
 const UP_S: f64 = 0.4;
-/// Where a search for a pose begins: elbow up, stick down.
-const BENT: Joints = [0.0, -1.6, 1.8, -1.8, -1.57, 0.0];
-
-/// The poses at a button.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct AtButton {
-    above: Joints,
-    touching: Joints,
-}
-
 /// Where the joints of an arm are from moment to moment.
 #[derive(Clone, Debug)]
 pub struct ArmMotion {
@@ -40,13 +28,8 @@ pub struct ArmMotion {
 impl ArmMotion {
     /// An arm at rest above the middle of its buttons.
     pub fn new(kitchen: &Kitchen, arm: &Arm) -> ArmMotion {
-        let at_button = |button: &Button| {
-            let [x, y] = button.at_m;
-            let top_m = kitchen.table_height_m + BUTTON_M;
-            let start = Joints::from([y.atan2(x), BENT[1], BENT[2], BENT[3], BENT[4], BENT[5]]);
-            let above = arm.pointing_down([x, y, top_m + ABOVE_M], &start)?;
-            Some(AtButton { above, touching: arm.pointing_down([x, y, top_m], &above)? })
-        };
+        let around = Surroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
+        let at_button = |button: &Button| arm.at_button(button.at_m, &around).ok();
         let buttons: Vec<Option<AtButton>> = kitchen.buttons[Agent::Robot.index()].iter().map(at_button).collect();
         let above: Vec<&Joints> = buttons.iter().flatten().map(|poses| &poses.above).collect();
         let mean = |joint: usize| above.iter().map(|pose| pose[joint]).sum::<f64>() / above.len() as f64;

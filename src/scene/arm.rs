@@ -7,8 +7,10 @@ use super::shown::{Point, Row, Shown};
 use crate::base::time::SessionTime;
 use crate::console::words;
 use crate::kitchen::{Agent, Button, ButtonId, Kitchen};
-use crate::robot::kinematics::{Arm, Joints, Shape, Solid};
-use crate::robot::motion::{ArmMotion, BUTTON_M};
+use crate::robot::kinematics::{Arm, Joints};
+use crate::robot::motion::ArmMotion;
+use crate::robot::reach::BUTTON_M;
+use crate::robot::urdf::{Shape, Solid};
 use crate::session::{Event, Session, Stamped};
 
 /// So often the arm is shown while it moves.

@@ -1,0 +1,156 @@
+//! How far an arm is from the table, from itself and from other things: its solids as capsules.
+
+use nalgebra::{Isometry3, Point3};
+use rapier3d::math::Vector;
+use rapier3d::parry::query::details::closest_points_segment_segment_with_locations_nD;
+
+use super::kinematics::{Arm, JOINTS, Joints};
+use super::urdf::{Shape, Solid};
+
+/// Its links keep at least so far from each other and from the table, in metres.
+pub const KEPT_M: f64 = 0.02;
+
+/// Everything within a radius of a segment: the shape of a link, a hand, an obstacle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Capsule {
+    pub ends_m: [Point3<f64>; 2],
+    pub radius_m: f64,
+}
+
+/// Where two capsules are nearest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// Between the surfaces; below 0 where they overlap.
+    pub distance_m: f64,
+    /// On the axis of each.
+    pub at_m: [Point3<f64>; 2],
+}
+
+impl Capsule {
+    /// The capsule in a solid; of a box the one along its longest side.
+    fn of(solid: &Solid, base_from_link: &Isometry3<f64>) -> Capsule {
+        let (half_m, radius_m, axis) = match solid.shape {
+            Shape::Cylinder { radius_m, length_m } => ((length_m / 2.0 - radius_m).max(0.0), radius_m, 2),
+            Shape::Sphere { radius_m } => (0.0, radius_m, 2),
+            Shape::Box { half_m } => {
+                let axis = (0..3).fold(0, |best, axis| if half_m[axis] > half_m[best] { axis } else { best });
+                let radius_m = half_m[(axis + 1) % 3].max(half_m[(axis + 2) % 3]);
+                ((half_m[axis] - radius_m).max(0.0), radius_m, axis)
+            }
+        };
+        let place = base_from_link * solid.link_from_solid;
+        let end = |side: f64| {
+            let mut end = Point3::origin();
+            end[axis] = side * half_m;
+            place * end
+        };
+        Capsule { ends_m: [end(-1.0), end(1.0)], radius_m }
+    }
+
+    /// Where it is nearest to another one.
+    pub fn nearest(&self, other: &Capsule) -> Nearest {
+        let single = |point: Point3<f64>| Vector::new(point.x as f32, point.y as f32, point.z as f32);
+        let [a, b] = self.ends_m.map(single);
+        let [c, d] = other.ends_m.map(single);
+        let (one, two) = closest_points_segment_segment_with_locations_nD((&a, &b), (&c, &d));
+        let along = |of: &Capsule, share: f32| of.ends_m[0] + (of.ends_m[1] - of.ends_m[0]) * f64::from(share);
+        let at_m = [along(self, one.barycentric_coordinates()[1]), along(other, two.barycentric_coordinates()[1])];
+        Nearest { distance_m: (at_m[0] - at_m[1]).norm() - self.radius_m - other.radius_m, at_m }
+    }
+
+    fn lowest_m(&self) -> f64 {
+        self.ends_m[0].z.min(self.ends_m[1].z) - self.radius_m
+    }
+}
+
+/// What an arm is too near to, or in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InTheWay {
+    Table,
+    ItsOwnLinks,
+    /// Something that is known to stand there.
+    Obstacle,
+}
+
+/// What is around an arm.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surroundings {
+    pub table_m: f64,
+    pub obstacles: Vec<Capsule>,
+}
+
+impl Arm {
+    /// The capsules in its solids, with the numbers of their links, in the frame of the base.
+    pub fn capsules(&self, joints: &Joints) -> Vec<(usize, Capsule)> {
+        let places = self.forward(joints);
+        let links = self.links.iter().zip(&places).enumerate();
+        links
+            .flat_map(|(at, (link, place))| link.solids.iter().map(move |solid| (at, Capsule::of(solid, place))))
+            .collect()
+    }
+
+    /// What it is nearer to than [`KEPT_M`]. The stick alone may come down to the table.
+    pub fn in_the_way(&self, joints: &Joints, around: &Surroundings) -> Option<InTheWay> {
+        let capsules = self.capsules(joints);
+        let stick = self.links.len() - 1;
+        let is_low = |(link, capsule): &(usize, Capsule)| {
+            // The base stands on the table, and the shoulder on the base.
+            let kept_m = if *link == stick { 0.0 } else { KEPT_M };
+            *link > 1 && capsule.lowest_m() < around.table_m + kept_m
+        };
+        if capsules.iter().any(is_low) {
+            return Some(InTheWay::Table);
+        }
+        let is_near = |one: &Capsule, two: &Capsule| one.nearest(two).distance_m < KEPT_M;
+        let meets_itself = |(link, one): &(usize, Capsule)| {
+            capsules.iter().any(|(other, two)| can_meet(*link, *other) && is_near(one, two))
+        };
+        if capsules.iter().any(meets_itself) {
+            return Some(InTheWay::ItsOwnLinks);
+        }
+        let meets = |(_, one): &(usize, Capsule)| around.obstacles.iter().any(|two| is_near(one, two));
+        capsules.iter().any(meets).then_some(InTheWay::Obstacle)
+    }
+}
+
+/// Whether two links can come near each other: neither next to each other on the chain, nor base and upper arm, nor two of
+/// the wrist's or the stick, which their joints keep at their distance.
+fn can_meet(link: usize, other: usize) -> bool {
+    other > link + 1 && other > 2 && link < JOINTS - 2
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    const BENT: Joints = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
+
+    fn check(joints: Joints, expected: Option<InTheWay>) {
+        assert_eq!(Arm::ur5().in_the_way(&joints, &Surroundings::default()), expected, "{joints:?}");
+    }
+
+    #[test]
+    fn an_arm_is_told_what_it_is_too_near_to() {
+        check(BENT, None);
+        check([0.0, 0.3, 0.0, 0.0, 0.0, 0.0], Some(InTheWay::Table));
+        // The forearm folded back onto the upper arm.
+        check([0.0, -FRAC_PI_2, 3.1, 0.0, 0.0, 0.0], Some(InTheWay::ItsOwnLinks));
+        let at = Arm::ur5().tip(&BENT).translation.vector;
+        let obstacles = vec![Capsule { ends_m: [Point3::from(at); 2], radius_m: 0.03 }];
+        let around = Surroundings { table_m: 0.0, obstacles };
+        assert_eq!(Arm::ur5().in_the_way(&BENT, &around), Some(InTheWay::Obstacle));
+    }
+
+    #[test]
+    fn the_distance_of_capsules_is_that_of_their_surfaces() {
+        let capsule = |from: [f64; 3], to: [f64; 3]| Capsule { ends_m: [from.into(), to.into()], radius_m: 0.1 };
+        let lying = capsule([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
+        let above = capsule([0.5, -1.0, 0.5], [0.5, 1.0, 0.5]);
+        let nearest = lying.nearest(&above);
+        assert!((nearest.distance_m - 0.3).abs() < 1e-6);
+        assert!((nearest.at_m[0] - Point3::new(0.5, 0.0, 0.0)).norm() < 1e-6);
+        assert!(lying.nearest(&capsule([0.2, 0.0, 0.05], [0.2, 0.0, 3.0])).distance_m < 0.0);
+    }
+}

@@ -1,0 +1,149 @@
+//! All joint angles at which the tip of the UR5 is in a given pose: up to eight, in closed form (Hawkins 2013, "Analytic
+//! inverse kinematics for the Universal Robots UR-5/UR-10 arms"), then polished on the URDF's own kinematics.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector6};
+
+use super::kinematics::{Arm, JOINTS, Joints};
+
+/// The maker's table (Denavit and Hartenberg), in metres.
+const D1: f64 = 0.089159;
+const A2: f64 = -0.425;
+const A3: f64 = -0.39225;
+const D4: f64 = 0.10915;
+const D5: f64 = 0.09465;
+const D6: f64 = 0.0823;
+
+/// A cosine may be so far above 1 by rounding.
+const ROUNDING: f64 = 1e-9;
+/// Below this sine of the fifth joint the fourth and the sixth turn about the same axis, and the sixth stays at 0.
+const ALIGNED: f64 = 1e-7;
+/// Steps of Newton's method, and how near they come: metres, radians.
+const POLISHES: usize = 8;
+const NEAR: f64 = 1e-10;
+/// A solution is one that comes so near.
+const SOLVED: f64 = 1e-8;
+/// Keeps steps short where the Jacobian is nearly singular (Wampler 1986).
+const DAMPING: f64 = 1e-6;
+
+impl Arm {
+    /// All joint angles, between -pi and pi, at which the tip is at this pose in the frame of the base; in a fixed order.
+    pub fn inverse(&self, base_from_tip: &Isometry3<f64>) -> Vec<Joints> {
+        let stick = self.links.last().map_or_else(Isometry3::identity, |link| link.parent_from_joint);
+        // The last frame of the table is on the flange, that of the last turning link in the joint.
+        let flange = Translation3::new(0.0, 0.0, D6);
+        let controller_from_base = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -PI);
+        let target = controller_from_base * base_from_tip * stick.inverse() * flange;
+        let found = closed_form(&target).into_iter().map(|joints| self.polished(base_from_tip, joints));
+        found.filter(|(_, away)| *away < SOLVED).map(|(joints, _)| joints.map(wrapped)).collect()
+    }
+
+    /// Newton's method on the URDF's kinematics; how far it is away then.
+    fn polished(&self, target: &Isometry3<f64>, mut joints: Joints) -> (Joints, f64) {
+        let mut best = (joints, f64::INFINITY);
+        for _ in 0..POLISHES {
+            let (tip, jacobian) = self.tip_and_jacobian(&joints);
+            let error = twist(&tip, target);
+            if error.amax() < best.1 {
+                best = (joints, error.amax());
+            }
+            let damped = jacobian * jacobian.transpose() + Matrix6::identity() * DAMPING * DAMPING;
+            let Some(inverse) = damped.try_inverse().filter(|_| best.1 > NEAR) else { break };
+            let step = jacobian.transpose() * inverse * error;
+            joints = std::array::from_fn(|joint| joints[joint] + step[joint]);
+        }
+        best
+    }
+}
+
+/// What leads from one pose to another: metres, then a rotation vector in radians.
+pub fn twist(from: &Isometry3<f64>, to: &Isometry3<f64>) -> Vector6<f64> {
+    let moves = to.translation.vector - from.translation.vector;
+    let turns = (to.rotation * from.rotation.inverse()).scaled_axis();
+    Vector6::new(moves.x, moves.y, moves.z, turns.x, turns.y, turns.z)
+}
+
+/// The same angle between -pi and pi.
+pub fn wrapped(angle: f64) -> f64 {
+    angle - TAU * (angle / TAU).round()
+}
+
+/// The same pose with every joint turned as near to another one's as whole turns bring it.
+pub fn turned_towards(joints: &Joints, other: &Joints) -> Joints {
+    std::array::from_fn::<f64, JOINTS, _>(|joint| other[joint] + wrapped(joints[joint] - other[joint]))
+}
+
+/// An angle by its cosine; none where there is no such angle.
+fn angle_of_cosine(cosine: f64) -> Option<f64> {
+    (cosine.abs() <= 1.0 + ROUNDING).then(|| cosine.clamp(-1.0, 1.0).acos())
+}
+
+/// The flange in the frame of the controller's base.
+fn closed_form(flange: &Isometry3<f64>) -> Vec<Joints> {
+    let at = flange.translation.vector;
+    let turn = flange.rotation.to_rotation_matrix();
+    let wrist = at - turn * Vector3::z() * D6;
+    let Some(shoulder) = angle_of_cosine(D4 / wrist.x.hypot(wrist.y)) else { return Vec::new() };
+    let mut found = Vec::new();
+    for q1 in [shoulder, -shoulder].map(|side| wrist.y.atan2(wrist.x) + side + FRAC_PI_2) {
+        let (s1, c1) = q1.sin_cos();
+        let Some(bend) = angle_of_cosine((at.x * s1 - at.y * c1 - D4) / D6) else { continue };
+        for q5 in [bend, -bend] {
+            // The sixth joint turns the first one's axis in the frame of the flange.
+            let across = turn.inverse() * Vector3::new(s1, -c1, 0.0);
+            let s5 = q5.sin();
+            let q6 = if s5.abs() < ALIGNED { 0.0 } else { (-across.y / s5).atan2(across.x / s5) };
+            found.extend(elbows(flange, [q1, q5, q6]));
+        }
+    }
+    found
+}
+
+/// The two ways to bend the elbow, which are a plane arm's, for what the other joints are.
+fn elbows(flange: &Isometry3<f64>, [q1, q5, q6]: [f64; 3]) -> Vec<Joints> {
+    let fourth = link(q1, D1, FRAC_PI_2).inverse() * flange * (link(q5, D5, -FRAC_PI_2) * link(q6, D6, 0.0)).inverse();
+    let x_axis = fourth.rotation * Vector3::x();
+    let q234 = x_axis.y.atan2(x_axis.x);
+    let (x, y) = (fourth.translation.x, fourth.translation.y);
+    let Some(elbow) = angle_of_cosine((x * x + y * y - A2 * A2 - A3 * A3) / (2.0 * A2 * A3)) else {
+        return Vec::new();
+    };
+    let bent = |q3: f64| {
+        let q2 = y.atan2(x) - (A3 * q3.sin()).atan2(A2 + A3 * q3.cos());
+        [q1, q2, q3, q234 - q2 - q3, q5, q6]
+    };
+    vec![bent(elbow), bent(-elbow)]
+}
+
+/// A row of the table whose `a` is 0.
+fn link(theta: f64, d: f64, alpha: f64) -> Isometry3<f64> {
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), theta);
+    let twist = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), alpha);
+    Isometry3::from_parts(Translation3::new(0.0, 0.0, d), turn * twist)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn out_of_reach_there_is_none() {
+        let arm = Arm::ur5();
+        let down = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI);
+        for at in [[1.2, 0.0, 0.1], [0.0, 0.0, 0.5], [0.03, 0.0, 0.1]] {
+            assert!(arm.inverse(&Isometry3::from_parts(Translation3::from(at), down)).is_empty(), "{at:?}");
+        }
+    }
+
+    #[test]
+    fn where_two_axes_are_aligned_there_still_are_solutions() {
+        let arm = Arm::ur5();
+        for q5 in [0.0, PI, 1e-9] {
+            let target = arm.tip(&[0.4, -1.1, 1.3, -0.7, q5, 0.3]);
+            let found = arm.inverse(&target);
+            assert!(!found.is_empty());
+            assert!(found.iter().all(|joints| twist(&arm.tip(joints), &target).amax() < 1e-6));
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! How the arm stands at a button: above it and on it, stick down, away from table and own links.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+
+use super::clearance::{InTheWay, Surroundings};
+use super::inverse::turned_towards;
+use super::kinematics::{Arm, JOINTS, Joints};
+use crate::kitchen::{Agent, ButtonId, Kitchen};
+
+/// The height of a button above the table, in metres.
+pub const BUTTON_M: f64 = 0.02;
+/// The tip goes from button to button so high above them, in metres.
+pub const ABOVE_M: f64 = 0.08;
+/// The arm's usual posture: elbow up, stick down. Of all ways to stand at a button the nearest to it is taken.
+pub const BENT: Joints = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
+/// The elbow does not bend further, in radians.
+const ELBOW: usize = 2;
+const ELBOW_RAD: f64 = PI;
+/// Below this least singular value of the Jacobian the pose counts as singular.
+const SINGULAR: f64 = 0.03;
+
+/// Why the arm cannot press a button.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unreachable {
+    TooFar,
+    /// The joints do not turn so far.
+    JointLimit,
+    /// The arm could not go on from there in every direction.
+    Singular,
+    Blocked(InTheWay),
+}
+
+impl Unreachable {
+    /// In words, after "a button of the robot".
+    pub fn words(self) -> &'static str {
+        match self {
+            Unreachable::TooFar => "out of reach of its arm",
+            Unreachable::JointLimit => "where its arm's joints do not turn to",
+            Unreachable::Singular => "where its arm is stretched, or in line with itself (singular)",
+            Unreachable::Blocked(InTheWay::Table) => "where its arm would be on the table",
+            Unreachable::Blocked(InTheWay::ItsOwnLinks) => "where its arm would be in its own way",
+            Unreachable::Blocked(InTheWay::Obstacle) => "where something stands in its arm's way",
+        }
+    }
+}
+
+/// How the arm stands at a button.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtButton {
+    pub above: Joints,
+    pub touching: Joints,
+}
+
+/// The tip at this place in the frame of the base (metres), stick down.
+pub fn stick_down(at_m: [f64; 3]) -> Isometry3<f64> {
+    Isometry3::from_parts(Translation3::from(at_m), UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI))
+}
+
+impl Arm {
+    /// How it stands with the stick down at a place in the frame of the base (metres): of all ways that near to `like`,
+    /// with the last joint, about which the stick only spins, as it is there.
+    ///
+    /// # Errors
+    /// Why it cannot: for the way that came furthest.
+    pub fn standing_at(&self, at_m: [f64; 3], like: &Joints, around: &Surroundings) -> Result<Joints, Unreachable> {
+        let spun = |joints: Joints| {
+            let [q1, q2, q3, q4, q5, _] = turned_towards(&joints, like);
+            [q1, q2, q3, q4, q5, like[JOINTS - 1]]
+        };
+        let mut ways: Vec<Joints> = self.inverse(&stick_down(at_m)).into_iter().map(spun).collect();
+        let far = |joints: &Joints| (0..JOINTS).map(|i| (joints[i] - like[i]).powi(2)).sum::<f64>();
+        ways.sort_by(|one, two| far(one).total_cmp(&far(two)));
+        let mut why = Unreachable::TooFar;
+        for way in ways {
+            match self.fault(&way, around) {
+                None => return Ok(way),
+                Some(fault) if why == Unreachable::TooFar => why = fault,
+                Some(_) => {}
+            }
+        }
+        Err(why)
+    }
+
+    /// Why it should not stand so.
+    pub fn fault(&self, joints: &Joints, around: &Surroundings) -> Option<Unreachable> {
+        if !self.is_within_limits(joints) || joints[ELBOW].abs() > ELBOW_RAD {
+            return Some(Unreachable::JointLimit);
+        }
+        if self.tip_and_jacobian(joints).1.singular_values().min() < SINGULAR {
+            return Some(Unreachable::Singular);
+        }
+        self.in_the_way(joints, around).map(Unreachable::Blocked)
+    }
+
+    /// How it stands at a button at this place on a table of this height.
+    ///
+    /// # Errors
+    /// Why it cannot press it.
+    pub fn at_button(&self, [x, y]: [f64; 2], around: &Surroundings) -> Result<AtButton, Unreachable> {
+        let top_m = around.table_m + BUTTON_M;
+        let like = [y.atan2(x), BENT[1], BENT[2], BENT[3], BENT[4], BENT[5]];
+        let above = self.standing_at([x, y, top_m + ABOVE_M], &like, around)?;
+        Ok(AtButton { above, touching: self.standing_at([x, y, top_m], &above, around)? })
+    }
+}
+
+/// The first of the robot's buttons that its arm cannot press with clearance, and why.
+pub fn out_of_reach(kitchen: &Kitchen) -> Option<(ButtonId, Unreachable)> {
+    let arm = Arm::ur5();
+    let around = Surroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
+    let mut buttons = kitchen.buttons[Agent::Robot.index()].iter().enumerate();
+    buttons.find_map(|(index, button)| Some((ButtonId(index as u8), arm.at_button(button.at_m, &around).err()?)))
+}

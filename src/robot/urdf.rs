@@ -1,0 +1,163 @@
+//! Reads an arm from a URDF: its links with their shapes and masses, its joints with what they can do.
+
+use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
+use urdf_rs::{Geometry, JointType, Pose};
+
+use super::kinematics::{Arm, JOINTS};
+
+/// Why a URDF is no arm that the program can move.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("found {found}, wanted {remedy}")]
+pub struct UrdfError {
+    pub found: String,
+    pub remedy: &'static str,
+}
+
+/// A plain shape of a link, about its own centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    Box {
+        half_m: [f64; 3],
+    },
+    /// Along z.
+    Cylinder {
+        radius_m: f64,
+        length_m: f64,
+    },
+    Sphere {
+        radius_m: f64,
+    },
+}
+
+/// A shape and its place on its link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solid {
+    pub shape: Shape,
+    pub link_from_solid: Isometry3<f64>,
+}
+
+/// A joint that turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    pub axis: Unit<Vector3<f64>>,
+    /// Between these angles, in radians.
+    pub range_rad: [f64; 2],
+    /// What its motor can do, in newton metres, and how fast it can be, in radians a second.
+    pub torque_nm: f64,
+    pub speed_rad_s: f64,
+}
+
+/// What a link weighs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weight {
+    pub mass_kg: f64,
+    pub centre_m: Point3<f64>,
+    /// Moments of inertia about the centre, along the link's axes, in kg m².
+    pub inertia_kg_m2: Vector3<f64>,
+}
+
+/// A link, with the joint that carries it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link {
+    pub name: String,
+    /// From the link before, while the joint is at 0.
+    pub parent_from_joint: Isometry3<f64>,
+    /// How its joint turns; none: it is fixed.
+    pub turns: Option<Turn>,
+    /// None: it weighs nothing.
+    pub weight: Option<Weight>,
+    pub solids: Vec<Solid>,
+}
+
+impl Arm {
+    /// Reads an arm: one chain of links with [`JOINTS`] joints that turn.
+    ///
+    /// # Errors
+    /// The text is no URDF, or not of such an arm.
+    pub fn of_urdf(text: &str) -> Result<Arm, UrdfError> {
+        let wrong = |found: String, remedy| UrdfError { found, remedy };
+        let robot = urdf_rs::read_from_string(text).map_err(|error| wrong(error.to_string(), "a URDF"))?;
+        let is_root = |link: &&urdf_rs::Link| robot.joints.iter().all(|joint| joint.child.link != link.name);
+        let root = robot.links.iter().find(is_root);
+        let root = root.ok_or_else(|| wrong("links in a ring".to_string(), "a link that no joint carries"))?;
+        let base = Link {
+            name: root.name.clone(),
+            parent_from_joint: Isometry3::identity(),
+            turns: None,
+            weight: weight(root)?,
+            solids: solids(root)?,
+        };
+        let mut links = vec![base];
+        while let Some(last) = links.last() {
+            let mut joints = robot.joints.iter().filter(|joint| joint.parent.link == last.name);
+            let (Some(joint), other) = (joints.next(), joints.next()) else { break };
+            if other.is_some() || links.len() > robot.links.len() {
+                return Err(wrong(format!("two joints on link {}", last.name), "a single chain of links"));
+            }
+            let link = robot.links.iter().find(|link| link.name == joint.child.link);
+            let link = link.ok_or_else(|| wrong(format!("no link {}", joint.child.link), "every link of a joint"))?;
+            links.push(carried(joint, link)?);
+        }
+        match links.iter().filter(|link| link.turns.is_some()).count() {
+            JOINTS => Ok(Arm { links }),
+            count => Err(wrong(format!("{count} joints that turn"), "6 joints that turn, one after the other")),
+        }
+    }
+}
+
+fn isometry(pose: &Pose) -> Isometry3<f64> {
+    let [x, y, z] = pose.xyz.0;
+    let [roll, pitch, yaw] = pose.rpy.0;
+    Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(roll, pitch, yaw))
+}
+
+fn carried(joint: &urdf_rs::Joint, link: &urdf_rs::Link) -> Result<Link, UrdfError> {
+    let turns = match joint.joint_type {
+        JointType::Fixed => None,
+        JointType::Revolute => {
+            let axis = Unit::try_new(Vector3::from(joint.axis.xyz.0), 1e-9);
+            let axis =
+                axis.ok_or(UrdfError { found: format!("joint {} without an axis", joint.name), remedy: "one" })?;
+            let limit = &joint.limit;
+            let range_rad = [limit.lower, limit.upper];
+            Some(Turn { axis, range_rad, torque_nm: limit.effort, speed_rad_s: limit.velocity })
+        }
+        _ => {
+            let found = format!("joint {}, which neither turns nor is fixed", joint.name);
+            return Err(UrdfError { found, remedy: "joints of the types revolute and fixed" });
+        }
+    };
+    let parent_from_joint = isometry(&joint.origin);
+    Ok(Link { name: link.name.clone(), parent_from_joint, turns, weight: weight(link)?, solids: solids(link)? })
+}
+
+/// The weight of a link; moments of inertia are along its axes.
+fn weight(link: &urdf_rs::Link) -> Result<Option<Weight>, UrdfError> {
+    let (mass_kg, inertia, origin) = (link.inertial.mass.value, &link.inertial.inertia, &link.inertial.origin);
+    if mass_kg == 0.0 {
+        return Ok(None);
+    }
+    let mixed = [inertia.ixy, inertia.ixz, inertia.iyz, origin.rpy.0[0], origin.rpy.0[1], origin.rpy.0[2]];
+    let inertia_kg_m2 = Vector3::new(inertia.ixx, inertia.iyy, inertia.izz);
+    if mixed.iter().any(|value| *value != 0.0) || mass_kg < 0.0 || inertia_kg_m2.min() <= 0.0 {
+        let found = format!("link {} with moments of inertia that are not along its axes, or not above 0", link.name);
+        return Err(UrdfError { found, remedy: "a mass and ixx, iyy, izz above 0, and no others" });
+    }
+    Ok(Some(Weight { mass_kg, centre_m: Point3::from(Vector3::from(origin.xyz.0)), inertia_kg_m2 }))
+}
+
+fn solids(link: &urdf_rs::Link) -> Result<Vec<Solid>, UrdfError> {
+    let solid = |collision: &urdf_rs::Collision| {
+        let shape = match &collision.geometry {
+            Geometry::Box { size } => Shape::Box { half_m: size.0.map(|length| length / 2.0) },
+            Geometry::Cylinder { radius, length } => Shape::Cylinder { radius_m: *radius, length_m: *length },
+            Geometry::Sphere { radius } => Shape::Sphere { radius_m: *radius },
+            _ => {
+                let found = format!("link {}, which is no plain shape", link.name);
+                return Err(UrdfError { found, remedy: "boxes, cylinders and spheres" });
+            }
+        };
+        Ok(Solid { shape, link_from_solid: isometry(&collision.origin) })
+    };
+    link.collision.iter().map(solid).collect()
+}

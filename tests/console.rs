@@ -272,7 +272,8 @@ fn help_and_questions_and_the_ascii_fallback() {
     insta::assert_snapshot!("help_80x24", stage.screen((80, 24)));
     insta::assert_snapshot!("help_120x40", stage.screen((120, 40)));
     stage.wait(1.0);
-    stage.key(KeyCode::Char('?'));
+    stage.key(KeyCode::Down);
+    assert_eq!(stage.model.dialog, None, "all of it is seen: every key closes");
     stage.control('c');
     insta::assert_snapshot!("quit_80x24", stage.screen((80, 24)));
     stage.model.dialog = None;
@@ -438,7 +439,14 @@ fn without_key_releases_two_presses_count_twice_and_a_held_key_once() {
         assert_eq!(stage.model.dialog, Some(Dialog::Quit));
     }
     stage.wait(1.0);
-    assert_eq!(stage.control('c'), Some(Command::Quit));
+    assert_eq!(stage.control('c'), None, "a nervous second press ends no trial");
+    assert_eq!(stage.model.dialog, Some(Dialog::Quit));
+    assert_eq!(stage.key(KeyCode::Enter), None, "only y does");
+    assert_eq!(stage.model.dialog, None);
+    stage.at(stage.model.now.as_secs_f64(), Event::TrialEnded { reason: EndReason::Time });
+    stage.control('c');
+    stage.wait(1.0);
+    assert_eq!(stage.control('c'), Some(Command::Quit), "after the trial it does");
 }
 
 #[test]

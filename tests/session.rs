@@ -414,7 +414,7 @@ fn presets_of_the_session_file_are_checked() {
     let wrong = |change: fn(&mut SessionSpec)| {
         let mut spec = read_session(Path::new("sessions/default.toml")).expect("the default session").spec;
         change(&mut spec);
-        spec.check().expect_err("a wrong setting").key
+        spec.check().expect_err("a wrong setting").key().to_string()
     };
     assert_eq!(wrong(|spec| spec.console.notes.clear()), "notes");
     assert_eq!(wrong(|spec| spec.console.notes.push("a sixth".to_string())), "notes");

@@ -96,7 +96,7 @@ pub(super) struct OperateFlags {
     /// Where Rerun viewers connect, instead of the session file's address: 0.0.0.0:9876 for other machines.
     #[arg(long, value_name = "ADDRESS")]
     pub(super) rerun_listen: Option<String>,
-    /// Where the recording's folder is made.
+    /// Where the recording's folder is made. Not with --continue: a further part goes beside the recording.
     #[arg(long, default_value = "sessions")]
     pub(super) out: PathBuf,
 }
@@ -259,10 +259,11 @@ pub(super) struct FitArgs {
     /// The folders of recordings of one kitchen, or their events.jsonl.
     #[arg(required = true, value_name = "RECORDING")]
     pub(super) recordings: Vec<PathBuf>,
-    /// Which parameters.
-    #[arg(long, value_enum, value_delimiter = ',', default_values_t = FitParameter::USUAL)]
+    /// Which parameters, with commas between them.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = FitParameter::USUAL)]
     pub(super) parameters: Vec<FitParameter>,
-    /// Where to begin, a parameter file; what is not fitted stays as it is there. By default the program's own values.
+    /// Where to begin, a parameter file; what is not fitted stays as it is there. By default the parameters that stand in
+    /// the recordings.
     #[arg(long, value_name = "FILE")]
     pub(super) start: Option<PathBuf>,
     /// The search for the best parameters ends after so many tries.
@@ -294,8 +295,7 @@ pub(super) enum FitParameter {
 }
 
 impl FitParameter {
-    const USUAL: [FitParameter; 5] =
-        [FitParameter::Tau, FitParameter::Lapse, FitParameter::Radius, FitParameter::Reading, FitParameter::HalfLife];
+    const USUAL: &str = "tau,lapse,radius,reading,half-life";
 
     pub(super) fn parameter(self) -> Parameter {
         match self {

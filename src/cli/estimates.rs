@@ -26,7 +26,7 @@ pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
 
 /// `tomcom fit RECORDING...`.
 pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
-    let start = args.start.as_deref().map(files::read_human_model).transpose()?.unwrap_or_default();
+    let start = args.start.as_deref().map(files::read_human_model).transpose()?;
     let mut parameters: Vec<_> = args.parameters.iter().map(|one| one.parameter()).collect();
     parameters.sort_unstable();
     parameters.dedup();

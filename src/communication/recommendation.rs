@@ -90,6 +90,11 @@ pub fn aspects_told(kitchen: &Kitchen, state: State, signal: &Signal) -> Vec<Asp
     aspects
 }
 
+/// A content as part of a sentence: what is made of several items stands in quotes.
+pub fn phrase(label: &str) -> String {
+    if label.contains(" + ") { format!("\"{label}\"") } else { label.to_string() }
+}
+
 impl Reason {
     /// Of what a signal is about, that which is known least.
     pub fn of(kitchen: &Kitchen, state: State, belief: &DirichletBelief, signal: &Signal) -> Option<Reason> {
@@ -111,11 +116,16 @@ impl Reason {
         })
     }
 
+    /// What is taken for what, in words: "takes order 1 for tuna nigiri (0.83)".
+    pub fn taken(&self) -> String {
+        let Reason { aspect, believes, p_wrong, .. } = self;
+        format!("takes {} for {} ({p_wrong:.2})", aspect.replace('_', " "), phrase(believes))
+    }
+
     /// In words: "takes order 1 for tuna nigiri (0.83): would press "take tuna" instead of "take salmon"".
     pub fn words(&self) -> String {
-        let Reason { aspect, believes, p_wrong, .. } = self;
         let said = |name: &str| name.replace('_', " ");
-        let taken = format!("takes {} for {believes} ({p_wrong:.2})", said(aspect));
+        let taken = self.taken();
         let instead = self.instead.as_deref().map_or("waiting".to_string(), |button| format!("\"{}\"", said(button)));
         match &self.prevents {
             Some(button) => format!("{taken}: would press \"{}\" instead of {instead}", said(button)),

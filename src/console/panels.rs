@@ -4,6 +4,7 @@
 use super::arrange::{Plan, Thing};
 use super::keys::Layer;
 use super::model::{Dialog, Level, Model};
+use super::view::dialog::help_pages;
 use super::view::regions::Regions;
 use crate::kitchen::{Action as Use, Agent, ButtonId, LocationId};
 use crate::session::Session;
@@ -61,9 +62,6 @@ pub enum Look {
     Forward,
 }
 
-/// The help never has more columns.
-const MOST_COLUMNS: usize = 8;
-
 /// How far one step goes back in the timeline, in seconds, and in the list of events, in lines.
 const STEP: (u32, usize) = (5, 1);
 
@@ -93,8 +91,10 @@ fn is_of_time(panel: Option<Panel>) -> bool {
 /// Leafs through the help.
 pub fn leaf(model: &mut Model, look: Look) {
     let is_forward = matches!(look, Look::Next | Look::Forward);
-    model.help_from =
-        if is_forward { (model.help_from + 1).min(MOST_COLUMNS) } else { model.help_from.saturating_sub(1) };
+    model.help_from = match is_forward {
+        true => (model.help_from + 1).min(help_pages(model)),
+        false => model.help_from.saturating_sub(1),
+    };
 }
 
 fn scroll(model: &mut Model, session: &Session, timeline: bool, steps: i64) {

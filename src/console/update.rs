@@ -13,6 +13,7 @@ use super::message::{Command, Message};
 use super::model::{Dialog, Level, Model, Pressed};
 use super::panels::{self, Look};
 use super::preflight;
+use super::view::dialog::help_pages;
 use super::view::regions::Regions;
 use super::words;
 use crate::communication::Sender;
@@ -199,6 +200,7 @@ fn answer(model: &mut Model, session: &Session, chord: Chord, action: Option<Act
     let dialog = model.dialog.clone()?;
     if let (Dialog::Help, Some(Action::Look(look))) = (&dialog, &action)
         && *look != Look::All
+        && help_pages(model) > 0
     {
         panels::leaf(model, *look);
         return None;
@@ -209,16 +211,17 @@ fn answer(model: &mut Model, session: &Session, chord: Chord, action: Option<Act
         return None;
     }
     let again = match dialog {
-        Dialog::Quit => Some(Action::Quit),
-        Dialog::EndTrial => Some(Action::EndTrial),
-        Dialog::Help | Dialog::Pick(_) | Dialog::Preflight => None,
-        Dialog::Calibration | Dialog::Note(_) | Dialog::Difference(_) => None,
+        Dialog::Quit => action == Some(Action::Quit),
+        Dialog::EndTrial => action == Some(Action::EndTrial),
+        _ => false,
     };
-    if touch == Touch::Again && again.is_some() && action == again {
+    // A nervous second press ends no trial.
+    let goes_on = matches!(session.phase, Phase::Running | Phase::Paused);
+    if again && (goes_on || touch == Touch::Again) {
         return None;
     }
     model.dialog = None;
-    let yes = matches!(chord.code, KeyCode::Char('y') | KeyCode::Enter) || (again.is_some() && action == again);
+    let yes = chord == Chord::char('y') || again;
     match dialog {
         Dialog::Quit if yes => Some(Command::Quit),
         Dialog::EndTrial if yes => Some(Command::Input(Event::TrialEnded { reason: EndReason::Wizard })),

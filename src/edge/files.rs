@@ -10,6 +10,8 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 
 use super::language::read_words;
+use super::place::place_of;
+use super::type_error::in_words;
 use crate::console::KeyMap;
 use crate::console::keys::{self, KeyError, KeyPlace, Layer};
 use crate::kitchen::compile::{SpecError, SpecFile};
@@ -95,12 +97,12 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
         if spec.human != HumanModel::default() {
             let found = "human_model, beside parameters of the human model in the session file".to_string();
             let remedy = "one of the two".to_string();
-            return Err(FileError::at(path, &text, line_of(&text, "human_model", 0), found, remedy));
+            return Err(FileError::at(path, &text, place_of(&text, "human_model", 0), found, remedy));
         }
         let model = folder.join(file);
         if let Err(reason) = std::fs::metadata(&model) {
             let remedy = "the path of a file with parameters of the human model, relative to the session file";
-            return Err(missing(path, &text, ("human_model", file), reason, remedy));
+            return Err(missing(path, &text, ("human_model", 0, file), reason, remedy));
         }
         spec.human = read_human_model(&model)?;
     }
@@ -109,7 +111,7 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     if let Some(step) = &spec.step {
         let found = format!("the place of a recording in the plan \"{}\"", step.plan);
         let remedy = "no [step]: the program finds it out from the plan and its recordings".to_string();
-        return Err(FileError::at(path, &text, line_of(&text, "digest", 0), found, remedy));
+        return Err(FileError::at(path, &text, place_of(&text, "step.digest", 0), found, remedy));
     }
     let questionnaires = match &spec.plan {
         Some(plan) => read_questionnaires(path, &text, plan)?,
@@ -118,14 +120,14 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     let layout_path = folder.join(&spec.layout);
     if let Err(reason) = std::fs::metadata(&layout_path) {
         let remedy = "the path of a layout file, relative to the session file";
-        return Err(missing(path, &text, ("layout", &spec.layout), reason, remedy));
+        return Err(missing(path, &text, ("layout", 0, &spec.layout), reason, remedy));
     }
     let keys = match &spec.console.keys {
         Some(name) => {
             let keys_path = path.parent().unwrap_or(Path::new(".")).join(name);
             let text = std::fs::read_to_string(&keys_path).map_err(|reason| {
                 let remedy = "the path of a key file, relative to the session file; tomcom keys prints one";
-                missing(path, &text, ("keys", name), reason, remedy)
+                missing(path, &text, ("console.keys", 0, name), reason, remedy)
             })?;
             Some(FileText { path: keys_path.display().to_string(), text })
         }
@@ -136,38 +138,40 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     Ok(SessionFiles { spec, kitchen, keys, questionnaires })
 }
 
-/// The error about a file that a session file names and that cannot be read.
+/// The error about a file that a session file names and that cannot be read: the path of the setting, which of them it is (0
+/// the first), and the name of the file.
 pub(super) fn missing(
     session: &Path,
     text: &str,
-    (key, name): (&str, &str),
+    (path, nth, file): (&str, usize, &str),
     reason: io::Error,
     remedy: &str,
 ) -> FileError {
-    let found = format!("{key} = \"{name}\", which cannot be read: {reason}");
-    FileError::at(session, text, line_of(text, key, 0), found, remedy.to_string())
+    let key = path.rsplit('.').next().unwrap_or(path);
+    let found = format!("{key} = \"{file}\", which cannot be read: {reason}");
+    FileError::at(session, text, place_of(text, path, nth), found, remedy.to_string())
 }
 
 /// Reads the questionnaires of a plan, in its order.
 fn read_questionnaires(session: &Path, text: &str, plan: &PlanSpec) -> FileResult<Vec<Questionnaire>> {
     let folder = session.parent().unwrap_or(Path::new("."));
-    let read = |asked: &QuestionnaireSpec| {
+    let read = |(nth, asked): (usize, &QuestionnaireSpec)| {
         let path = folder.join(&asked.file);
         if let Err(reason) = std::fs::metadata(&path) {
             let remedy = "the path of a questionnaire, relative to the session file";
-            return Err(missing(session, text, ("file", &asked.file), reason, remedy));
+            return Err(missing(session, text, ("questionnaire.file", nth, &asked.file), reason, remedy));
         }
         let text = read_text(&path)?;
         let questionnaire: Questionnaire = parse(&path, &text)?;
         questionnaire.check().map_err(|error| wrong_setting(&path, &text, error))?;
         Ok(questionnaire)
     };
-    plan.questionnaire.iter().map(read).collect()
+    plan.questionnaire.iter().enumerate().map(read).collect()
 }
 
 /// The error of a setting in a file's text.
 fn wrong_setting(path: &Path, text: &str, error: SettingError) -> FileError {
-    FileError::at(path, text, line_of(text, error.key, error.nth), error.found, error.remedy.to_string())
+    FileError::at(path, text, place_of(text, &error.path, error.nth), error.found, error.remedy.to_string())
 }
 
 /// Reads a file with parameters of the human model; those that it does not name have their defaults.
@@ -179,7 +183,7 @@ pub fn read_human_model(path: &Path) -> FileResult<HumanModel> {
     let model: HumanModel = parse(path, &text)?;
     match model.fault() {
         Some((key, found, remedy)) => {
-            Err(FileError::at(path, &text, line_of(&text, key, 0), found, remedy.to_string()))
+            Err(FileError::at(path, &text, place_of(&text, key, 0), found, remedy.to_string()))
         }
         None => Ok(model),
     }
@@ -205,29 +209,6 @@ pub fn built_in_session() -> FileResult<SessionFiles> {
     let recipes = (Path::new("../recipes/sushi.toml"), include_str!("../../recipes/sushi.toml").to_string());
     let kitchen = compile_kitchen(layout, recipes)?;
     Ok(SessionFiles { spec, kitchen, keys: None, questionnaires: Vec::new() })
-}
-
-/// Where the `nth` line with `key = …` is in a TOML text, 0 the first; of `table.key` those below the header of that table.
-fn line_of(text: &str, key: &str, mut nth: usize) -> Option<Range<usize>> {
-    let (table, key) = key.rsplit_once('.').unwrap_or(("", key));
-    let mut is_table = table.is_empty();
-    let mut start = 0;
-    for line in text.split_inclusive('\n') {
-        let trimmed = line.trim();
-        if trimmed.starts_with('[') && !table.is_empty() {
-            let name = trimmed.trim_start_matches('[').split(']').next().unwrap_or_default();
-            is_table = name.rsplit('.').next() == Some(table);
-        }
-        let rest = trimmed.strip_prefix(key);
-        if is_table && rest.is_some_and(|rest| rest.trim_start().starts_with('=')) {
-            if nth == 0 {
-                return Some(start..start + line.trim_end().len());
-            }
-            nth -= 1;
-        }
-        start += line.len();
-    }
-    None
 }
 
 /// A kitchen with the texts it was made from, which go into the header of every recording.
@@ -413,6 +394,11 @@ impl OfKind for KeyMap {
 pub fn parse<T: OfKind>(path: &Path, text: &str) -> FileResult<T> {
     toml::from_str(text).map_err(|error| match Kind::of(text).filter(|kind| *kind != T::KIND) {
         Some(other) => FileError::at(path, text, None, other.name().to_string(), T::KIND.remedy().to_string()),
-        None => FileError::at(path, text, error.span(), error.message().to_string(), T::KIND.remedy().to_string()),
+        None => {
+            let (found, right) = in_words(error.message());
+            let kind = T::KIND.remedy();
+            let remedy = right.map_or(kind.to_string(), |right| format!("{right}; in {kind}"));
+            FileError::at(path, text, error.span(), found, remedy)
+        }
     })
 }

@@ -30,7 +30,7 @@ pub(super) fn read_words(session: &Path, text: &str, spec: &mut SessionSpec) -> 
     let path = session.parent().unwrap_or(Path::new(".")).join(language);
     if let Err(reason) = std::fs::metadata(&path) {
         let remedy = "\"en\", \"de\", or the path of a file with words, relative to the session file";
-        return Err(missing(session, text, ("language", language), reason, remedy));
+        return Err(missing(session, text, ("display.language", 0, language), reason, remedy));
     }
     let Language(mut words) = parse(&path, &read_text(&path)?)?;
     words.append(&mut spec.display.words);

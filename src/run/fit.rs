@@ -29,8 +29,8 @@ const HALF_WIDTH: f64 = 1.96;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     pub parameters: Vec<Parameter>,
-    /// Where to begin; what is not fitted stays as it is here.
-    pub start: HumanModel,
+    /// Where to begin; what is not fitted stays as it is here. None: with what stands in the recordings.
+    pub start: Option<HumanModel>,
     /// The search ends after so many tries.
     pub most_tries: usize,
 }
@@ -45,6 +45,12 @@ pub struct Fit {
     pub log_likelihood_before: f64,
     pub log_likelihood: f64,
     pub tries: u64,
+    /// The search was to end after so many tries.
+    pub most_tries: u64,
+    /// It began with the parameters that stand in the recordings, and not with those of a file.
+    pub begins_with_recordings: bool,
+    /// The recordings were made with different parameters, of which those of the first are meant.
+    pub recordings_differ: bool,
     /// Whether the search came to its end before the tries were used up.
     pub converged: bool,
     pub parameters: Vec<Fitted>,
@@ -103,7 +109,7 @@ impl Fitted {
             Some([Some(from), Some(to)]) => format!("{from:.4} to {to:.4}"),
             Some([Some(from), None]) => format!("above {from:.4}"),
             Some([None, Some(to)]) => format!("below {to:.4}"),
-            Some([None, None]) => "anything".to_string(),
+            Some([None, None]) => "not told".to_string(),
         }
     }
 }
@@ -112,6 +118,10 @@ impl Fitted {
 #[derive(Clone, Debug)]
 pub struct Trials {
     pub kitchen: Arc<Kitchen>,
+    /// The parameters of the human model that stand in the first recording.
+    pub model: HumanModel,
+    /// Whether others stand in another one.
+    pub differ: bool,
     /// The seed of the filter, and what was observed.
     pub observations: Vec<(u64, Vec<Observation>)>,
 }
@@ -122,13 +132,16 @@ impl Trials {
     /// # Errors
     /// A recording that cannot be read or applied, or one of another kitchen.
     pub fn read(recordings: &[PathBuf]) -> FileResult<Trials> {
-        let (mut one_kitchen, mut observations) = (OneKitchen::default(), Vec::new());
+        let (mut one_kitchen, mut observations, mut models) = (OneKitchen::default(), Vec::new(), Vec::new());
         for recording in recordings {
             let mut replay = Replay::open(recording)?;
             one_kitchen.admit(recording, &replay.session().kitchen)?;
+            models.push(replay.session().spec.human.clone());
             observations.push((replay.session().spec.seed, replay.observations()?));
         }
-        Ok(Trials { kitchen: one_kitchen.kitchen()?, observations })
+        let kitchen = one_kitchen.kitchen()?;
+        let differ = models.windows(2).any(|pair| pair[0] != pair[1]);
+        Ok(Trials { kitchen, model: models.into_iter().next().unwrap_or_default(), differ, observations })
     }
 }
 
@@ -165,8 +178,9 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 /// Fits the parameters of a plan to trials. `tried` is called after each try.
 pub fn fit(trials: &Trials, plan: &Plan, tried: impl Fn()) -> Fit {
     let judge = Judge { trials, costs: Mutex::new(Vec::new()) };
+    let begin = plan.start.as_ref().unwrap_or(&trials.model);
     let with = |at: &[f64]| {
-        let mut model = plan.start.clone();
+        let mut model = begin.clone();
         plan.parameters.iter().zip(at).for_each(|(parameter, &scaled)| {
             parameter.set(&mut model, parameter.from_scale(scaled));
         });
@@ -180,9 +194,9 @@ pub fn fit(trials: &Trials, plan: &Plan, tried: impl Fn()) -> Fit {
         loss
     };
     let scaled = |parameter: &Parameter, value: f64| parameter.to_scale(value);
-    let start: Vec<f64> = plan.parameters.iter().map(|one| scaled(one, one.get(&plan.start))).collect();
+    let start: Vec<f64> = plan.parameters.iter().map(|one| scaled(one, one.get(begin))).collect();
     let bounds: Vec<[f64; 2]> = plan.parameters.iter().map(|one| one.bounds().map(|end| scaled(one, end))).collect();
-    let before = judge.likelihood(&plan.start);
+    let before = judge.likelihood(begin);
     let Maximum { variables, evaluations, converged } = ascend(loss, &start, &bounds, plan.most_tries);
     let model = with(&variables.iter().map(|variable| variable.at).collect::<Vec<f64>>());
     let log_p = judge.likelihood(&model).log_p;
@@ -194,8 +208,11 @@ pub fn fit(trials: &Trials, plan: &Plan, tried: impl Fn()) -> Fit {
         log_likelihood_before: before.log_p / presses,
         log_likelihood: log_p / presses,
         tries: evaluations as u64,
+        most_tries: plan.most_tries as u64,
+        begins_with_recordings: plan.start.is_none(),
+        recordings_differ: trials.differ,
         converged,
-        parameters: fitted.map(|(one, found)| Fitted::of(*one, one.get(&plan.start), found)).collect(),
+        parameters: fitted.map(|(one, found)| Fitted::of(*one, one.get(begin), found)).collect(),
         model,
     }
 }
@@ -205,7 +222,12 @@ pub fn comment(fit: &Fit) -> String {
     let values = fit.parameters.iter().map(|one| match (one.standard_error, one.interval) {
         (Some(error), _) => format!("{} = {:.4}, standard error {error:.4}", one.name, one.value),
         (None, Some(_)) => {
-            format!("{} {}: not identified, {:.4} was the end of the search", one.name, one.span(), one.value)
+            format!(
+                "{}, {}: the recordings do not tell it; {:.4} is where the search ended",
+                one.name,
+                one.span(),
+                one.value
+            )
         }
         (None, None) => format!("{} = {:.4}, which the recordings do not tell surely", one.name, one.value),
     });
@@ -220,14 +242,26 @@ pub fn comment(fit: &Fit) -> String {
 
 /// The figures for people.
 pub fn describe(fit: &Fit) -> String {
+    let end = match fit.converged {
+        true => String::new(),
+        false => format!(
+            "\nthe search did not come to its end: its next step takes more than is left of the {} that --tries allows",
+            count(fit.most_tries, "try", "tries")
+        ),
+    };
+    let begin = match (fit.begins_with_recordings, fit.recordings_differ) {
+        (false, _) => "the parameters of --start",
+        (true, false) => "the parameters that stand in the recordings",
+        (true, true) => "the parameters that stand in the first recording (others were made with others)",
+    };
     let mut text = format!(
-        "{}, {} of the human: log likelihood per press {:.4}, before {:.4}, after {}{}\n\n{:<24}{:>10}{:>12}{:>10}{:>22}\n",
+        "{}, {} of the human: log likelihood per press {:.4}, before {:.4}, after {}{end}\nbefore: {begin}; what is not \
+         fitted stays as it is there\n\n{:<24}{:>10}{:>12}{:>10}{:>22}\n",
         count(fit.recordings, "recording", "recordings"),
         count(fit.human_actions, "press", "presses"),
         fit.log_likelihood,
         fit.log_likelihood_before,
         count(fit.tries, "try", "tries"),
-        if fit.converged { "" } else { "; the search did not come to its end" },
         "parameter",
         "before",
         "fitted",
@@ -240,5 +274,19 @@ pub fn describe(fit: &Fit) -> String {
         let name = format!("{} ({})", one.name, one.unit);
         text.push_str(&format!("{name:<24}{:>10.4}{:>12.4}{error:>10}{interval:>22}\n", one.before, one.value));
     }
-    text
+    text + &untold(fit)
+}
+
+/// Which parameters the recordings do not tell, and what their values are then.
+fn untold(fit: &Fit) -> String {
+    let untold: Vec<&str> = fit.parameters.iter().filter(|one| !one.identified).map(|one| one.name).collect();
+    match untold.is_empty() {
+        true => String::new(),
+        false => format!(
+            "\nnot told by these recordings: {}. Their values are where the search ended, and no findings; they would go \
+             into a file all the same. More recordings may tell them, or keep them as they are: leave them out of \
+             --parameters.\n",
+            untold.join(", ")
+        ),
+    }
 }

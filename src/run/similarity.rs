@@ -37,6 +37,8 @@ pub struct CompareFigures {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrainingFigures {
     pub wizard: String,
+    /// Where its records are looked for.
+    pub folder: String,
     pub times: u64,
     pub minutes: f64,
     /// The criterion of the last time, and whether it was met then; null: never trained.
@@ -54,8 +56,10 @@ impl TrainingFigures {
         let last = records.last();
         Ok(TrainingFigures {
             wizard: wizard.to_string(),
+            folder: folder.display().to_string(),
             times: records.len() as u64,
-            minutes: records.iter().map(|record| record.minutes).sum(),
+            // The sum of nothing would be -0.
+            minutes: records.iter().fold(0.0, |sum, record| sum + record.minutes),
             criterion: last.map(|record| record.criterion),
             met: last.map(|record| record.met),
         })
@@ -299,13 +303,14 @@ pub fn describe(figures: &CompareFigures) -> String {
     );
     figures.pairs.iter().for_each(|pair| text += &describe_pair(pair));
     if let Some(training) = &figures.training {
-        let met = match training.met {
-            None => "never trained",
-            Some(true) => "the criterion was met",
-            Some(false) => "the criterion was not met",
+        text += &match training.met {
+            None => format!("\nno training of {} in {}; see --training\n", training.wizard, training.folder),
+            Some(met) => {
+                let met = if met { "the criterion was met" } else { "the criterion was not met" };
+                let times = count(training.times, "time", "times");
+                format!("\n{}: trained {times}, {:.1} minutes; {met}\n", training.wizard, training.minutes)
+            }
         };
-        let times = count(training.times, "time", "times");
-        text += &format!("\n{}: trained {times}, {:.1} minutes; {met}\n", training.wizard, training.minutes);
     }
     for one in &figures.recordings {
         let presses = count(one.human_actions, "press", "presses");

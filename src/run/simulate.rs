@@ -108,7 +108,8 @@ pub fn simulate(simulation: &Simulation, done: impl Fn() + Sync) -> Result<Simul
     Ok(figures)
 }
 
-/// A recording to train a wizard with, of the default kitchen: an unassisted trial of so many seconds.
+/// A recording to train a wizard with, of the default kitchen: an unassisted trial of so many seconds, in a folder that is
+/// named after them.
 ///
 /// # Errors
 /// Those of [`simulate`].
@@ -121,7 +122,9 @@ pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>,
     files.spec.check().map_err(|error| {
         Box::new(FileError::at(Path::new("--seconds"), "", None, error.found, error.remedy.to_string()))
     })?;
-    let figures = simulate(&Simulation { files, trials: 1, out: out.to_path_buf() }, || ())?;
+    // What differs in length is another recording.
+    let out = out.join(format!("{seconds}s"));
+    let figures = simulate(&Simulation { files, trials: 1, out }, || ())?;
     Ok(figures.recordings.iter().map(PathBuf::from).collect())
 }
 

@@ -65,7 +65,7 @@ impl DisplaySpec {
         match self.words.values().find(is_long) {
             Some(word) => {
                 let found = format!("a word of {} characters for the display", word.chars().count());
-                Err(SettingError::new("words", found, "at most 400 characters"))
+                Err(SettingError::new("display.words", found, "at most 400 characters"))
             }
             None => Ok(()),
         }

@@ -60,20 +60,25 @@ const MAX_TRIAL_S: f64 = 86_400.0;
 /// A setting that cannot be.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SettingError {
-    /// The name of the setting in its table.
-    pub key: &'static str,
+    /// The setting with the tables around it, from outside; tables in between may be left out: "rerun.address".
+    pub path: String,
     /// What was found.
     pub found: String,
     /// What would be right.
     pub remedy: &'static str,
-    /// Which of the settings of that name it is; 0 is the first.
+    /// Which of the settings of that path it is; 0 is the first.
     pub nth: usize,
 }
 
 impl SettingError {
-    /// An error about the first setting of that name.
-    pub fn new(key: &'static str, found: String, remedy: &'static str) -> SettingError {
-        SettingError { key, found, remedy, nth: 0 }
+    /// An error about the first setting of that path.
+    pub fn new(path: impl Into<String>, found: String, remedy: &'static str) -> SettingError {
+        SettingError { path: path.into(), found, remedy, nth: 0 }
+    }
+
+    /// The setting without the tables around it.
+    pub fn key(&self) -> &str {
+        self.path.rsplit('.').next().unwrap_or(&self.path)
     }
 }
 
@@ -83,25 +88,25 @@ impl SessionSpec {
     /// # Errors
     /// The first setting that cannot be.
     pub fn check(&self) -> Result<(), SettingError> {
-        let above_0 = |key: &'static str, value: f64| match value.is_finite() && value > 0.0 {
+        let above_0 = |table: &str, key: &str, value: f64| match value.is_finite() && value > 0.0 {
             true => Ok(()),
-            false => Err(SettingError::new(key, format!("{key} = {value}"), "a number above 0")),
+            false => Err(SettingError::new(format!("{table}.{key}"), format!("{key} = {value}"), "a number above 0")),
         };
-        above_0("presses", f64::from(self.trial.presses))?;
-        above_0("seconds", self.trial.seconds)?;
+        above_0("trial", "presses", f64::from(self.trial.presses))?;
+        above_0("trial", "seconds", self.trial.seconds)?;
         if self.trial.seconds > MAX_TRIAL_S {
             let found = format!("seconds = {}", self.trial.seconds);
-            return Err(SettingError::new("seconds", found, "at most 86400, a day"));
+            return Err(SettingError::new("trial.seconds", found, "at most 86400, a day"));
         }
-        above_0("press_s", self.robot.press_s)?;
-        above_0("shown_s", self.signals.shown_s)?;
+        above_0("robot", "press_s", self.robot.press_s)?;
+        above_0("signals", "shown_s", self.signals.shown_s)?;
         if !(0.0..=2.0).contains(&self.robot.press_spread) {
             let found = format!("press_spread = {}", self.robot.press_spread);
-            return Err(SettingError::new("press_spread", found, "a number from 0 to 2"));
+            return Err(SettingError::new("robot.press_spread", found, "a number from 0 to 2"));
         }
         if self.trial.orders == Some(0) {
             let found = "orders = 0".to_string();
-            return Err(SettingError::new("orders", found, "a number above 0"));
+            return Err(SettingError::new("trial.orders", found, "a number above 0"));
         }
         if let Some(plan) = &self.plan {
             plan.check()?;
@@ -110,24 +115,28 @@ impl SessionSpec {
         if !is_code(code) {
             let found = format!("code = \"{code}\"");
             let remedy = "a code of 1 to 32 letters, digits, - and _, such as \"P07\"; never a name";
-            return Err(SettingError::new("code", found, remedy));
+            return Err(SettingError::new("participant.code", found, remedy));
         }
         if self.participant.gaze == GazeSource::Simulated && self.participant.kind != ParticipantKind::Simulated {
             let found = "gaze = \"simulated\" of a participant who is not simulated".to_string();
             let remedy = "gaze = \"mouse\", \"pupil\", \"file\", \"json\" or \"none\"";
-            return Err(SettingError::new("gaze", found, remedy));
+            return Err(SettingError::new("participant.gaze", found, remedy));
         }
         if !(0.0..=60.0).contains(&self.signals.cool_down_s) {
             let found = format!("cool_down_s = {}", self.signals.cool_down_s);
-            return Err(SettingError::new("cool_down_s", found, "seconds from 0 (none) to 60"));
+            return Err(SettingError::new("signals.cool_down_s", found, "seconds from 0 (none) to 60"));
         }
         self.tracker.check(self.participant.gaze)?;
         self.console.check()?;
         self.display.check()?;
         self.rerun.check()?;
-        match self.human.fault().or_else(|| self.assistant.fault()) {
-            Some((key, found, remedy)) => Err(SettingError::new(key, found, remedy)),
-            None => Ok(()),
+        let of = |table: &str, (key, found, remedy): (&str, String, &'static str)| {
+            Err(SettingError::new(format!("{table}.{key}"), found, remedy))
+        };
+        match (self.human.fault(), self.assistant.fault()) {
+            (Some(fault), _) => of("human", fault),
+            (None, Some(fault)) => of("assistant", fault),
+            (None, None) => Ok(()),
         }
     }
 }
@@ -322,13 +331,13 @@ impl Default for ConsoleSpec {
 
 impl ConsoleSpec {
     fn check(&self) -> Result<(), SettingError> {
-        let wrong = |key, texts: &[String], most: usize, remedy| {
+        let wrong = |key: &str, texts: &[String], most: usize, remedy| {
             let is_text = |text: &String| {
                 let length = text.chars().count();
                 (1..=MAX_PRESET).contains(&length) && text.trim() == text && !text.chars().any(char::is_control)
             };
             let is_wrong = texts.is_empty() || texts.len() > most || !texts.iter().all(is_text);
-            is_wrong.then(|| SettingError::new(key, format!("{key} = {texts:?}"), remedy))
+            is_wrong.then(|| SettingError::new(format!("console.{key}"), format!("{key} = {texts:?}"), remedy))
         };
         let notes = "1 to 5 texts of 1 to 40 characters, each on one line";
         let reasons = "1 to 20 texts of 1 to 40 characters, each on one line";

@@ -36,6 +36,6 @@ impl RerunSpec {
         let found = || format!("address = \"{}\"", self.address);
         let remedy =
             "an address of this machine and a port, such as \"127.0.0.1:9876\"; \"0.0.0.0:9876\" for all networks";
-        if is_address { Ok(()) } else { Err(SettingError::new("address", found(), remedy)) }
+        if is_address { Ok(()) } else { Err(SettingError::new("rerun.address", found(), remedy)) }
     }
 }

@@ -48,22 +48,26 @@ impl TrackerSpec {
             |text: &str| (1..=100).contains(&text.len()) && !text.chars().any(|c| c.is_control() || c.is_whitespace());
         for (key, text) in [("address", &self.address), ("surface", &self.surface)] {
             if !is_name(text) {
-                return Err(SettingError::new(key, format!("{key} = {text:?}"), "1 to 100 signs without spaces"));
+                return Err(SettingError::new(
+                    format!("tracker.{key}"),
+                    format!("{key} = {text:?}"),
+                    "1 to 100 signs without spaces",
+                ));
             }
         }
         if let Some(corners) = self.corners
             && SurfaceMap::new(corners).is_none()
         {
             let remedy = "four corners in fractions of the display: top left, top right, bottom right, bottom left";
-            return Err(SettingError::new("corners", format!("corners = {corners:?}"), remedy));
+            return Err(SettingError::new("tracker.corners", format!("corners = {corners:?}"), remedy));
         }
         if !(0.2..=20.0).contains(&self.distance_m) {
             let found = format!("distance_m = {}", self.distance_m);
-            return Err(SettingError::new("distance_m", found, "metres from 0.2 to 20"));
+            return Err(SettingError::new("tracker.distance_m", found, "metres from 0.2 to 20"));
         }
         if gaze == GazeSource::File && self.file.is_none() {
             let remedy = "file = \"gaze.csv\" in [tracker], or --gaze-file PATH";
-            return Err(SettingError::new("gaze", "gaze = \"file\", and no file".to_string(), remedy));
+            return Err(SettingError::new("participant.gaze", "gaze = \"file\", and no file".to_string(), remedy));
         }
         Ok(())
     }

@@ -2,10 +2,11 @@
 
 use ratatui::layout::Rect;
 
-use super::paint::{Brush, fit};
+use super::paint::{Brush, fit, width};
 use super::regions::Regions;
 use super::theme::Role;
 use crate::base::time::SessionTime;
+use crate::communication::recommendation::phrase;
 use crate::console::belief::{self, Held, Moment};
 use crate::console::model::Model;
 use crate::kitchen::{AspectId, AspectKind, Kitchen};
@@ -72,7 +73,10 @@ impl Panel<'_> {
         let inside = brush.panel(area, "Belief", &remark);
         let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
         let ranked = belief::ranked(self.moments);
-        let rows_of = |aspect: usize| if columns < ONE_LINE && self.held[aspect].is_false() { 2 } else { 1 };
+        let rows_of = |aspect: usize| match columns < ONE_LINE && self.held[aspect].is_false() {
+            true => 1 + self.told(aspect, columns).len() as u16,
+            false => 1,
+        };
         let mut bottom = inside.bottom();
         if let Some(focus) = self.focus
             && inside.height > CHART_ROWS[0] + 2
@@ -114,7 +118,7 @@ impl Panel<'_> {
 
     /// What the columns of [`Panel::row`] are.
     fn headings(&self, brush: &mut Brush, x: u16, y: u16, columns: u16) {
-        let Widths { name, word, bar } = Widths::of(columns);
+        let Widths { name, word, bar } = self.widths(columns);
         let quiet = brush.style(Role::Quiet);
         let believed = x + name + 1;
         let truth = believed + word + bar + 6;
@@ -129,7 +133,7 @@ impl Panel<'_> {
     /// An aspect in one line: name, what is believed, how surely, the truth, since when it is wrong, its course.
     fn row(&self, brush: &mut Brush, aspect: usize, x: u16, y: u16, columns: u16) {
         let with_course = columns >= WITH_COURSE;
-        let Widths { name, word, bar } = Widths::of(columns);
+        let Widths { name, word, bar } = self.widths(columns);
         let held = self.held[aspect];
         let (role, quiet) = (self.role(aspect), brush.style(Role::Quiet));
         let style = brush.style(role);
@@ -150,7 +154,17 @@ impl Panel<'_> {
         }
     }
 
-    /// An aspect where there is little room: what is wrong in two lines, else one.
+    /// What is wrong, in lines below the name: the believed and the true value have one each where they do not fit into one.
+    fn told(&self, aspect: usize, columns: u16) -> Vec<String> {
+        let whole = self.against_truth(aspect);
+        let room = columns.saturating_sub(2);
+        match whole.split_once("; ") {
+            Some((believed, truth)) if width(&whole) > room => vec![believed.to_string(), truth.to_string()],
+            _ => vec![whole],
+        }
+    }
+
+    /// An aspect where there is little room: what is wrong in lines below its name, all else in one.
     fn narrow(&self, brush: &mut Brush, aspect: usize, x: u16, y: u16, columns: u16) {
         let held = self.held[aspect];
         let role = self.role(aspect);
@@ -158,21 +172,28 @@ impl Panel<'_> {
         let quiet = brush.style(Role::Quiet);
         let right = x + columns;
         let bar = right.saturating_sub(15);
-        brush.bar(bar, y, 4, f64::from(held.p), role);
         brush.text(bar + 5, y, 4, &share(held.p), style);
         self.since(brush, aspect, bar + 9, y);
-        let room = columns.saturating_sub(16);
+        let (name, believed) = (self.name(aspect), self.label(aspect, usize::from(held.believes)));
+        let mut room = columns.saturating_sub(16);
+        // Names come before the bar: the figure beside it says the same.
+        if held.is_false() || width(&name) + 1 + width(believed) <= room {
+            brush.bar(bar, y, 4, f64::from(held.p), role);
+        } else {
+            room += 5;
+        }
         if !held.is_false() {
             // Which it is comes before what it holds: that is as it should be.
-            let name = fit(&self.name(aspect), room.saturating_sub(6), brush.theme.signs().ellipsis);
+            let name = fit(&name, room.saturating_sub(6), brush.theme.signs().ellipsis);
             let end = brush.text(x, y, room, &name, quiet) + 1;
-            brush.text(end, y, (x + room).saturating_sub(end), self.label(aspect, usize::from(held.believes)), style);
+            brush.text(end, y, (x + room).saturating_sub(end), believed, style);
             return;
         }
-        brush.text(x, y, room, &self.name(aspect), style);
-        let said = format!("  {}", self.against_truth(aspect));
+        brush.text(x, y, room, &name, style);
         let text = brush.style(Role::Text);
-        brush.text(x, y + 1, columns, &said, text);
+        for (row, line) in self.told(aspect, columns).iter().enumerate() {
+            brush.text(x + 2, y + 1 + row as u16, columns.saturating_sub(2), line, text);
+        }
     }
 
     /// Since when it is wrong, or that the gaze has just been there.
@@ -211,8 +232,18 @@ impl Panel<'_> {
             let end = format!("{note}{} {:>5}", share(held.p), age.unwrap_or_default().to_string());
             let style = brush.style(Role::FalseBelief);
             brush.text_right(x + columns, y, columns, &end, style);
-            let said = format!("{}: {}", self.name(aspect), self.against_truth(aspect));
-            brush.text(x, y, columns.saturating_sub(end.len() as u16 + 1), &said, style);
+            let room = columns.saturating_sub(end.len() as u16 + 1);
+            let head = format!("{}: ", self.name(aspect));
+            let told = self.against_truth(aspect);
+            // The truth is what may be told: what is believed gives way to it.
+            let told = match told.rsplit_once("; ") {
+                Some((believed, truth)) if width(&head) + width(&told) > room => {
+                    let left = room.saturating_sub(width(&head) + width(truth) + 2);
+                    format!("{}; {truth}", fit(believed, left, brush.theme.signs().ellipsis))
+                }
+                _ => told,
+            };
+            brush.text(x, y, room, &format!("{head}{told}"), style);
         }
     }
 
@@ -260,7 +291,7 @@ impl Panel<'_> {
         }
     }
 
-    /// "cooking pot"; a recipe by its dish, with the order that wants it.
+    /// "cooking pot"; a recipe by the order that wants it, or else by its dish.
     fn name(&self, aspect: usize) -> String {
         let kitchen = self.kitchen();
         match kitchen.aspects[aspect].kind {
@@ -268,11 +299,16 @@ impl Panel<'_> {
             AspectKind::Recipe(dish) => {
                 let mut orders = kitchen.wanted(self.session.state).filter(|(_, wanted)| *wanted == dish);
                 match orders.next() {
-                    Some((order, _)) => format!("recipe {}: {}", order.index() + 1, kitchen.dish(dish).name),
+                    Some((order, _)) => format!("recipe of {}", kitchen.location(order).label()),
                     None => format!("recipe {}", kitchen.dish(dish).name),
                 }
             }
         }
+    }
+
+    fn widths(&self, columns: u16) -> Widths {
+        let names = (0..self.held.len()).map(|aspect| width(&self.name(aspect)));
+        Widths::of(columns, names.max().unwrap_or(0))
     }
 
     fn label(&self, aspect: usize, value: usize) -> &str {
@@ -283,7 +319,7 @@ impl Panel<'_> {
     fn against_truth(&self, aspect: usize) -> String {
         match (self.label(aspect, usize::from(self.held[aspect].believes)), self.truth(aspect)) {
             (believed, truth) if believed == truth => format!("unsure of {truth}"),
-            (believed, truth) => format!("{believed}; is {truth}"),
+            (believed, truth) => format!("{}; is {truth}", phrase(believed)),
         }
     }
 
@@ -301,10 +337,11 @@ struct Widths {
 }
 
 impl Widths {
-    fn of(columns: u16) -> Widths {
+    /// Of so many columns in all, with names of at most `longest` columns.
+    fn of(columns: u16, longest: u16) -> Widths {
         let (course, bar) = if columns >= WITH_COURSE { (COURSE + 1, 6) } else { (0, 4) };
-        let text = columns - course - bar - 15;
-        let name = text * 2 / 5;
+        let text = columns - course - bar - 14;
+        let name = longest.min(text * 9 / 20);
         Widths { name, word: (text - name) / 2, bar }
     }
 }

@@ -6,9 +6,9 @@ use super::hands;
 use super::paint::{Brush, width, wrap};
 use super::picker;
 use super::regions::inside;
-use super::theme::{Role, Signs};
+use super::theme::{Role, Signs, Theme};
 use crate::console::chord::Chord;
-use crate::console::keys::{Binding, Layer};
+use crate::console::keys::{Action, Binding, Keys, Layer};
 use crate::console::model::{Dialog, Model};
 use crate::session::{Phase, Session};
 
@@ -22,18 +22,21 @@ pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
         Some(Dialog::Note(line)) => hands::note(brush, screen, line),
         Some(Dialog::Help) => help(brush, screen, model),
         Some(Dialog::Difference(lines)) => difference(brush, screen, lines),
-        Some(Dialog::EndTrial) => ask(brush, screen, "End the trial?", &["It cannot be resumed after that."]),
+        Some(Dialog::EndTrial) => ask(brush, screen, "End the trial?", &["It cannot be resumed after that."], "y"),
         Some(Dialog::Quit) => {
             let lines: &[&str] = match session.phase {
                 Phase::Running | Phase::Paused => {
-                    &["The trial is not over.", "The session ends, the recording is kept."]
+                    &["The trial is not over. Only y ends it.", "The session ends, the recording is kept."]
                 }
                 _ if !session.is_step_done() => {
                     &["Not everything of this step is done.", "It can be continued, or done again."]
                 }
                 _ => &["The session ends, the recording is kept."],
             };
-            ask(brush, screen, "Quit tomcom?", lines);
+            let is_running = matches!(session.phase, Phase::Running | Phase::Paused);
+            let again = model.keys.of(&Action::Quit).filter(|_| !is_running);
+            let yes = again.map_or("y".to_string(), |chord| format!("y or {chord}"));
+            ask(brush, screen, "Quit tomcom?", lines, &yes);
         }
     }
 }
@@ -63,13 +66,14 @@ pub(super) fn open(brush: &mut Brush, screen: Rect, size: (u16, u16), title: &st
     inside(area)
 }
 
-fn ask(brush: &mut Brush, screen: Rect, title: &str, lines: &[&str]) {
+/// A question, and the keys that say yes.
+fn ask(brush: &mut Brush, screen: Rect, title: &str, lines: &[&str], yes: &str) {
     let inside = open(brush, screen, (46, lines.len() as u16 + 5), title, "");
     for (row, line) in lines.iter().enumerate() {
         brush.parts(inside.x + 2, inside.y + 1 + row as u16, inside.width - 3, &[(line, Role::Text)]);
     }
     let y = inside.bottom() - 1;
-    let parts = [("y", Role::Strong), (" yes    ", Role::Text), ("any other key", Role::Strong), (" no", Role::Text)];
+    let parts = [(yes, Role::Strong), (" yes    ", Role::Text), ("any other key", Role::Strong), (" no", Role::Text)];
     brush.parts(inside.x + 2, y, inside.width - 3, &parts);
 }
 
@@ -89,8 +93,10 @@ fn difference(brush: &mut Brush, screen: Rect, lines: &[String]) {
     }
 }
 
-/// The columns of a line of the help, with its key.
+/// The columns of a line of the help, with its key, at least.
 const HELP_COLUMNS: u16 = 39;
+/// Where a line of the help says what a key does.
+const HELP_INDENT: u16 = 7;
 
 /// A line of the help: a heading, a key with what it does, or a sign with what it means.
 #[derive(Clone, Copy)]
@@ -100,6 +106,18 @@ enum Line<'a> {
     /// A sign of the panels, with what it means.
     Sign(&'static str, &'static str),
     Space,
+}
+
+impl Line<'_> {
+    /// The columns that it takes.
+    fn columns(&self) -> u16 {
+        match self {
+            Line::Heading(text) => width(text),
+            Line::Key(binding) => HELP_INDENT + width(&binding.help),
+            Line::Sign(_, meaning) => HELP_INDENT + width(meaning),
+            Line::Space => 0,
+        }
+    }
 }
 
 /// What the signs mean that explain themselves nowhere else.
@@ -127,25 +145,39 @@ fn legend(signs: &Signs) -> Vec<Line<'static>> {
     meanings.map(|(sign, meaning)| Line::Sign(sign, meaning)).to_vec()
 }
 
-fn help(brush: &mut Brush, screen: Rect, model: &Model) {
+/// What the help says, in columns, and how many of them fit side by side.
+fn help_columns<'a>(keys: &'a Keys, theme: &Theme, size: (u16, u16)) -> (Vec<Vec<Line<'a>>>, usize) {
     let mut groups: Vec<(&str, Vec<Line>)> = Vec::new();
-    for binding in &model.keys.bindings {
+    for binding in &keys.bindings {
         match groups.iter_mut().find(|(group, _)| *group == binding.group) {
             Some((_, members)) => members.push(Line::Key(binding)),
             None => groups.push((binding.group, vec![Line::Key(binding)])),
         }
     }
-    groups.push(("Signs", legend(brush.theme.signs())));
-    let rows = screen.height.saturating_sub(3);
-    let columns = columns(&groups, usize::from(rows));
+    groups.push(("Signs", legend(theme.signs())));
+    let columns = columns(&groups, usize::from(size.1.saturating_sub(3)));
+    let fits = usize::from((size.0.saturating_sub(4) / HELP_COLUMNS).max(1)).min(columns.len());
+    (columns, fits)
+}
+
+/// How many pages the help has beyond the first.
+pub fn help_pages(model: &Model) -> usize {
+    let (columns, fits) = help_columns(&model.keys, &model.theme, model.size);
+    columns.len() - fits
+}
+
+fn help(brush: &mut Brush, screen: Rect, model: &Model) {
+    let theme = brush.theme;
+    let (columns, fits) = help_columns(&model.keys, &theme, (screen.width, screen.height));
     let tallest = columns.iter().map(Vec::len).max().unwrap_or(0) as u16;
-    let fits = usize::from((screen.width.saturating_sub(4) / HELP_COLUMNS).max(1)).min(columns.len());
     let from = model.help_from.min(columns.len() - fits);
     let remark = match columns.len() - fits {
         0 => "any key closes".to_string(),
         more => format!("arrows: page {} of {}, other keys close", from + 1, more + 1),
     };
-    let column_width = (screen.width.saturating_sub(4) / fits as u16).min(HELP_COLUMNS + 2);
+    // As wide as the longest line, if there is room for it.
+    let longest = columns.iter().flatten().map(Line::columns).max().unwrap_or(0).max(HELP_COLUMNS);
+    let column_width = (screen.width.saturating_sub(4) / fits as u16).min(longest + 2);
     let inside = open(brush, screen, (column_width * fits as u16 + 4, tallest + 2), "Keys", &remark);
     for (index, column) in columns.iter().skip(from).take(fits).enumerate() {
         let x = inside.x + 1 + index as u16 * column_width;
@@ -165,7 +197,7 @@ fn help_line(brush: &mut Brush, x: u16, y: u16, columns: u16, line: &Line) {
         Line::Sign(sign, meaning) => {
             let style = brush.style(Role::Strong);
             brush.text(x + 5, y, 1, sign, style);
-            brush.parts(x + 7, y, columns.saturating_sub(7), &[(meaning, Role::Text)]);
+            brush.parts(x + HELP_INDENT, y, columns.saturating_sub(HELP_INDENT), &[(meaning, Role::Text)]);
         }
         Line::Key(binding) => {
             let key = binding.chords.first().map(Chord::to_string).unwrap_or_default();
@@ -176,7 +208,7 @@ fn help_line(brush: &mut Brush, x: u16, y: u16, columns: u16, line: &Line) {
             };
             let style = brush.style(role);
             brush.text(x + 6 - width(&key).min(6), y, 6, &key, style);
-            brush.parts(x + 7, y, columns.saturating_sub(7), &[(&binding.help, Role::Text)]);
+            brush.parts(x + HELP_INDENT, y, columns.saturating_sub(HELP_INDENT), &[(&binding.help, Role::Text)]);
         }
     }
 }

@@ -56,7 +56,9 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         let Some(label) = label(binding, session, model) else { continue };
         let Some(chord) = binding.chords.first() else { continue };
         let key = match binding.action {
-            Action::Note(_) => format!("1-{}", session.spec.console.notes.len()),
+            Action::Note(_) if session.spec.console.notes.len() > 1 => {
+                format!("1-{}", session.spec.console.notes.len())
+            }
             // One label for the keys of both directions.
             Action::Move(Move::StepForward) => "left/right".to_string(),
             Action::Move(Move::SeekForward) => "pgup/pgdn".to_string(),

@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use super::paint::{Brush, wrap};
+use super::paint::{Brush, width, wrap};
 use super::regions::{Regions, Room};
 use super::theme::Role;
 use crate::communication::concept::ConceptName;
@@ -29,7 +29,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     if regions.room == Room::Small {
         return line(brush, area, session, model);
     }
-    let inside = brush.panel(area, "Recommendation", remark(session));
+    let inside = brush.panel(area, "Recommendation", remark(session, area.width));
     let Some(advice) = &session.advice else {
         let quiet = brush.style(Role::Quiet);
         for (row, line) in wrap(silence(session), inside.width).iter().enumerate() {
@@ -37,32 +37,38 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         }
         return;
     };
-    let mut y = proposal(brush, inside, advice);
-    let mut is_above = true;
-    for option in &advice.options {
-        // The line between what is worth a signal and what is not.
-        if is_above && option.net <= 0.0 {
-            is_above = false;
-            y = cost_line(brush, inside, y, session, advice, model);
+    // The line between what is worth a signal and what is not is always there; what stands above it gives way.
+    let above = Rect { height: inside.height.saturating_sub(1), ..inside };
+    let mut y = proposal(brush, above, advice);
+    let (worth_it, not_worth_it): (Vec<&SignalOption>, Vec<&SignalOption>) =
+        advice.options.iter().partition(|option| option.net > 0.0);
+    for option in worth_it {
+        if y >= above.bottom() {
+            break;
         }
+        y = option_line(brush, above, y, option, session, model, advice);
+        if Some(&option.signal) == advice.best.as_ref() {
+            y = reason(brush, above, y, advice, session);
+        }
+    }
+    y = cost_line(brush, inside, y, session, advice, model);
+    for option in not_worth_it {
         if y >= inside.bottom() {
             return;
         }
         y = option_line(brush, inside, y, option, session, model, advice);
-        if Some(&option.signal) == advice.best.as_ref() {
-            y = reason(brush, inside, y, advice, session);
-        }
-    }
-    if is_above && y < inside.bottom() {
-        cost_line(brush, inside, y, session, advice, model);
     }
 }
 
-/// What decides, and what its figures are.
-fn remark(session: &Session) -> &'static str {
+/// What decides, and what its figures are; without what decides where there are few columns.
+fn remark(session: &Session, columns: u16) -> &'static str {
+    let is_narrow = columns < NARROW;
     match session.spec.assistant.concept {
+        ConceptName::TomCom if is_narrow => "net presses",
         ConceptName::TomCom => "ToM-Com, net presses saved",
+        ConceptName::Tom if is_narrow => "above threshold",
         ConceptName::Tom => "ToM, belief off above threshold",
+        ConceptName::Dev if is_narrow => "after an error",
         ConceptName::Dev => "DEV, presses after an error",
         ConceptName::None => "no concept",
     }
@@ -76,7 +82,7 @@ fn proposal(brush: &mut Brush, inside: Rect, advice: &Recommendation) -> u16 {
         let style = brush.style(Role::Strong);
         brush.text(inside.x, inside.y + row as u16, inside.width, line, style);
     }
-    inside.y + lines.len() as u16
+    (inside.y + lines.len() as u16).min(inside.bottom())
 }
 
 fn proposed(proposal: &Proposal) -> String {
@@ -103,7 +109,12 @@ fn line(brush: &mut Brush, area: Rect, session: &Session, model: &Model) {
         }
         Some((_, None)) => parts.push(("say nothing".to_string(), Role::Quiet)),
         Some((advice, Some(option))) => {
-            parts.push((worth(option, session), Role::Strong));
+            let worth = worth(option, session);
+            let worth = match session.spec.assistant.concept {
+                ConceptName::Tom => format!("{worth}above threshold "),
+                _ => format!("net {worth}"),
+            };
+            parts.push((worth, Role::Strong));
             parts.push((key(option, session, model), Role::Signal));
             parts.push((words::signal(&option.signal), Role::Strong));
             if let Some(reason) = &advice.reason {
@@ -111,8 +122,16 @@ fn line(brush: &mut Brush, area: Rect, session: &Session, model: &Model) {
             }
         }
     }
+    let age = session.advice.as_ref().map_or(String::new(), |advice| age(session, advice, model));
     let parts: Vec<(&str, Role)> = parts.iter().map(|(text, role)| (text.as_str(), *role)).collect();
-    brush.parts(area.x, area.y, area.width, &parts);
+    brush.parts(area.x, area.y, area.width.saturating_sub(width(&age) + 1), &parts);
+    let style = brush.style(Role::Quiet);
+    brush.text_right(area.right().saturating_sub(1), area.y, area.width, &age, style);
+}
+
+/// How old the advice is.
+fn age(session: &Session, advice: &Recommendation, model: &Model) -> String {
+    format!("  {:.1} s old", session.age(advice.for_ns, model.now).as_secs_f64())
 }
 
 /// What an option is worth beyond its price, in the concept's unit.
@@ -174,16 +193,25 @@ fn gauge(brush: &mut Brush, x: u16, y: u16, option: &SignalOption, session: &Ses
     x + GAUGE + 1
 }
 
+/// Why the best option would help, as long as there is room for it, and shorter where there is not.
 fn reason(brush: &mut Brush, inside: Rect, y: u16, advice: &Recommendation, session: &Session) -> u16 {
     let (Some(reason), Some(option)) = (&advice.reason, advice.top()) else { return y };
-    let words = match session.spec.assistant.concept {
-        ConceptName::Tom => reason.words(),
-        _ => format!("{}; saves {:.1} presses", reason.words(), option.benefit),
+    let saves = match session.spec.assistant.concept {
+        ConceptName::Tom => String::new(),
+        _ => format!("; saves {:.1} presses, net {:+.1}", option.benefit, option.net),
     };
+    let (columns, rows) = (inside.width.saturating_sub(2), usize::from(inside.bottom().saturating_sub(y)));
+    let said = [reason.words() + &saves, reason.words(), reason.taken() + &saves, reason.taken()];
+    let mut lines = said.iter().map(|words| wrap(words, columns)).find(|lines| lines.len() <= rows);
+    if lines.is_none() {
+        // Not even the shortest has room: its last line says that it goes on.
+        let all = wrap(&said[3], columns);
+        lines = rows.checked_sub(1).map(|last| [&all[..last], &[all[last..].join(" ")]].concat());
+    }
     let style = brush.style(Role::Text);
-    let lines = wrap(&words, inside.width.saturating_sub(2));
-    for (row, line) in lines.iter().enumerate().filter(|(row, _)| y + (*row as u16) < inside.bottom()) {
-        brush.text(inside.x + 2, y + row as u16, inside.width.saturating_sub(2), line, style);
+    let lines = lines.unwrap_or_default();
+    for (row, line) in lines.iter().enumerate() {
+        brush.text(inside.x + 2, y + row as u16, columns, line, style);
     }
     y + lines.len() as u16
 }
@@ -205,12 +233,11 @@ fn cost_line(
         ConceptName::TomCom if inside.width < NARROW => format!("{silence}costs {price:.1}"),
         ConceptName::TomCom => format!("{silence}a signal costs {price:.1}"),
     };
-    let age = session.age(advice.for_ns, model.now).as_secs_f64();
     let role = if advice.best.is_none() { Role::Strong } else { Role::Quiet };
     let accept = model.keys.of(&Action::Accept).filter(|_| advice.best.is_some());
     let accept = accept.map_or(String::new(), |chord| format!("  [{}] accepts", chord.name()));
     brush.parts(inside.x, y, inside.width, &[(left.as_str(), role), (accept.as_str(), Role::Signal)]);
     let style = brush.style(Role::Quiet);
-    brush.text_right(inside.right(), y, inside.width, &format!("  {age:.1} s old"), style);
+    brush.text_right(inside.right(), y, inside.width, &age(session, advice, model), style);
     y + 1
 }

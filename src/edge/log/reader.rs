@@ -221,6 +221,6 @@ fn read_header(path: &Path, text: &str) -> FileResult<Header> {
         .map_err(|error| wrong(error.column().saturating_sub(1), json_message(&error), is_log.clone()))?;
     match header.session.check() {
         Ok(()) => Ok(header),
-        Err(error) => Err(wrong(text.find(error.key).unwrap_or(0), error.found, error.remedy.to_string())),
+        Err(error) => Err(wrong(text.find(error.key()).unwrap_or(0), error.found, error.remedy.to_string())),
     }
 }

@@ -121,19 +121,19 @@ impl PlanSpec {
         let twice = |index: usize| self.conditions[..index].contains(&self.conditions[index]);
         if self.conditions.is_empty() || self.conditions.len() > MAX_CONDITIONS {
             let found = format!("{} conditions", self.conditions.len());
-            return wrong("conditions", found, "one to four conditions, such as [\"none\", \"wizard\"]");
+            return wrong("plan.conditions", found, "one to four conditions, such as [\"none\", \"wizard\"]");
         }
         if let Some(index) = (0..self.conditions.len()).find(|&index| twice(index)) {
             let found = format!("the condition \"{}\" twice", self.conditions[index].name());
-            return wrong("conditions", found, "different conditions: each participant has one trial in each");
+            return wrong("plan.conditions", found, "different conditions: each participant has one trial in each");
         }
         let orders = groups(self.conditions.len()).len() as u32;
         if let Some(block) = self.block.filter(|&block| block > MAX_PARTICIPANTS) {
-            return wrong("block", format!("block = {block}"), "at most 9999 participants in a block");
+            return wrong("plan.block", format!("block = {block}"), "at most 9999 participants in a block");
         }
         if let Some(block) = self.block.filter(|&block| block == 0 || block % orders != 0) {
             let found = format!("block = {block}, with {orders} orders of the conditions");
-            return wrong("block", found, "a multiple of the number of orders, so that each comes equally often");
+            return wrong("plan.block", found, "a multiple of the number of orders, so that each comes equally often");
         }
         if let Some(familiarisation) = &self.familiarisation {
             familiarisation.check()?;
@@ -148,7 +148,7 @@ impl PlanSpec {
     }
 
     fn check_participants(&self) -> Result<(), SettingError> {
-        let wrong = |found: String, remedy| Err(SettingError::new("participants", found, remedy));
+        let wrong = |found: String, remedy| Err(SettingError::new("plan.participants", found, remedy));
         match &self.participants {
             Participants::Count(count) if *count == 0 || *count > MAX_PARTICIPANTS => {
                 wrong(format!("participants = {count}"), "1 to 9999 participants, or a list of their codes")

@@ -64,19 +64,19 @@ impl Questionnaire {
     /// # Errors
     /// The first setting that cannot be.
     pub fn check(&self) -> Result<(), SettingError> {
-        let wrong = |key, found, remedy| Err(SettingError::new(key, found, remedy));
+        let wrong = |key: &str, found, remedy| Err(SettingError::new(key, found, remedy));
         if !is_code(&self.name) {
             let remedy = "a short name of letters, digits, - and _, such as \"acceptance\"";
             return wrong("name", format!("name = \"{}\"", self.name), remedy);
         }
         if !(2..=9).contains(&self.scale.points) {
             let found = format!("points = {}", self.scale.points);
-            return wrong("points", found, "2 to 9 points: each is a key");
+            return wrong("scale.points", found, "2 to 9 points: each is a key");
         }
         if self.items.is_empty() {
             return wrong("item", "a questionnaire without items".to_string(), "at least one [[item]]");
         }
-        let wrong_id = |nth, found, remedy| Err(SettingError { nth, ..SettingError::new("id", found, remedy) });
+        let wrong_id = |nth, found, remedy| Err(SettingError { nth, ..SettingError::new("item.id", found, remedy) });
         if let Some(nth) = self.items.iter().position(|item| !is_code(&item.id)) {
             let remedy = "a short id of letters, digits, - and _, such as \"too_often\"";
             return wrong_id(nth, format!("id = \"{}\"", self.items[nth].id), remedy);

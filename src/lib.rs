@@ -15,3 +15,4 @@ pub mod robot;
 pub mod run;
 pub mod scene;
 pub mod session;
+pub mod study;

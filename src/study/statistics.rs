@@ -1,0 +1,252 @@
+//! Statistics of small samples, as textbooks have them: what a study of some tens of participants is evaluated with.
+//!
+//! Distributions are those of `statrs`; all else is short enough to be read. `tests/outside/statistics.py` holds every
+//! figure against SciPy, pingouin and scikit-learn.
+
+use rand::seq::SliceRandom;
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
+
+use crate::base::rng::stream;
+
+/// An F test.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FTest {
+    pub f: f64,
+    /// Degrees of freedom of the effect and of the residuals.
+    pub df: [f64; 2],
+    pub p: f64,
+    pub partial_eta_sq: f64,
+}
+
+impl FTest {
+    /// Of sums of squares; none without degrees of freedom or without any variance.
+    fn of(effect: f64, df_effect: f64, residual: f64, df_residual: f64) -> Option<FTest> {
+        if df_effect <= 0.0 || df_residual <= 0.0 || residual <= 0.0 {
+            return None;
+        }
+        let f = (effect / df_effect) / (residual / df_residual);
+        let p = FisherSnedecor::new(df_effect, df_residual).ok()?.sf(f);
+        Some(FTest { f, df: [df_effect, df_residual], p, partial_eta_sq: effect / (effect + residual) })
+    }
+}
+
+/// A mixed analysis of variance with two measurements a person (within) and any number of groups (between).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct MixedAnova {
+    pub within: Option<FTest>,
+    pub between: Option<FTest>,
+    pub interaction: Option<FTest>,
+}
+
+/// The mixed analysis of variance of `rows`: the group of each person, and its two measurements. The sums of squares of the
+/// factor within are those over all persons, as in pingouin's `mixed_anova`.
+pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
+    let groups = rows.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
+    let in_group = |group: usize| rows.iter().filter(move |(other, _)| *other == group).map(|(_, values)| *values);
+    let sizes: Vec<f64> = (0..groups).map(|group| in_group(group).count() as f64).collect();
+    let used = sizes.iter().filter(|size| **size > 0.0).count() as f64;
+    let n = rows.len() as f64;
+    let difference = |values: [f64; 2]| values[1] - values[0];
+    let sum = |values: [f64; 2]| values[1] + values[0];
+    let decompose = |of: fn([f64; 2]) -> f64| {
+        let all = mean(rows.iter().map(|(_, values)| of(*values)));
+        let means: Vec<f64> = (0..groups).map(|group| mean(in_group(group).map(of))).collect();
+        let between: f64 =
+            sizes.iter().zip(&means).filter(|(size, _)| **size > 0.0).map(|(s, m)| s * (m - all).powi(2)).sum();
+        let residual: f64 = rows.iter().map(|(group, values)| (of(*values) - means[*group]).powi(2)).sum();
+        (all, between / 2.0, residual / 2.0)
+    };
+    let (mean_difference, interaction, residual_within) = decompose(difference);
+    let (_, between, residual_between) = decompose(sum);
+    let within = n * mean_difference * mean_difference / 2.0;
+    MixedAnova {
+        within: FTest::of(within, 1.0, residual_within, n - used),
+        between: FTest::of(between, used - 1.0, residual_between, n - used),
+        interaction: FTest::of(interaction, used - 1.0, residual_within, n - used),
+    }
+}
+
+/// A correlation with its two-sided p.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Correlation {
+    pub r: f64,
+    pub p: f64,
+    pub n: usize,
+}
+
+/// Pearson's correlation; none of fewer than three pairs, or without variance.
+pub fn pearson(x: &[f64], y: &[f64]) -> Option<Correlation> {
+    let n = x.len().min(y.len());
+    if n < 3 {
+        return None;
+    }
+    let (mx, my) = (mean(x[..n].iter().copied()), mean(y[..n].iter().copied()));
+    let pairs = || x[..n].iter().zip(&y[..n]).map(|(x, y)| (x - mx, y - my));
+    let (xx, yy, xy) = pairs().fold((0.0, 0.0, 0.0), |(xx, yy, xy), (x, y)| (xx + x * x, yy + y * y, xy + x * y));
+    if xx <= 0.0 || yy <= 0.0 {
+        return None;
+    }
+    let r = (xy / (xx * yy).sqrt()).clamp(-1.0, 1.0);
+    let df = n as f64 - 2.0;
+    let t = r * (df / (1.0 - r * r).max(f64::MIN_POSITIVE)).sqrt();
+    let p = 2.0 * StudentsT::new(0.0, 1.0, df).ok()?.sf(t.abs());
+    Some(Correlation { r, p, n })
+}
+
+/// More ways to deal persons out to two groups than this are sampled.
+const MOST_WAYS: f64 = 200_000.0;
+/// So many, then.
+const SAMPLED_WAYS: u32 = 100_000;
+/// Differences within this share of their size count as equal.
+const EQUAL: f64 = 1e-12;
+
+/// The two-sided permutation test of the difference of means of two groups (Fisher 1935): the share of all ways to deal the
+/// values out that differ at least as much. Exact up to 200,000 ways, else by 100,000 random ones (with the one that
+/// happened), which follow from `seed`. None of an empty group.
+pub fn permutation_p(a: &[f64], b: &[f64], seed: u64) -> Option<f64> {
+    if a.is_empty() || b.is_empty() {
+        return None;
+    }
+    let mut all: Vec<f64> = a.iter().chain(b).copied().collect();
+    let total: f64 = all.iter().sum();
+    let (m, n) = (a.len(), all.len());
+    let difference = |sum: f64| sum / m as f64 - (total - sum) / (n - m) as f64;
+    let observed = difference(a.iter().sum()).abs();
+    let is_extreme = |sum: f64| difference(sum).abs() >= observed - EQUAL * observed.max(f64::MIN_POSITIVE);
+    if ways(n, m) <= MOST_WAYS {
+        let (mut extreme, mut count) = (0u64, 0u64);
+        for_each_choice(n, m, |chosen| {
+            count += 1;
+            extreme += u64::from(is_extreme(chosen.iter().map(|&index| all[index]).sum()));
+        });
+        return Some(extreme as f64 / count as f64);
+    }
+    let mut random = stream(seed, "permutation", 0);
+    let mut extreme = 1u32;
+    for _ in 0..SAMPLED_WAYS {
+        all.shuffle(&mut random);
+        extreme += u32::from(is_extreme(all[..m].iter().sum()));
+    }
+    Some(f64::from(extreme) / f64::from(SAMPLED_WAYS + 1))
+}
+
+/// n choose m.
+fn ways(n: usize, m: usize) -> f64 {
+    (0..m).map(|index| (n - index) as f64 / (index + 1) as f64).product()
+}
+
+/// Calls `visit` with every choice of `m` of `n` indices, in lexical order.
+fn for_each_choice(n: usize, m: usize, mut visit: impl FnMut(&[usize])) {
+    let mut chosen: Vec<usize> = (0..m).collect();
+    loop {
+        visit(&chosen);
+        let Some(at) = (0..m).rev().find(|&at| chosen[at] < n - m + at) else { return };
+        chosen[at] += 1;
+        for next in at + 1..m {
+            chosen[next] = chosen[next - 1] + 1;
+        }
+    }
+}
+
+/// An estimate with its confidence interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Interval {
+    pub estimate: f64,
+    pub low: f64,
+    pub high: f64,
+    /// What the interval really covers, where the values allow only some levels.
+    pub level: f64,
+}
+
+/// The Hodges-Lehmann estimate of the shift from `b` to `a`, the median of all differences, with the interval that belongs
+/// to the Mann-Whitney test (exact distribution of U without ties; Hollander and Wolfe 1999, section 4.2). None of an empty group.
+pub fn hodges_lehmann(a: &[f64], b: &[f64], level: f64) -> Option<Interval> {
+    let mut differences: Vec<f64> = a.iter().flat_map(|a| b.iter().map(move |b| a - b)).collect();
+    differences.sort_by(f64::total_cmp);
+    let estimate = crate::measures::median(differences.clone())?;
+    let below = mann_whitney_cdf(a.len(), b.len());
+    // The largest number of differences that may be left out on each side.
+    let left_out = below.iter().take_while(|p| **p <= (1.0 - level) / 2.0).count();
+    let covered = if left_out == 0 { 1.0 } else { 1.0 - 2.0 * below[left_out - 1] };
+    let last = differences.len() - 1;
+    let low = if left_out == 0 { f64::NEG_INFINITY } else { differences[left_out - 1] };
+    let high = if left_out == 0 { f64::INFINITY } else { differences[last + 1 - left_out] };
+    Some(Interval { estimate, low, high, level: covered })
+}
+
+/// P(U <= u) for u = 0, 1, …, m n: U of two samples of these sizes from the same distribution, without ties.
+fn mann_whitney_cdf(m: usize, n: usize) -> Vec<f64> {
+    // counts[k][u]: the ways in which k values of the first sample among those placed so far come to U = u.
+    let top = m * n;
+    let mut counts = vec![vec![0.0; top + 1]; m + 1];
+    counts[0][0] = 1.0;
+    for placed in 0..m + n {
+        for k in (0..=m.min(placed)).rev() {
+            let others = placed - k;
+            if others > n {
+                continue;
+            }
+            let row = std::mem::take(&mut counts[k]);
+            if k < m {
+                for (u, ways) in row.iter().enumerate().filter(|(_, ways)| **ways > 0.0) {
+                    if u + others <= top {
+                        counts[k + 1][u + others] += ways;
+                    }
+                }
+            }
+            counts[k] = row;
+        }
+    }
+    let total: f64 = counts[m].iter().sum();
+    let mut sum = 0.0;
+    counts[m]
+        .iter()
+        .map(|ways| {
+            sum += ways;
+            sum / total
+        })
+        .collect()
+}
+
+/// Hedges' g of two groups: the difference of means in pooled standard deviations, corrected for small samples.
+pub fn hedges_g(a: &[f64], b: &[f64]) -> Option<f64> {
+    let df = (a.len() + b.len()) as f64 - 2.0;
+    if a.is_empty() || b.is_empty() || df <= 0.0 {
+        return None;
+    }
+    let (ma, mb) = (mean(a.iter().copied()), mean(b.iter().copied()));
+    let squares = |values: &[f64], m: f64| values.iter().map(|value| (value - m).powi(2)).sum::<f64>();
+    let pooled = ((squares(a, ma) + squares(b, mb)) / df).sqrt();
+    (pooled > 0.0).then(|| (ma - mb) / pooled * (1.0 - 3.0 / (4.0 * (df + 2.0) - 9.0)))
+}
+
+/// The mean with its interval by Student's t.
+pub fn mean_interval(values: &[f64], level: f64) -> Option<Interval> {
+    let n = values.len() as f64;
+    if values.len() < 2 {
+        return None;
+    }
+    let estimate = mean(values.iter().copied());
+    let variance = values.iter().map(|value| (value - estimate).powi(2)).sum::<f64>() / (n - 1.0);
+    let reach = StudentsT::new(0.0, 1.0, n - 1.0).ok()?.inverse_cdf(0.5 + level / 2.0) * (variance / n).sqrt();
+    Some(Interval { estimate, low: estimate - reach, high: estimate + reach, level })
+}
+
+/// A share with its Wilson score interval (Wilson 1927). None of nothing.
+pub fn share_interval(part: u64, whole: u64, level: f64) -> Option<Interval> {
+    if whole == 0 {
+        return None;
+    }
+    let (n, p) = (whole as f64, part as f64 / whole as f64);
+    let z = Normal::new(0.0, 1.0).ok()?.inverse_cdf(0.5 + level / 2.0);
+    let (centre, reach) = ((p + z * z / (2.0 * n)), z * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt());
+    let scale = 1.0 + z * z / n;
+    Some(Interval { estimate: p, low: (centre - reach) / scale, high: (centre + reach) / scale, level })
+}
+
+/// The mean; 0 of nothing.
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
+    if count == 0 { 0.0 } else { sum / f64::from(count) }
+}

@@ -3,6 +3,7 @@
 mod args;
 mod estimates;
 mod review;
+mod study;
 mod wizard;
 
 use std::io::{IsTerminal, Write};
@@ -130,6 +131,7 @@ pub fn main() -> ExitCode {
         Command::Replay(args) => replay(&args),
         Command::Review(args) => review::review(&args),
         Command::Simulate(args) => simulate(&args),
+        Command::Study(args) => study::study(&args),
         Command::Plan(args) => show_plan(&args),
         Command::Fit(args) => estimates::fit(&args),
         Command::Kitchen(args) => kitchen(&args),

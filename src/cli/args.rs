@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::review::ReviewArgs;
+use super::study::StudyArgs;
 use super::wizard::{CompareArgs, TrainArgs};
 use crate::communication::concept::ConceptName;
 use crate::mind::fitting::Parameter;
@@ -31,6 +32,7 @@ pub(super) enum Command {
     Replay(ReplayArgs),
     Review(ReviewArgs),
     Simulate(SimulateArgs),
+    Study(StudyArgs),
     Plan(PlanArgs),
     Fit(FitArgs),
     Kitchen(KitchenArgs),

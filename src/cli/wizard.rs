@@ -9,8 +9,9 @@ use super::args::{ConceptArg, Format, OperateFlags};
 use super::{Failure, new_session, print, progress};
 use crate::communication::concept::ConceptName;
 use crate::console::playback::SPEEDS;
+use crate::measures::matching::WINDOW;
 use crate::measures::wizard::TrainingCriterion;
-use crate::run::compare::{self, Request};
+use crate::run::compare::Request;
 use crate::run::similarity::{self, CompareFigures, TrainingFigures};
 use crate::run::train::{self, Lesson};
 use crate::run::{review, series, simulate};
@@ -33,7 +34,7 @@ pub(super) struct CompareArgs {
     #[arg(long, value_enum, value_delimiter = ',')]
     with: Vec<ConceptArg>,
     /// Communications match within so many presses of the human.
-    #[arg(long, default_value_t = compare::WINDOW, value_parser = clap::value_parser!(u32).range(0..=100))]
+    #[arg(long, default_value_t = WINDOW, value_parser = clap::value_parser!(u32).range(0..=100))]
     window: u32,
     /// The figures for every window from 0 to 10.
     #[arg(long, conflicts_with_all = ["open", "window"])]

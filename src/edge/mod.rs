@@ -4,6 +4,7 @@ pub mod ask;
 pub mod clock;
 pub mod display;
 pub mod doctor;
+pub mod export;
 pub mod files;
 pub mod gaze_file;
 pub mod gaze_input;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::files::{FileError, FileResult};
 use super::log::{LOG_NAME, ruling};
@@ -38,6 +38,43 @@ pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<Made>> {
     let continued: Vec<String> = found.values().filter_map(|part| part.continues.clone()).collect();
     let last = found.iter().filter(|(name, _)| !continued.contains(name));
     Ok(last.map(|(name, part)| part.made(name, &found)).collect())
+}
+
+/// The recordings that are meant by a path: the recording itself, or those in the folder, in the order of their names; of
+/// those with several parts the last one.
+///
+/// # Errors
+/// The folder cannot be read, or there is no recording.
+pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
+    let remedy = "the folder of a recording, or one with recordings in it";
+    let unreadable = |reason| FileError::unreadable(folder, reason, remedy);
+    if folder.join(LOG_NAME).is_file() {
+        return Ok(vec![folder.to_path_buf()]);
+    }
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        if path.join(LOG_NAME).is_file() {
+            found.push(path);
+        }
+    }
+    if found.is_empty() {
+        let found = "a folder without recordings".to_string();
+        return Err(FileError::at(folder, "", None, found, remedy.to_string()));
+    }
+    found.sort();
+    let mut continued = Vec::new();
+    for path in &found {
+        let log = path.join(LOG_NAME);
+        let file = File::open(&log).map_err(|reason| FileError::unreadable(&log, reason, remedy))?;
+        let mut line = String::new();
+        // What is wrong with a header is told where the recording is read.
+        let read = BufReader::new(file).read_line(&mut line).ok();
+        let header = read.and_then(|_| serde_json::from_str::<Header>(&line).ok());
+        continued.extend(header.and_then(|header| header.continues).map(|before| folder.join(before.recording)));
+    }
+    found.retain(|path| !continued.contains(path));
+    Ok(found)
 }
 
 /// What the log of one part says.

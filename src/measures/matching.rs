@@ -17,6 +17,9 @@ use super::median;
 use crate::base::time::SessionTime;
 use crate::kitchen::LocationId;
 
+/// The window that communications match within, in presses of the human.
+pub const WINDOW: u32 = 3;
+
 /// What kind of communication something is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {

@@ -30,9 +30,6 @@ use crate::session::screen::Screen;
 use crate::session::settings::Condition;
 use crate::session::{Event, SessionSpec, Stamped};
 
-/// The window that communications match within, in presses of the human.
-pub const WINDOW: u32 = 3;
-
 /// What is compared.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Request {
@@ -287,7 +284,7 @@ fn estimate<'a>(follower: &'a Follower, without: &'a VecDeque<Without>) -> &'a D
 }
 
 /// Whether an event belongs to what the event at `time` led to at once.
-fn follows_at_once(stamped: &Stamped, time: SessionTime) -> bool {
+pub(super) fn follows_at_once(stamped: &Stamped, time: SessionTime) -> bool {
     let is_new = matches!(
         stamped.event,
         Event::Gaze(_)

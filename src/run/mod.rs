@@ -27,6 +27,7 @@ pub mod series;
 pub mod similarity;
 pub mod simulate;
 pub mod standing;
+pub mod study;
 pub mod tell;
 pub mod timing;
 pub mod train;

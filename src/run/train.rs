@@ -23,12 +23,10 @@ use crate::edge::files::{FileError, FileResult, key_map};
 use crate::edge::terminal::{Hands, Screen, asked_to_end, theme};
 use crate::edge::training::{self, JudgedRecording, JudgedSignal, TrainingRecord};
 use crate::kitchen::{Agent, AspectId, Kitchen};
-use crate::measures::matching::{Content, Kind, Said, Tally};
+use crate::measures::matching::{Content, Kind, Said, Tally, WINDOW};
 use crate::measures::wizard::{Sent, Spell, TrainingCriterion, WizardMeasures, Worth, worths};
 use crate::session::Event;
 use crate::session::settings::{Condition, Visibility};
-
-use super::compare::WINDOW;
 
 /// At most 30 frames a second.
 const FRAME: Duration = Duration::from_millis(33);

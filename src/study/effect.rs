@@ -2,7 +2,7 @@
 //!
 //! Trials differ in practice as well as in assistance: the second goes better anyway. So the two starting groups are compared
 //! in what they improve from the first trial to the second: what is more of it in the group whose second trial is the assisted
-//! one is the effect of assistance (the interaction of period and starting group).
+//! one is the effect of assistance (the interaction of period and starting group; Senn 2002, Cross-over Trials, chapter 3).
 
 use serde::Serialize;
 
@@ -20,27 +20,89 @@ pub struct Pair {
     pub participant: String,
     /// The second trial was the assisted one.
     pub assisted_second: bool,
-    /// Errors per press of the human in the first trial and in the second.
-    pub rates: [f64; 2],
+    /// The measure in the first trial and in the second; the less, the better.
+    pub values: [f64; 2],
 }
 
 impl Pair {
-    /// By how much fewer errors a press the second trial has.
+    /// By how much less the second trial has.
     pub fn improvement(&self) -> f64 {
-        self.rates[0] - self.rates[1]
+        self.values[0] - self.values[1]
     }
 
-    /// The rates without assistance and with it.
+    /// The values without assistance and with it.
     pub fn by_condition(&self) -> [f64; 2] {
-        if self.assisted_second { self.rates } else { [self.rates[1], self.rates[0]] }
+        if self.assisted_second { self.values } else { [self.values[1], self.values[0]] }
+    }
+}
+
+/// What is compared between the trials of a participant; of each, less is better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Measure {
+    /// Errors per press of the human.
+    ErrorRateHuman,
+    /// Errors per press of both agents.
+    ErrorRate,
+    /// Mean number of errors of a sequence.
+    SequenceLength,
+    /// Mean seconds to recover from a sequence.
+    RecoveryS,
+    /// Median seconds for an order.
+    OrderS,
+    /// Median presses of both agents for an order.
+    PressesPerOrder,
+    /// Median seconds from one press of the human to the next.
+    PressS,
+}
+
+impl Measure {
+    /// All of them; the first is the one that the headline is about.
+    pub const ALL: [Measure; 7] = [
+        Measure::ErrorRateHuman,
+        Measure::ErrorRate,
+        Measure::SequenceLength,
+        Measure::RecoveryS,
+        Measure::OrderS,
+        Measure::PressesPerOrder,
+        Measure::PressS,
+    ];
+
+    /// That of a trial, if it has one.
+    pub fn of(self, trial: &Trial) -> Option<f64> {
+        match self {
+            Measure::ErrorRateHuman => trial.error_rate_human(),
+            Measure::ErrorRate => trial.error_rate(),
+            Measure::SequenceLength => trial.sequence_length(),
+            Measure::RecoveryS => trial.recovery_s(),
+            Measure::OrderS => trial.order_s,
+            Measure::PressesPerOrder => trial.presses_per_order,
+            Measure::PressS => trial.press_s,
+        }
+    }
+
+    /// In words.
+    pub fn title(self) -> &'static str {
+        match self {
+            Measure::ErrorRateHuman => "errors per press of the human",
+            Measure::ErrorRate => "errors per press of both agents",
+            Measure::SequenceLength => "errors in a sequence",
+            Measure::RecoveryS => "seconds to recover from a sequence",
+            Measure::OrderS => "seconds for an order",
+            Measure::PressesPerOrder => "presses of both for an order",
+            Measure::PressS => "seconds from press to press of the human",
+        }
     }
 }
 
 /// What assistance changes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Effect {
-    /// Participants whose first trial was unassisted, and whose second was.
+    pub measure: Measure,
+    /// Participants whose second trial was the assisted one, and whose first was.
     pub groups: [usize; 2],
+    /// Mean improvements of these groups from the first trial to the second.
+    pub improvements: [Option<f64>; 2],
     /// Mixed analysis of variance: period within, starting group between; assistance is the interaction.
     pub by_period: MixedAnova,
     /// The paper's coding: condition within, starting group between; assistance is the factor within.
@@ -49,8 +111,8 @@ pub struct Effect {
     pub pearson: Option<Correlation>,
     /// Two-sided, of the improvements of the groups.
     pub permutation_p: Option<f64>,
-    /// Errors per press of the human that assistance takes away: half the shift between the groups' improvements.
-    pub fewer_errors: Option<Interval>,
+    /// What assistance takes away: half the shift between the groups' improvements.
+    pub reduction: Option<Interval>,
     /// The shift in pooled standard deviations.
     pub hedges_g: Option<f64>,
 }
@@ -62,31 +124,30 @@ impl Effect {
     }
 }
 
-/// The participants with one assisted and one unassisted trial that count, in the order of their codes. Of several trials
-/// of a participant in a period the last one counts: it was done again.
-pub fn pairs(trials: &[Trial]) -> Vec<Pair> {
+/// The participants with one assisted and one unassisted trial that count and have this measure, in the order of their codes.
+/// Of several trials of a participant in a period the last one counts: it was done again.
+pub fn pairs(trials: &[Trial], measure: Measure) -> Vec<Pair> {
     let mut codes: Vec<&str> = trials.iter().map(|trial| trial.participant.as_str()).collect();
     codes.sort_unstable();
     codes.dedup();
-    codes.into_iter().filter_map(|code| pair(code, trials)).collect()
+    codes.into_iter().filter_map(|code| pair(code, trials, measure)).collect()
 }
 
-fn pair(code: &str, trials: &[Trial]) -> Option<Pair> {
+fn pair(code: &str, trials: &[Trial], measure: Measure) -> Option<Pair> {
     let of_period = |period: u32| {
-        let counts =
-            |trial: &&Trial| trial.participant == code && trial.period == Some(period) && trial.excluded.is_none();
-        trials.iter().rfind(counts)
+        let is_it = |trial: &&Trial| trial.participant == code && trial.period == Some(period) && trial.counts();
+        trials.iter().rfind(is_it)
     };
     let (first, second) = (of_period(1)?, of_period(2)?);
     if first.is_assisted() == second.is_assisted() {
         return None;
     }
-    let rates = [first.error_rate()?, second.error_rate()?];
-    Some(Pair { participant: code.to_string(), assisted_second: second.is_assisted(), rates })
+    let values = [measure.of(first)?, measure.of(second)?];
+    Some(Pair { participant: code.to_string(), assisted_second: second.is_assisted(), values })
 }
 
-/// The effect of assistance on the rate of errors; `seed` is that of sampled permutations.
-pub fn effect(pairs: &[Pair], seed: u64) -> Effect {
+/// The effect of assistance on a measure of these pairs; `seed` is that of sampled permutations.
+pub fn effect(measure: Measure, pairs: &[Pair], seed: u64) -> Effect {
     let group = |pair: &Pair| usize::from(pair.assisted_second);
     let improvements = |assisted_second: bool| -> Vec<f64> {
         pairs.iter().filter(|pair| pair.assisted_second == assisted_second).map(Pair::improvement).collect()
@@ -100,13 +161,16 @@ pub fn effect(pairs: &[Pair], seed: u64) -> Effect {
         high: interval.high / 2.0,
         ..interval
     };
+    let mean = |values: &[f64]| super::trial::mean(values.iter().copied());
     Effect {
+        measure,
         groups: [with.len(), without.len()],
-        by_period: mixed_anova(&pairs.iter().map(|pair| (group(pair), pair.rates)).collect::<Vec<_>>()),
+        improvements: [mean(&with), mean(&without)],
+        by_period: mixed_anova(&pairs.iter().map(|pair| (group(pair), pair.values)).collect::<Vec<_>>()),
         by_condition: mixed_anova(&pairs.iter().map(|pair| (group(pair), pair.by_condition())).collect::<Vec<_>>()),
         pearson: pearson(&codes, &all),
         permutation_p: permutation_p(&with, &without, seed),
-        fewer_errors: hodges_lehmann(&with, &without, LEVEL).map(half),
+        reduction: hodges_lehmann(&with, &without, LEVEL).map(half),
         hedges_g: hedges_g(&with, &without),
     }
 }

@@ -1,5 +1,14 @@
 //! The study: from what single trials show to what a whole study says. Pure; recordings are read elsewhere.
 
+pub mod charts;
+pub mod definitions;
+pub mod dictionary;
 pub mod effect;
+pub mod facts;
+pub mod figures;
+pub mod report;
+pub mod roc;
 pub mod statistics;
+pub mod svg;
+pub mod tables;
 pub mod trial;

@@ -1,6 +1,6 @@
 //! Statistics of small samples, as textbooks have them: what a study of some tens of participants is evaluated with.
 //!
-//! Distributions are those of `statrs`; all else is short enough to be read. `tests/outside/statistics.py` holds every
+//! Distributions are those of `statrs`; all else is short enough to be read. `tests/outside/study.py` holds every
 //! figure against SciPy, pingouin and scikit-learn.
 
 use rand::seq::SliceRandom;

@@ -1,0 +1,60 @@
+//! The command that analyses a study.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::args::Format;
+use super::{Failure, print, progress};
+use crate::run::study::reading::Extent;
+use crate::run::study::{self, Analysis, Recordings, StudyError};
+
+/// Analyses the recordings of a study: errors and their causes, the effect of assistance, wizard and assistant, communication
+/// concepts. Writes a report to look at in a browser, and tables as CSV.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples: tomcom study recordings\n          tomcom study shards/* --out results --format json"
+)]
+pub(super) struct StudyArgs {
+    /// Folders with recordings in them, or recordings, of one kitchen.
+    #[arg(required = true, value_name = "DIR")]
+    paths: Vec<PathBuf>,
+    /// Where report.html and the tables go; by default the folder "study" in the first DIR.
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// What to leave out, with commas between.
+    #[arg(long, value_enum, value_delimiter = ',')]
+    skip: Vec<Skip>,
+    /// How to print the figures.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+}
+
+/// What takes time or room.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Skip {
+    /// What assistants would have said: it has to be planned at every press.
+    Concepts,
+    /// Rows of the tables actions, communications, beliefs and gaze.
+    Events,
+}
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Failure {
+        match error {
+            StudyError::File(error) => Failure::from(*error),
+            StudyError::Export(error) => Failure::Failed(miette::Report::new(error)),
+        }
+    }
+}
+
+pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
+    let recordings = Recordings::find(&args.paths)?;
+    let extent = Extent { concepts: !args.skip.contains(&Skip::Concepts), events: !args.skip.contains(&Skip::Events) };
+    let out = args.out.clone().unwrap_or_else(|| args.paths[0].join("study"));
+    let bar = progress(recordings.number() as u64, "recordings");
+    let (figures, report) =
+        study::study(&Analysis { paths: args.paths.clone(), out, extent }, &recordings, || bar.inc(1))?;
+    bar.finish_and_clear();
+    print(args.format, &figures, || format!("{}report: {}\n", study::describe(&figures), report.display()))
+}

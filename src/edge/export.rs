@@ -1,0 +1,150 @@
+//! What an analysis writes: tables as CSV (RFC 4180, UTF-8), and a page. Rows of events are kept in files of their own until
+//! all recordings are read, so that memory does not grow with the number of recordings, and tables have the recordings' order.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use crate::study::tables::Table;
+
+/// The name of the page.
+pub const REPORT_NAME: &str = "report.html";
+/// Where rows are kept on the way.
+const PARTS_NAME: &str = ".rows";
+
+/// Why a result cannot be written.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+#[error("{}: cannot be written: {reason}", path.display())]
+#[diagnostic(help("another folder with --out, on a disk with free space"))]
+pub struct ExportError {
+    pub path: PathBuf,
+    pub reason: io::Error,
+}
+
+/// Rows of one table, without the names of its columns.
+#[derive(Debug)]
+pub struct Rows {
+    rows: csv::Writer<Vec<u8>>,
+}
+
+impl Default for Rows {
+    fn default() -> Rows {
+        Rows { rows: csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new()) }
+    }
+}
+
+impl Rows {
+    /// Adds a row.
+    pub fn add(&mut self, row: &impl Serialize) {
+        self.rows.serialize(row).expect("rows are flat, and written to memory");
+    }
+
+    pub fn into_bytes(self) -> Vec<u8> {
+        self.rows.into_inner().expect("rows are written to memory")
+    }
+
+    /// The rows of a list.
+    pub fn of<T: Serialize>(rows: impl IntoIterator<Item = T>) -> Vec<u8> {
+        let mut all = Rows::default();
+        rows.into_iter().for_each(|row| all.add(&row));
+        all.into_bytes()
+    }
+}
+
+/// The folder that results are written to.
+#[derive(Debug)]
+pub struct Export {
+    folder: PathBuf,
+}
+
+impl Export {
+    /// Makes the folder, if it is not there.
+    ///
+    /// # Errors
+    /// It cannot be made, or written to.
+    pub fn create(folder: &Path) -> Result<Export, ExportError> {
+        let export = Export { folder: folder.to_path_buf() };
+        let parts = export.parts();
+        // What a run before this one left there.
+        match fs::remove_dir_all(&parts) {
+            Err(reason) if reason.kind() != io::ErrorKind::NotFound => return Err(ExportError { path: parts, reason }),
+            _ => {}
+        }
+        fs::create_dir_all(&parts).map_err(|reason| ExportError { path: parts, reason })?;
+        Ok(export)
+    }
+
+    fn parts(&self) -> PathBuf {
+        self.folder.join(PARTS_NAME)
+    }
+
+    fn part(&self, index: usize, table: Table) -> PathBuf {
+        self.parts().join(format!("{index}-{}", table.name()))
+    }
+
+    /// Keeps the rows of the recording with this number, in the order of [`Table::OF_EVENTS`].
+    ///
+    /// # Errors
+    /// They cannot be written.
+    pub fn keep(&self, index: usize, rows: &[Vec<u8>; 4]) -> Result<(), ExportError> {
+        for (table, rows) in Table::OF_EVENTS.into_iter().zip(rows) {
+            let path = self.part(index, table);
+            fs::write(&path, rows).map_err(|reason| ExportError { path, reason })?;
+        }
+        Ok(())
+    }
+
+    /// Writes a table of these rows.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn table(&self, table: Table, rows: &[u8]) -> Result<(), ExportError> {
+        self.write_table(table, |out| out.write_all(rows))
+    }
+
+    /// Writes the tables of what was kept of the recordings with these numbers, in this order, and removes that.
+    ///
+    /// # Errors
+    /// They cannot be written.
+    pub fn tables_of_events(&self, recordings: &[usize]) -> Result<(), ExportError> {
+        for table in Table::OF_EVENTS {
+            self.write_table(table, |out| {
+                for &index in recordings {
+                    io::copy(&mut File::open(self.part(index, table))?, out)?;
+                }
+                Ok(())
+            })?;
+        }
+        fs::remove_dir_all(self.parts()).map_err(|reason| ExportError { path: self.parts(), reason })
+    }
+
+    /// Writes the page, and says where it is.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn report(&self, page: &str) -> Result<PathBuf, ExportError> {
+        let path = self.folder.join(REPORT_NAME);
+        match fs::write(&path, page) {
+            Ok(()) => Ok(path),
+            Err(reason) => Err(ExportError { path, reason }),
+        }
+    }
+
+    fn write_table(
+        &self,
+        table: Table,
+        rows: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+    ) -> Result<(), ExportError> {
+        let path = self.folder.join(format!("{}.csv", table.name()));
+        let write = || {
+            let mut out = BufWriter::new(File::create(&path)?);
+            let columns: Vec<&str> = table.columns().collect();
+            writeln!(out, "{}", columns.join(","))?;
+            rows(&mut out)?;
+            out.flush()
+        };
+        write().map_err(|reason| ExportError { path: path.clone(), reason })
+    }
+}

@@ -1,0 +1,153 @@
+//! `tomcom study`: replays the recordings of a study on all processors, and makes tables, figures and report of them.
+
+pub mod reading;
+mod rows;
+mod sweep;
+mod tell;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use self::reading::{Extent, Reading};
+pub use self::tell::describe;
+use super::parallel;
+use super::replay::OneKitchen;
+use crate::edge::export::{Export, ExportError, Rows};
+use crate::edge::files::FileError;
+use crate::edge::log::LogReader;
+use crate::edge::recordings;
+use crate::kitchen::Kitchen;
+use crate::study::dictionary::DICTIONARY;
+use crate::study::facts::Facts;
+use crate::study::figures::StudyFigures;
+use crate::study::report;
+use crate::study::tables::{self, Table};
+use crate::study::trial::{Trial, arrange};
+
+/// Why a study could not be analysed.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum StudyError {
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    File(#[from] Box<FileError>),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Export(#[from] ExportError),
+}
+
+impl From<FileError> for StudyError {
+    fn from(error: FileError) -> StudyError {
+        StudyError::File(Box::new(error))
+    }
+}
+
+/// What is analysed, and where the results go.
+#[derive(Clone, Debug)]
+pub struct Analysis {
+    /// Recordings, or folders with recordings in them.
+    pub paths: Vec<PathBuf>,
+    pub out: PathBuf,
+    pub extent: Extent,
+}
+
+/// The recordings of an analysis, each with its name in tables.
+#[derive(Clone, Debug)]
+pub struct Recordings {
+    found: Vec<(PathBuf, String)>,
+}
+
+impl Recordings {
+    /// Those that are meant by paths, each once.
+    ///
+    /// # Errors
+    /// A path is none of a recording or of a folder with recordings.
+    pub fn find(paths: &[PathBuf]) -> Result<Recordings, StudyError> {
+        let mut found: Vec<(PathBuf, String)> = Vec::new();
+        for path in paths {
+            for recording in recordings::of_folder(path)? {
+                let name = name(&recording);
+                if found.iter().all(|(other, _)| *other != recording) {
+                    found.push((recording, name));
+                }
+            }
+        }
+        // Of several folders: with the folder, where names occur twice.
+        let names: Vec<String> = found.iter().map(|(_, name)| name.clone()).collect();
+        for (path, name) in &mut found {
+            if names.iter().filter(|other| *other == name).count() > 1 {
+                *name = path.display().to_string();
+            }
+        }
+        Ok(Recordings { found })
+    }
+
+    pub fn number(&self) -> usize {
+        self.found.len()
+    }
+}
+
+/// The name of a recording's folder.
+fn name(recording: &Path) -> String {
+    let typed = recording.file_name().map(|name| name.to_string_lossy().into_owned());
+    typed.unwrap_or_else(|| recording.display().to_string())
+}
+
+/// Analyses recordings of one kitchen. `done` is called after each of them. Returns the figures and where the report is.
+///
+/// # Errors
+/// A recording cannot be read or applied, or is of another kitchen than the first; results cannot be written.
+pub fn study(
+    analysis: &Analysis,
+    recordings: &Recordings,
+    done: impl Fn() + Sync,
+) -> Result<(StudyFigures, PathBuf), StudyError> {
+    let export = Export::create(&analysis.out)?;
+    let Some((first, _)) = recordings.found.first() else { return Err(nothing(analysis)) };
+    let kitchen = LogReader::open(first)?.kitchen;
+    let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
+    let work = |&(index, (path, name)): &(usize, &(PathBuf, String))| -> Result<Option<(Trial, Facts)>, StudyError> {
+        let Some((own, Reading { trial, facts, rows })) = reading::read(path, name, analysis.extent)? else {
+            return Ok(None);
+        };
+        same_kitchen((first, &kitchen), (path, &own))?;
+        if analysis.extent.events {
+            export.keep(index, &rows)?;
+        }
+        Ok(Some((trial, facts)))
+    };
+    let (mut trials, mut facts, mut kept) = (Vec::new(), Facts::default(), Vec::new());
+    for (index, read) in parallel::each(&numbered, work, done).into_iter().enumerate() {
+        if let Some((trial, own)) = read? {
+            kept.push(index);
+            trials.push(trial);
+            facts.add(own);
+        }
+    }
+    arrange(&mut trials);
+    let practice = (recordings.number() - trials.len()) as u64;
+    let figures = StudyFigures::of(&trials, &facts, practice);
+    if !analysis.extent.events {
+        kept.clear();
+    }
+    export.tables_of_events(&kept)?;
+    export.table(Table::Participants, &Rows::of(tables::participants(&trials)))?;
+    export.table(Table::Trials, &Rows::of(trials.iter().map(tables::trial)))?;
+    export.table(Table::Questionnaires, &Rows::of(trials.iter().flat_map(tables::answers)))?;
+    let counting = || trials.iter().filter(|trial| trial.counts());
+    export.table(Table::Concepts, &Rows::of(counting().flat_map(tables::concepts)))?;
+    export.table(Table::Dictionary, &Rows::of(DICTIONARY))?;
+    let path = export.report(&report::page(&figures, &trials, &facts))?;
+    Ok((figures, path))
+}
+
+fn same_kitchen(first: (&Path, &Arc<Kitchen>), other: (&Path, &Arc<Kitchen>)) -> Result<(), FileError> {
+    let mut one = OneKitchen::default();
+    one.admit(first.0, first.1)?;
+    one.admit(other.0, other.1)
+}
+
+fn nothing(analysis: &Analysis) -> StudyError {
+    let path = analysis.paths.first().map_or(Path::new("."), PathBuf::as_path);
+    let remedy = "at least one recording".to_string();
+    StudyError::from(FileError::at(path, "", None, "no recording".to_string(), remedy))
+}

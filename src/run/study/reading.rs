@@ -1,0 +1,332 @@
+//! One recording of a study: replayed once, and boiled down to the few numbers that the analysis keeps.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::rows::RowGatherer;
+use super::sweep::Sweeper;
+use crate::base::time::SessionTime;
+use crate::communication::concept::ConceptName;
+use crate::console::comparison::What;
+use crate::edge::files::FileResult;
+use crate::edge::log::{LogReader, at_line};
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, AspectId, Kitchen};
+use crate::measures::attribution::{Attributor, Cause};
+use crate::measures::matching::{Said, WINDOW};
+use crate::measures::sequences::{Sequence, sequences, sequences_by_target};
+use crate::measures::{JudgedPress, median};
+use crate::mind::belief::Belief;
+use crate::mind::dirichlet::DirichletBelief;
+use crate::run::compare::{Request, Watcher};
+use crate::run::follower::Follower;
+use crate::run::standing::Standing;
+use crate::run::wizard::{WizardLog, clock_at};
+use crate::session::apply::ApplyError;
+use crate::session::plan::PhaseSpec;
+use crate::session::protocol::{Answer, ProtocolEvent};
+use crate::session::settings::{Condition, ParticipantKind};
+use crate::session::{Event, Happening, Header, Phase, Session, Stamped};
+use crate::study::facts::Facts;
+use crate::study::trial::{Answered, Basis, Beliefs, Trial};
+
+/// What a recording gives.
+#[derive(Debug)]
+pub struct Reading {
+    pub trial: Trial,
+    pub facts: Facts,
+    /// Rows of the tables of events.
+    pub rows: [Vec<u8>; 4],
+}
+
+/// What is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extent {
+    /// What concepts would have said.
+    pub concepts: bool,
+    /// The tables of events.
+    pub events: bool,
+}
+
+/// How a recording is followed: with as much beside it as is wanted of it.
+enum Pass {
+    Plain(Box<Follower>),
+    /// With the assistant beside the wizard.
+    Beside(Box<Watcher>),
+    /// With the concepts that are compared.
+    Swept(Box<Sweeper>),
+}
+
+impl Pass {
+    fn new(kitchen: Arc<Kitchen>, header: &Header, extent: Extent) -> Pass {
+        let spec = &header.session;
+        let cost = CostToGo::new(kitchen.clone());
+        let is_simulated = spec.participant.kind == ParticipantKind::Simulated;
+        match spec.trial.condition {
+            Condition::Wizard if extent.concepts => {
+                let request = Request { with: Vec::new(), window: WINDOW };
+                let own = ConceptName::TomCom;
+                let mut spec = spec.clone();
+                spec.assistant.concept = own;
+                Pass::Beside(Box::new(Watcher::new(kitchen, &spec, &request)))
+            }
+            // What would have been prevented is known only where it is known what was believed.
+            Condition::None if extent.concepts && is_simulated => {
+                Pass::Swept(Box::new(Sweeper::new(kitchen, spec, cost)))
+            }
+            _ => Pass::Plain(Box::new(Follower::new(kitchen, spec.clone(), cost))),
+        }
+    }
+
+    fn apply(&mut self, stamped: &Stamped) -> Result<(), ApplyError> {
+        match self {
+            Pass::Plain(follower) => follower.apply(stamped).map(|_| ()),
+            Pass::Beside(watcher) => watcher.apply(stamped),
+            Pass::Swept(sweeper) => sweeper.apply(stamped),
+        }
+    }
+
+    fn follower(&self) -> &Follower {
+        match self {
+            Pass::Plain(follower) => follower,
+            Pass::Beside(watcher) => &watcher.follower,
+            Pass::Swept(sweeper) => &sweeper.follower,
+        }
+    }
+}
+
+/// Errors of people put down to what was estimated of their beliefs.
+struct ByEstimate {
+    attributor: Attributor,
+    cost: CostToGo,
+    causes: Vec<(u64, Cause)>,
+}
+
+impl ByEstimate {
+    /// Takes note of an event that was just applied.
+    fn note(&mut self, stamped: &Stamped, follower: &Follower) {
+        let Event::Press { agent: Agent::Human, button, .. } = &stamped.event else { return };
+        let (kitchen, judged) = (&follower.session.kitchen, follower.judged.last());
+        let estimated = follower.estimated.as_ref().filter(|estimated| estimated.press == stamped.seq);
+        let is_error = judged.is_some_and(|press| press.seq == stamped.seq && press.verdict.error);
+        if let (Some(estimated), Some(button), true) = (estimated, kitchen.button_named(Agent::Human, button), is_error)
+        {
+            let belief = expected(kitchen, estimated.state, &estimated.belief);
+            let (cost, state) = (&mut self.cost, estimated.state);
+            let cause = self.attributor.cause(kitchen, cost, &belief, state, button, stamped.seq);
+            self.causes.push((stamped.seq, cause));
+        }
+    }
+}
+
+/// The belief that is expected by an estimate.
+fn expected(kitchen: &Kitchen, state: crate::kitchen::State, estimate: &DirichletBelief) -> Belief {
+    let mut belief = Belief::of_truth(kitchen, state);
+    for index in 0..kitchen.aspects.len() {
+        let aspect = AspectId(index as u8);
+        belief.set(aspect, estimate.of(aspect).mean());
+    }
+    belief
+}
+
+/// Reads a recording, which is called `name`; nothing of one that is only practice.
+///
+/// # Errors
+/// It cannot be read or applied.
+pub fn read(recording: &Path, name: &str, extent: Extent) -> FileResult<Option<(Arc<Kitchen>, Reading)>> {
+    let mut log = LogReader::open(recording)?;
+    let header = log.header.clone();
+    if header.session.step.as_ref().is_some_and(|step| step.period.is_none()) {
+        return Ok(None);
+    }
+    let kitchen = log.kitchen.clone();
+    let mut pass = Pass::new(kitchen.clone(), &header, extent);
+    let mut rows = RowGatherer::new(name);
+    let mut hands = WizardLog::default();
+    let mut answers = Vec::new();
+    let is_simulated = header.session.participant.kind == ParticipantKind::Simulated;
+    let mut by_estimate = (!is_simulated).then(|| ByEstimate {
+        attributor: Attributor::new(header.session.human.decision.clone(), header.session.seed),
+        cost: CostToGo::new(kitchen.clone()),
+        causes: Vec::new(),
+    });
+    while let Some(line) = log.next_line()? {
+        let session = &pass.follower().session;
+        let (before, was_running) = (session.state, session.is_running());
+        pass.apply(&line.stamped)
+            .map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
+        let follower = pass.follower();
+        hands.note(&line.stamped, &follower.session);
+        if let Some(by_estimate) = &mut by_estimate {
+            by_estimate.note(&line.stamped, follower);
+        }
+        if extent.events {
+            rows.note(&line.stamped, follower, was_running, follower.session.state != before);
+        }
+        if matches!(line.stamped.event, Event::Protocol(ProtocolEvent::AnswersConfirmed)) {
+            answers.extend(confirmed(&follower.session));
+        }
+    }
+    let standing = Standing::of(&pass.follower().session, &log)?;
+    let lanes = lanes(&mut pass);
+    let follower = pass.follower();
+    let (judged, basis) = judged(follower, by_estimate.map(|found| found.causes));
+    let mut trial = trial(name, &header, follower, standing);
+    trial.beliefs = basis.map(|basis| beliefs(follower, &judged, basis));
+    trial.answers = answers;
+    trial.wizard = (header.session.trial.condition == Condition::Wizard).then(|| hands.figures(follower).measures);
+    if let Pass::Swept(sweeper) = &pass {
+        let is_known = basis == Some(Basis::Recorded);
+        trial.swept = if is_known { sweeper.swept() } else { Vec::new() };
+    }
+    if let [(_, of), (_, with)] = &lanes[..] {
+        trial.lanes = Some([of.clone(), with.clone()]);
+    }
+    let follower = pass.follower();
+    let errors: Vec<Vec<usize>> = sequence_errors(&judged).into_iter().map(|(_, errors)| errors).collect();
+    let rows = rows.finish(&follower.session, &judged, &errors, &lanes, WINDOW);
+    Ok(Some((kitchen, Reading { trial, facts: Facts::of(&header, &follower.session), rows })))
+}
+
+/// What was sent, and in a wizard's trial beside it what the assistant would have said.
+fn lanes(pass: &mut Pass) -> Vec<(String, Vec<Said>)> {
+    if let Pass::Beside(watcher) = pass {
+        watcher.finish();
+        let lanes = watcher.comparison(true).lanes;
+        return lanes.iter().map(|lane| (lane.name.clone(), lane.said())).collect();
+    }
+    let session = &pass.follower().session;
+    let name = if session.spec.trial.condition == Condition::Wizard { "wizard" } else { "assistant" };
+    vec![(name.to_string(), sent(session))]
+}
+
+/// The signals that were shown.
+fn sent(session: &Session) -> Vec<Said> {
+    let mut press = 0;
+    let mut said = Vec::new();
+    for entry in &session.timeline {
+        match &entry.what {
+            Happening::Press { agent: Agent::Human, .. } => press += 1,
+            Happening::Signal { signal, .. } => {
+                let content = What::Signal(signal.clone()).content(&session.kitchen);
+                said.push(Said { press, clock: clock_at(session, entry.time), content });
+            }
+            _ => {}
+        }
+    }
+    said
+}
+
+/// The presses of the human with their causes, and how these are known; nothing of the latter where a simulated participant
+/// does not tell.
+fn judged(follower: &Follower, by_estimate: Option<Vec<(u64, Cause)>>) -> (Vec<JudgedPress>, Option<Basis>) {
+    let mut judged = follower.judged.clone();
+    let Some(causes) = by_estimate else {
+        let is_known = judged.iter().all(|press| press.belief_known);
+        return (judged, is_known.then_some(Basis::Recorded));
+    };
+    for (seq, cause) in causes {
+        if let Ok(at) = judged.binary_search_by_key(&seq, |press| press.seq) {
+            judged[at].cause = Some(cause);
+        }
+    }
+    (judged, Some(Basis::Estimate))
+}
+
+fn beliefs(follower: &Follower, judged: &[JudgedPress], basis: Basis) -> Beliefs {
+    let count = |is: fn(Cause) -> bool| judged.iter().filter_map(|press| press.cause).filter(|&c| is(c)).count() as u64;
+    let lengths = |sequences: &[Sequence]| sequences.iter().map(|sequence| sequence.length).collect();
+    let all = sequences(judged);
+    let recovery = |sequence: &Sequence| Some(since(&follower.session, sequence.began, sequence.recovered?));
+    Beliefs {
+        basis,
+        errors: count(|cause| matches!(cause, Cause::Belief { .. })),
+        of_two: count(|cause| matches!(cause, Cause::Belief { with: Some(_), .. })),
+        lengths: lengths(&all),
+        lengths_by_aspect: lengths(&sequences_by_target(judged)),
+        recovery_s: all.iter().filter_map(recovery).collect(),
+        episodes: (basis == Basis::Recorded).then(|| follower.episodes.harmful().count() as u64),
+    }
+}
+
+/// The error sequences, each with its errors as indices of presses. Whatever a sequence is about, the errors of one follow
+/// each other.
+pub(super) fn sequence_errors(judged: &[JudgedPress]) -> Vec<(Sequence, Vec<usize>)> {
+    let is_related = |press: &JudgedPress| matches!(press.cause, Some(Cause::Belief { .. }));
+    let mut errors = judged.iter().enumerate().filter(|(_, press)| is_related(press)).map(|(index, _)| index);
+    let of_one = |sequence: Sequence| {
+        let own: Vec<usize> = errors.by_ref().take(sequence.length as usize).collect();
+        (sequence, own)
+    };
+    sequences(judged).into_iter().map(of_one).collect()
+}
+
+/// The answers that were just confirmed.
+fn confirmed(session: &Session) -> Vec<Answered> {
+    let Some((step, protocol)) = session.step() else { return Vec::new() };
+    let phase = protocol.number.checked_sub(1).and_then(|index| step.phases.get(index));
+    let Some(PhaseSpec::Questionnaire { questionnaire }) = phase else { return Vec::new() };
+    let answered = |(index, item): (usize, &crate::session::plan::Item)| Answered {
+        questionnaire: questionnaire.name.clone(),
+        item: item.id.clone(),
+        text: item.text.clone(),
+        about: item.about.clone(),
+        reversed: item.reversed,
+        answer: match protocol.answers.get(index).copied().flatten() {
+            Some(Answer::Rated(answer)) => Some(answer),
+            Some(Answer::Skipped) | None => None,
+        },
+        points: questionnaire.scale.points,
+    };
+    questionnaire.items.iter().enumerate().map(answered).collect()
+}
+
+fn trial(name: &str, header: &Header, follower: &Follower, standing: Standing) -> Trial {
+    let (session, spec) = (&follower.session, &header.session);
+    let step = spec.step.as_ref();
+    let is_over = matches!(session.phase, Phase::Over(_) | Phase::Closed);
+    let left_out = match standing {
+        Standing { aborted: Some(reason), .. } => Some(format!("aborted: {reason}")),
+        Standing { excluded: Some(reason), .. } => Some(format!("excluded: {reason}")),
+        _ if !is_over => Some("cut before the trial's end".to_string()),
+        _ if session.presses == [0, 0] => Some("no press in it".to_string()),
+        _ => None,
+    };
+    let between = |times: Vec<SessionTime>| -> Vec<f64> {
+        times.windows(2).map(|pair| since(session, pair[0], pair[1])).collect()
+    };
+    let served = std::iter::once(session.trial_start).chain(session.served.iter().map(|served| served.time));
+    let presses = std::iter::once(0).chain(session.served.iter().map(|served| served.presses)).collect::<Vec<u32>>();
+    Trial {
+        recording: name.to_string(),
+        participant: spec.participant.code.clone(),
+        seed: spec.seed,
+        kind: spec.participant.kind,
+        started: header.started.clone(),
+        group: step.map(|step| step.group.clone()),
+        period: step.and_then(|step| step.period),
+        is_planned: step.is_some(),
+        condition: spec.trial.condition,
+        left_out,
+        human_presses: u64::from(session.presses[Agent::Human.index()]),
+        robot_presses: u64::from(session.presses[Agent::Robot.index()]),
+        errors: follower.errors() as u64,
+        races: follower.judged.iter().filter(|press| press.verdict.race).count() as u64,
+        beliefs: None,
+        orders: session.served.len() as u64,
+        order_s: median(between(served.collect())),
+        presses_per_order: median(presses.windows(2).map(|pair| f64::from(pair[1] - pair[0])).collect()),
+        press_s: median(between(follower.judged.iter().map(|press| press.time).collect())),
+        signals: sent(session).len() as u64,
+        seconds: session.trial_clock(session.time).as_secs_f64(),
+        answers: Vec::new(),
+        wizard: None,
+        lanes: None,
+        swept: Vec::new(),
+    }
+}
+
+/// Seconds from one time of a session to another, without pauses.
+fn since(session: &Session, from: SessionTime, to: SessionTime) -> f64 {
+    clock_at(session, to).secs_since(clock_at(session, from))
+}

@@ -1,0 +1,100 @@
+//! The figures of a study in words, for the terminal.
+
+use crate::base::words::count;
+use crate::study::effect::Effect;
+use crate::study::figures::StudyFigures;
+use crate::study::roc::EQUAL_SIGNALS;
+use crate::study::trial::Basis;
+
+/// The figures for people, in lines.
+pub fn describe(figures: &StudyFigures) -> String {
+    let totals = &figures.totals;
+    let percent = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{:.1} %", 100.0 * value));
+    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
+    let mut text = format!(
+        "{}\n{} of {}, {} presses: {} of the human, {} of the robot\n\
+         errors: {} ({} of the presses of both, {} of the human's)\n",
+        figures.title,
+        count(figures.trials, "trial", "trials"),
+        count(figures.participants, "participant", "participants"),
+        totals.actions,
+        totals.human_actions,
+        totals.robot_actions,
+        totals.errors,
+        percent(totals.error_rate),
+        percent(totals.error_rate_human),
+    );
+    text += &match (totals.belief_related_errors, totals.sequences) {
+        (Some(related), Some(sequences)) => format!(
+            "belief related: {related} ({}), in {sequences} sequences of {} errors each (by single aspect {}), over after \
+             {} s{}\n",
+            percent(totals.belief_related_share),
+            number(totals.mean_sequence_length),
+            number(totals.mean_sequence_length_by_aspect),
+            number(totals.mean_recovery_s),
+            if totals.beliefs_from == Some(Basis::Estimate) { "; by the assistant's estimate alone" } else { "" },
+        ),
+        _ => "belief related errors: not known\n".to_string(),
+    };
+    for one in &figures.conditions {
+        text += &format!(
+            "  {:<10}{:>4} trials, errors {} of the human's presses, {} a sequence, an order in {} s\n",
+            one.condition.name(),
+            one.trials,
+            percent(one.totals.error_rate_human),
+            number(one.totals.mean_sequence_length),
+            number(one.mean_order_s),
+        );
+    }
+    text += &figures.effects.first().map_or(String::new(), of_effect);
+    if figures.roc.iter().any(|roc| !roc.points.is_empty()) {
+        let heads: Vec<String> = EQUAL_SIGNALS.iter().map(|signals| format!("{signals:>6}")).collect();
+        text += &format!(
+            "concepts, {}: belief related errors prevented at so many signals per 100 presses of the human\n{:<12}{}{:>8}\n",
+            count(figures.roc_trials, "unassisted trial", "unassisted trials"),
+            "",
+            heads.join(""),
+            "area"
+        );
+        for roc in &figures.roc {
+            let values: Vec<String> =
+                roc.at_equal_signals.iter().map(|one| format!("{:>6}", number(one.value))).collect();
+            text += &format!("  {:<10}{}{:>8}\n", roc.concept.title(), values.join(""), number(roc.auc));
+        }
+    }
+    if let Some(similarity) = &figures.similarity {
+        text += &format!(
+            "wizard and ToM-Com: {} of {} signals of the wizard matched (recall {}, by chance {}), precision {}, kappa {}\n",
+            similarity.matched,
+            similarity.of_n,
+            number(similarity.strict.recall),
+            number(similarity.chance_recall),
+            number(similarity.strict.precision),
+            number(similarity.kappa)
+        );
+    }
+    for one in &figures.left_out {
+        text += &format!("left out: {}: {}\n", one.recording, one.reason);
+    }
+    text
+}
+
+fn of_effect(effect: &Effect) -> String {
+    let (Some(test), Some(pearson)) = (effect.assistance(), effect.pearson) else {
+        let [with, without] = effect.groups;
+        return format!("effect of assistance: not to be told from {} pairs of trials\n", with + without);
+    };
+    let p = effect.permutation_p.map_or("-".to_string(), |p| format!("{p:.4}"));
+    let reduction = effect.reduction.map_or(String::new(), |found| {
+        format!(
+            ", {:.1} errors fewer in 100 presses of the human ({:.1} to {:.1})",
+            100.0 * found.estimate,
+            100.0 * found.low,
+            100.0 * found.high
+        )
+    });
+    format!(
+        "effect of assistance: F({:.0}, {:.0}) = {:.2}, p = {:.4}; r = {:.2}; permutation p = {p}{reduction}\n",
+        test.df[0], test.df[1], test.f, test.p, pearson.r
+    )
+}

@@ -1,0 +1,191 @@
+//! The figures of the report, after those of the paper.
+
+use super::effect::{Measure, Pair, pairs};
+use super::figures::{ConditionFigures, StudyFigures};
+use super::roc::Roc;
+use super::svg::{Axis, Chart};
+use super::trial::{Trial, mean};
+use crate::communication::concept::ConceptName;
+use crate::session::settings::Condition;
+
+/// Errors by condition and participant (the paper's top left): the two trials of a participant are joined by a line, means
+/// are black.
+pub fn errors_by_condition(trials: &[Trial]) -> Option<String> {
+    let pairs = pairs(trials, Measure::ErrorRateHuman);
+    let values = || pairs.iter().flat_map(|pair| pair.values).map(percent);
+    if pairs.is_empty() {
+        return None;
+    }
+    let names = ["unassisted".to_string(), "assisted".to_string()];
+    let mut chart =
+        Chart::new(420.0, 320.0, Axis::named(&names), Axis::over("errors per 100 presses of the human", values()));
+    for pair in &pairs {
+        let [without, with] = pair.by_condition().map(percent);
+        let class = group_class(pair);
+        chart.line(&format!("thin {class}"), &[(0.0, without), (1.0, with)]);
+        for (x, y) in [(0.0, without), (1.0, with)] {
+            chart.point(class, x, y, &format!("{}, {}: {y:.1}", pair.participant, names[x as usize]));
+        }
+    }
+    let means = [0, 1].map(|index| mean(pairs.iter().map(|pair| percent(pair.by_condition()[index]))).unwrap_or(0.0));
+    chart.line("mean", &[(0.0, means[0]), (1.0, means[1])]);
+    chart.words("strong", 0.0, means[0], false, &format!("{:.1}", means[0]));
+    chart.words("strong", 1.0, means[1], true, &format!("{:.1}", means[1]));
+    Some(chart.finish("Errors by condition and participant"))
+}
+
+/// Improvements from the first trial to the second by starting group (the paper's top right); the difference of the means is
+/// twice the effect of assistance.
+pub fn improvements(trials: &[Trial]) -> Option<String> {
+    let pairs = pairs(trials, Measure::ErrorRateHuman);
+    if pairs.is_empty() {
+        return None;
+    }
+    let names = ["first unassisted,\nthen assisted".to_string(), "first assisted,\nthen unassisted".to_string()];
+    let all = pairs.iter().map(|pair| percent(pair.improvement()));
+    let mut chart = Chart::new(420.0, 320.0, Axis::named(&names), Axis::over("fewer errors in the second trial", all));
+    for (x, assisted_second) in [(0.0, true), (1.0, false)] {
+        let of_group: Vec<&Pair> = pairs.iter().filter(|pair| pair.assisted_second == assisted_second).collect();
+        for (index, pair) in of_group.iter().enumerate() {
+            let y = percent(pair.improvement());
+            chart.point(group_class(pair), x + aside(index), y, &format!("{}: {y:+.1}", pair.participant));
+        }
+        if let Some(mean) = mean(of_group.iter().map(|pair| percent(pair.improvement()))) {
+            chart.line("mean", &[(x - 0.25, mean), (x + 0.25, mean)]);
+            // No sign before what rounds to nothing.
+            let words = if mean.abs() < 0.05 { "0.0".to_string() } else { format!("{mean:+.1}") };
+            chart.words("strong", x + 0.25, mean, true, &words);
+        }
+    }
+    Some(chart.finish("Difference between the first and the second trial by starting group"))
+}
+
+/// Seconds from press to press by trial and condition (the paper's bottom): a sign of experience.
+pub fn press_durations(trials: &[Trial]) -> Option<String> {
+    let cells: Vec<(u32, bool)> = vec![(1, false), (1, true), (2, false), (2, true)];
+    let of = |&(period, assisted): &(u32, bool)| -> Vec<(&str, f64)> {
+        let is_it = |trial: &&Trial| trial.counts() && trial.period == Some(period) && trial.is_assisted() == assisted;
+        let found = trials.iter().filter(is_it);
+        found.filter_map(|trial| Some((trial.participant.as_str(), trial.press_s?))).collect()
+    };
+    let found: Vec<Vec<(&str, f64)>> = cells.iter().map(of).collect();
+    if found.iter().all(Vec::is_empty) {
+        return None;
+    }
+    let name = |(period, assisted): &(u32, bool)| {
+        format!("trial {period}\n{}", if *assisted { "assisted" } else { "unassisted" })
+    };
+    let names: Vec<String> = cells.iter().map(name).collect();
+    let all = found.iter().flatten().map(|(_, seconds)| *seconds);
+    let mut chart = Chart::new(420.0, 320.0, Axis::named(&names), Axis::over("seconds from press to press", all));
+    for (x, (cell, found)) in cells.iter().zip(&found).enumerate() {
+        let class = if cell.1 { "assisted" } else { "unassisted" };
+        for (index, (participant, seconds)) in found.iter().enumerate() {
+            chart.point(class, x as f64 + aside(index), *seconds, &format!("{participant}: {seconds:.2} s"));
+        }
+        if let Some(mean) = mean(found.iter().map(|(_, seconds)| *seconds)) {
+            chart.line("mean", &[(x as f64 - 0.3, mean), (x as f64 + 0.3, mean)]);
+        }
+    }
+    Some(chart.finish("Seconds from press to press by trial and condition"))
+}
+
+/// No longer sequence has a bar of its own.
+const LONGEST: usize = 12;
+
+/// How many sequences have how many errors, by condition, a trial.
+pub fn sequence_lengths(conditions: &[ConditionFigures]) -> Option<String> {
+    let assisted = |one: &&ConditionFigures| one.condition != Condition::None;
+    let per_trial = |is: &dyn Fn(&&ConditionFigures) -> bool| -> Vec<f64> {
+        let found: Vec<&ConditionFigures> = conditions.iter().filter(is).collect();
+        let trials: u64 = found.iter().map(|one| one.trials).sum();
+        let mut counts = vec![0.0; LONGEST];
+        for one in found {
+            for (index, &count) in one.sequence_lengths.iter().enumerate() {
+                counts[index.min(LONGEST - 1)] += count as f64 / trials.max(1) as f64;
+            }
+        }
+        counts
+    };
+    let sets = [("unassisted", per_trial(&|one| !assisted(one))), ("assisted", per_trial(&assisted))];
+    let all = || sets.iter().flat_map(|(_, counts)| counts.iter().copied());
+    if all().all(|count| count == 0.0) {
+        return None;
+    }
+    let names: Vec<String> =
+        (1..=LONGEST).map(|length| if length == LONGEST { format!("{length}+") } else { length.to_string() }).collect();
+    let x = Axis { label: "errors in a sequence", ..Axis::named(&names) };
+    let mut chart = Chart::new(420.0, 320.0, x, Axis::over("sequences a trial", all()));
+    for (side, (class, counts)) in sets.iter().enumerate() {
+        for (index, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0.0) {
+            let from = index as f64 - 0.38 + 0.38 * side as f64;
+            chart.bar(class, [from, from + 0.36], count, &format!("{class}: {count:.2} of {} errors", names[index]));
+        }
+    }
+    Some(chart.finish("Lengths of error sequences by condition"))
+}
+
+/// Receiver operating characteristics of the concepts, with bands.
+pub fn roc(figures: &StudyFigures) -> Option<String> {
+    let points = || figures.roc.iter().flat_map(|roc| &roc.points);
+    points().next()?;
+    let x = Axis::over("false positive rate, per press outside of episodes", points().map(|point| point.fpr));
+    let x = Axis::between(x.label, 0.0, x.to.min(1.0));
+    let y = Axis::between("belief related errors prevented", 0.0, 1.0);
+    let mut chart = Chart::new(420.0, 380.0, x, y);
+    for roc in &figures.roc {
+        chart.band(class_of(roc.concept), &roc.band);
+    }
+    for roc in &figures.roc {
+        curve(&mut chart, roc, |point| (point.fpr, point.tpr));
+    }
+    Some(chart.finish("Receiver operating characteristics of communication concepts"))
+}
+
+/// The same against interruptions.
+pub fn equal_signals(figures: &StudyFigures) -> Option<String> {
+    let points = || figures.roc.iter().flat_map(|roc| &roc.points);
+    points().next()?;
+    let x = Axis::over("signals per 100 presses of the human", points().map(|point| point.signals_per_100_actions));
+    let y = Axis::between("belief related errors prevented", 0.0, 1.0);
+    let mut chart = Chart::new(420.0, 380.0, x, y);
+    for roc in &figures.roc {
+        curve(&mut chart, roc, |point| (point.signals_per_100_actions, point.tpr));
+    }
+    Some(chart.finish("Errors prevented at so many signals"))
+}
+
+fn curve(chart: &mut Chart, roc: &Roc, of: fn(&super::roc::Point) -> (f64, f64)) {
+    let class = class_of(roc.concept);
+    let mut points: Vec<(f64, f64)> = roc.points.iter().map(of).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    chart.line(class, &points);
+    for point in &roc.points {
+        let (x, y) = of(point);
+        let title = format!("{} at {}: {y:.2} prevented, {x:.2}", roc.concept.title(), point.parameter);
+        chart.point(&format!("small {class}"), x, y, &title);
+    }
+}
+
+/// The class of a concept's colour.
+pub fn class_of(concept: ConceptName) -> &'static str {
+    match concept {
+        ConceptName::TomCom => "tom-com",
+        ConceptName::Tom => "tom",
+        ConceptName::Dev => "dev",
+        ConceptName::None => "none",
+    }
+}
+
+fn group_class(pair: &Pair) -> &'static str {
+    if pair.assisted_second { "second" } else { "first" }
+}
+
+fn percent(rate: f64) -> f64 {
+    100.0 * rate
+}
+
+/// Points that could lie above each other stand a little aside, in turn.
+fn aside(index: usize) -> f64 {
+    [0.0, -0.06, 0.06, -0.12, 0.12, -0.18, 0.18][index % 7]
+}

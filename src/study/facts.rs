@@ -1,0 +1,100 @@
+//! What recordings say of how they were made, for the paragraph on methods.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::session::settings::{Condition, GazeSource, ParticipantKind, Visibility};
+use crate::session::{Header, Session};
+
+/// What is known of a kind, from one recording or several: every value that occurred.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Facts {
+    found: BTreeMap<&'static str, BTreeSet<String>>,
+}
+
+impl Facts {
+    /// Those of a recording that was followed to its end.
+    pub fn of(header: &Header, session: &Session) -> Facts {
+        let spec = &header.session;
+        let mut facts = Facts::default();
+        let mut is = |key: &'static str, value: String| {
+            facts.found.entry(key).or_default().insert(value);
+        };
+        is("program", header.program.clone());
+        is("format", header.version.to_string());
+        is("kitchen", session.kitchen.title.clone());
+        is("presses", spec.trial.presses.to_string());
+        is("seconds", spec.trial.seconds.to_string());
+        is("seed", spec.seed.to_string());
+        is("robot", format!("{} s in the median (spread {})", spec.robot.press_s, spec.robot.press_spread));
+        is("shown", format!("{} s", spec.signals.shown_s));
+        is("cost", spec.assistant.cost_of_communication.to_string());
+        is("tau", spec.human.decision.tau.to_string());
+        is("gaze", gaze_source(spec.participant.gaze).to_string());
+        is("participant", participant_kind(spec.participant.kind).to_string());
+        if let Some(orders) = spec.trial.orders {
+            is("orders", orders.to_string());
+        }
+        if let Some(step) = &spec.step {
+            is("plan", format!("{} ({})", step.plan, step.digest));
+        }
+        if spec.trial.condition == Condition::Wizard {
+            is("wizard saw", visibility(spec.console.visibility).to_string());
+            if session.unblinded {
+                is("unblinded", String::new());
+            }
+        }
+        if let Some(check) = &session.calibrated {
+            is("accuracy", format!("{:.1}", check.accuracy_deg()));
+        }
+        facts
+    }
+
+    /// Adds those of another recording.
+    pub fn add(&mut self, other: Facts) {
+        for (key, values) in other.found {
+            self.found.entry(key).or_default().extend(values);
+        }
+    }
+
+    /// Every value of a kind, in words; nothing where there is none.
+    pub fn all(&self, key: &str) -> Option<String> {
+        let values: Vec<&str> = self.found.get(key)?.iter().map(String::as_str).collect();
+        let (last, others) = values.split_last()?;
+        Some(match others {
+            [] => (*last).to_string(),
+            _ => format!("{} and {last}", others.join(", ")),
+        })
+    }
+
+    /// Whether there is something of a kind.
+    pub fn has(&self, key: &str) -> bool {
+        self.found.contains_key(key)
+    }
+}
+
+fn gaze_source(source: GazeSource) -> &'static str {
+    match source {
+        GazeSource::Simulated => "simulated eyes",
+        GazeSource::Mouse => "the mouse pointer, standing for the gaze",
+        GazeSource::Pupil => "Pupil Core",
+        GazeSource::File => "recorded gaze",
+        GazeSource::Json => "an eye tracker that sends JSON lines",
+        GazeSource::None => "no gaze",
+    }
+}
+
+fn participant_kind(kind: ParticipantKind) -> &'static str {
+    match kind {
+        ParticipantKind::Simulated => "simulated",
+        ParticipantKind::Keyboard => "people at the console's keyboard",
+        ParticipantKind::Display => "people at the wall display",
+    }
+}
+
+fn visibility(visibility: Visibility) -> &'static str {
+    match visibility {
+        Visibility::State => "kitchen and gaze",
+        Visibility::Belief => "kitchen, gaze and the estimated belief",
+        Visibility::Recommendation => "kitchen, gaze, the estimated belief and the assistant's recommendation",
+    }
+}

@@ -1,0 +1,363 @@
+//! The figures of a study: what `tomcom study` prints, and what the report tells.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::effect::{Effect, Measure, effect, pairs};
+use super::facts::Facts;
+use super::roc::{Comparison, Roc, Swept, compare};
+use super::statistics::{Correlation, FTest, Interval, share_interval};
+use super::trial::{Basis, Beliefs, Trial, mean, mean_length};
+use crate::measures::matching::{Similarity, Tally};
+use crate::measures::wizard::WizardMeasures;
+use crate::session::settings::{Condition, ParticipantKind};
+
+/// The seed of what is drawn: permutations where they are too many, and the bootstrap. The same recordings give the same
+/// figures.
+const SEED: u64 = 1;
+
+/// All figures. What cannot be told is null.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StudyFigures {
+    pub title: String,
+    /// Of people alone it is false.
+    pub simulated_participants: bool,
+    /// Trials that count, and participants with at least one.
+    pub trials: u64,
+    pub participants: u64,
+    #[serde(flatten)]
+    pub totals: Totals,
+    pub conditions: Vec<ConditionFigures>,
+    /// The effect of assistance on errors per press of the human: the interaction of period and starting group.
+    pub anova: Option<FTest>,
+    pub pearson: Option<Correlation>,
+    pub permutation_p: Option<f64>,
+    /// The same in full, and of other measures.
+    pub effects: Vec<Effect>,
+    pub roc: Vec<Roc>,
+    /// What the comparison of concepts rests on.
+    pub roc_participants: u64,
+    pub roc_trials: u64,
+    pub roc_common_fpr: Option<f64>,
+    /// Of the wizard's signals (the first lane) and the assistant's; null where no wizard sent any.
+    pub similarity: Option<Similarity>,
+    /// The same trial by trial: recording and recall.
+    pub similarity_by_trial: Vec<TrialSimilarity>,
+    pub wizard: Option<WizardMeasures>,
+    pub acceptance: Option<Acceptance>,
+    pub questionnaires: Vec<ItemFigures>,
+    pub left_out: Vec<LeftOut>,
+    /// Recordings of practice, which are no trials.
+    pub practice: u64,
+}
+
+/// Sums over trials.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Totals {
+    /// Presses of both agents.
+    pub actions: u64,
+    pub human_actions: u64,
+    pub robot_actions: u64,
+    pub errors: u64,
+    pub races: u64,
+    /// Per press of both agents.
+    pub error_rate: Option<f64>,
+    pub error_rate_human: Option<f64>,
+    /// How it is known what was believed; null: it is not, or not of all.
+    pub beliefs_from: Option<Basis>,
+    pub belief_related_errors: Option<u64>,
+    pub belief_related_share: Option<f64>,
+    pub belief_related_interval: Option<Interval>,
+    pub sequences: Option<u64>,
+    pub mean_sequence_length: Option<f64>,
+    pub mean_sequence_length_by_aspect: Option<f64>,
+    pub mean_recovery_s: Option<f64>,
+    pub false_belief_episodes: Option<u64>,
+    pub signals: u64,
+    pub orders_served: u64,
+}
+
+/// Those of the trials in a condition.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ConditionFigures {
+    pub condition: Condition,
+    pub trials: u64,
+    #[serde(flatten)]
+    pub totals: Totals,
+    /// Means over trials.
+    pub mean_errors: Option<f64>,
+    pub mean_order_s: Option<f64>,
+    pub mean_press_s: Option<f64>,
+    /// How many sequences have 1, 2, 3, … errors.
+    pub sequence_lengths: Vec<u64>,
+}
+
+/// How alike wizard and assistant are in one trial.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TrialSimilarity {
+    pub recording: String,
+    pub of_n: u64,
+    pub with_n: u64,
+    pub matched: u64,
+    pub recall: Option<f64>,
+}
+
+/// How participants take the assistance: the mean of their answers to items about acceptance after assisted trials, turned
+/// round where agreement speaks against it, from 0 (none) to 1.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Acceptance {
+    /// Participants above 2/3.
+    pub high: u64,
+    /// From there down to 7/12.
+    pub medium: u64,
+    /// Within 1/12 of the middle: a point of a scale of seven.
+    pub undecided: u64,
+    /// Below.
+    pub low: u64,
+    pub not_reported: u64,
+    /// Over participants.
+    pub mean: Option<f64>,
+}
+
+/// Answers to an item in a condition.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ItemFigures {
+    pub questionnaire: String,
+    pub item: String,
+    pub text: String,
+    pub about: Option<String>,
+    pub reversed: bool,
+    pub condition: Condition,
+    pub points: u8,
+    /// How often each point was given, from 1.
+    pub counts: Vec<u64>,
+    pub left_out: u64,
+    pub mean: Option<f64>,
+}
+
+/// A trial that is left out.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LeftOut {
+    pub recording: String,
+    pub participant: String,
+    pub reason: String,
+}
+
+impl StudyFigures {
+    /// Of trials in the order of participants.
+    pub fn of(trials: &[Trial], facts: &Facts, practice: u64) -> StudyFigures {
+        let counting: Vec<&Trial> = trials.iter().filter(|trial| trial.counts()).collect();
+        let simulated_participants = trials.iter().any(|trial| trial.kind == ParticipantKind::Simulated);
+        let effects: Vec<Effect> =
+            Measure::ALL.iter().map(|&measure| effect(measure, &pairs(trials, measure), SEED)).collect();
+        let comparison = concepts(&counting);
+        let mut participants: Vec<&str> = counting.iter().map(|trial| trial.participant.as_str()).collect();
+        participants.dedup();
+        let (similarity, similarity_by_trial) = similarity(&counting);
+        let wizards: Vec<&WizardMeasures> = counting.iter().filter_map(|trial| trial.wizard.as_ref()).collect();
+        let left_out = trials.iter().filter_map(|trial| {
+            let (recording, participant) = (trial.recording.clone(), trial.participant.clone());
+            Some(LeftOut { recording, participant, reason: trial.left_out.clone()? })
+        });
+        StudyFigures {
+            title: title(facts, trials, simulated_participants),
+            simulated_participants,
+            trials: counting.len() as u64,
+            participants: participants.len() as u64,
+            totals: Totals::of(&counting),
+            conditions: conditions(&counting),
+            anova: effects[0].assistance(),
+            pearson: effects[0].pearson,
+            permutation_p: effects[0].permutation_p,
+            effects,
+            roc: comparison.concepts,
+            roc_participants: comparison.participants,
+            roc_trials: comparison.trials,
+            roc_common_fpr: comparison.common_fpr,
+            similarity,
+            similarity_by_trial,
+            wizard: (!wizards.is_empty()).then(|| WizardMeasures::sum(wizards)),
+            acceptance: acceptance(&counting),
+            questionnaires: items(&counting),
+            left_out: left_out.collect(),
+            practice,
+        }
+    }
+}
+
+fn title(facts: &Facts, trials: &[Trial], simulated: bool) -> String {
+    let kitchen = facts.all("kitchen").unwrap_or_else(|| "No kitchen".to_string());
+    let people = trials.iter().any(|trial| trial.kind != ParticipantKind::Simulated);
+    match (simulated, people) {
+        (true, false) => format!("{kitchen}: a study of simulated participants"),
+        (true, true) => format!("{kitchen}: a study of people and simulated participants"),
+        (false, _) => format!("{kitchen}: a study"),
+    }
+}
+
+impl Totals {
+    fn of(trials: &[&Trial]) -> Totals {
+        let sum = |of: fn(&Trial) -> u64| trials.iter().map(|trial| of(trial)).sum::<u64>();
+        let (actions, human_actions, errors) =
+            (sum(Trial::presses), sum(|trial| trial.human_presses), sum(|t| t.errors));
+        let rate = |presses: u64| (presses > 0).then(|| errors as f64 / presses as f64);
+        let totals = Totals {
+            actions,
+            human_actions,
+            robot_actions: sum(|trial| trial.robot_presses),
+            errors,
+            races: sum(|trial| trial.races),
+            error_rate: rate(actions),
+            error_rate_human: rate(human_actions),
+            signals: sum(|trial| trial.signals),
+            orders_served: sum(|trial| trial.orders),
+            ..Totals::default()
+        };
+        let beliefs: Option<Vec<&Beliefs>> = trials.iter().map(|trial| trial.beliefs.as_ref()).collect();
+        let Some(beliefs) = beliefs.filter(|beliefs| !beliefs.is_empty()) else { return totals };
+        let related = beliefs.iter().map(|one| one.errors).sum::<u64>();
+        let lengths: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths.iter().copied()).collect();
+        let by_aspect: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths_by_aspect.iter().copied()).collect();
+        let interval = share_interval(related, errors, super::effect::LEVEL);
+        Totals {
+            // Of several the one that is worth least.
+            beliefs_from: beliefs.iter().map(|one| one.basis).max(),
+            belief_related_errors: Some(related),
+            belief_related_share: interval.map(|interval| interval.estimate),
+            belief_related_interval: interval,
+            sequences: Some(lengths.len() as u64),
+            mean_sequence_length: mean_length(&lengths),
+            mean_sequence_length_by_aspect: mean_length(&by_aspect),
+            mean_recovery_s: mean(beliefs.iter().flat_map(|one| one.recovery_s.iter().copied())),
+            false_belief_episodes: beliefs.iter().map(|one| one.episodes).sum(),
+            ..totals
+        }
+    }
+}
+
+fn conditions(trials: &[&Trial]) -> Vec<ConditionFigures> {
+    let of = |condition: Condition| {
+        let trials: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.condition == condition).collect();
+        let lengths = || trials.iter().filter_map(|trial| trial.beliefs.as_ref()).flat_map(|one| one.lengths.iter());
+        let mut sequence_lengths = vec![0; lengths().copied().max().unwrap_or(0) as usize];
+        lengths().for_each(|&length| sequence_lengths[length as usize - 1] += 1);
+        (!trials.is_empty()).then(|| ConditionFigures {
+            condition,
+            trials: trials.len() as u64,
+            totals: Totals::of(&trials),
+            mean_errors: mean(trials.iter().map(|trial| trial.errors as f64)),
+            mean_order_s: mean(trials.iter().filter_map(|trial| trial.order_s)),
+            mean_press_s: mean(trials.iter().filter_map(|trial| trial.press_s)),
+            sequence_lengths,
+        })
+    };
+    [Condition::None, Condition::Wizard, Condition::Assistant].into_iter().filter_map(of).collect()
+}
+
+/// The comparison of concepts over the trials in which they were tried; a participant's trials together.
+fn concepts(trials: &[&Trial]) -> Comparison {
+    let tried: Vec<&Trial> = trials.iter().copied().filter(|trial| !trial.swept.is_empty()).collect();
+    let of_participant = |of_one: &[&Trial]| {
+        let mut sum: Vec<Swept> = of_one[0].swept.clone();
+        for trial in &of_one[1..] {
+            for (sum, one) in sum.iter_mut().zip(&trial.swept) {
+                sum.count = sum.count.plus(&one.count);
+            }
+        }
+        sum
+    };
+    let participants: Vec<Vec<Swept>> =
+        tried.chunk_by(|a, b| a.participant == b.participant).map(of_participant).collect();
+    compare(&participants, tried.len() as u64, SEED)
+}
+
+fn similarity(trials: &[&Trial]) -> (Option<Similarity>, Vec<TrialSimilarity>) {
+    let mut all = Tally::default();
+    let mut by_trial = Vec::new();
+    for trial in trials {
+        let Some([of, with]) = &trial.lanes else { continue };
+        let mut own = Tally::default();
+        for tally in [&mut all, &mut own] {
+            tally.add(of, with, trial.human_presses as u32, crate::measures::matching::WINDOW);
+        }
+        let found = own.similarity();
+        by_trial.push(TrialSimilarity {
+            recording: trial.recording.clone(),
+            of_n: found.of_n,
+            with_n: found.with_n,
+            matched: found.matched,
+            recall: found.strict.recall,
+        });
+    }
+    ((!by_trial.is_empty()).then(|| all.similarity()), by_trial)
+}
+
+/// The items of all questionnaires by condition, in the order in which they occur.
+fn items(trials: &[&Trial]) -> Vec<ItemFigures> {
+    let mut items: Vec<ItemFigures> = Vec::new();
+    for trial in trials {
+        for answered in &trial.answers {
+            let is_it = |item: &ItemFigures| {
+                (&item.questionnaire, &item.item, item.condition, item.points)
+                    == (&answered.questionnaire, &answered.item, trial.condition, answered.points)
+            };
+            let at = match items.iter().position(is_it) {
+                Some(at) => at,
+                None => {
+                    items.push(ItemFigures {
+                        questionnaire: answered.questionnaire.clone(),
+                        item: answered.item.clone(),
+                        text: answered.text.clone(),
+                        about: answered.about.clone(),
+                        reversed: answered.reversed,
+                        condition: trial.condition,
+                        points: answered.points,
+                        counts: vec![0; usize::from(answered.points)],
+                        left_out: 0,
+                        mean: None,
+                    });
+                    items.len() - 1
+                }
+            };
+            match answered.answer.and_then(|answer| items[at].counts.get_mut(usize::from(answer).checked_sub(1)?)) {
+                Some(count) => *count += 1,
+                None => items[at].left_out += 1,
+            }
+        }
+    }
+    for item in &mut items {
+        let given = item.counts.iter().enumerate();
+        let answers = given.flat_map(|(index, &count)| std::iter::repeat_n((index + 1) as f64, count as usize));
+        item.mean = mean(answers);
+    }
+    items
+}
+
+/// From answers to items about acceptance in assisted trials; none where nobody was asked.
+fn acceptance(trials: &[&Trial]) -> Option<Acceptance> {
+    let mut by_participant: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    for trial in trials.iter().filter(|trial| trial.is_assisted()) {
+        for answered in trial.answers.iter().filter(|one| one.about.as_deref() == Some("acceptance")) {
+            let of_one = by_participant.entry(&trial.participant).or_default();
+            let Some(answer) = answered.answer.filter(|_| answered.points > 1) else { continue };
+            let share = f64::from(answer.saturating_sub(1)) / f64::from(answered.points - 1);
+            of_one.push(if answered.reversed { 1.0 - share } else { share });
+        }
+    }
+    if by_participant.is_empty() {
+        return None;
+    }
+    let means: Vec<Option<f64>> = by_participant.into_values().map(|shares| mean(shares.into_iter())).collect();
+    // Twelfths, so that means of whole points fall on one side.
+    let twelfths: Vec<f64> = means.iter().flatten().map(|mean| (12.0 * mean * 1e6).round() / 1e6).collect();
+    let count = |is: fn(f64) -> bool| twelfths.iter().filter(|&&twelfths| is(twelfths)).count() as u64;
+    Some(Acceptance {
+        high: count(|twelfths| twelfths > 8.0),
+        medium: count(|twelfths| twelfths > 7.0 && twelfths <= 8.0),
+        undecided: count(|twelfths| (5.0..=7.0).contains(&twelfths)),
+        low: count(|twelfths| twelfths < 5.0),
+        not_reported: means.iter().filter(|mean| mean.is_none()).count() as u64,
+        mean: mean(means.iter().flatten().copied()),
+    })
+}

@@ -1,0 +1,189 @@
+//! What is around the results: summary, trials, methods, definitions, files.
+
+use super::{count, number, p_value, percent, section, table};
+use crate::base::words;
+use crate::session::settings::Condition;
+use crate::study::definitions::DEFINITIONS;
+use crate::study::facts::Facts;
+use crate::study::figures::StudyFigures;
+use crate::study::svg::escaped;
+use crate::study::tables::Table;
+use crate::study::trial::{Basis, Trial};
+
+/// What it is about, and the main figures.
+pub(super) fn summary(figures: &StudyFigures) -> String {
+    let totals = &figures.totals;
+    let mut text = format!(
+        "<p class=\"lead\">{} of {}, {} recorded presses.</p>\n",
+        words::count(figures.trials, "trial", "trials"),
+        words::count(figures.participants, "participant", "participants"),
+        totals.actions
+    );
+    if figures.simulated_participants {
+        text += "<p class=\"warning\">Participants are simulated. Their errors, beliefs and presses are those of a program that \
+                 is there to try machinery and parameters. Nothing here is evidence about people.</p>\n";
+    }
+    if totals.beliefs_from == Some(Basis::Estimate) {
+        text += "<p class=\"warning\">What participants believed is known only as the assistant's estimate. Figures that rest on \
+                 it, such as the share of belief related errors, need the codes of two raters to be more than that.</p>\n";
+    }
+    let card = |value: String, what: &str| format!("<div class=\"card\"><b>{value}</b><span>{what}</span></div>\n");
+    text += "<div class=\"cards\">\n";
+    text += &card(percent(totals.error_rate), "of the presses of both agents are errors of the human");
+    text += &card(percent(totals.belief_related_share), "of the errors come of false beliefs");
+    text += &card(number(totals.mean_sequence_length, 1), "errors in a sequence, in the mean");
+    text += &match (figures.pearson, &figures.similarity) {
+        (Some(pearson), _) => card(
+            format!("r = {}", number(Some(pearson.r), 2)),
+            &format!("of assistance and fewer errors (p = {})", p_value(Some(pearson.p))),
+        ),
+        (None, Some(found)) => card(percent(found.strict.recall), "of the wizard's signals have a match"),
+        (None, None) => card(words::count(totals.signals, "signal", "signals"), "shown to participants"),
+    };
+    text + "</div>\n"
+}
+
+/// No longer list of trials is printed.
+const MOST_TRIALS: usize = 60;
+
+/// Every trial, and those that are left out with the reasons.
+pub(super) fn trials(figures: &StudyFigures, trials: &[Trial]) -> String {
+    let row = |trial: &Trial| {
+        vec![
+            escaped(&trial.participant),
+            trial.group.as_deref().map_or("\u{2013}".to_string(), escaped),
+            trial.period.map_or("\u{2013}".to_string(), |period| period.to_string()),
+            condition(trial.condition).to_string(),
+            trial.human_presses.to_string(),
+            trial.robot_presses.to_string(),
+            trial.errors.to_string(),
+            percent(trial.error_rate_human()),
+            count(trial.beliefs.as_ref().map(|beliefs| beliefs.errors)),
+            number(trial.sequence_length(), 1),
+            trial.signals.to_string(),
+            trial.orders.to_string(),
+            number(trial.press_s, 2),
+        ]
+    };
+    let counting: Vec<&Trial> = trials.iter().filter(|trial| trial.counts()).collect();
+    let rows: Vec<Vec<String>> = counting.iter().take(MOST_TRIALS).map(|trial| row(trial)).collect();
+    let heads = [
+        "participant",
+        "group",
+        "trial",
+        "condition",
+        "presses, human",
+        "robot",
+        "errors",
+        "per press of the human",
+        "belief related",
+        "in a sequence",
+        "signals",
+        "orders",
+        "s a press",
+    ];
+    let mut text = format!("<div class=\"scroll\">{}</div>\n", table(&heads, &rows));
+    if counting.len() > MOST_TRIALS {
+        text += &format!(
+            "<p class=\"note\">The first {MOST_TRIALS} of {}; all of them are in <code>trials.csv</code>.</p>\n",
+            counting.len()
+        );
+    }
+    text += "<h3>Left out</h3>\n";
+    text += &match figures.left_out.len() {
+        0 => "<p>No trial is left out.</p>\n".to_string(),
+        _ => {
+            let rows: Vec<Vec<String>> = figures
+                .left_out
+                .iter()
+                .map(|one| [&one.recording, &one.participant, &one.reason].map(|text| escaped(text)).to_vec())
+                .collect();
+            table(&["recording", "participant", "why"], &rows).replacen("<table>", "<table class=\"text\">", 1)
+        }
+    };
+    if figures.practice > 0 {
+        let practice = words::count(figures.practice, "recording is", "recordings are");
+        text += &format!("<p class=\"note\">{practice} of practice, and no trial.</p>\n");
+    }
+    section("Trials", &text)
+}
+
+/// A condition in words.
+pub(super) fn condition(condition: Condition) -> &'static str {
+    match condition {
+        Condition::None => "unassisted",
+        Condition::Wizard => "wizard",
+        Condition::Assistant => "assistant",
+    }
+}
+
+/// How it was done, from what the recordings say.
+pub(super) fn methods(figures: &StudyFigures, facts: &Facts) -> String {
+    let all = |key: &str| facts.all(key).map_or("unknown".to_string(), |text| escaped(&text));
+    let planned = facts.all("plan").map_or(" without a plan".to_string(), |plan| {
+        format!(
+            " after the plan {} (name and digest; groups and orders of conditions follow from its seed)",
+            escaped(&plan)
+        )
+    });
+    let orders = facts.all("orders").map_or(String::new(), |orders| format!(" or {} served orders", escaped(&orders)));
+    let mut text = format!(
+        "<p>{} took part{planned}; {} recorded, {} left out of the analysis. Participants: {}. The task was that of the kitchen \
+         \u{201c}{}\u{201d}. A trial ended after {} presses of both agents, {} s{orders}. A press of the robot took {}. Gaze came \
+         from {}{}. A signal was shown for {}.",
+        words::count(figures.participants, "participant", "participants"),
+        words::count(figures.trials + figures.left_out.len() as u64, "trial was", "trials were"),
+        figures.left_out.len(),
+        all("participant"),
+        all("kitchen"),
+        all("presses"),
+        all("seconds"),
+        all("robot"),
+        all("gaze"),
+        facts.all("accuracy").map_or(String::new(), |deg| format!(" (accuracy in checks: {deg}\u{b0})")),
+        all("shown"),
+    );
+    if facts.has("wizard saw") {
+        text += &format!(" The wizard saw {}", all("wizard saw"));
+        text += if facts.has("unblinded") { ", and in some trials what assistants would say." } else { "." };
+    }
+    text += &format!(
+        " The human model's temperature was \u{3c4} = {}, the cost of a signal {} presses. Recorded with tomcom {} (log format {}), \
+         seed {}; analysed with tomcom {}.</p>\n",
+        all("tau"),
+        all("cost"),
+        all("program"),
+        all("format"),
+        all("seed"),
+        env!("CARGO_PKG_VERSION"),
+    );
+    text += &format!(
+        "<p>Every recording was replayed event by event; errors, their causes, the estimate of beliefs and what each concept would \
+         have said were computed anew from the recorded events. {}</p>\n",
+        match figures.totals.beliefs_from {
+            Some(Basis::Recorded) =>
+                "Why presses were errors was judged by what the simulated participants recorded of their beliefs.",
+            Some(Basis::Raters) => "Why presses were errors was coded by two raters.",
+            Some(Basis::Estimate) => "Why presses were errors was judged by the assistant's estimate of the beliefs.",
+            None => "Why presses were errors is not known for all trials.",
+        }
+    );
+    section("Methods", &text)
+}
+
+/// What every term means.
+pub(super) fn definitions() -> String {
+    let one = |(term, text): &(&str, &str)| format!("<dt>{}</dt>\n<dd>{}</dd>\n", escaped(term), escaped(text));
+    section("Definitions", &format!("<dl>\n{}</dl>\n", DEFINITIONS.iter().map(one).collect::<String>()))
+}
+
+/// The files beside the report.
+pub(super) fn files() -> String {
+    let names: Vec<String> = Table::ALL.iter().map(|table| format!("<code>{}.csv</code>", table.name())).collect();
+    let text = format!(
+        "<p>Beside this page: {}. The last one says what every column of the others means. Empty cells are unknown values; a \
+         recording's name joins the tables.</p>\n",
+        names.join(", ")
+    );
+    section("Tables", &text)
+}

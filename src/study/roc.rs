@@ -1,0 +1,422 @@
+//! How much communication concepts would have prevented in unassisted trials, and at what price: receiver operating
+//! characteristics and comparison at equal interruptions (paper, "Concept comparisons").
+//!
+//! The unit is the press of the human. True positive rate: belief related errors prevented, of all. One signal that targets
+//! the aspect of a false belief episode prevents the rest of its sequence; what is replayed does not change the belief. False
+//! positive: a signal on an aspect that was believed right; the rate is that of the presses outside of episodes with at least
+//! one before them. A signal on a wrong but harmless belief is counted by itself. A proposal of k presses counts as k signals
+//! and spares the errors of the next k presses; those of them outside of episodes are its false positives.
+
+use rand::RngExt;
+use serde::Serialize;
+
+use crate::base::rng::stream;
+use crate::base::time::SessionTime;
+use crate::communication::concept::ConceptName;
+use crate::kitchen::AspectId;
+
+/// The least cost of communication of the paper. Benefits below are estimated less carefully.
+pub const LEAST_COST: f64 = 0.5;
+
+/// Signals per 100 presses of the human at which concepts are compared.
+pub const EQUAL_SIGNALS: [f64; 4] = [2.0, 4.0, 6.0, 8.0];
+/// How often participants are drawn anew for a band.
+const RESAMPLES: u32 = 1000;
+/// A band is told at so many places of the common range.
+const BAND_STEPS: usize = 40;
+/// The share that a band covers.
+const COVERED: f64 = 0.95;
+
+/// The parameter of a concept that is swept: cost of communication, threshold, presses proposed. Beyond the paper's 0.5 to 2.4
+/// and 0.4 to 0.99 there are some more values, so that the concepts can be compared where they say equally much.
+pub fn parameters(concept: ConceptName) -> Vec<f64> {
+    match concept {
+        ConceptName::TomCom => {
+            let costs = (2..=24).map(|tenth| f64::from(tenth) / 10.0);
+            costs.chain([2.7, 3.0, 3.5, 4.0, 5.0]).collect()
+        }
+        ConceptName::Tom => {
+            let thresholds = (8..=19).map(|step| f64::from(step) / 20.0);
+            thresholds.chain([0.97, 0.99, 0.995, 0.998, 0.999, 0.9995]).collect()
+        }
+        ConceptName::Dev => (1..=5).map(f64::from).collect(),
+        ConceptName::None => Vec::new(),
+    }
+}
+
+/// The concepts that are compared.
+pub const CONCEPTS: [ConceptName; 3] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev];
+
+/// What was true in a trial.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Truth {
+    pub presses: Vec<PressTruth>,
+    pub spells: Vec<SpellTruth>,
+    pub sequences: Vec<SequenceTruth>,
+}
+
+/// A press of the human.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PressTruth {
+    pub time: SessionTime,
+    pub error: bool,
+    /// It was one because of a false belief.
+    pub related: bool,
+}
+
+/// A time in which an aspect was believed wrong.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpellTruth {
+    pub aspect: AspectId,
+    pub began: SessionTime,
+    pub ended: Option<SessionTime>,
+    /// It led to an error: an episode.
+    pub harmful: bool,
+}
+
+/// Belief related errors that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SequenceTruth {
+    /// What it is about.
+    pub aspects: Vec<AspectId>,
+    /// When its errors were.
+    pub errors: Vec<SessionTime>,
+}
+
+/// A signal that a concept would have sent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sent {
+    pub time: SessionTime,
+    /// Presses of the human before it.
+    pub press: usize,
+    /// What it tells.
+    pub aspects: Vec<AspectId>,
+}
+
+/// What a concept would have done in a trial, or in several.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Count {
+    /// Presses of the human.
+    pub presses: u64,
+    /// Signals, or presses proposed.
+    pub signals: u64,
+    /// Belief related errors.
+    pub related: u64,
+    /// Of those, prevented.
+    pub prevented: u64,
+    /// Presses of the human outside of episodes.
+    pub outside: u64,
+    /// Of those, with a false signal before them.
+    pub false_presses: u64,
+    /// Signals on an aspect that was believed right while another one had an episode.
+    pub false_inside: u64,
+    /// Signals on a wrong but harmless belief.
+    pub harmless: u64,
+}
+
+impl Count {
+    /// The same of both together.
+    pub fn plus(self, other: &Count) -> Count {
+        Count {
+            presses: self.presses + other.presses,
+            signals: self.signals + other.signals,
+            related: self.related + other.related,
+            prevented: self.prevented + other.prevented,
+            outside: self.outside + other.outside,
+            false_presses: self.false_presses + other.false_presses,
+            false_inside: self.false_inside + other.false_inside,
+            harmless: self.harmless + other.harmless,
+        }
+    }
+
+    /// False positive rate, true positive rate, signals per 100 presses of the human; none without what they are rates of.
+    pub fn point(&self) -> Option<[f64; 3]> {
+        if self.outside == 0 || self.related == 0 {
+            return None;
+        }
+        let (false_positive, true_positive) =
+            (self.false_presses as f64 / self.outside as f64, self.prevented as f64 / self.related as f64);
+        Some([false_positive, true_positive, 100.0 * self.signals as f64 / self.presses as f64])
+    }
+}
+
+/// What a concept with one value of its parameter would have done in a trial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Swept {
+    pub concept: ConceptName,
+    pub parameter: f64,
+    pub count: Count,
+}
+
+impl Truth {
+    fn open_at(&self, time: SessionTime) -> impl Iterator<Item = &SpellTruth> {
+        self.spells.iter().filter(move |spell| spell.began <= time && spell.ended.is_none_or(|end| time < end))
+    }
+
+    fn is_in_episode(&self, time: SessionTime) -> bool {
+        self.open_at(time).any(|spell| spell.harmful)
+    }
+
+    fn empty_count(&self, signals: u64) -> Count {
+        Count {
+            presses: self.presses.len() as u64,
+            signals,
+            related: self.presses.iter().filter(|press| press.related).count() as u64,
+            outside: self.presses.iter().filter(|press| !self.is_in_episode(press.time)).count() as u64,
+            ..Count::default()
+        }
+    }
+
+    /// What these signals would have done.
+    pub fn count_signals(&self, sent: &[Sent]) -> Count {
+        let mut count = self.empty_count(sent.len() as u64);
+        let mut prevented: Vec<Vec<bool>> =
+            self.sequences.iter().map(|sequence| vec![false; sequence.errors.len()]).collect();
+        let mut is_false = vec![false; self.presses.len()];
+        for signal in sent {
+            let mut wrong = self.open_at(signal.time).filter(|spell| signal.aspects.contains(&spell.aspect)).peekable();
+            if wrong.peek().is_none() {
+                match self.presses.get(signal.press) {
+                    Some(press) if self.is_in_episode(press.time) => count.false_inside += 1,
+                    Some(_) => is_false[signal.press] = true,
+                    // Nothing comes after it.
+                    None => {}
+                }
+                continue;
+            }
+            let mut is_harmful = false;
+            for spell in wrong.filter(|spell| spell.harmful) {
+                is_harmful = true;
+                for (sequence, prevented) in self.sequences.iter().zip(&mut prevented) {
+                    sequence.prevent(spell, signal.time, prevented);
+                }
+            }
+            count.harmless += u64::from(!is_harmful);
+        }
+        count.prevented = prevented.iter().flatten().filter(|prevented| **prevented).count() as u64;
+        count.false_presses = is_false.iter().filter(|is_false| **is_false).count() as u64;
+        count
+    }
+
+    /// What proposals of `k` presses after every error that is not itself spared would have done.
+    pub fn count_proposals(&self, k: usize) -> Count {
+        let mut count = self.empty_count(0);
+        let mut spared = 0;
+        for press in &self.presses {
+            if spared > 0 {
+                spared -= 1;
+                count.prevented += u64::from(press.related);
+                count.false_presses += u64::from(!self.is_in_episode(press.time));
+            } else if press.error {
+                spared = k;
+                count.signals += k as u64;
+            }
+        }
+        count
+    }
+}
+
+impl SequenceTruth {
+    /// Marks the errors that a signal about this spell's aspect prevents: those after it, if the sequence is about the aspect
+    /// and the spell lasts into it.
+    fn prevent(&self, spell: &SpellTruth, sent: SessionTime, prevented: &mut [bool]) {
+        let (Some(&first), Some(&last)) = (self.errors.first(), self.errors.last()) else { return };
+        let lasts = spell.began <= last && spell.ended.is_none_or(|end| end > first);
+        if !lasts || !self.aspects.contains(&spell.aspect) {
+            return;
+        }
+        for (&error, prevented) in self.errors.iter().zip(prevented) {
+            *prevented |= error > sent;
+        }
+    }
+}
+
+/// A point of a receiver operating characteristic.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Point {
+    pub parameter: f64,
+    pub fpr: f64,
+    pub tpr: f64,
+    pub signals_per_100_actions: f64,
+    #[serde(flatten)]
+    pub count: Count,
+}
+
+/// A value with the interval that the bootstrap over participants gives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Banded {
+    pub value: Option<f64>,
+    pub low: Option<f64>,
+    pub high: Option<f64>,
+}
+
+/// The receiver operating characteristic of a concept.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Roc {
+    pub concept: ConceptName,
+    /// The mean true positive rate over the false positive rates that all concepts reach: partial area by width of the range.
+    pub auc: Option<f64>,
+    pub auc_low: Option<f64>,
+    pub auc_high: Option<f64>,
+    pub points: Vec<Point>,
+    /// False positive rate, and the band of the true positive rate there.
+    pub band: Vec<[f64; 3]>,
+    /// True positive rates at [`EQUAL_SIGNALS`].
+    pub at_equal_signals: Vec<Banded>,
+    /// By how much that of the first concept is higher.
+    pub behind_first: Vec<Banded>,
+}
+
+/// The comparison of concepts.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Participants, and their unassisted trials.
+    pub participants: u64,
+    pub trials: u64,
+    /// The largest false positive rate that all concepts reach.
+    pub common_fpr: Option<f64>,
+    pub concepts: Vec<Roc>,
+}
+
+/// One way of putting participants together: curves of each concept.
+struct Curves {
+    /// False positive rate against true positive rate, signals against true positive rate.
+    of: Vec<[Vec<(f64, f64)>; 2]>,
+}
+
+/// The sum over participants of what each concept did, each counted so often.
+fn summed(participants: &[Vec<Swept>], times: &[u32]) -> Vec<Swept> {
+    let Some(first) = participants.first() else { return Vec::new() };
+    let mut sum: Vec<Swept> = first.iter().map(|one| Swept { count: Count::default(), ..*one }).collect();
+    for (participant, &times) in participants.iter().zip(times) {
+        for (sum, one) in sum.iter_mut().zip(participant) {
+            for _ in 0..times {
+                sum.count = sum.count.plus(&one.count);
+            }
+        }
+    }
+    sum
+}
+
+impl Curves {
+    fn of(sum: &[Swept]) -> Curves {
+        let curve = |concept: ConceptName, x: usize| {
+            let points = sum.iter().filter(|one| one.concept == concept).filter_map(|one| one.count.point());
+            // Saying nothing is always possible.
+            let mut curve: Vec<(f64, f64)> = points.map(|point| (point[x], point[1])).chain([(0.0, 0.0)]).collect();
+            curve.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+            curve
+        };
+        Curves { of: CONCEPTS.iter().map(|&concept| [curve(concept, 0), curve(concept, 2)]).collect() }
+    }
+
+    /// The largest false positive rate that all reach; none if one of them was never tried.
+    fn common(&self) -> Option<f64> {
+        let reach = |curve: &Vec<(f64, f64)>| curve.last().map(|last| last.0).filter(|_| curve.len() > 1);
+        let reached: Option<Vec<f64>> = self.of.iter().map(|[curve, _]| reach(curve)).collect();
+        reached?.into_iter().reduce(f64::min).filter(|&common| common > 0.0)
+    }
+
+    fn area(&self, concept: usize, to: f64) -> Option<f64> {
+        area(&self.of[concept][0], to)
+    }
+}
+
+/// The height of a curve at `x`, by straight lines between its points; none outside of them.
+fn height(curve: &[(f64, f64)], x: f64) -> Option<f64> {
+    let after = curve.iter().position(|point| point.0 >= x)?;
+    let (x1, y1) = curve[after];
+    if x1 == x {
+        // Of several points above each other the highest.
+        return curve[after..].iter().take_while(|point| point.0 == x).last().map(|point| point.1);
+    }
+    let (x0, y0) = *curve.get(after.checked_sub(1)?)?;
+    Some(y0 + (y1 - y0) * (x - x0) / (x1 - x0))
+}
+
+/// The mean height of a curve from 0 to `to`.
+fn area(curve: &[(f64, f64)], to: f64) -> Option<f64> {
+    let end = height(curve, to)?;
+    let mut points: Vec<(f64, f64)> = curve.iter().copied().filter(|point| point.0 < to).collect();
+    points.push((to, end));
+    let area: f64 = points.windows(2).map(|pair| (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1) / 2.0).sum();
+    (to > 0.0).then(|| area / to)
+}
+
+/// Compares the concepts; of each participant what every concept with every value of its parameter did in its trials, in the
+/// same order for all. The bootstrap (Efron 1979; percentiles) draws participants, and follows from `seed`.
+pub fn compare(participants: &[Vec<Swept>], trials: u64, seed: u64) -> Comparison {
+    let once = vec![1; participants.len()];
+    let sum = summed(participants, &once);
+    if sum.is_empty() {
+        return Comparison::default();
+    }
+    let curves = Curves::of(&sum);
+    let common = curves.common();
+    let resampled: Vec<Curves> =
+        resamples(participants.len(), seed).map(|times| Curves::of(&summed(participants, &times))).collect();
+    let roc = |(index, &concept): (usize, &ConceptName)| {
+        let of_concept = sum.iter().filter(|one| one.concept == concept);
+        let point = |one: &Swept| {
+            let [fpr, tpr, signals_per_100_actions] = one.count.point()?;
+            Some(Point { parameter: one.parameter, fpr, tpr, signals_per_100_actions, count: one.count })
+        };
+        let area = banded(&curves, &resampled, |curves| curves.area(index, common?));
+        let at = |signals: f64| move |curves: &Curves| height(&curves.of[index][1], signals);
+        let behind = |signals: f64| {
+            move |curves: &Curves| Some(height(&curves.of[0][1], signals)? - height(&curves.of[index][1], signals)?)
+        };
+        Roc {
+            concept,
+            auc: area.value,
+            auc_low: area.low,
+            auc_high: area.high,
+            points: of_concept.filter_map(point).collect(),
+            band: band(&curves, &resampled, index),
+            at_equal_signals: EQUAL_SIGNALS.iter().map(|&s| banded(&curves, &resampled, at(s))).collect(),
+            behind_first: EQUAL_SIGNALS.iter().map(|&s| banded(&curves, &resampled, behind(s))).collect(),
+        }
+    };
+    Comparison {
+        participants: participants.len() as u64,
+        trials,
+        common_fpr: common,
+        concepts: CONCEPTS.iter().enumerate().map(roc).collect(),
+    }
+}
+
+/// How often each participant is drawn, again and again; never, of less than two.
+fn resamples(participants: usize, seed: u64) -> impl Iterator<Item = Vec<u32>> {
+    let mut random = stream(seed, "bootstrap", 0);
+    let number = if participants < 2 { 0 } else { RESAMPLES };
+    (0..number).map(move |_| {
+        let mut times = vec![0; participants];
+        for _ in 0..participants {
+            times[random.random_range(0..participants)] += 1;
+        }
+        times
+    })
+}
+
+/// A value of the curves, with the middle of what it is on those that were drawn.
+fn banded(curves: &Curves, resampled: &[Curves], of: impl Fn(&Curves) -> Option<f64>) -> Banded {
+    let value = of(curves);
+    let mut drawn: Vec<f64> = resampled.iter().filter_map(&of).collect();
+    // Where many of them do not reach, the others say nothing about the rest.
+    if value.is_none() || drawn.len() * 2 < resampled.len() || drawn.is_empty() {
+        return Banded { value, low: None, high: None };
+    }
+    drawn.sort_by(f64::total_cmp);
+    let at = |share: f64| drawn[((drawn.len() - 1) as f64 * share).round() as usize];
+    Banded { value, low: Some(at((1.0 - COVERED) / 2.0)), high: Some(at((1.0 + COVERED) / 2.0)) }
+}
+
+fn band(curves: &Curves, resampled: &[Curves], concept: usize) -> Vec<[f64; 3]> {
+    let Some(end) = curves.of[concept][0].last().map(|last| last.0) else { return Vec::new() };
+    let at = |step: usize| {
+        let x = end * step as f64 / BAND_STEPS as f64;
+        let found = banded(curves, resampled, |curves| height(&curves.of[concept][0], x));
+        Some([x, found.low?, found.high?])
+    };
+    (0..=BAND_STEPS).filter_map(at).collect()
+}

@@ -1,0 +1,178 @@
+//! Charts as SVG: axes with round ticks, points, lines, bands, bars. Colours are classes, which the page's style sheet fills,
+//! so that they follow dark and light, screen and paper.
+
+use std::fmt::Write;
+
+/// Room beside the plot, in pixels: left, right, top, bottom.
+const MARGIN: [f64; 4] = [54.0, 14.0, 14.0, 44.0];
+
+/// An axis.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    pub label: &'static str,
+    pub from: f64,
+    pub to: f64,
+    /// Where there are marks, and what stands beside them.
+    pub ticks: Vec<(f64, String)>,
+}
+
+impl Axis {
+    /// An axis over these values with round ticks, from 0 if they are not far from it.
+    pub fn over(label: &'static str, values: impl Iterator<Item = f64>) -> Axis {
+        let (low, high) = values
+            .filter(|value| value.is_finite())
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+        let (low, high) = if low > high { (0.0, 1.0) } else { (low.min(0.0), high.max(0.0)) };
+        Axis::between(label, low, if high > low { high } else { low + 1.0 })
+    }
+
+    /// An axis that covers this range, widened to round ticks.
+    pub fn between(label: &'static str, low: f64, high: f64) -> Axis {
+        let step = round_step((high - low) / 5.0);
+        let (first, last) = ((low / step).floor() as i64, (high / step - 1e-9).ceil() as i64);
+        let digits = (-step.log10().floor()).max(0.0) as usize;
+        let tick = |number: i64| (number as f64 * step, format!("{:.digits$}", number as f64 * step));
+        Axis { label, from: first as f64 * step, to: last as f64 * step, ticks: (first..=last).map(tick).collect() }
+    }
+
+    /// An axis with a place for each of these names; the first is at 0.
+    pub fn named(names: &[String]) -> Axis {
+        let ticks = names.iter().enumerate().map(|(index, name)| (index as f64, name.clone())).collect();
+        Axis { label: "", from: -0.5, to: names.len() as f64 - 0.5, ticks }
+    }
+}
+
+/// The smallest of 1, 2, 2.5 and 5 times a power of ten that is not below this.
+fn round_step(step: f64) -> f64 {
+    let power = 10f64.powf(step.log10().floor());
+    let factor = [1.0, 2.0, 2.5, 5.0].into_iter().find(|factor| factor * power >= step * (1.0 - 1e-9));
+    factor.unwrap_or(10.0) * power
+}
+
+/// A chart in the making.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    width: f64,
+    height: f64,
+    x: Axis,
+    y: Axis,
+    body: String,
+}
+
+impl Chart {
+    /// A chart of this size in pixels, with axes and grid.
+    pub fn new(width: f64, height: f64, x: Axis, y: Axis) -> Chart {
+        let mut chart = Chart { width, height, x, y, body: String::new() };
+        chart.frame();
+        chart
+    }
+
+    fn px(&self, x: f64) -> f64 {
+        let [left, right, ..] = MARGIN;
+        left + (x - self.x.from) / (self.x.to - self.x.from) * (self.width - left - right)
+    }
+
+    fn py(&self, y: f64) -> f64 {
+        let [.., top, bottom] = MARGIN;
+        self.height - bottom - (y - self.y.from) / (self.y.to - self.y.from) * (self.height - top - bottom)
+    }
+
+    fn add(&mut self, element: std::fmt::Arguments) {
+        // Writing to a string does not fail.
+        let _ = self.body.write_fmt(element);
+        self.body.push('\n');
+    }
+
+    fn frame(&mut self) {
+        let [left, right, top, bottom] = MARGIN;
+        let (width, height) = (self.width, self.height);
+        for (value, text) in self.y.ticks.clone() {
+            let y = self.py(value);
+            let class = if value == 0.0 { "axis" } else { "grid" };
+            self.add(format_args!(r#"<path class="{class}" d="M{left:.1} {y:.1}H{:.1}"/>"#, width - right));
+            self.add(format_args!(r#"<text class="tick end" x="{:.1}" y="{:.1}">{text}</text>"#, left - 7.0, y + 4.0));
+        }
+        let base = height - bottom;
+        self.add(format_args!(r#"<path class="axis" d="M{left:.1} {top:.1}V{base:.1}H{:.1}"/>"#, width - right));
+        for (value, text) in self.x.ticks.clone() {
+            let x = self.px(value);
+            self.add(format_args!(r#"<path class="axis" d="M{x:.1} {base:.1}v4"/>"#));
+            for (line, part) in text.split('\n').enumerate() {
+                let y = base + 17.0 + 13.0 * line as f64;
+                self.add(format_args!(r#"<text class="tick middle" x="{x:.1}" y="{y:.1}">{}</text>"#, escaped(part)));
+            }
+        }
+        let (x, y) = ((left + width - right) / 2.0, height - 8.0);
+        let label = self.x.label;
+        self.add(format_args!(r#"<text class="label middle" x="{x:.1}" y="{y:.1}">{label}</text>"#));
+        let (y, label) = ((top + base) / 2.0, self.y.label);
+        self.add(format_args!(
+            r#"<text class="label middle" transform="translate(13 {y:.1}) rotate(-90)">{label}</text>"#
+        ));
+    }
+
+    /// A point with what it stands for.
+    pub fn point(&mut self, class: &str, x: f64, y: f64, title: &str) {
+        let (x, y) = (self.px(x), self.py(y));
+        let title = escaped(title);
+        self.add(format_args!(
+            r#"<circle class="{class}" cx="{x:.1}" cy="{y:.1}" r="4"><title>{title}</title></circle>"#
+        ));
+    }
+
+    /// A line through points.
+    pub fn line(&mut self, class: &str, points: &[(f64, f64)]) {
+        let path = self.path(points);
+        self.add(format_args!(r#"<path class="line {class}" d="{path}"/>"#));
+    }
+
+    /// The area between two heights at each x.
+    pub fn band(&mut self, class: &str, band: &[[f64; 3]]) {
+        if band.is_empty() {
+            return;
+        }
+        let there = band.iter().map(|&[x, _, high]| (x, high));
+        let back = band.iter().rev().map(|&[x, low, _]| (x, low));
+        let path = self.path(&there.chain(back).collect::<Vec<_>>());
+        self.add(format_args!(r#"<path class="band {class}" d="{path}Z"/>"#));
+    }
+
+    /// A bar from 0 to y, between two places on the x axis.
+    pub fn bar(&mut self, class: &str, [from, to]: [f64; 2], y: f64, title: &str) {
+        let (x, right, base, top) = (self.px(from), self.px(to), self.py(0.0), self.py(y));
+        let (width, height, title) = (right - x, base - top, escaped(title));
+        self.add(format_args!(
+            r#"<rect class="{class}" x="{x:.1}" y="{top:.1}" width="{width:.1}" height="{height:.1}"><title>{title}</title></rect>"#
+        ));
+    }
+
+    /// Words beside a point, `right` of it or left.
+    pub fn words(&mut self, class: &str, x: f64, y: f64, right: bool, text: &str) {
+        let (x, y) = (self.px(x) + if right { 9.0 } else { -9.0 }, self.py(y) + 4.0);
+        let side = if right { "start" } else { "end" };
+        self.add(format_args!(r#"<text class="words {side} {class}" x="{x:.1}" y="{y:.1}">{}</text>"#, escaped(text)));
+    }
+
+    fn path(&self, points: &[(f64, f64)]) -> String {
+        let mut path = String::new();
+        for (index, &(x, y)) in points.iter().enumerate() {
+            let _ = write!(path, "{}{:.1} {:.1}", if index == 0 { "M" } else { "L" }, self.px(x), self.py(y));
+        }
+        path
+    }
+
+    /// The picture; `title` is for those who do not see it.
+    pub fn finish(self, title: &str) -> String {
+        let (width, height) = (self.width, self.height);
+        format!(
+            "<svg viewBox=\"0 0 {width:.0} {height:.0}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n",
+            escaped(title),
+            self.body
+        )
+    }
+}
+
+/// A text as it may stand in HTML.
+pub fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

@@ -9,8 +9,9 @@ use tomcom::session::settings::{Condition, ParticipantKind};
 use tomcom::study::effect::{Measure, effect, pairs};
 use tomcom::study::facts::Facts;
 use tomcom::study::figures::StudyFigures;
+use tomcom::study::prevention::{Count, PressTruth, Sent, SequenceTruth, SpellTruth, Truth};
 use tomcom::study::report;
-use tomcom::study::roc::{Count, PressTruth, Sent, SequenceTruth, SpellTruth, Swept, Truth, compare};
+use tomcom::study::roc::{Swept, compare};
 use tomcom::study::statistics::{hodges_lehmann, mixed_anova, permutation_p};
 use tomcom::study::tables::{
     ActionRow, AnswerRow, BeliefRow, CommunicationRow, ConceptRow, DictionaryRow, GazeRow, ParticipantRow, Table,

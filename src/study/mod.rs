@@ -6,6 +6,7 @@ pub mod dictionary;
 pub mod effect;
 pub mod facts;
 pub mod figures;
+pub mod prevention;
 pub mod report;
 pub mod roc;
 pub mod statistics;

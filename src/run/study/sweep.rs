@@ -21,7 +21,8 @@ use crate::run::engine::changes_task;
 use crate::run::follower::Follower;
 use crate::session::apply::ApplyError;
 use crate::session::{Event, SessionSpec, Stamped};
-use crate::study::roc::{CONCEPTS, LEAST_COST, PressTruth, Sent, SequenceTruth, SpellTruth, Swept, Truth, parameters};
+use crate::study::prevention::{PressTruth, Sent, SequenceTruth, SpellTruth, Truth};
+use crate::study::roc::{CONCEPTS, LEAST_COST, Swept, parameters};
 
 /// A concept with one value of its parameter.
 #[derive(Debug)]

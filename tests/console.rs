@@ -549,6 +549,17 @@ fn the_space_bar_stops_the_robot_in_every_view() {
 }
 
 #[test]
+fn whoever_wants_to_quit_is_asked_in_whatever_list_they_are() {
+    let mut stage = Stage::sushi(ParticipantKind::Keyboard);
+    for dialog in [Dialog::Help, Dialog::Preflight, Dialog::Pick(Picker::new(Question::Place))] {
+        stage.model.dialog = Some(dialog);
+        stage.wait(1.0);
+        assert_eq!(stage.control('c'), None);
+        assert_eq!(stage.model.dialog, Some(Dialog::Quit));
+    }
+}
+
+#[test]
 fn the_trial_is_started_paused_and_ended_by_keys() {
     let mut stage = Stage::new("burger", ParticipantKind::Simulated);
     assert_eq!(input(stage.key(KeyCode::Char('a'))), None, "no signal before the trial");

@@ -84,6 +84,9 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
             if counts { hands::write(model, session, line, key.code) } else { None }
         }
         Some(Action::StopRobot) => stop_robot(model, session),
+        Some(Action::Quit) if chord.ctrl && touch == Touch::Press && may_leave_for_quit(model) => {
+            act(model, session, Action::Quit)
+        }
         Some(Action::Move(to)) if model.dialog.is_none() => Some(Command::Move(to)),
         _ if let Some(Dialog::Pick(picker)) = &model.dialog => {
             let picker = picker.clone();
@@ -117,6 +120,12 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
             None
         }
     }
+}
+
+/// Whether the question of quitting takes the place of the dialog: of those that wait for something else. A check of the
+/// gaze is ended first.
+fn may_leave_for_quit(model: &Model) -> bool {
+    matches!(model.dialog, Some(Dialog::Pick(_) | Dialog::Preflight | Dialog::Help | Dialog::Difference(_)))
 }
 
 /// A key while a sheet lies in front of the console: of the others, those that help and leave still work.

@@ -3,6 +3,7 @@
 
 use std::fs;
 use std::io::{self, IsTerminal, Write};
+use std::net::{SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -17,6 +18,7 @@ use super::pupil;
 use super::terminal::theme;
 use super::viewer::{self, Viewer};
 use crate::console::view::theme::Ground;
+use crate::session::display::DisplaySpec;
 use crate::session::preflight::{Check, Verdict, space};
 use crate::session::settings::ConsoleSpec;
 use crate::session::tracker::TrackerSpec;
@@ -41,7 +43,7 @@ pub fn examine(out: &Path) -> Findings {
     let mut checks = terminal();
     checks.push(folder(out));
     checks.push(space(free_bytes(&existing(out)).ok()));
-    checks.extend([wall_clock(), timer(), viewer(), eye_tracker()]);
+    checks.extend([wall_clock(), timer(), display(), viewer(), eye_tracker()]);
     let healthy = checks.iter().all(|check| check.verdict != Verdict::Failed);
     Findings { healthy, checks }
 }
@@ -173,6 +175,17 @@ fn wall_clock() -> Check {
     let verdict = if now.date().as_str() >= WRITTEN { Verdict::Ok } else { Verdict::Failed };
     let remedy = "set the clock: recordings are named by date (session time does not depend on it)";
     Check::new("wall clock", verdict, now.rfc3339(), remedy)
+}
+
+/// Whether the participant's page can be served where it is by default.
+fn display() -> Check {
+    let display = DisplaySpec::default();
+    let address = SocketAddr::new(display.listen, display.port);
+    let remedy = "matters for --participant display only: end what uses the port, or set another one under [display]";
+    match TcpListener::bind(address) {
+        Ok(_) => Check::ok("wall display", format!("{address} is free for the participant's page")),
+        Err(reason) => Check::new("wall display", Verdict::Warning, format!("{address}: {reason}"), remedy),
+    }
 }
 
 /// Whether recordings can be looked at in a window; without it, in a browser.

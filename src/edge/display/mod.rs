@@ -12,7 +12,7 @@ mod server;
 mod status;
 
 use std::io;
-use std::net::{IpAddr, SocketAddr};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -111,9 +111,14 @@ impl Display {
         self.inputs.recv().await
     }
 
-    /// Where the page is: "http://127.0.0.1:50022".
+    /// Where the page is: "http://127.0.0.1:50022". Where every address of this machine is listened on, the one that the
+    /// network knows it by.
     pub fn url(&self) -> String {
-        format!("http://{}", self.address)
+        let mut address = self.address;
+        if let (true, Some(known)) = (address.ip().is_unspecified(), address_outside(address.ip())) {
+            address.set_ip(known);
+        }
+        format!("http://{address}")
     }
 
     /// What the page asks for, if the network reaches it.
@@ -125,6 +130,18 @@ impl Display {
     pub fn screen(&self) -> PageScreen {
         self.screen.clone()
     }
+}
+
+/// The address from which this machine would send into the network; nothing is sent (the addresses are those kept for
+/// documentation, RFC 5737 and 3849).
+fn address_outside(any: IpAddr) -> Option<IpAddr> {
+    let elsewhere: IpAddr = match any {
+        IpAddr::V4(_) => Ipv4Addr::new(192, 0, 2, 1).into(),
+        IpAddr::V6(_) => Ipv6Addr::new(0x2001, 0xdb8, 0, 0, 0, 0, 0, 1).into(),
+    };
+    let socket = UdpSocket::bind((any, 0)).ok()?;
+    socket.connect((elsewhere, 9)).ok()?;
+    socket.local_addr().ok().map(|address| address.ip())
 }
 
 impl PageScreen {

@@ -119,9 +119,8 @@ const Stage = (() => {
     return { made };
   }
 
-  /** Buttons of actions, each beside the place that it works on. */
-  function buildPills() {
-    const others = taken();
+  /** Buttons of actions, each beside the place that it works on; `others` is what is there, and what is added. */
+  function buildPills(others) {
     const makePill = (knob) => {
       const area = freeFor(scene.locations[knob.at].area, others);
       others.push(area);
@@ -133,19 +132,25 @@ const Stage = (() => {
     return scene.buttons.filter(({ does }) => ["process", "trash", "serve"].includes(does)).map(makePill);
   }
 
-  /** The tallest free band between the two sides: where a recipe hides nothing that lies somewhere. */
-  function band() {
-    const [robot, human] = sides();
-    const left = robot[0] + robot[2] + 0.012, right = human[0] - 0.012;
-    const rows = scene.locations.map((spot) => spot.area).filter(([x, , w]) => x < right && x + w > left);
-    const edges = [...rows.map(([, y, , h]) => [y, y + h]), [1, 1]].sort((a, b) => a[0] - b[0]);
-    let best = [0, 0], low = 0;
-    for (const [top, bottom] of edges) {
-      if (top - low > best[1] - best[0]) best = [low, top];
-      low = Math.max(low, bottom);
+  /** Where a recipe is written largest without hiding anything of the kitchen: of all free rectangles. */
+  function freeForRecipe(others) {
+    const margin = 0.012, pieces = 4.6, ratio = scene.display_m[0] / scene.display_m[1];
+    const walls = others.map((rect) => grown(rect, [margin, margin * ratio, margin, margin * ratio]));
+    const lefts = [margin, ...walls.map(([x, , w]) => x + w)], rights = [1 - margin, ...walls.map(([x]) => x)];
+    let best = [0, 0, 0, 0], most = 0;
+    for (const left of lefts) for (const right of rights) {
+      const columns = walls.filter(([x, , w]) => x < right && x + w > left).map(([, y, , h]) => [y, y + h]);
+      let low = margin;
+      for (const [top, bottom] of [...columns, [1 - margin, 1]].sort((a, b) => a[0] - b[0])) {
+        const size = Math.min(top - low, ((right - left) * ratio) / pieces);
+        // Of equals the one nearer to the middle.
+        const worth = size - 0.02 * Math.abs((left + right) / 2 - 0.5);
+        if (worth > most) [best, most] = [[left, low, right - left, top - low], worth];
+        low = Math.max(low, bottom);
+      }
     }
-    const gap = 0.008;
-    return [left, best[0] + gap, right - left, best[1] - best[0] - 2 * gap];
+    const [x, y, w, h] = best, high = Math.min(h, 0.22), wide = Math.min(w, (1.35 * pieces * high) / ratio);
+    return [x + (w - wide) / 2, y + (h - high) / 2, wide, high];
   }
 
   function build(next) {
@@ -160,8 +165,9 @@ const Stage = (() => {
     kitchen.append(buildZone("robot", robot, scene.words.robot), buildZone("human", human, scene.words.human));
     kitchen.append(put(element("section", "zone table"), grown(around(of("place")), [0.03, 0.085, 0.03, 0.03])));
     const locations = scene.locations.map(buildLocation), storages = scene.storages.map(buildStorage);
-    kitchen.append(...locations.map((l) => l.made), ...storages.map((s) => s.made), ...buildPills());
-    const recipe = put(element("div", "recipe"), band());
+    const others = taken();
+    kitchen.append(...locations.map((l) => l.made), ...storages.map((s) => s.made), ...buildPills(others));
+    const recipe = put(element("div", "recipe"), freeForRecipe(others));
     kitchen.append(recipe);
     const sheet = element("div", "sheet"), toast = element("div", "toast"), served = element("div", "served"), target = element("div", "target", "<i></i>");
     root.append(kitchen, served, sheet, toast, target, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));

@@ -6,11 +6,14 @@ use crossterm::event::KeyCode;
 use super::message::Command;
 use super::model::{Dialog, Level, Model};
 use super::update::send;
+use crate::gaze::calibration::{Found, USABLE_DEG};
 use crate::session::calibration::CalibrationEvent;
 use crate::session::{Event, Session};
 
 /// The key that takes the gaze as it is.
 pub const AS_IT_IS: char = 'u';
+/// The key that takes it with the offset taken off.
+pub const CORRECTED: char = 'o';
 /// The key that repeats the check.
 pub const REPEAT: char = 'r';
 
@@ -24,10 +27,37 @@ pub(super) fn begin(model: &mut Model, session: &Session) -> Option<Command> {
     begun
 }
 
+/// What enter does with a result: what is best for the gaze.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Best {
+    Corrected,
+    AsItIs,
+    /// Both are too far off, or nothing was found.
+    Repeat,
+}
+
+impl Best {
+    /// Of what was found.
+    pub fn of(found: Option<&Found>) -> Best {
+        match found {
+            Some(found) if found.accuracy_deg.min(found.corrected_deg) > USABLE_DEG => Best::Repeat,
+            Some(found) if found.corrected_deg < found.accuracy_deg => Best::Corrected,
+            Some(_) => Best::AsItIs,
+            None => Best::Repeat,
+        }
+    }
+}
+
 /// A key while a check goes on, or its result is shown.
 pub(super) fn answer(model: &mut Model, session: &Session, code: KeyCode, is_press: bool) -> Option<Command> {
     let outcome = session.calibration.as_ref().and_then(|check| check.result.as_ref());
-    let has_found = outcome.is_some_and(|outcome| outcome.found.is_some());
+    let found = outcome.and_then(|outcome| outcome.found.as_ref());
+    let code = match (code, Best::of(found)) {
+        (KeyCode::Enter, Best::Corrected) => KeyCode::Char(CORRECTED),
+        (KeyCode::Enter, Best::AsItIs) => KeyCode::Char(AS_IT_IS),
+        (KeyCode::Enter, Best::Repeat) => KeyCode::Char(REPEAT),
+        (code, _) => code,
+    };
     let mut decide = |event: CalibrationEvent, words: &str| {
         model.dialog = None;
         send(model, session, Event::Calibration(event), Level::Done, words)
@@ -38,10 +68,10 @@ pub(super) fn answer(model: &mut Model, session: &Session, code: KeyCode, is_pre
             None
         }
         KeyCode::Esc => decide(CalibrationEvent::Dismissed, "the calibration stays as it was"),
-        KeyCode::Enter if is_press && has_found => {
+        KeyCode::Char(CORRECTED) if is_press && found.is_some() => {
             decide(CalibrationEvent::Accepted { corrected: true }, "accepted: the offset is taken off the gaze")
         }
-        KeyCode::Char(AS_IT_IS) if is_press && has_found => {
+        KeyCode::Char(AS_IT_IS) if is_press && found.is_some() => {
             decide(CalibrationEvent::Accepted { corrected: false }, "accepted: the gaze stays as it is")
         }
         KeyCode::Char(REPEAT) if is_press && outcome.is_some() => begin(model, session),

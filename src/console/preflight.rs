@@ -118,7 +118,8 @@ pub(super) fn answer(
         (_, Some(Action::ResumeRobot)) => super::update::act(model, session, Action::ResumeRobot),
         (_, Some(Action::Hand(Hand::HoldRobot))) if is_press => super::hands::act(model, session, Hand::HoldRobot),
         (_, Some(Action::Advance)) if is_press && is_ok => go(model, session, false),
-        (KeyCode::Char(OVERRIDE), _) if is_press && !is_ok => go(model, session, true),
+        // What was wrong may have been mended a moment ago.
+        (KeyCode::Char(OVERRIDE), _) if is_press => go(model, session, !is_ok),
         _ => None,
     }
 }

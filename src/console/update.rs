@@ -144,7 +144,9 @@ fn on_sheet(
             None
         }
         (Some(stroke), _) => form::write(model, session, stroke),
-        (None, Some(action @ (Action::Help | Action::Quit | Action::ResumeRobot))) => act(model, session, action),
+        (None, Some(action @ (Action::Help | Action::Quit | Action::ResumeRobot | Action::Hand(Hand::Calibrate)))) => {
+            act(model, session, action)
+        }
         (None, _) => {
             model.say(
                 Level::Refused,

@@ -189,6 +189,12 @@ pub fn calibration(event: &CalibrationEvent) -> String {
         ),
         CalibrationEvent::Accepted { corrected: true } => "gaze accepted, its offset is taken off".to_string(),
         CalibrationEvent::Accepted { corrected: false } => "gaze accepted as it is".to_string(),
+        CalibrationEvent::Carried { corrected: true, .. } => {
+            "gaze as it was accepted in the recording before: its offset is taken off".to_string()
+        }
+        CalibrationEvent::Carried { corrected: false, .. } => {
+            "gaze as it was accepted in the recording before".to_string()
+        }
         CalibrationEvent::Dismissed => "check of the gaze given up".to_string(),
     }
 }

@@ -111,6 +111,15 @@ pub struct Question {
     pub answer: Option<u8>,
     /// The item before, to go back to.
     pub before: Option<String>,
+    /// When all are answered: each item and its answer, if it got one.
+    pub given: Vec<Given>,
+}
+
+/// An item with what the participant answered.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Given {
+    pub text: String,
+    pub rated: Option<u8>,
 }
 
 /// What the participant sees of a session.
@@ -229,10 +238,12 @@ fn question(session: &Session) -> Option<Question> {
     let words = Words::of(&session.spec.display);
     let item = questionnaire.items.get(protocol.item);
     let before = protocol.item.checked_sub(1).and_then(|before| questionnaire.items.get(before));
-    let answer = match protocol.answers.get(protocol.item) {
+    let answer = |number: usize| match protocol.answers.get(number) {
         Some(Some(Answer::Rated(answer))) => Some(*answer),
         _ => None,
     };
+    let items = questionnaire.items.iter().enumerate().filter(|_| item.is_none());
+    let given = items.map(|(number, item)| Given { text: item.text.clone(), rated: answer(number) });
     Some(Question {
         title: questionnaire.title.clone(),
         item: item.map(|item| item.id.clone()),
@@ -242,7 +253,8 @@ fn question(session: &Session) -> Option<Question> {
         points: questionnaire.scale.points,
         low: questionnaire.scale.low.clone(),
         high: questionnaire.scale.high.clone(),
-        answer,
+        answer: answer(protocol.item),
+        given: given.collect(),
         before: before.map(|item| item.id.clone()),
     })
 }

@@ -96,6 +96,10 @@ async fn read(mut stream: TcpStream, news: Sender<GazeNews>) {
             }
         }
     }
+    // A sender may end without ending its last line.
+    if let Some(found) = parse(&line).filter(|_| !too_long) {
+        let _ = news.send(found).await;
+    }
 }
 
 /// What a line says; nothing for an empty one.

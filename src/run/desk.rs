@@ -15,6 +15,7 @@ use super::live::LiveError;
 use crate::console::Message;
 use crate::console::question::{Question, Reply};
 use crate::console::view::theme::Theme;
+use crate::display::words::Words;
 use crate::edge::display::{Display, PageInput};
 use crate::edge::gaze_file::{self, GazeFile};
 use crate::edge::gaze_input::GazeNews;
@@ -25,6 +26,7 @@ use crate::gaze::surface::SurfaceMap;
 use crate::gaze::tags::{TagError, Tags};
 use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
+use crate::session::calibration::Calibrated;
 use crate::session::display::DisplaySpec;
 use crate::session::settings::{GazeSource, ParticipantKind};
 
@@ -61,6 +63,20 @@ pub(super) struct Tracker {
     /// What is known of the tracker: a recording that begins later was not told.
     link: Option<GazeNews>,
     sees_display: Option<GazeNews>,
+    /// The check of the calibration that was accepted last.
+    calibrated: Option<Calibrated>,
+}
+
+impl Tracker {
+    /// What is known of the gaze, for the next recording.
+    pub fn keep(&mut self, calibrated: Option<Calibrated>) {
+        self.calibrated = calibrated;
+    }
+
+    /// What was accepted in the recording before.
+    pub fn calibrated(&self) -> Option<&Calibrated> {
+        self.calibrated.as_ref()
+    }
 }
 
 impl Desk {
@@ -73,7 +89,7 @@ impl Desk {
         let tracker = Tracker::open(spec, kitchen).await?;
         let wall = match (spec.participant.kind, &spec.display) {
             (ParticipantKind::Display, DisplaySpec { listen, port, .. }) => {
-                let opened = Display::open(*listen, *port).await;
+                let opened = Display::open(*listen, *port, &Words::of(&spec.display)).await;
                 Some(opened.map_err(|reason| LiveError::Display { address: *listen, port: *port, reason })?)
             }
             _ => None,

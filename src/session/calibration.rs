@@ -31,6 +31,8 @@ pub enum CalibrationEvent {
     },
     /// The wizard takes the gaze as it is, or with the offset taken off from now on.
     Accepted { corrected: bool },
+    /// What was accepted in the recording before, at the same desk, holds in this one, too.
+    Carried { found: Found, corrected: bool },
     /// The check is given up; what was accepted before holds.
     Dismissed,
 }
@@ -170,6 +172,10 @@ pub(super) fn admit(session: &Session, event: &CalibrationEvent) -> Result<(), &
             let found = check.and_then(|check| check.result.as_ref()?.found.as_ref());
             unless(found.is_some(), "nothing was measured that could be accepted")
         }
+        CalibrationEvent::Carried { .. } => {
+            unless(session.spec.participant.gaze != GazeSource::None, "there is no gaze in this session")?;
+            unless(session.phase == Phase::Ready, "the trial has begun")
+        }
         CalibrationEvent::Dismissed => unless(check.is_some(), "the calibration is not being checked"),
     }
 }
@@ -193,6 +199,10 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &Calibration
             if let Some(found) = outcome.and_then(|outcome| outcome.found) {
                 session.calibrated = Some(Calibrated { at: now, found, corrected: *corrected });
             }
+            return;
+        }
+        CalibrationEvent::Carried { found, corrected } => {
+            session.calibrated = Some(Calibrated { at: now, found: found.clone(), corrected: *corrected });
             return;
         }
         _ => {}

@@ -104,6 +104,12 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<Check> {
     let Some(hz) = session.gaze_hz(now) else {
         let is_mouse = session.spec.participant.gaze == GazeSource::Mouse;
         let verdict = if is_mouse { Verdict::Warning } else { Verdict::Failed };
+        let malformed = session.tracker.dropped.malformed;
+        if malformed > 0 && session.spec.participant.gaze == GazeSource::Json {
+            let found = format!("{malformed} lines arrived, none of late was a sample");
+            let remedy = "a line each: {\"x\": 0 to 1, \"y\": 0 to 1, \"confidence\": 0 to 1}, \"t\" in seconds if there is a clock";
+            return vec![Check::new("gaze", Verdict::Failed, found, remedy)];
+        }
         return vec![Check::new("gaze", verdict, "no sample arrives", mends)];
     };
     let verdict = if hz < SLOW_HZ { Verdict::Warning } else { Verdict::Ok };
@@ -156,10 +162,15 @@ fn calibration(session: &Session) -> Option<Check> {
         deg if deg <= USABLE_DEG => Verdict::Warning,
         _ => Verdict::Failed,
     };
-    let remedy = "calibrate the tracker anew, then check it with the targets";
+    let remedy = "calibrate the tracker anew, then check it by targets (^v)";
     Some(Check::new("calibration", verdict, format!("off by {accuracy_deg:.1} deg"), remedy))
 }
 
 fn unchecked() -> Check {
-    Check::new("calibration", Verdict::Warning, "not checked", "check the gaze by targets, under Trial in the help")
+    Check::new(
+        "calibration",
+        Verdict::Warning,
+        "not checked",
+        "^v checks the gaze by targets (check_gaze in the key file)",
+    )
 }

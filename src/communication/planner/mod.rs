@@ -6,6 +6,7 @@
 //! no difference in its rollout, exactly, and is not tried out.
 
 pub mod human;
+mod lattice;
 mod robot;
 mod rollout;
 mod sample;
@@ -13,9 +14,8 @@ mod tally;
 
 use std::sync::Arc;
 
-use rand::RngExt;
-
 use self::human::{Cases, Decider};
+use self::lattice::{Lattice, PER_DECISION};
 use self::robot::RobotPolicy;
 use self::rollout::{Draws, Moment, Rollout, Stage, Trace};
 use self::sample::Samples;
@@ -105,8 +105,9 @@ impl Planner {
         let mut arms = self.arms(situation, signals);
         let rollouts = self.spec.rollout.rollouts;
         self.samples.prepare(situation.belief, rollouts, self.spec.rollout.states, &mut random);
+        let lattice = Lattice::shifted(&mut random);
         for number in 0..rollouts {
-            self.roll_out(cost, situation, &mut arms, number, &mut random);
+            self.roll_out(cost, situation, &mut arms, number, &lattice, &mut random);
             if (number + 1) % BATCH == 0 && self.is_decided(&mut arms, number + 1) {
                 break;
             }
@@ -132,14 +133,19 @@ impl Planner {
         situation: &Situation,
         arms: &mut [Arm],
         number: usize,
+        lattice: &Lattice,
         random: &mut Stream,
     ) {
         let model = &self.spec.rollout;
         self.samples.draw(&self.kitchen, situation.state, number, random, &mut self.silent);
-        let first_s = random.random::<f64>() * model.human_press_s;
-        let sees = random.random::<f64>() < model.capture;
+        let [first, sees, firsts @ ..] = lattice.point(number);
+        let first_s = first * model.human_press_s;
+        let sees = sees < model.capture;
         self.draws.clear();
         self.draws.extend((0..model.horizon).map(|_| Draws::draw(random)));
+        for (draws, first) in self.draws.iter_mut().zip(firsts.chunks_exact(PER_DECISION)) {
+            draws.begin_with(first);
+        }
         let stage = Stage {
             kitchen: &self.kitchen,
             recipes: self.kitchen.true_recipes(),

@@ -38,6 +38,14 @@ impl Draws {
         draws.captures.iter_mut().for_each(|draw| *draw = random.random());
         draws
     }
+
+    /// Takes these numbers for the decision, for the robot's first choice before it, and for whether the eye is drawn to
+    /// its first press.
+    pub fn begin_with(&mut self, first: &[f64]) {
+        if let &[decision, choice, capture] = first {
+            (self.decision, self.choices[0], self.captures[0]) = (decision, choice, capture);
+        }
+    }
 }
 
 /// What a rollout stands on.

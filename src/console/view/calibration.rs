@@ -6,11 +6,11 @@ use super::dialog::open;
 use super::paint::Brush;
 use super::theme::Role;
 use crate::console::arrange::Plan;
-use crate::console::calibration::{AS_IT_IS, REPEAT};
+use crate::console::calibration::{AS_IT_IS, Best, CORRECTED, REPEAT};
 use crate::gaze::calibration::{Found, GOOD_DEG, USABLE_DEG};
 use crate::session::Session;
 
-const COLUMNS: u16 = 62;
+const COLUMNS: u16 = 76;
 /// Where values begin.
 const VALUE: u16 = 15;
 
@@ -32,7 +32,7 @@ pub fn target(brush: &mut Brush, plan: &Plan, panel: Rect, session: &Session) {
 /// Draws what came of the check; nothing while targets are shown.
 pub fn draw(brush: &mut Brush, screen: Rect, session: &Session) {
     let Some(outcome) = session.calibration.as_ref().and_then(|check| check.result.as_ref()) else { return };
-    let inside = open(brush, screen, (COLUMNS, 11), "Calibration check", "space stops the robot");
+    let inside = open(brush, screen, (COLUMNS, 13), "Calibration check", "space stops the robot");
     let columns = inside.width.saturating_sub(2);
     let mut y = inside.y + 1;
     let mut line = |brush: &mut Brush, name: &str, text: &str, role: Role| {
@@ -70,21 +70,20 @@ pub fn draw(brush: &mut Brush, screen: Rect, session: &Session) {
     );
     line(brush, "precision", &format!("{:.2} deg from sample to sample", found.precision_deg), Role::Text);
     line(brush, "targets", &targets(found), Role::Text);
-    let as_it_is = AS_IT_IS.to_string();
-    let keys = [
-        ("enter", Role::Strong),
-        (" accepts, offset taken off   ", Role::Quiet),
-        (&as_it_is, Role::Strong),
-        (" accepts as it is", Role::Quiet),
+    let best = Best::of(Some(found));
+    let rows = [
+        (CORRECTED, "takes it with the offset taken off", Best::Corrected),
+        (AS_IT_IS, "takes it as it is", Best::AsItIs),
+        (REPEAT, "repeats the check", Best::Repeat),
     ];
-    brush.parts(inside.x + 1, inside.bottom().saturating_sub(2), columns, &keys);
-    let keys = [
-        (again.as_str(), Role::Strong),
-        ("     repeats it                  ", Role::Quiet),
-        ("esc", Role::Strong),
-        (" leaves it as it was", Role::Quiet),
-    ];
-    brush.parts(inside.x + 1, inside.bottom().saturating_sub(1), columns, &keys);
+    y += 1;
+    for (key, does, is) in rows {
+        let (enter, role) = if is == best { ("enter or ", Role::Strong) } else { ("         ", Role::Quiet) };
+        let key = format!("{key}  ");
+        brush.parts(inside.x + 1, y, columns, &[(enter, Role::Strong), (&key, Role::Strong), (does, role)]);
+        y += 1;
+    }
+    brush.parts(inside.x + 1, y, columns, &[("         esc  ", Role::Strong), ("leaves it as it was", Role::Quiet)]);
 }
 
 fn verdict(accuracy_deg: f64) -> (&'static str, Role) {

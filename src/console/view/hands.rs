@@ -13,22 +13,32 @@ use crate::session::preflight::{Check, Verdict};
 use crate::session::{Phase, Session};
 
 const COLUMNS: u16 = 76;
+/// Before a remedy.
+const MEND: &str = "mend: ";
 /// Where what was found begins.
 const FOUND: u16 = 23;
 
 /// Draws what was found before a trial.
 pub fn preflight(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
     let checks = checks(session, model);
-    let mended = checks.iter().filter(|check| check.remedy.is_some()).count();
-    let size = (COLUMNS, (checks.len() + mended) as u16 + 5);
-    let inside = open(brush, screen, size, "Before the trial", "space stops the robot");
+    let columns = (COLUMNS + 24).min(screen.width);
+    // Inside the frame, behind the names.
+    let room = columns.saturating_sub(2 + FOUND + 1);
+    let remedies: Vec<Vec<String>> = checks
+        .iter()
+        .map(|check| {
+            check.remedy.as_ref().map_or(Vec::new(), |remedy| wrap(remedy, room.saturating_sub(MEND.len() as u16)))
+        })
+        .collect();
+    let rows = checks.len() + remedies.iter().map(Vec::len).sum::<usize>();
+    let inside = open(brush, screen, (columns, rows as u16 + 5), "Before the trial", "space stops the robot");
     let mut y = inside.y;
-    for check in &checks {
+    for (check, remedy) in checks.iter().zip(&remedies) {
         line(brush, inside, y, check);
         y += 1;
-        if let Some(remedy) = &check.remedy {
-            let x = inside.x + FOUND;
-            brush.parts(x, y, inside.right().saturating_sub(x + 1), &[("mend: ", Role::Quiet), (remedy, Role::Text)]);
+        for (row, words) in remedy.iter().enumerate() {
+            let mend = if row == 0 { MEND } else { "      " };
+            brush.parts(inside.x + FOUND, y, room, &[(mend, Role::Quiet), (words, Role::Text)]);
             y += 1;
         }
     }

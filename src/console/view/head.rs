@@ -163,6 +163,9 @@ fn gaze(session: &Session, model: &Model) -> (String, Role) {
         (Link::Lost { since, .. }, _) => {
             return (format!("NO TRACKER {:.0} s", model.now.secs_since(*since)), Role::Alarm);
         }
+        (Link::Unknown, _) if session.spec.participant.gaze == GazeSource::Pupil => {
+            return ("NO TRACKER".to_string(), Role::Alarm);
+        }
         (Link::Connected { .. }, Some(false)) => return ("TAGS NOT SEEN".to_string(), Role::Alarm),
         _ => {}
     }
@@ -171,6 +174,7 @@ fn gaze(session: &Session, model: &Model) -> (String, Role) {
         (Some(_), _) if !usable => ("GAZE UNUSABLE".to_string(), Role::Alarm),
         (Some(hz), _) => (format!("gaze {hz:>3.0} Hz"), Role::Text),
         (None, Some(at)) if session.is_running() => (format!("NO GAZE {:.0} s", model.now.secs_since(at)), Role::Alarm),
+        (None, None) if session.is_running() => ("NO GAZE".to_string(), Role::Alarm),
         _ => ("gaze waits".to_string(), Role::Quiet),
     }
 }

@@ -67,7 +67,9 @@ fn too_small(brush: &mut Brush, session: &Session, model: &Model) {
         Some(Dialog::Pick(_)) => "The list needs more room; esc leaves it",
         Some(Dialog::Preflight) => "Not all is ok for the trial; more room shows what; esc leaves",
         Some(Dialog::Calibration) if session.is_calibrating() => "The gaze is being checked; esc ends the check",
-        Some(Dialog::Calibration) => "The check of the gaze: enter accepts, u as it is, r repeats, esc leaves",
+        Some(Dialog::Calibration) => {
+            "The check of the gaze: enter does what is marked, o offset off, u as it is, r repeats, esc leaves"
+        }
         Some(Dialog::Note(_)) => "A note: enter keeps it, esc leaves",
         Some(Dialog::Difference(_)) => "What each knew needs more room; any key closes it",
         None => return,

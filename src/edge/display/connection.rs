@@ -36,6 +36,8 @@ struct Talk {
     socket: WebSocket,
     hub: Arc<Hub>,
     number: u64,
+    page: String,
+    size: Page,
     faults: u32,
     /// Messages that it may send at once now, and since when that is so.
     allowed: (f64, Instant),
@@ -48,27 +50,30 @@ struct Talk {
 /// Talks with a page until one of the two ends it.
 pub(super) async fn talk(socket: WebSocket, hub: Arc<Hub>, number: u64) {
     let allowed = (PER_SECOND, Instant::now());
-    let mut talk = Talk { socket, hub, number, faults: 0, allowed, pressed: 0, last: None };
-    let Some((page, width_px, height_px)) = talk.greet().await else { return };
+    let (page, size) = (String::new(), Page::default());
+    let mut talk = Talk { socket, hub, number, page, size, faults: 0, allowed, pressed: 0, last: None };
+    let Some(waits) = talk.greet().await else { return };
     talk.hub.status.pages.fetch_add(1, Ordering::Relaxed);
-    let size = Page { width_px, height_px, round_trip_ms: None, redraw_ms: None };
-    talk.take_seat(page, size).await;
+    talk.take_seat(waits).await;
     talk.run().await;
     talk.hub.status.pages.fetch_sub(1, Ordering::Relaxed);
     talk.leave_seat().await;
 }
 
 impl Talk {
-    /// Waits for the page to say who it is; where a code is asked for, until it is right.
-    async fn greet(&mut self) -> Option<(String, u32, u32)> {
+    /// Gives the page its words, and waits for it to say who it is; where a code is asked for, until it is right. Whether it
+    /// waits for another page.
+    async fn greet(&mut self) -> Option<bool> {
+        self.say(&ToPage::Words { words: self.hub.words.clone() }).await?;
         loop {
-            let Some(FromPage::Hello { page, width, height, code }) = self.first().await? else {
+            let Some(FromPage::Hello { page, width, height, code, waits }) = self.first().await? else {
                 self.fault()?;
                 continue;
             };
-            let Some(wanted) = self.hub.code.clone() else { return Some((page, width, height)) };
+            (self.page, self.size.width_px, self.size.height_px) = (page, width, height);
+            let Some(wanted) = self.hub.code.clone() else { return Some(waits) };
             match code {
-                Some(code) if is_code(&code, &wanted) => return Some((page, width, height)),
+                Some(code) if is_code(&code, &wanted) => return Some(waits),
                 Some(_) => {
                     count(&self.hub.status.refused);
                     // Nobody finds a code by trying.
@@ -97,21 +102,29 @@ impl Talk {
         (self.faults < FAULTS).then_some(())
     }
 
-    /// The first page acts; one that is loaded again acts in the place of itself.
-    async fn take_seat(&mut self, page: String, size: Page) {
+    /// The first page acts, unless it waits for another; one that is loaded again acts in the place of itself.
+    async fn take_seat(&mut self, waits: bool) {
         let mut took = false;
         self.hub.acting.send_if_modified(|acting| {
-            took = acting.as_ref().is_none_or(|(_, other)| *other == page);
+            took = acting.as_ref().map_or(!waits, |(_, other)| *other == self.page);
             if took {
-                *acting = Some((self.number, page));
+                *acting = Some((self.number, self.page.clone()));
             }
             took
         });
         if took {
-            self.hub.status.page(|page| *page = Some(size));
-            let Page { width_px, height_px, .. } = size;
-            let _ = self.hub.inputs.send(PageInput::Connected { width_px, height_px }).await;
+            self.tell_size().await;
         }
+    }
+
+    /// Says that the page which acts is there, of this size.
+    async fn tell_size(&mut self) -> Option<()> {
+        let Page { width_px, height_px, .. } = self.size;
+        self.hub.status.page(|page| {
+            let page = page.get_or_insert_default();
+            (page.width_px, page.height_px) = (width_px, height_px);
+        });
+        self.hub.inputs.send(PageInput::Connected { width_px, height_px }).await.ok()
     }
 
     async fn leave_seat(&mut self) {
@@ -151,8 +164,8 @@ impl Talk {
                 }
                 changed = acting.changed() => {
                     changed.ok()?;
-                    acting.mark_unchanged();
-                    self.say(&ToPage::Role { acts: self.acts() }).await?;
+                    let free = acting.borrow_and_update().is_none();
+                    self.say(&ToPage::Role { acts: self.acts(), free }).await?;
                 }
                 changed = sight.changed() => {
                     changed.ok()?;
@@ -198,6 +211,14 @@ impl Talk {
                 }
                 self.say(&ToPage::Pong { t, at: self.hub.now_ms() }).await
             }
+            Some(FromPage::Size { width, height }) => {
+                (self.size.width_px, self.size.height_px) = (width, height);
+                if self.acts() { self.tell_size().await } else { Some(()) }
+            }
+            Some(FromPage::TakePart) => {
+                self.take_seat(false).await;
+                Some(())
+            }
             Some(_) if !self.acts() => {
                 count(&self.hub.status.refused);
                 Some(())
@@ -239,7 +260,9 @@ impl Talk {
                 self.hub.status.page(|page| page.iter_mut().for_each(change));
                 return Some(());
             }
-            FromPage::Hello { .. } | FromPage::Ping { .. } => return self.fault(),
+            FromPage::Hello { .. } | FromPage::Ping { .. } | FromPage::Size { .. } | FromPage::TakePart => {
+                return self.fault();
+            }
         };
         self.hub.inputs.send(input).await.ok()
     }

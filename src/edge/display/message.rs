@@ -1,5 +1,6 @@
 //! The messages between page and program, one JSON object each. Times are milliseconds on the server's clock.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -23,7 +24,17 @@ pub(super) enum FromPage {
         width: u32,
         height: u32,
         code: Option<String>,
+        /// It watched before: another page takes part, and may come back later than this one.
+        #[serde(default)]
+        waits: bool,
     },
+    /// It has another size now.
+    Size {
+        width: u32,
+        height: u32,
+    },
+    /// Somebody at a page that watches wants to take part.
+    TakePart,
     /// Its own time, in milliseconds, and how long the last one took there and back.
     Ping {
         t: f64,
@@ -64,8 +75,10 @@ pub(super) enum FromPage {
 pub(super) enum ToPage {
     /// Its ping's own time, and the server's.
     Pong { t: f64, at: f64 },
-    /// Whether its presses count.
-    Role { acts: bool },
+    /// The words of the page.
+    Words { words: BTreeMap<String, String> },
+    /// Whether its presses count; if not, whether those of another page do (else it is free to take part).
+    Role { acts: bool, free: bool },
     /// "code": the pairing code is asked for; "wrong": it was not that.
     Pairing { why: &'static str },
 }
@@ -75,10 +88,10 @@ pub(super) fn read(text: &str) -> Option<FromPage> {
     let message: FromPage = serde_json::from_str(text).ok()?;
     let is_time = |ms: &f64| ms.is_finite() && ms.abs() < 1e13;
     let is_text = |text: &String| !text.is_empty() && text.len() <= MAX_TEXT && !text.chars().any(char::is_control);
+    let is_size = |width: u32, height: u32| (1..=MAX_PIXELS).contains(&width) && (1..=MAX_PIXELS).contains(&height);
     let is_fine = match &message {
-        FromPage::Hello { page, width, height, code } => {
-            let sizes = (1..=MAX_PIXELS).contains(width) && (1..=MAX_PIXELS).contains(height);
-            is_text(page) && sizes && code.as_ref().is_none_or(|code| code.len() <= MAX_TEXT)
+        FromPage::Hello { page, width, height, code, .. } => {
+            is_text(page) && is_size(*width, *height) && code.as_ref().is_none_or(|code| code.len() <= MAX_TEXT)
         }
         FromPage::Ping { t, took } => is_time(t) && took.is_none_or(|took| (0.0..1e6).contains(&took)),
         FromPage::Press { button, at, .. } => is_text(button) && is_time(at),
@@ -86,7 +99,8 @@ pub(super) fn read(text: &str) -> Option<FromPage> {
         FromPage::Answer { item, .. } | FromPage::Back { item } => is_text(item),
         FromPage::Drawn { at, .. } => is_time(at),
         FromPage::Redrawn { took } => (0.0..1e6).contains(took),
-        FromPage::Confirm => true,
+        FromPage::Size { width, height } => is_size(*width, *height),
+        FromPage::Confirm | FromPage::TakePart => true,
     };
     is_fine.then_some(message)
 }
@@ -136,6 +150,7 @@ mod tests {
             r#"{"kind": "trial_ended", "reason": "time"}"#,
             r#"{"kind": "pointer", "x": 1e9, "y": 0}"#,
             r#"{"kind": "hello", "page": "a", "width": 0, "height": 1, "code": null}"#,
+            r#"{"kind": "size", "width": 1920, "height": 200000}"#,
         ] {
             assert_eq!(read(wrong), None, "{wrong}");
         }

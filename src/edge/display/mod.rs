@@ -23,6 +23,7 @@ use tokio::sync::watch;
 use self::server::{Hub, serve};
 use self::status::Status;
 pub use self::status::{Counts, Page};
+use crate::display::words::Words;
 use crate::display::{Scene, Sight};
 
 /// So many inputs of the page may wait to be taken.
@@ -82,11 +83,11 @@ pub struct PageScreen {
 }
 
 impl Display {
-    /// Serves the page at this address. What is not localhost asks for a pairing code.
+    /// Serves the page at this address, in these words. What is not localhost asks for a pairing code.
     ///
     /// # Errors
     /// The address cannot be listened on.
-    pub async fn open(listen: IpAddr, port: u16) -> io::Result<Display> {
+    pub async fn open(listen: IpAddr, port: u16, words: &Words) -> io::Result<Display> {
         let listener = TcpListener::bind((listen, port)).await?;
         let address = listener.local_addr()?;
         let listener = listener.into_std()?;
@@ -98,7 +99,8 @@ impl Display {
             sight: watch::Sender::new(Arc::from("")),
             status: status.clone(),
         };
-        let hub = Hub::new(code.clone(), send, screen.scene.subscribe(), screen.sight.subscribe(), status);
+        let hub =
+            Hub::new(code.clone(), words.of_page(), send, screen.scene.subscribe(), screen.sight.subscribe(), status);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         std::thread::Builder::new()
             .name("display".to_string())

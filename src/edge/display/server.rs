@@ -1,5 +1,6 @@
 //! The server: the page's files, and the place where pages connect.
 
+use std::collections::BTreeMap;
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -38,6 +39,8 @@ const FILES: [(&str, &str, &str); 6] = [
 pub(super) struct Hub {
     /// What a page is asked for, if the network reaches it.
     pub code: Option<String>,
+    /// The words of the page, by what they stand for.
+    pub words: BTreeMap<String, String>,
     pub inputs: Sender<PageInput>,
     pub scene: watch::Receiver<Arc<str>>,
     pub sight: watch::Receiver<Arc<str>>,
@@ -51,13 +54,14 @@ pub(super) struct Hub {
 impl Hub {
     pub fn new(
         code: Option<String>,
+        words: BTreeMap<String, String>,
         inputs: Sender<PageInput>,
         scene: watch::Receiver<Arc<str>>,
         sight: watch::Receiver<Arc<str>>,
         status: Arc<Status>,
     ) -> Hub {
         let (acting, connections, began) = (watch::Sender::new(None), AtomicU64::new(0), Instant::now());
-        Hub { code, inputs, scene, sight, status, acting, connections, began }
+        Hub { code, words, inputs, scene, sight, status, acting, connections, began }
     }
 
     /// The server's clock, in milliseconds.

@@ -4,9 +4,22 @@ use tokio::time::Instant;
 
 use super::Live;
 use crate::session::Event;
-use crate::session::calibration::Check;
+use crate::session::calibration::{Calibrated, CalibrationEvent, Check};
+use crate::session::settings::GazeSource;
 
 impl Live {
+    /// What was accepted before this recording holds on: neither the tracker nor the participant was changed. A participant
+    /// who is simulated has new eyes in every recording.
+    pub(super) fn carry_calibration(&mut self, before: Option<&Calibrated>) {
+        let session = self.engine.session();
+        let is_wanted = !matches!(session.spec.participant.gaze, GazeSource::None | GazeSource::Simulated);
+        if let Some(Calibrated { found, corrected, .. }) = before.filter(|_| is_wanted && session.calibrated.is_none())
+        {
+            let event = CalibrationEvent::Carried { found: found.clone(), corrected: *corrected };
+            self.input(Event::Calibration(event));
+        }
+    }
+
     /// When the next target is to be shown; nothing while no check goes on.
     pub(super) fn next_target(&self) -> Option<Instant> {
         let (time, _) = self.engine.session().calibration.as_ref().and_then(Check::next)?;

@@ -179,6 +179,7 @@ impl Live {
         if let Some(request) = compare {
             live.input(Event::Unblinded { concepts: request.concepts(&spec) });
         }
+        live.carry_calibration(desk.tracker.calibrated());
         live.build_display();
         live.begin_protocol(consent);
         Ok(live)
@@ -233,6 +234,7 @@ impl Live {
                 Some(news) = desk.tracker.next() => self.take_all(news, &mut desk.tracker),
             }
         }
+        desk.tracker.keep(self.engine.session().calibrated.clone());
         let end = self.close(leaving);
         desk.tracker.settle().await;
         end

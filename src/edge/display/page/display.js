@@ -3,8 +3,8 @@
 // itself, and brings the whole state.
 
 (() => {
-  const PING_MS = 1000, FIRST_PINGS = 5, FIRST_PING_MS = 60, SILENCE_MS = 4000, AGAIN_MS = 500, POINTER_MS = 16;
-  let socket = null, code = new URLSearchParams(location.search).get("code"), number = 0, heard = 0, acts = false;
+  const RESIZED_MS = 400, IDLE_MS = 3000, PING_MS = 1000, FIRST_PINGS = 5, FIRST_PING_MS = 60, SILENCE_MS = 4000, AGAIN_MS = 500, POINTER_MS = 16;
+  let socket = null, code = new URLSearchParams(location.search).get("code"), number = 0, heard = 0, acts = null, isFree = false;
   let trips = [], took = null, cue = null, pointed = null, pinger = 0;
   // Presses whose effect is not on the screen yet.
   const waiting = [];
@@ -43,12 +43,14 @@
       trips = [...trips.slice(-19), { took, offset: message.at - (message.t + now) / 2 }];
     } else if (message.kind === "pairing") {
       Stage.askCode(message.why === "wrong", (typed) => { code = typed; hello(); });
+    } else if (message.kind === "words") {
+      Stage.greet(message.words);
     } else if (message.kind === "role") {
-      acts = message.acts;
-      Stage.mark({ acts });
+      ({ acts, free: isFree } = message);
+      Stage.mark({ acts, free: isFree });
     } else if (message.kind === "scene") {
       Stage.build(message.scene);
-      Stage.mark({ acts });
+      Stage.mark({ acts, free: isFree });
       cue = null;
     } else if (message.kind === "sight") {
       see(message.sight);
@@ -78,9 +80,14 @@
     });
   }
 
+  const size = () => {
+    const pixels = (length) => Math.max(1, Math.round(length * devicePixelRatio));
+    return { width: pixels(window.innerWidth), height: pixels(window.innerHeight) };
+  };
+
   function hello() {
-    const width = Math.round(window.innerWidth * devicePixelRatio), height = Math.round(window.innerHeight * devicePixelRatio);
-    say({ kind: "hello", page, width: Math.max(1, width), height: Math.max(1, height), code });
+    // A page that watched goes on watching: the one that takes part may come back later than this one.
+    say({ kind: "hello", page, ...size(), code, waits: acts === false });
     trips = [];
     number = 0;
     waiting.length = 0;
@@ -126,6 +133,21 @@
       say({ kind: "pointer", x: pointed[0], y: pointed[1] });
     }
   }, POINTER_MS);
+  // Where nobody takes part any more, whoever touches a watching page does.
+  for (const kind of ["pointerdown", "keydown"]) window.addEventListener(kind, () => acts === false && isFree && say({ kind: "take_part" }));
+  let resized = 0, idle = 0;
+  window.addEventListener("resize", () => {
+    clearTimeout(resized);
+    resized = setTimeout(() => say({ kind: "size", ...size() }), RESIZED_MS);
+  });
+  // A pointer that rests is no part of the kitchen.
+  const rest = () => document.body.classList.add("idle");
+  window.addEventListener("pointermove", () => {
+    document.body.classList.remove("idle");
+    clearTimeout(idle);
+    idle = setTimeout(rest, IDLE_MS);
+  });
+  rest();
   // A connection that says nothing any more is none, although nobody closed it.
   setInterval(() => isOpen() && performance.now() - heard > SILENCE_MS && socket.close(), 500);
   // The screen stays on; where the browser does not do that, nothing is lost.

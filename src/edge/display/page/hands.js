@@ -51,6 +51,7 @@ const Hands = (() => {
     if (question.item && digit === 0) answer({ kind: "answer", item: question.item, rated: null });
     else if (question.item && digit !== null && digit <= question.points) answer({ kind: "answer", item: question.item, rated: digit });
     else if (question.before && ["ArrowLeft", "Backspace"].includes(key)) answer({ kind: "back", item: question.before });
+    else if (question.answer && ["ArrowRight", "Enter"].includes(key)) answer({ kind: "answer", item: question.item, rated: question.answer });
     else if (!question.item && key === "Enter") answer({ kind: "confirm" });
   }
 
@@ -62,6 +63,7 @@ const Hands = (() => {
     if (hit.dataset.button) press(hit.dataset.button, timeOf(event.timeStamp));
     else if (question && hit.dataset.rate) answer({ kind: "answer", item: question.item, rated: Number(hit.dataset.rate) });
     else if (question && hit.dataset.does === "skip") answer({ kind: "answer", item: question.item, rated: null });
+    else if (question && hit.dataset.does === "next") answer({ kind: "answer", item: question.item, rated: question.answer });
     else if (question && hit.dataset.does === "back") answer({ kind: "back", item: question.before });
     else if (question && hit.dataset.does === "confirm") answer({ kind: "confirm" });
   }

@@ -3,8 +3,8 @@
 
 const Stage = (() => {
   const root = document.getElementById("stage");
-  let scene = null, shown = null, parts = null;
-  let marks = { lost: false, acts: true };
+  let scene = null, shown = null, parts = null, words = {};
+  let marks = { lost: false, acts: true, free: false };
 
   function element(kind, className, inside = "") {
     const made = document.createElement(kind);
@@ -37,8 +37,17 @@ const Stage = (() => {
     const [x0, x1] = to(x - left, x + w + right), [y0, y1] = to(y - top, y + h + bottom);
     return [x0, y0, x1 - x0, y1 - y0];
   };
-  // Height above a place that its name takes, and the size of an action's button, in fractions of the stage.
+  // Height above a place that its name takes, and the least size of an action's button, in fractions of the stage.
   const NAME = 0.04, PILL = [0.096, 0.05];
+  const ruler = document.createElement("canvas").getContext("2d");
+
+  /** How large an action's button is: as wide as its words and its key. */
+  function pillOf(knob) {
+    ruler.font = `700 100px ${getComputedStyle(root).fontFamily}`;
+    // The words are 1.4 hundredths of the stage high; the key, and what is left free, 2.4 each.
+    const wide = (ruler.measureText(knob.label).width / 100) * 0.014 + 0.024 + (scene.keys && knob.key ? 0.03 : 0);
+    return [Math.max(PILL[0], wide), PILL[1]];
+  }
 
   const of = (kind) => scene.locations.filter((spot) => spot.kind === kind).map((spot) => spot.area);
   /** The areas of robot and human, equally high. */
@@ -57,9 +66,9 @@ const Stage = (() => {
   }
 
   /** The nearest free place for an action's button: below its place, above it, or beside it. */
-  function freeFor(area, others) {
-    const [x, y, w, h] = area, [pw, ph] = PILL, gap = 0.012;
-    const middle = x + w / 2 - pw / 2;
+  function freeFor(area, [pw, ph], others) {
+    const [x, y, w, h] = area, gap = 0.012;
+    const middle = Math.min(0.994 - pw, Math.max(0.006, x + w / 2 - pw / 2));
     const tries = [[middle, y + h + gap], [middle, y - NAME - gap - ph], [x + w + gap, y + h / 2 - ph / 2], [x - gap - pw, y + h / 2 - ph / 2]];
     for (let step = 1; step < 5; step += 1) tries.push([middle, y + h + gap + step * (ph + gap)], [x + w + gap, y + h / 2 - ph / 2 + step * (ph + gap)]);
     const rects = tries.map(([px, py]) => [px, py, pw, ph]);
@@ -122,7 +131,7 @@ const Stage = (() => {
   /** Buttons of actions, each beside the place that it works on; `others` is what is there, and what is added. */
   function buildPills(others) {
     const makePill = (knob) => {
-      const area = freeFor(scene.locations[knob.at].area, others);
+      const area = freeFor(scene.locations[knob.at].area, pillOf(knob), others);
       others.push(area);
       const made = put(element("div", `pill ${knob.does}`), area);
       made.append(text("span", "", knob.label), key(knob));
@@ -165,9 +174,10 @@ const Stage = (() => {
     kitchen.append(buildZone("robot", robot, scene.words.robot), buildZone("human", human, scene.words.human));
     kitchen.append(put(element("section", "zone table"), grown(around(of("place")), [0.03, 0.085, 0.03, 0.03])));
     const locations = scene.locations.map(buildLocation), storages = scene.storages.map(buildStorage);
-    const others = taken();
+    const others = taken(), free = [];
     kitchen.append(...locations.map((l) => l.made), ...storages.map((s) => s.made), ...buildPills(others));
-    const recipe = put(element("div", "recipe"), freeForRecipe(others));
+    free.push(...freeForRecipe(others));
+    const recipe = put(element("div", "recipe"), free);
     kitchen.append(recipe);
     const sheet = element("div", "sheet"), toast = element("div", "toast"), served = element("div", "served"), target = element("div", "target", "<i></i>");
     root.append(kitchen, served, sheet, toast, target, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
@@ -176,7 +186,7 @@ const Stage = (() => {
       const tag = scene.tags[2] ? scene.tags[2].area : [0.99, 0.98, 0, 0];
       root.append(put(flash, [tag[0] - 0.033, 1 - 0.0267 * Number(scene.display_m[0] / scene.display_m[1]) * 0.9375 - 0.004, 0.025, 0.025 * (scene.display_m[0] / scene.display_m[1])]));
     }
-    parts = { kitchen, locations, storages, recipe, sheet, toast, served, flash, target };
+    parts = { kitchen, locations, storages, recipe, sheet, toast, served, flash, target, free };
     mark({});
   }
 
@@ -242,6 +252,16 @@ const Stage = (() => {
       return index ? [text("span", "sign", "+"), made] : [made];
     });
     parts.recipe.replaceChildren(dish, text("span", "sign", "="), ...items);
+    fitWords(parts.recipe);
+  }
+
+  /** Makes the words smaller until no name is broken and nothing stands over the edge. */
+  function fitWords(made) {
+    const fits = () => made.scrollWidth <= made.clientWidth && made.scrollHeight <= made.clientHeight;
+    for (let size = 1; size > 0.5; size -= 0.05) {
+      made.style.setProperty("--words", size);
+      if (fits()) return;
+    }
   }
 
   function drawIntention(spot) {
@@ -254,11 +274,13 @@ const Stage = (() => {
     const { stage, practice } = sight;
     root.dataset.stage = stage;
     const name = stage === "ready" && practice ? "practice" : stage;
-    const title = scene.words[name], words = scene.words[`${name} text`];
+    const title = scene.words[name], more = scene.words[`${name} text`];
     parts.sheet.className = `sheet ${stage === "running" ? "" : "open"} ${BIG.includes(stage) ? "big" : ""} ${stage}`;
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
     const card = element("div", "card");
-    card.append(text("h1", "", title || ""), text("p", "", words || ""));
+    card.append(text("h1", "", title || ""), text("p", "", more || ""));
+    // The kitchen is explained meanwhile, so nothing of it is hidden.
+    if (stage === "instruction") put(card, parts.free);
     parts.sheet.replaceChildren(card);
   }
 
@@ -296,21 +318,30 @@ const Stage = (() => {
     marks = { ...marks, ...change };
     root.classList.toggle("lost", marks.lost);
     if (!parts) return;
-    const words = marks.lost ? scene.words.lost : marks.acts ? "" : scene.words.watches;
-    parts.toast.textContent = words;
-    parts.toast.classList.toggle("open", Boolean(words));
+    const role = marks.acts ? "" : marks.free ? scene.words.free : scene.words.watches;
+    const said = marks.lost ? scene.words.lost : role;
+    parts.toast.textContent = said;
+    parts.toast.classList.toggle("open", Boolean(said));
   }
 
-  /** Asks for the pairing code; there are no words of the session yet. */
+  /** The words of the page: they come before anything else. */
+  function greet(next) {
+    words = next;
+    if (scene) return;
+    const card = element("div", "card");
+    card.append(text("h1", "", words.welcome), text("p", "", words["welcome text"]));
+    root.replaceChildren(element("div", "sheet open big", card));
+  }
+
+  /** Asks for the pairing code. */
   function askCode(isWrong, then) {
     scene = shown = parts = null;
-    const german = (navigator.language || "").startsWith("de");
     const card = element("form", "card");
     const field = element("input", "");
     Object.assign(field, { maxLength: 12, autocomplete: "off", spellcheck: false, autofocus: true });
-    field.setAttribute("aria-label", german ? "Kopplungscode" : "Pairing code");
-    const hint = german ? ["Das ist nicht der Code.", "Er steht auf der Konsole."] : ["That is not the code.", "It stands on the console."];
-    card.append(text("h1", "", german ? "Kopplungscode" : "Pairing code"), field, text("p", isWrong ? "wrong" : "", hint[isWrong ? 0 : 1]));
+    field.setAttribute("aria-label", words.pairing);
+    const hint = isWrong ? words["pairing wrong"] : words["pairing text"];
+    card.append(text("h1", "", words.pairing), field, text("p", isWrong ? "wrong" : "", hint));
     card.addEventListener("submit", (event) => { event.preventDefault(); then(field.value); });
     const sheet = element("div", "sheet open big", card);
     root.replaceChildren(sheet);
@@ -323,7 +354,7 @@ const Stage = (() => {
     return [(x - box.left) / box.width, (y - box.top) / box.height];
   }
 
-  return { build, show, flash, mark, askCode, point, scene: () => scene, shown: () => shown };
+  return { build, show, flash, mark, greet, askCode, point, scene: () => scene, shown: () => shown };
 })();
 
 /** An item of a questionnaire, to be touched or answered with digits. */
@@ -344,12 +375,20 @@ const Questions = {
       card.append(scale, ends);
     } else {
       card.append(text("p", "item", question.text));
+      const given = element("ol", question.given.length > 6 ? "given small" : "given");
+      for (const { text: asked, rated } of question.given) {
+        const line = element("li", "");
+        line.append(text("span", "", asked), text("b", "", rated ?? "–"));
+        given.append(line);
+      }
+      card.append(given);
     }
     const row = element("div", "row");
     const button = (does, label) => { const made = text("button", does, label); made.dataset.does = does; row.append(made); };
     if (question.before) button("back", words.back);
     if (question.item) button("skip", words.skip);
-    else button("confirm", words.confirm);
+    if (question.item && question.answer) button("next", words.next);
+    if (!question.item) button("confirm", words.confirm);
     card.append(row);
     sheet.replaceChildren(card);
   },

@@ -41,11 +41,15 @@ const Stage = (() => {
   const NAME = 0.04, PILL = [0.096, 0.05];
   const ruler = document.createElement("canvas").getContext("2d");
 
+  /** The width of bold words of this size, both in fractions of the stage's width. */
+  function widthOf(said, size) {
+    ruler.font = `700 100px ${getComputedStyle(root).fontFamily}`;
+    return (ruler.measureText(said).width / 100) * size;
+  }
+
   /** How large an action's button is: as wide as its words and its key. */
   function pillOf(knob) {
-    ruler.font = `700 100px ${getComputedStyle(root).fontFamily}`;
-    // The words are 1.4 hundredths of the stage high; the key, and what is left free, 2.4 each.
-    const wide = (ruler.measureText(knob.label).width / 100) * 0.014 + 0.024 + (scene.keys && knob.key ? 0.03 : 0);
+    const wide = widthOf(knob.label, 0.014) + 0.024 + (scene.keys && knob.key ? 0.03 : 0);
     return [Math.max(PILL[0], wide), PILL[1]];
   }
 
@@ -67,7 +71,7 @@ const Stage = (() => {
 
   /** The nearest free place for an action's button: below its place, above it, or beside it. */
   function freeFor(area, [pw, ph], others) {
-    const [x, y, w, h] = area, gap = 0.012;
+    const [x, y, w, h] = area, gap = 0.007;
     const middle = Math.min(0.994 - pw, Math.max(0.006, x + w / 2 - pw / 2));
     const tries = [[middle, y + h + gap], [middle, y - NAME - gap - ph], [x + w + gap, y + h / 2 - ph / 2], [x - gap - pw, y + h / 2 - ph / 2]];
     for (let step = 1; step < 5; step += 1) tries.push([middle, y + h + gap + step * (ph + gap)], [x + w + gap, y + h / 2 - ph / 2 + step * (ph + gap)]);
@@ -103,6 +107,9 @@ const Stage = (() => {
     const made = put(element("div", `spot ${spot.kind}`), spot.area);
     const shape = spot.kind === "place" ? spot.look && spot.look.shape : spot.kind;
     if (spot.kind !== "order") {
+      // A highlighted place is framed together with its name.
+      const over = Math.max(0, widthOf(spot.label, 0.0145) - w) / 2;
+      made.style.setProperty("--side", `${(100 * over + 1.2).toFixed(2)}em`);
       made.append(element("div", "furniture", Art.place(shape, wide)));
       made.append(text("div", "name", spot.label));
     }
@@ -119,7 +126,11 @@ const Stage = (() => {
   function buildStorage(shelf, index) {
     const made = put(element("div", `shelf ${shelf.agent} ${scene.names === "none" ? "bare" : ""}`), shelf.area);
     made.append(element("div", "content", Art.item(scene, shelf.item)), element("div", "ring"));
-    if (scene.names !== "none") made.append(text("div", "name", shelf.label));
+    if (scene.names !== "none") {
+      const name = text("div", "name", shelf.label);
+      name.style.setProperty("--words", Math.min(1, (0.96 * shelf.area[2]) / widthOf(shelf.label, 0.014)).toFixed(3));
+      made.append(name);
+    }
     if (shelf.agent === "human") {
       const knob = knobOf("take", index);
       makeTouch(made, knob);
@@ -141,24 +152,25 @@ const Stage = (() => {
     return scene.buttons.filter(({ does }) => ["process", "trash", "serve"].includes(does)).map(makePill);
   }
 
-  /** Where a recipe is written largest without hiding anything of the kitchen: of all free rectangles. */
+  /** Where a recipe, line by line, is largest without hiding anything of the kitchen: of all free rectangles. */
   function freeForRecipe(others) {
-    const margin = 0.012, pieces = 4.6, ratio = scene.display_m[0] / scene.display_m[1];
+    // A line is a picture with words beside it.
+    const margin = 0.01, lines = 4.4, line = 2.5, ratio = scene.display_m[0] / scene.display_m[1];
     const walls = others.map((rect) => grown(rect, [margin, margin * ratio, margin, margin * ratio]));
     const lefts = [margin, ...walls.map(([x, , w]) => x + w)], rights = [1 - margin, ...walls.map(([x]) => x)];
-    let best = [0, 0, 0, 0], most = 0;
+    let best = [0, 0, 0, 0], most = -1;
     for (const left of lefts) for (const right of rights) {
       const columns = walls.filter(([x, , w]) => x < right && x + w > left).map(([, y, , h]) => [y, y + h]);
       let low = margin;
       for (const [top, bottom] of [...columns, [1 - margin, 1]].sort((a, b) => a[0] - b[0])) {
-        const size = Math.min(top - low, ((right - left) * ratio) / pieces);
+        const size = Math.min((top - low) / lines, ((right - left) * ratio) / line);
         // Of equals the one nearer to the middle.
-        const worth = size - 0.02 * Math.abs((left + right) / 2 - 0.5);
+        const worth = size - 0.01 * Math.abs((left + right) / 2 - 0.5);
         if (worth > most) [best, most] = [[left, low, right - left, top - low], worth];
         low = Math.max(low, bottom);
       }
     }
-    const [x, y, w, h] = best, high = Math.min(h, 0.22), wide = Math.min(w, (1.35 * pieces * high) / ratio);
+    const [x, y, w, h] = best, high = Math.min(h, 0.6), wide = Math.min(w, (1.2 * line * high) / lines / ratio);
     return [x + (w - wide) / 2, y + (h - high) / 2, wide, high];
   }
 
@@ -210,6 +222,7 @@ const Stage = (() => {
     if (isOrder) {
       const words = what === "served" ? scene.words.served : what.dish && scene.names === "orders" ? scene.dishes[what.dish].label : "";
       part.content.append(text("span", "dish", words));
+      fitWords(part.content);
     }
     if (isNew) replay(part.content, "arrives");
   }
@@ -246,21 +259,21 @@ const Stage = (() => {
     if (!recipe) return;
     const dish = element("figure", "of", Art.dish(scene, recipe.dish));
     dish.append(text("figcaption", "", scene.dishes[recipe.dish].label));
-    const items = recipe.items.flatMap((name, index) => {
+    const items = recipe.items.map((name) => {
       const made = element("figure", "", Art.item(scene, name));
       made.append(text("figcaption", "", scene.items[name].label));
-      return index ? [text("span", "sign", "+"), made] : [made];
+      return made;
     });
-    parts.recipe.replaceChildren(dish, text("span", "sign", "="), ...items);
+    parts.recipe.replaceChildren(dish, ...items);
     fitWords(parts.recipe);
   }
 
-  /** Makes the words smaller until no name is broken and nothing stands over the edge. */
+  /** Makes the words smaller until no name is broken and none is higher than its line. */
   function fitWords(made) {
-    const fits = () => made.scrollWidth <= made.clientWidth && made.scrollHeight <= made.clientHeight;
+    const fits = (said) => said.scrollWidth <= said.clientWidth && said.scrollHeight <= said.parentNode.clientHeight;
     for (let size = 1; size > 0.5; size -= 0.05) {
       made.style.setProperty("--words", size);
-      if (fits()) return;
+      if ([...made.querySelectorAll("figcaption, .dish")].every(fits)) return;
     }
   }
 

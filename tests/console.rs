@@ -15,6 +15,7 @@ use tomcom::communication::settings::Shadow;
 use tomcom::communication::{Sender, Signal};
 use tomcom::console::arrange::{Plan, Thing};
 use tomcom::console::belief::{self, Moment};
+use tomcom::console::calibration::Best;
 use tomcom::console::comparison::{Compared, Comparison, Known, Lane, Spoken, What};
 use tomcom::console::keys::{KeyPlace, Layer};
 use tomcom::console::model::{Dialog, Level, Recording};
@@ -1272,6 +1273,18 @@ fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
 }
 
 #[test]
+fn enter_takes_the_better_gaze_and_none_that_is_too_far_off() {
+    let best = |accuracy_deg, corrected_deg| {
+        let found = Found { accuracy_deg, corrected_deg, precision_deg: 0.2, offset: [0.0, 0.0], targets: Vec::new() };
+        Best::of(Some(&found))
+    };
+    assert_eq!(best(2.0, 0.5), Best::Corrected);
+    assert_eq!(best(1.0, 1.4), Best::AsItIs);
+    assert_eq!(best(8.5, 9.7), Best::Repeat);
+    assert_eq!(Best::of(None), Best::Repeat);
+}
+
+#[test]
 fn a_check_without_enough_samples_can_be_repeated_or_left_and_not_accepted() {
     let mut stage = Stage::new("burger", ParticipantKind::Simulated);
     let begun = input(stage.control('v')).expect("a check begins");
@@ -1281,9 +1294,11 @@ fn a_check_without_enough_samples_can_be_repeated_or_left_and_not_accepted() {
     stage.at(3.0, Event::Calibration(CalibrationEvent::Measured { found: None }));
     assert!(stage.screen((120, 40)).contains("too few usable samples"));
     stage.wait(1.0);
-    assert_eq!(stage.key(KeyCode::Enter), None);
-    assert_eq!(input(stage.key(KeyCode::Char('r'))), Some(Event::Calibration(CalibrationEvent::begin())));
-    assert_eq!(stage.model.dialog, Some(Dialog::Calibration));
+    assert_eq!(stage.key(KeyCode::Char('o')), None);
+    for key in [KeyCode::Char('r'), KeyCode::Enter] {
+        assert_eq!(input(stage.key(key)), Some(Event::Calibration(CalibrationEvent::begin())));
+        assert_eq!(stage.model.dialog, Some(Dialog::Calibration));
+    }
     let left = input(stage.key(KeyCode::Esc));
     assert_eq!(left, Some(Event::Calibration(CalibrationEvent::Dismissed)));
     assert_eq!(stage.model.dialog, None);

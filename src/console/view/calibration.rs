@@ -40,7 +40,7 @@ pub fn draw(brush: &mut Brush, screen: Rect, session: &Session) {
         brush.parts(inside.x + 1 + VALUE, y, columns.saturating_sub(VALUE), &[(text, role)]);
         y += 1;
     };
-    let again = REPEAT.to_string();
+    let again = format!("enter or {REPEAT}");
     let Some(found) = &outcome.found else {
         line(brush, "accuracy", "not known: too few usable samples at the targets", Role::Alarm);
         line(brush, "mend", "look at every target; see that the tracker sends gaze", Role::Text);

@@ -353,7 +353,8 @@ fn a_wizard_is_trained_with_feedback_and_a_score_and_held_against_oneself() {
             "{TOMCOM} train --wizard W7 --speed 4 --seconds 30 --hits 0 --wrong 1 --out {}",
             out.display()
         ));
-        terminal.see("training: 0 hit");
+        terminal.see("0 hit, 0 missed, 0 wrong");
+        terminal.see("A hit is the first signal");
         terminal.key(".");
         terminal.see("it runs");
         // The orders come with the trial's first moment.
@@ -362,10 +363,12 @@ fn a_wizard_is_trained_with_feedback_and_a_score_and_held_against_oneself() {
             terminal.key(key);
             terminal.wait("feedback", || {
                 let screen = terminal.screen();
-                ["hit:", "told already", "believed wrong", "late:", "wrong:"].iter().any(|word| screen.contains(word))
+                ["hit:", "told already", "believed wrong,", "late:", "wrong:"].iter().any(|word| screen.contains(word))
             });
             std::thread::sleep(Duration::from_millis(900));
         }
+        terminal.see("The training is over");
+        terminal.key("Enter");
         terminal.is_whole("0");
         terminal.see("recorded in");
         let record = fs::read_to_string(out.join(format!("W7-{time}.json"))).expect("a record");
@@ -373,14 +376,16 @@ fn a_wizard_is_trained_with_feedback_and_a_score_and_held_against_oneself() {
         let one = &record["recordings"][0];
         assert_eq!(one["complete"], true, "{record}");
         assert_eq!(one["signals"].as_array().map(Vec::len), Some(3));
-        assert!(one["measures"]["episodes"].is_number());
+        assert!(one["signals"][0]["worth"].is_string());
+        assert_eq!(one["beliefs"].as_array().map(|all| all.len() as u64), one["measures"]["episodes"].as_u64());
+        assert_eq!(record["speed"], 4.0, "{record}");
         assert_eq!(one["kappa_with_oneself"].is_number(), time == 2, "{record}");
         met.push(record["met"].clone());
     }
     assert_eq!(met[0], met[1], "the criterion holds for the same signals");
     // The training belongs to the wizard's figures.
     let recording =
-        fs::read_dir(out.join("recordings")).expect("a folder").next().expect("a recording").expect("readable");
+        fs::read_dir(out.join("recordings/30s")).expect("a folder").next().expect("a recording").expect("readable");
     let arguments = ["compare", "--wizard", "W7", "--format", "json", "--training"].map(str::to_string);
     let folders = [&out, &recording.path()].map(|path| path.display().to_string());
     let output = Command::new(TOMCOM).args(arguments).args(folders).output().expect("tomcom runs");

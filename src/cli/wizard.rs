@@ -14,7 +14,7 @@ use crate::measures::wizard::TrainingCriterion;
 use crate::run::compare::Request;
 use crate::run::similarity::{self, CompareFigures, TrainingFigures};
 use crate::run::train::{self, Lesson};
-use crate::run::{review, series, simulate};
+use crate::run::{lesson_report, review, series, simulate};
 use crate::session::settings::is_code;
 
 /// Sets wizard and assistants side by side: what each said, what of it matches, and what each knew where they differ.
@@ -165,7 +165,7 @@ pub(super) fn train(args: &TrainArgs) -> Result<(), Failure> {
         speed: SPEEDS.iter().position(|speed| speed.to_string() == args.speed).unwrap_or(2),
     };
     let (record, path) = train::train(&lesson)?;
-    Ok(write!(std::io::stdout(), "{}", train::describe(&record, &path))?)
+    Ok(write!(std::io::stdout(), "{}", lesson_report::describe(&record, &path))?)
 }
 
 /// A wizard's code.

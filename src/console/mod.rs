@@ -11,6 +11,7 @@ pub mod form;
 pub mod hands;
 pub mod keymap;
 pub mod keys;
+pub mod lesson;
 pub mod message;
 pub mod model;
 pub mod note;

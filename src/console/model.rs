@@ -8,6 +8,7 @@ use super::belief::BeliefTrack;
 use super::comparison::Compared;
 use super::display::DisplayHealth;
 use super::keys::{Keys, Layer};
+use super::lesson::Lesson;
 use super::note::Line;
 use super::panels::Panel;
 use super::picker::Picker;
@@ -40,6 +41,8 @@ pub enum Dialog {
     Note(Line),
     /// What each knew where wizard and assistant differ, in lines.
     Difference(Vec<String>),
+    /// What came of a training, in lines; it stays until enter.
+    Report(Vec<String>),
 }
 
 /// How much a notice matters.
@@ -114,7 +117,7 @@ pub struct Model {
     pub free_bytes: Option<u64>,
     /// The panel that is shown alone, if one is.
     pub alone: Option<Panel>,
-    /// The first column of the help that is shown.
+    /// The first column of the help, or the first line of a report, that is shown.
     pub help_from: usize,
     /// How far back events (in entries) and timeline (in seconds) are looked at.
     pub events_back: usize,
@@ -133,6 +136,8 @@ pub struct Model {
     pub belief: BeliefTrack,
     /// Wizard and assistants side by side, where that is asked for.
     pub comparison: Option<Compared>,
+    /// Set when a wizard is trained.
+    pub lesson: Option<Lesson>,
     /// Set when a recording is replayed.
     pub playback: Option<Playback>,
     /// The terminal tells key repeat from key press.
@@ -167,6 +172,7 @@ impl Model {
             errors: Vec::new(),
             belief: BeliefTrack::default(),
             comparison: None,
+            lesson: None,
             playback: None,
             exact_keys: false,
             pressed: None,

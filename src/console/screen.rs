@@ -38,6 +38,7 @@ fn name(dialog: &Dialog) -> &'static str {
         Dialog::Calibration => "calibration",
         Dialog::Note(_) => "note",
         Dialog::Difference(_) => "difference",
+        Dialog::Report(_) => "report",
         Dialog::Pick(list) => match list.question {
             Question::Place => "correct_place",
             Question::Content(_) => "correct_content",

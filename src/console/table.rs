@@ -145,8 +145,8 @@ fn differences() -> [Binding; 3] {
         |name, key, step, help, footer| line(name, &[Chord::ctrl(key)], Action::Differ(step), COMPARISON, help, footer);
     [
         differ("open_difference", 'o', Step::Open, "what each knew where they differ", Some("difference")),
-        differ("next_difference", 'g', Step::Next, "the next difference", None),
-        differ("last_difference", 't', Step::Last, "the difference before", None),
+        differ("next_difference", 'g', Step::Next, "the next difference", Some("next")),
+        differ("last_difference", 't', Step::Last, "the difference before", Some("before")),
     ]
 }
 

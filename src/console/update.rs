@@ -13,7 +13,7 @@ use super::message::{Command, Message};
 use super::model::{Dialog, Level, Model, Pressed};
 use super::panels::{self, Look};
 use super::preflight;
-use super::view::dialog::help_pages;
+use super::view::dialog::{help_pages, report_rest};
 use super::view::regions::Regions;
 use super::words;
 use crate::communication::Sender;
@@ -221,6 +221,10 @@ fn answer(model: &mut Model, session: &Session, chord: Chord, action: Option<Act
         differ(model, session, Step::Open);
         return None;
     }
+    if matches!(dialog, Dialog::Report(_)) {
+        report(model, chord.code, action);
+        return None;
+    }
     let again = match dialog {
         Dialog::Quit => action == Some(Action::Quit),
         Dialog::EndTrial => action == Some(Action::EndTrial),
@@ -237,6 +241,18 @@ fn answer(model: &mut Model, session: &Session, chord: Chord, action: Option<Act
         Dialog::Quit if yes => Some(Command::Quit),
         Dialog::EndTrial if yes => Some(Command::Input(Event::TrialEnded { reason: EndReason::Wizard })),
         _ => None,
+    }
+}
+
+/// A report is not closed by a key that was meant for what went before: only by enter, and by the key that quits.
+fn report(model: &mut Model, code: KeyCode, action: Option<Action>) {
+    match (code, action) {
+        (KeyCode::Enter, _) | (_, Some(Action::Quit)) => model.dialog = None,
+        (_, Some(Action::Look(Look::Back | Look::Last))) => model.help_from = model.help_from.saturating_sub(1),
+        (_, Some(Action::Look(Look::Forward | Look::Next))) => {
+            model.help_from = (model.help_from + 1).min(report_rest(model));
+        }
+        _ => {}
     }
 }
 
@@ -290,6 +306,14 @@ pub(super) fn act(model: &mut Model, session: &Session, action: Action) -> Optio
         }
         Action::Look(at) => {
             panels::look(model, session, at);
+            None
+        }
+        Action::Belief if Regions::showing(model.size, session, model).belief.area() == 0 => {
+            let words = match session.spec.console.visibility >= Visibility::Belief {
+                true => "the belief is not on the screen: esc shows all panels",
+                false => "the belief is not shown in this session",
+            };
+            model.say(Level::Refused, words);
             None
         }
         Action::Belief => {

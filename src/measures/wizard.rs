@@ -25,7 +25,8 @@ pub struct Spell {
 }
 
 impl Spell {
-    fn holds(&self, clock: SessionTime) -> bool {
+    /// Whether it is believed wrong at this time.
+    pub fn holds(&self, clock: SessionTime) -> bool {
         self.began <= clock && self.corrected.is_none_or(|(end, _)| clock < end)
     }
 }
@@ -59,6 +60,20 @@ pub enum Worth {
     WrongTarget,
     /// Nothing was believed wrong.
     Needless,
+}
+
+impl Worth {
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Worth::Hit { .. } => "hit",
+            Worth::Again => "again",
+            Worth::Harmless => "harmless",
+            Worth::Late => "late",
+            Worth::WrongTarget => "wrong",
+            Worth::Needless => "needless",
+        }
+    }
 }
 
 /// What each signal was, in their order.

@@ -269,6 +269,13 @@ fn figures(steps: &[Step], price: f64) -> AccuracyFigures {
 
 /// The figures for people.
 pub fn describe(figures: &AccuracyFigures) -> String {
+    if figures.benefit_pairs == 0 {
+        return format!(
+            "{}: at none a signal was worth more than {MATTERS} presses, so nothing can be held against the answer with \
+             {CONVERGED} times the rollouts; take more steps (--steps) or recordings\n",
+            count(figures.steps, "step", "steps")
+        );
+    }
     let told = |value: Option<f64>, digits: usize| value.map_or("-".to_string(), |value| format!("{value:.digits$}"));
     format!(
         "{}: the same decision as with {CONVERGED} times the rollouts at {} of the {} clear ones, benefits off by {} presses \

@@ -18,7 +18,7 @@ use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
 use crate::measures::beliefs::{Detection, EstimateView, PressView, TrialView};
-use crate::measures::flags::Thresholds;
+use crate::measures::flags::{MOST_FALSE_FLAGS, Thresholds};
 use crate::measures::likelihood::LogLikelihood;
 use crate::mind::belief::Belief;
 use crate::mind::decision::DecisionModel;
@@ -206,5 +206,27 @@ pub fn describe(check: &BeliefCheck) -> String {
     for aspect in &found.aspects {
         text.push_str(&format!("{:<32}{:>8}{:>8.3}\n", aspect.aspect, number(aspect.auc), aspect.wrong));
     }
-    text
+    text + &legend(check)
+}
+
+/// From so many recordings on the figures of single aspects are worth a look.
+const TELLING: u64 = 20;
+
+/// How the figures are to be read.
+fn legend(check: &BeliefCheck) -> String {
+    let few = match check.recordings {
+        TELLING.. => String::new(),
+        few => format!(
+            "\n{} say little about single aspects, least about recipes, which are seldom wrong: take {TELLING} or more.",
+            count(few, "recording", "recordings")
+        ),
+    };
+    format!(
+        "\nROC: how surely the estimate tells an aspect that is believed wrong from one that is not; 1 always, 0.5 no better \
+         than chance.\nwrong: the share of the presses before which the aspect was believed wrong.\nflagged: the estimate \
+         passes the threshold that catches most, with at most {MOST_FALSE_FLAGS} false flags per 20 presses of the human.\n\
+         calibration error: how far the estimated probabilities are from how often they are right; 0 is \
+         best.\ngain: by how much the estimate predicts presses better than a human who knows everything; above 0 it knows \
+         something of beliefs (0.1 nats: presses are 10 % likelier).{few}\n"
+    )
 }

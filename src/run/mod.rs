@@ -15,6 +15,7 @@ pub mod gaze_figures;
 pub mod headless;
 pub mod kitchen;
 pub mod leaving;
+pub mod lesson_report;
 pub mod live;
 pub mod options;
 mod parallel;

@@ -9,29 +9,30 @@ use std::time::Duration;
 use tokio::time::{Instant, sleep_until};
 
 use super::film::Film;
+use super::lesson_report;
 use super::review::ReviewError;
 use super::wizard::spells;
 use crate::base::time::SessionTime;
-use crate::communication::Signal;
+use crate::base::words::count;
 use crate::communication::recommendation::aspects_told;
-use crate::console::model::Level;
+use crate::console::lesson::Feedback;
+use crate::console::model::{Dialog, Level};
 use crate::console::playback::{Playback, SPEEDS};
 use crate::console::words;
-use crate::console::{Command, Keys, Message, Model, update};
+use crate::console::{self, Command, Keys, Message, Model, update};
 use crate::edge::clock::WallTime;
 use crate::edge::files::{FileError, FileResult, key_map};
 use crate::edge::terminal::{Hands, Screen, asked_to_end, theme};
-use crate::edge::training::{self, JudgedRecording, JudgedSignal, TrainingRecord};
+use crate::edge::training::{self, JudgedBelief, JudgedRecording, JudgedSignal, TrainingRecord};
 use crate::kitchen::{Agent, AspectId, Kitchen};
-use crate::measures::matching::{Content, Kind, Said, Tally, WINDOW};
 use crate::measures::wizard::{Sent, Spell, TrainingCriterion, WizardMeasures, Worth, worths};
-use crate::session::Event;
+use crate::mind::BeliefWitness;
+use crate::session::event::SignalEnd;
 use crate::session::settings::{Condition, Visibility};
+use crate::session::{Event, Stamped, apply};
 
 /// At most 30 frames a second.
 const FRAME: Duration = Duration::from_millis(33);
-/// What a signal was stands for so long, in seconds.
-const FEEDBACK_S: f64 = 3.0;
 
 /// What is trained.
 #[derive(Clone, Debug)]
@@ -61,8 +62,8 @@ pub fn train(lesson: &Lesson) -> Result<(TrainingRecord, PathBuf), ReviewError> 
     let minutes = (began.elapsed().as_secs_f64() / 0.6).round() / 100.0;
     let is_complete = recordings.len() == lesson.recordings.len() && recordings.iter().all(|one| one.complete);
     let met = is_complete && lesson.criterion.is_met(&WizardMeasures::sum(recordings.iter().map(|one| &one.measures)));
-    let (wizard, criterion) = (lesson.wizard.clone(), lesson.criterion);
-    let record = TrainingRecord { wizard, at, minutes, criterion, met, recordings };
+    let (wizard, criterion, speed) = (lesson.wizard.clone(), lesson.criterion, Some(SPEEDS[lesson.speed]));
+    let record = TrainingRecord { wizard, at, minutes, speed, criterion, met, recordings };
     let path = training::write(&lesson.out, &record)
         .map_err(|reason| ReviewError::Training { path: lesson.out.clone(), reason })?;
     Ok((record, path))
@@ -98,11 +99,10 @@ async fn watch(
     tokio::pin!(end);
     let mut judged = Vec::new();
     for ((film, spells), recording) in films.into_iter().zip(&lesson.recordings) {
-        let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
-        let mut class = Class::new(film, spells, name, lesson.speed, &screen)?;
+        let mut class = Class::new(film, spells, name_of(recording, lesson), lesson, &screen)?;
         let mut next_frame = Instant::now();
         let mut goes_on = true;
-        while goes_on && !class.is_over() && !screen.is_lost() {
+        while goes_on && !class.is_done() && !screen.is_lost() {
             tokio::select! {
                 biased;
                 _ = &mut end => goes_on = false,
@@ -110,6 +110,7 @@ async fn watch(
                 () = sleep_until(next_frame) => {
                     next_frame = Instant::now() + FRAME;
                     class.play();
+                    class.conclude();
                     class.draw(&mut screen).map_err(ReviewError::Terminal)?;
                 }
             }
@@ -122,14 +123,26 @@ async fn watch(
     Ok(judged)
 }
 
+/// What a recording is called in the records: those that were simulated for the training by their length, too.
+fn name_of(recording: &Path, lesson: &Lesson) -> String {
+    let simulated = recording.strip_prefix(lesson.out.join("recordings")).ok();
+    let name = simulated.or(recording.file_name().map(Path::new)).unwrap_or(recording);
+    name.display().to_string()
+}
+
 /// A recording that is watched.
 struct Class {
     film: Film,
     name: String,
     spells: Vec<Spell>,
+    /// What is known of each of them.
+    beliefs: Vec<JudgedBelief>,
+    criterion: TrainingCriterion,
     model: Model,
     sent: Vec<Sent>,
     signals: Vec<JudgedSignal>,
+    /// What came of it was shown.
+    concluded: bool,
     /// Of each spell, whether it was said that it was missed.
     told_missed: Vec<bool>,
     now: SessionTime,
@@ -138,20 +151,32 @@ struct Class {
 }
 
 impl Class {
-    fn new(film: Film, spells: Vec<Spell>, name: String, speed: usize, screen: &Screen) -> Result<Class, ReviewError> {
+    fn new(
+        film: Film,
+        spells: Vec<Spell>,
+        name: String,
+        lesson: &Lesson,
+        screen: &Screen,
+    ) -> Result<Class, ReviewError> {
         let spec = &film.session.spec;
         let keys = Keys::training(&film.session.kitchen, spec, &key_map(film.replay.log().header.keys.as_ref())?)?;
         let size = Screen::size().map_err(ReviewError::Terminal)?;
         let mut model = Model::new(keys, theme(&spec.console, screen.ground), size);
-        model.playback = Some(Playback { speed, ..Playback::new("training".to_string()) });
+        model.playback = Some(Playback { speed: lesson.speed, ..Playback::new(name.clone()) });
+        model.lesson =
+            Some(console::lesson::Lesson { task: lesson_report::task(&lesson.criterion), ..Default::default() });
+        let beliefs = spells.iter().map(|spell| lesson_report::unheard(&film.session, spell)).collect();
         let (now, told_missed) = (Instant::now(), vec![false; spells.len()]);
         let mut class = Class {
             film,
             name,
             spells,
+            beliefs,
+            criterion: lesson.criterion,
             model,
             sent: Vec::new(),
             signals: Vec::new(),
+            concluded: false,
             told_missed,
             now: SessionTime::ZERO,
             opened: now,
@@ -166,12 +191,28 @@ impl Class {
         self.film.position == self.film.length().1
     }
 
+    /// Whether it is over, and what came of it was read.
+    fn is_done(&self) -> bool {
+        self.concluded && self.model.dialog.is_none()
+    }
+
+    /// Shows what came of it, once.
+    fn conclude(&mut self) {
+        if self.is_over() && !self.concluded {
+            self.concluded = true;
+            let judged = self.judged(&[]);
+            let lines = lesson_report::lines(&[&judged], &self.criterion);
+            (self.model.dialog, self.model.help_from) = (Some(Dialog::Report(lines)), 0);
+        }
+    }
+
     /// Takes a message of the terminal; whether it goes on.
     fn take(&mut self, message: Message) -> bool {
         self.tick();
+        self.model.now = self.now;
         match update(&mut self.model, &self.film.session, message) {
             Some(Command::Quit) => return false,
-            Some(Command::Input(Event::SignalShown { signal, .. })) => self.signal(signal),
+            Some(Command::Input(shown @ Event::SignalShown { .. })) => self.signal(shown),
             Some(Command::Start(_) | Command::Input(Event::TrialPaused | Event::TrialResumed)) => self.pause(),
             _ => {}
         }
@@ -184,18 +225,40 @@ impl Class {
             playback.playing = !playback.playing;
             let text = if playback.playing { "it runs" } else { "it stands" };
             self.model.say(Level::Done, text);
+            if let Some(lesson) = &mut self.model.lesson {
+                lesson.begun = true;
+            }
         }
     }
 
+    /// Says what a signal was, or what was missed; it can be looked back on.
+    fn tell(&mut self, level: Level, text: String) {
+        let clock = self.film.session.trial_clock(self.now);
+        if let Some(lesson) = &mut self.model.lesson {
+            lesson.feedback.push(Feedback { clock, level, text });
+        }
+        self.model.notice = None;
+    }
+
+    /// Shows a signal as a session does, on the timeline and as what the participant would see. Nobody sees it: so what
+    /// cannot be is left out.
+    fn show(&mut self, event: Event) {
+        let shown = Stamped { seq: self.film.position as u64, time: self.now.max(self.film.session.time), event };
+        let _ = apply(&mut self.film.session, &shown);
+    }
+
     /// Judges a signal, and says at once what it was.
-    fn signal(&mut self, signal: Signal) {
+    fn signal(&mut self, shown: Event) {
+        let Event::SignalShown { signal, .. } = &shown else { return };
+        let signal = signal.clone();
         let session = &self.film.session;
         let (clock, press) = (session.trial_clock(self.now), session.presses[Agent::Human.index()]);
         let aspects = aspects_told(&session.kitchen, session.state, &signal);
         self.sent.push(Sent { clock, press, aspects, to_display_ms: None, taken_back: false });
         let words = words::signal(&signal);
-        self.signals.push(JudgedSignal { press, clock_ns: clock, signal });
         let Some(worth) = worths(&self.sent, &self.spells).pop() else { return };
+        self.signals.push(JudgedSignal { press, clock_ns: clock, signal, worth: worth.name().to_string() });
+        self.show(shown);
         let (level, text) = match worth {
             Worth::Hit { latency_s, .. } => (Level::Done, format!("hit: believed wrong for {latency_s:.1} s")),
             Worth::Again => (Level::Done, "told already".to_string()),
@@ -206,14 +269,14 @@ impl Class {
             }
             Worth::Needless => (Level::Refused, "wrong: nothing is believed wrong".to_string()),
         };
-        self.model.say(level, format!("{words}: {text}"));
+        self.tell(level, format!("{words}: {text}"));
     }
 
     /// What is believed wrong at a moment.
     fn wrong_now(&self, clock: SessionTime) -> String {
-        let open = |spell: &&Spell| spell.began <= clock && spell.corrected.is_none_or(|(end, _)| clock < end);
         let kitchen = &self.film.session.kitchen;
-        let names: Vec<String> = self.spells.iter().filter(open).map(|spell| name(kitchen, spell.aspect)).collect();
+        let open = self.spells.iter().filter(|spell| spell.holds(clock));
+        let names: Vec<String> = open.map(|spell| name(kitchen, spell.aspect)).collect();
         names.join(", ")
     }
 
@@ -232,11 +295,31 @@ impl Class {
         let until = self.film.until(self.now);
         while self.film.position < until {
             let Some(stamped) = self.film.forward() else { break };
-            if let Event::Gaze(sample) = stamped.event {
-                self.model.see(stamped.time, sample);
+            match stamped.event.clone() {
+                Event::Gaze(sample) => {
+                    let time = stamped.time;
+                    self.model.see(time, sample);
+                }
+                Event::ParticipantBelieves(witness) => self.hear(&witness),
+                _ => {}
             }
         }
         self.tick();
+        if self.film.session.shown.as_ref().is_some_and(|shown| shown.until <= self.now) {
+            self.show(Event::SignalEnded { reason: SignalEnd::Elapsed });
+        }
+        self.say_missed();
+    }
+
+    /// Takes over what is believed wrong now.
+    fn hear(&mut self, witness: &BeliefWitness) {
+        let session = &self.film.session;
+        let clock = session.trial_clock(session.time);
+        let open = self.spells.iter().zip(&mut self.beliefs).filter(|(spell, _)| spell.holds(clock));
+        open.for_each(|(spell, belief)| lesson_report::hear(belief, session, spell.aspect, witness));
+    }
+
+    fn say_missed(&mut self) {
         let clock = self.film.session.trial_clock(self.now);
         let hits = self.hits();
         for index in 0..self.spells.len() {
@@ -244,9 +327,14 @@ impl Class {
             let is_over = spell.corrected.is_some_and(|(end, _)| end <= clock);
             if is_over && spell.errors > 0 && !hits.contains(&index) && !self.told_missed[index] {
                 self.told_missed[index] = true;
-                let text =
-                    format!("missed: {}, with {} errors", name(&self.film.session.kitchen, spell.aspect), spell.errors);
-                self.model.say(Level::Refused, text);
+                let errors = count(spell.errors, "error", "errors");
+                let belief = &self.beliefs[index];
+                let text = format!(
+                    "missed, with {errors}: {}; {}",
+                    lesson_report::about(belief),
+                    lesson_report::right(belief)
+                );
+                self.tell(Level::Refused, text);
             }
         }
     }
@@ -272,12 +360,8 @@ impl Class {
         let measures = self.measures();
         let wrong = measures.wrong_targets.unwrap_or(0) + measures.needless.unwrap_or(0);
         let missed = self.told_missed.iter().filter(|&&told| told).count();
-        let is_running = self.model.playback.as_ref().is_some_and(|playback| playback.playing);
-        let key = if is_running { "" } else { "press . to start; " };
-        let score = format!("{key}training: {} hit, {missed} missed, {wrong} wrong", measures.hits.unwrap_or(0));
-        // The score stands where nothing else is said.
-        if self.model.notice.as_ref().is_none_or(|notice| self.model.clock.secs_since(notice.at) > FEEDBACK_S) {
-            self.model.say(Level::Done, score);
+        if let Some(lesson) = &mut self.model.lesson {
+            lesson.score = format!("{} hit, {missed} missed, {wrong} wrong", measures.hits.unwrap_or(0));
         }
         self.model.now = self.now;
         let (length, events) = self.film.length();
@@ -288,6 +372,16 @@ impl Class {
         screen.draw(&self.film.session, &self.model)
     }
 
+    /// The false beliefs that led to errors, as far as they have begun.
+    fn judged_beliefs(&self) -> Vec<JudgedBelief> {
+        let clock = self.film.session.trial_clock(self.now);
+        let worths = worths(&self.sent, &self.spells);
+        let hit_by =
+            |index: usize| worths.iter().position(|worth| matches!(worth, Worth::Hit { spell, .. } if *spell == index));
+        let begun = self.spells.iter().enumerate().filter(|(_, spell)| spell.errors > 0 && spell.began <= clock);
+        begun.map(|(index, _)| JudgedBelief { hit_by: hit_by(index), ..self.beliefs[index].clone() }).collect()
+    }
+
     /// What is kept of it.
     fn judged(&self, before: &[TrainingRecord]) -> JudgedRecording {
         let mut judged = JudgedRecording {
@@ -295,63 +389,18 @@ impl Class {
             complete: self.is_over(),
             presses: self.film.session.presses[Agent::Human.index()],
             signals: self.signals.clone(),
+            beliefs: self.judged_beliefs(),
             measures: self.measures(),
             kappa_with_oneself: None,
         };
         let earlier = before.iter().rev().flat_map(|record| &record.recordings);
         let earlier = earlier.filter(|one| one.recording == judged.recording && one.complete && judged.complete);
         let kitchen = &self.film.session.kitchen;
-        judged.kappa_with_oneself = earlier.take(1).find_map(|one| with_oneself(kitchen, one, &judged));
+        judged.kappa_with_oneself = earlier.take(1).find_map(|one| lesson_report::with_oneself(kitchen, one, &judged));
         judged
     }
 }
 
-/// Kappa of two times that the same recording was watched.
-fn with_oneself(kitchen: &Kitchen, one: &JudgedRecording, other: &JudgedRecording) -> Option<f64> {
-    let said = |signal: &JudgedSignal| {
-        let kind = match signal.signal {
-            Signal::ShowRecipe(_) => Kind::Recipe,
-            Signal::Highlight(_) => Kind::Highlight,
-        };
-        let content = Content { kind, target: kitchen.location_named(signal.signal.target()) };
-        Said { press: signal.press, clock: signal.clock_ns, content }
-    };
-    let [one, again] = [one, other].map(|time| time.signals.iter().map(said).collect::<Vec<Said>>());
-    let mut tally = Tally::default();
-    tally.add(&one, &again, other.presses, WINDOW);
-    tally.similarity().kappa
-}
-
 fn name(kitchen: &Kitchen, aspect: AspectId) -> String {
     kitchen.aspects[aspect.index()].name.replace('_', " ")
-}
-
-/// What came of it, for people.
-pub fn describe(record: &TrainingRecord, path: &Path) -> String {
-    let mut text = String::new();
-    for one in &record.recordings {
-        let measures = &one.measures;
-        let latency =
-            measures.latency_s.map_or(String::new(), |times| format!(" after {:.1} s in the median", times.median));
-        let wrong = measures.wrong_targets.unwrap_or(0) + measures.needless.unwrap_or(0);
-        let kappa =
-            one.kappa_with_oneself.map_or(String::new(), |kappa| format!("; kappa with the time before {kappa:.2}"));
-        let cut = if one.complete { "" } else { " (left before its end)" };
-        text += &format!(
-            "{}{cut}: {} of {} hit{latency}, {wrong} of {} signals wrong{kappa}\n",
-            one.recording,
-            measures.hits.unwrap_or(0),
-            measures.episodes.unwrap_or(0),
-            measures.signals,
-        );
-    }
-    let met = if record.met { "met" } else { "not met" };
-    text += &format!(
-        "criterion {met}: at least {:.0} % hit, at most {:.0} % of the signals wrong; {:.1} minutes\nrecorded in {}\n",
-        100.0 * record.criterion.hits,
-        100.0 * record.criterion.wrong,
-        record.minutes,
-        path.display()
-    );
-    text
 }

@@ -17,6 +17,21 @@ use crate::session::Session;
 const COLUMN_S: f64 = 1.0;
 const LABELS: u16 = 10;
 
+const TITLE: &str = "Wizard and assistant";
+/// Columns of what the title line says at its right.
+const REMARK: u16 = 32;
+
+/// Where there is room for a line in the comparison's title.
+pub(super) fn title_room(regions: &Regions) -> Option<Rect> {
+    let area = regions.comparison;
+    if regions.room == Room::Small || area.area() == 0 {
+        return None;
+    }
+    let from = area.x + 1 + width(TITLE) + 2;
+    let until = area.right().saturating_sub(REMARK);
+    Some(Rect { x: from, y: area.y, width: until.saturating_sub(from), height: 1 })
+}
+
 /// Draws the comparison.
 pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
     let area = regions.comparison;
@@ -25,7 +40,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let window = compared.seen.as_ref().map(|seen| format!("matched within {} presses", seen.window));
     let inside = match is_small {
         true => area,
-        false => brush.panel(area, "Wizard and assistant", &window.unwrap_or_default()),
+        false => brush.panel(area, TITLE, &window.unwrap_or_default()),
     };
     let Some(seen) = &compared.seen else {
         let quiet = brush.style(Role::Quiet);
@@ -125,12 +140,17 @@ impl View<'_> {
 
 /// How alike the first lane and this one are.
 fn figures_line(brush: &mut Brush, inside: Rect, y: u16, seen: &Comparison, lane: usize) {
+    let name = format!("{:<9}", seen.lanes[lane].name);
+    if seen.lanes[0].spoken.is_empty() {
+        let text = format!("no signals by the {} yet: nothing to hold against", seen.lanes[0].name);
+        brush.parts(inside.x + 1, y, inside.width - 1, &[(&name, Role::Strong), (&text, Role::Quiet)]);
+        return;
+    }
     let found = &seen.pairs[lane - 1].similarity;
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let lead = found.median_lead_s.map_or("-".to_string(), |lead| format!("{lead:+.1} s"));
     let [recall, precision, f1] = [found.strict.recall, found.strict.precision, found.strict.f1].map(number);
     let (kappa, chance) = (number(found.kappa), number(found.chance_recall));
-    let name = format!("{:<9}", seen.lanes[lane].name);
     let text = match inside.width >= ROOMY_COLUMNS - 8 {
         true => format!(
             "recall {recall} (chance {chance})  precision {precision}  F1 {f1}  kappa {kappa}  lead {lead}   \

@@ -22,6 +22,7 @@ pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
         Some(Dialog::Note(line)) => hands::note(brush, screen, line),
         Some(Dialog::Help) => help(brush, screen, model),
         Some(Dialog::Difference(lines)) => difference(brush, screen, lines),
+        Some(Dialog::Report(lines)) => report(brush, screen, lines, model),
         Some(Dialog::EndTrial) => ask(brush, screen, "End the trial?", &["It cannot be resumed after that."], "y"),
         Some(Dialog::Quit) => {
             let lines: &[&str] = match session.phase {
@@ -91,6 +92,41 @@ fn difference(brush: &mut Brush, screen: Rect, lines: &[String]) {
         let style = brush.style(if *is_head { Role::Strong } else { Role::Text });
         brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, style);
     }
+}
+
+/// The lines of a report as they are broken on a screen of this size, and how many of them fit.
+fn report_lines(lines: &[String], size: (u16, u16)) -> (u16, Vec<String>, usize) {
+    let columns = size.0.saturating_sub(4).min(110);
+    let broken = lines.iter().flat_map(|line| {
+        let text = line.trim_start();
+        let indent = " ".repeat(line.len() - text.len());
+        let columns = columns.saturating_sub(4 + width(&indent));
+        wrap(text, columns).into_iter().map(move |part| format!("{indent}{part}"))
+    });
+    (columns, broken.collect(), usize::from(size.1.saturating_sub(6)))
+}
+
+/// How many lines of the open report are below those that fit.
+pub fn report_rest(model: &Model) -> usize {
+    let Some(Dialog::Report(lines)) = &model.dialog else { return 0 };
+    let (_, lines, rows) = report_lines(lines, model.size);
+    lines.len().saturating_sub(rows)
+}
+
+/// What came of a training.
+fn report(brush: &mut Brush, screen: Rect, lines: &[String], model: &Model) {
+    let (columns, lines, rows) = report_lines(lines, (screen.width, screen.height));
+    let rest = lines.len().saturating_sub(rows);
+    let from = model.help_from.min(rest);
+    let remark = if rest == 0 { "" } else { "up, down: more" };
+    let size = (columns, lines.len().min(rows) as u16 + 4);
+    let inside = open(brush, screen, size, "The training is over", remark);
+    for (row, line) in lines.iter().skip(from).take(rows).enumerate() {
+        let style = brush.style(if from + row == 0 { Role::Strong } else { Role::Text });
+        brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, style);
+    }
+    let parts = [("enter", Role::Strong), (" goes on; it is recorded, too", Role::Quiet)];
+    brush.parts(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 2, &parts);
 }
 
 /// The columns of a line of the help, with its key, at least.

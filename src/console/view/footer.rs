@@ -1,12 +1,15 @@
 //! The key line: which layer is active, what the keys do now, and what was said last.
 
+use ratatui::style::Style;
+
 use super::paint::{Brush, width};
 use super::regions::Regions;
 use super::theme::Role;
+use super::{comparison, timeline};
 use crate::console::form::sheet;
 use crate::console::hands::Hand;
 use crate::console::keys::{Action, Binding, Layer};
-use crate::console::model::{Dialog, Level, Model};
+use crate::console::model::{Dialog, Level, Model, Notice};
 use crate::console::panels::Look;
 use crate::console::playback::Move;
 use crate::session::protocol::StudyPhase;
@@ -35,6 +38,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         x = brush.text(x, area.y, area.width, label, badge);
     }
     let notice = model.notice.as_ref().filter(|notice| model.clock.secs_since(notice.at) < NOTICE_S);
+    let notice = notice.filter(|notice| !above(brush, regions, notice));
     // An alarm may take the place of the keys.
     let most = if notice.is_some_and(|notice| notice.level == Level::Alarm) { area.width } else { area.width / 2 };
     let said = notice.map_or(0, |notice| width(&notice.text) + 3).min(most);
@@ -73,12 +77,25 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         x = brush.parts(x + 2, area.y, end - x, &[(&key, key_style), (" ", Role::Text), (label, Role::Quiet)]);
     }
     if let Some(notice) = notice {
-        let style = match notice.level {
-            Level::Done => brush.style(Role::Strong),
-            Level::Refused => brush.theme.badge(Role::Strong),
-            Level::Alarm => brush.theme.badge(Role::Alarm),
-        };
+        let style = style_of(brush, notice);
         brush.text_right(area.right(), area.y, said, &format!(" {} ", notice.text), style);
+    }
+}
+
+/// Says it in a title line above, where that has room for it, so that it takes no key its place; whether it did.
+fn above(brush: &mut Brush, regions: &Regions, notice: &Notice) -> bool {
+    let room = timeline::title_room(brush, regions).or_else(|| comparison::title_room(regions));
+    let Some(room) = room.filter(|room| width(&notice.text) + 4 <= room.width) else { return false };
+    let style = style_of(brush, notice);
+    brush.text(room.x, room.y, room.width, &format!(" {} ", notice.text), style);
+    true
+}
+
+fn style_of(brush: &Brush, notice: &Notice) -> Style {
+    match notice.level {
+        Level::Done => brush.style(Role::Strong),
+        Level::Refused => brush.theme.badge(Role::Strong),
+        Level::Alarm => brush.theme.badge(Role::Alarm),
     }
 }
 
@@ -130,6 +147,17 @@ fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&
         };
     }
     match binding.action {
+        Action::Advance if model.lesson.is_some() => {
+            let runs = model.playback.as_ref().is_some_and(|playback| playback.playing);
+            let begun = model.lesson.as_ref().is_some_and(|lesson| lesson.begun);
+            Some(if runs {
+                "pause"
+            } else if begun {
+                "go on"
+            } else {
+                "start"
+            })
+        }
         Action::Advance => match session.phase {
             Phase::Ready => Some("start"),
             Phase::Running => Some("pause"),

@@ -21,7 +21,8 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let name = if is_tight { "" } else { "tomcom" };
     let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
     let badge = brush.theme.badge(phase_role(session.phase));
-    x = brush.text(x, area.y, 19, &format!(" {} ", words::stage(session)), badge) + gap;
+    let stage = if model.lesson.is_some() { "TRAINING".to_string() } else { words::stage(session) };
+    x = brush.text(x, area.y, 19, &format!(" {stage} "), badge) + gap;
     if let (Some(label), None) = (series(session), &model.playback) {
         x = brush.text(x, area.y, area.right() - x, &label, strong) + gap;
     }

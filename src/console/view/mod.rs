@@ -10,6 +10,7 @@ pub mod gaze;
 pub mod hands;
 pub mod head;
 pub mod kitchen;
+pub mod lesson;
 pub mod paint;
 pub mod picker;
 pub mod recommendation;
@@ -42,6 +43,7 @@ pub fn view(session: &Session, model: &Model, frame: &mut Frame) {
     belief::draw(&mut brush, &regions, session, model);
     recommendation::draw(&mut brush, &regions, session, model);
     gaze::draw_map(&mut brush, &regions, session, model);
+    lesson::draw(&mut brush, &regions, model);
     shown::draw(&mut brush, &regions, session, model);
     robot::draw(&mut brush, &regions, session, model);
     gaze::draw(&mut brush, &regions, session, model);
@@ -72,6 +74,7 @@ fn too_small(brush: &mut Brush, session: &Session, model: &Model) {
         }
         Some(Dialog::Note(_)) => "A note: enter keeps it, esc leaves",
         Some(Dialog::Difference(_)) => "What each knew needs more room; any key closes it",
+        Some(Dialog::Report(_)) => "What came of the training needs more room; enter goes on",
         None => return,
     };
     let strong = brush.style(Role::Strong);

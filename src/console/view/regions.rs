@@ -43,6 +43,8 @@ pub struct Regions {
     pub timeline: Rect,
     /// Wizard and assistants side by side, in the place of the timeline.
     pub comparison: Rect,
+    /// What a training says, in the room of what the wizard may not see.
+    pub lesson: Rect,
     pub footer: Rect,
 }
 
@@ -55,7 +57,24 @@ impl Regions {
     /// Deals out a terminal of `size` columns and rows to what this console shows.
     pub fn showing(size: (u16, u16), session: &Session, model: &Model) -> Regions {
         let assistants = |compared: &Compared| compared.seen.as_ref().map_or(1, |seen| seen.pairs.len()) as u16;
-        Regions::with(size, session.spec.console.visibility, model.alone, model.comparison.as_ref().map(assistants))
+        let compared = model.comparison.as_ref().map(assistants);
+        let regions = Regions::with(size, session.spec.console.visibility, model.alone, compared);
+        if model.lesson.is_some() { regions.teaching() } else { regions }
+    }
+
+    /// Makes room for what a training says: below the gaze map, or else above the timeline.
+    fn teaching(self) -> Regions {
+        match self.gaze_map.area() {
+            0 if self.kitchen.area() == 0 => self,
+            0 => {
+                let (kitchen, lesson) = bottom(self.kitchen, if self.room == Room::Small { 3 } else { 7 });
+                Regions { kitchen, lesson, ..self }
+            }
+            _ => {
+                let (gaze_map, lesson) = bottom(self.gaze_map, self.gaze_map.height / 2);
+                Regions { gaze_map, lesson, ..self }
+            }
+        }
     }
 
     /// Deals it out to all panels but the comparison, or to one alone.
@@ -89,6 +108,7 @@ impl Regions {
             events: blank,
             timeline: blank,
             comparison,
+            lesson: blank,
             footer,
         };
         match room {

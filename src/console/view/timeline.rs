@@ -15,6 +15,7 @@ use crate::session::{Entry, Happening, Phase, Session};
 /// The width of a column in seconds.
 const COLUMN_S: f64 = 0.5;
 const LABELS: u16 = 10;
+const TITLE: &str = "Timeline";
 
 /// Draws the timeline.
 pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
@@ -23,9 +24,10 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         return;
     }
     let is_small = regions.room == Room::Small;
-    let inside = if is_small { area } else { brush.panel(area, "Timeline", &legend(brush)) };
+    let inside = if is_small { area } else { brush.panel(area, TITLE, &legend(brush)) };
     let rows: &[&str] = match is_small {
-        true => &["", "human", "robot", "wizard"],
+        // Signals, orders and notes share a row.
+        true => &["", "human", "robot", "events"],
         false => &["", "human", "robot", "signals", "orders", "notes"],
     };
     let quiet = brush.style(Role::Quiet);
@@ -90,6 +92,17 @@ fn place(brush: &mut Brush, plot: Rect, marks: &[Mark]) {
             }
         }
     }
+}
+
+/// Where there is room for a line in the timeline's title, between its name and what its signs mean.
+pub(super) fn title_room(brush: &Brush, regions: &Regions) -> Option<Rect> {
+    let area = regions.timeline;
+    if regions.room == Room::Small || area.area() == 0 {
+        return None;
+    }
+    let from = area.x + 1 + width(TITLE) + 2;
+    let until = area.right().saturating_sub(width(&legend(brush)) + 4);
+    Some(Rect { x: from, y: area.y, width: until.saturating_sub(from), height: 1 })
 }
 
 fn legend(brush: &Brush) -> String {

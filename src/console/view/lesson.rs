@@ -1,0 +1,54 @@
+//! A wizard's training: the task, and then what each signal was, the newest on top.
+
+use super::paint::{Brush, wrap};
+use super::regions::{Regions, Room};
+use super::theme::Role;
+use crate::console::lesson::{Feedback, Lesson};
+use crate::console::model::{Level, Model};
+
+/// Columns of the clock before what is said.
+const CLOCK: u16 = 6;
+
+/// Draws what the training says.
+pub fn draw(brush: &mut Brush, regions: &Regions, model: &Model) {
+    let area = regions.lesson;
+    let Some(lesson) = model.lesson.as_ref().filter(|_| area.area() > 0) else { return };
+    let inside = match regions.room {
+        Room::Small => area,
+        _ => brush.panel(area, "Training", &lesson.score),
+    };
+    let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+    let mut y = inside.y;
+    for (clock, text, role) in lines(lesson) {
+        let indent = if clock.is_empty() { 0 } else { CLOCK };
+        for (row, line) in wrap(&text, columns.saturating_sub(indent)).iter().enumerate() {
+            if y >= inside.bottom() {
+                return;
+            }
+            if row == 0 {
+                let quiet = brush.style(Role::Quiet);
+                brush.text(x, y, indent, &clock, quiet);
+            }
+            let style = brush.style(role);
+            brush.text(x + indent, y, columns.saturating_sub(indent), line, style);
+            y += 1;
+        }
+    }
+}
+
+/// What is said, each with the trial's clock, or without one.
+fn lines(lesson: &Lesson) -> Vec<(String, String, Role)> {
+    if lesson.feedback.is_empty() {
+        return lesson.task.iter().map(|text| (String::new(), text.clone(), Role::Text)).collect();
+    }
+    let newest = lesson.feedback.iter().rev().enumerate();
+    let line = |(back, Feedback { clock, level, text }): (usize, &Feedback)| {
+        let role = match (back, level) {
+            (_, Level::Refused | Level::Alarm) => Role::FalseBelief,
+            (0, Level::Done) => Role::Strong,
+            (_, Level::Done) => Role::Text,
+        };
+        (format!("{:>5}", clock.to_string()), text.clone(), role)
+    };
+    newest.map(line).collect()
+}

@@ -1,0 +1,173 @@
+//! What is asked in a wizard's training, and what came of it: every false belief that led to errors, what would have been right
+//! about it, and the score, for people.
+
+use std::path::Path;
+
+use crate::base::words::count;
+use crate::communication::recommendation::{aspects_told, phrase};
+use crate::communication::{Signal, signals, unavailable};
+use crate::console::words;
+use crate::edge::training::{JudgedBelief, JudgedRecording, JudgedSignal, TrainingRecord};
+use crate::kitchen::{AspectId, Kitchen};
+use crate::measures::matching::{Content, Kind, Said, Tally, WINDOW};
+use crate::measures::wizard::{Spell, TrainingCriterion, WizardMeasures};
+use crate::mind::BeliefWitness;
+use crate::session::Session;
+
+/// With fewer false beliefs that led to errors the shares say little: at 10 a share of 60 % is known to within 30 %.
+const TELLING: u64 = 10;
+
+/// What a spell was about, as it is known before anything was said of it.
+pub fn unheard(session: &Session, spell: &Spell) -> JudgedBelief {
+    JudgedBelief {
+        aspect: session.kitchen.aspects[spell.aspect.index()].name.clone(),
+        began_ns: spell.began,
+        corrected_ns: spell.corrected.map(|(end, _)| end),
+        errors: spell.errors,
+        believed: String::new(),
+        truth: String::new(),
+        signal: None,
+        hit_by: None,
+    }
+}
+
+/// Takes over what the participant believes now, and which signal would tell the truth.
+pub fn hear(belief: &mut JudgedBelief, session: &Session, aspect: AspectId, witness: &BeliefWitness) {
+    let kitchen = &session.kitchen;
+    let Some(told) = witness.aspects.get(aspect.index()) else { return };
+    let truth = &kitchen.aspects[aspect.index()].labels[kitchen.true_value(session.state, aspect)];
+    belief.believed.clone_from(&told.believes);
+    belief.truth.clone_from(truth);
+    let tells = |signal: &Signal| {
+        unavailable(kitchen, session.state, signal).is_none()
+            && aspects_told(kitchen, session.state, signal).contains(&aspect)
+    };
+    let right = signals(kitchen, session.spec.signals.own_hand).into_iter().map(|(_, signal)| signal).find(tells);
+    belief.signal = right.or(belief.signal.take());
+}
+
+/// "recipe of tuna nigiri: believed salmon nigiri, truly tuna nigiri".
+pub fn about(belief: &JudgedBelief) -> String {
+    let what = belief.aspect.replace('_', " ");
+    match (belief.believed.as_str(), belief.truth.as_str()) {
+        ("", _) => what,
+        (believed, truth) if believed == truth => format!("{what}: unsure of {}", phrase(truth)),
+        (believed, truth) => format!("{what}: believed {}, truly {}", phrase(believed), phrase(truth)),
+    }
+}
+
+/// What would have been right.
+pub fn right(belief: &JudgedBelief) -> String {
+    belief.signal.as_ref().map_or("no signal could tell it".to_string(), |signal| {
+        format!("right would have been: {}", words::signal(signal))
+    })
+}
+
+/// What is asked of the wizard, and what counts.
+pub fn task(criterion: &TrainingCriterion) -> Vec<String> {
+    vec![
+        "Press . to start.".to_string(),
+        "When the participant believes something wrong, press the key of the place or order it is about, as in a session."
+            .to_string(),
+        "A hit is the first signal about a false belief that leads to an error, while it is held.".to_string(),
+        format!(
+            "Asked: at least {:.0} % of these beliefs hit, at most {:.0} % of the signals wrong.",
+            100.0 * criterion.hits,
+            100.0 * criterion.wrong
+        ),
+    ]
+}
+
+/// How it ended, in lines: how it is held against the criterion, and each false belief that led to errors.
+pub fn lines(recordings: &[&JudgedRecording], criterion: &TrainingCriterion) -> Vec<String> {
+    let sum = WizardMeasures::sum(recordings.iter().map(|one| &one.measures));
+    let mut lines = vec![held_against(&sum, criterion)];
+    let episodes = sum.episodes.unwrap_or(0);
+    if episodes < TELLING {
+        lines.push(format!(
+            "{} that led to errors: so few say little. Watch for longer (--seconds), or more recordings.",
+            count(episodes, "false belief", "false beliefs")
+        ));
+    }
+    for recording in recordings {
+        lines.extend(recording.beliefs.iter().flat_map(|belief| told(belief, &recording.signals)));
+    }
+    lines
+}
+
+/// "1 of 2 hit (50 %, asked: at least 60 %); 3 of 9 signals wrong (33 %, asked: at most 40 %)".
+fn held_against(sum: &WizardMeasures, criterion: &TrainingCriterion) -> String {
+    let wrong = sum.wrong_targets.unwrap_or(0) + sum.needless.unwrap_or(0);
+    let share = |part: u64, all: u64| match all {
+        0 => "-".to_string(),
+        all => format!("{:.0} %", 100.0 * part as f64 / all as f64),
+    };
+    let (hits, episodes) = (sum.hits.unwrap_or(0), sum.episodes.unwrap_or(0));
+    format!(
+        "{hits} of {episodes} hit ({}, asked: at least {:.0} %); {wrong} of {} wrong ({}, asked: at most {:.0} %)",
+        share(hits, episodes),
+        100.0 * criterion.hits,
+        count(sum.signals, "signal", "signals"),
+        share(wrong, sum.signals),
+        100.0 * criterion.wrong,
+    )
+}
+
+/// A false belief: when, what was believed, what would have been right, what was sent meanwhile.
+fn told(belief: &JudgedBelief, signals: &[JudgedSignal]) -> [String; 2] {
+    let end = belief.corrected_ns.map_or("the end".to_string(), |end| end.to_string());
+    let errors = count(belief.errors, "error", "errors");
+    let head = format!("{} to {end}  {}; {errors}", belief.began_ns, about(belief));
+    if let Some(signal) = belief.hit_by.and_then(|index| signals.get(index)) {
+        let after_s = signal.clock_ns.secs_since(belief.began_ns);
+        return [head, format!("    hit after {after_s:.1} s by: {}", words::signal(&signal.signal))];
+    }
+    let meanwhile = signals.iter().filter(|signal| {
+        belief.began_ns <= signal.clock_ns && belief.corrected_ns.is_none_or(|end| signal.clock_ns < end)
+    });
+    let sent: Vec<String> = meanwhile
+        .map(|signal| format!("{} at {} ({})", words::signal(&signal.signal), signal.clock_ns, signal.worth))
+        .collect();
+    let sent = if sent.is_empty() { "nothing".to_string() } else { sent.join(", ") };
+    [head, format!("    missed; {}; sent meanwhile: {sent}", right(belief))]
+}
+
+/// What came of a training, for people.
+pub fn describe(record: &TrainingRecord, path: &Path) -> String {
+    let mut text = String::new();
+    for one in &record.recordings {
+        let measures = &one.measures;
+        let latency =
+            measures.latency_s.map_or(String::new(), |times| format!(", after {:.1} s in the median", times.median));
+        let kappa =
+            one.kappa_with_oneself.map_or(String::new(), |kappa| format!("; kappa with the time before {kappa:.2}"));
+        let cut = if one.complete { "" } else { " (left before its end: does not meet the criterion)" };
+        let signals = count(measures.signals, "signal", "signals");
+        text += &format!("{}{cut}: {signals}{latency}{kappa}\n", one.recording);
+    }
+    let recordings: Vec<&JudgedRecording> = record.recordings.iter().collect();
+    text.extend(lines(&recordings, &record.criterion).iter().map(|line| format!("{line}\n")));
+    let met = if record.met { "met" } else { "not met" };
+    let speed = match record.speed {
+        Some(speed) if speed != 1.0 => format!(", played {speed} times as fast as it was"),
+        _ => String::new(),
+    };
+    text += &format!("criterion {met}; {:.1} minutes{speed}\nrecorded in {}\n", record.minutes, path.display());
+    text
+}
+
+/// Kappa of two times that the same recording was watched.
+pub fn with_oneself(kitchen: &Kitchen, one: &JudgedRecording, other: &JudgedRecording) -> Option<f64> {
+    let said = |signal: &JudgedSignal| {
+        let kind = match signal.signal {
+            Signal::ShowRecipe(_) => Kind::Recipe,
+            Signal::Highlight(_) => Kind::Highlight,
+        };
+        let content = Content { kind, target: kitchen.location_named(signal.signal.target()) };
+        Said { press: signal.press, clock: signal.clock_ns, content }
+    };
+    let [one, again] = [one, other].map(|time| time.signals.iter().map(said).collect::<Vec<Said>>());
+    let mut tally = Tally::default();
+    tally.add(&one, &again, other.presses, WINDOW);
+    tally.similarity().kappa
+}

@@ -18,6 +18,7 @@ use tomcom::console::belief::{self, Moment};
 use tomcom::console::calibration::Best;
 use tomcom::console::comparison::{Compared, Comparison, Known, Lane, Spoken, What};
 use tomcom::console::keys::{KeyPlace, Layer};
+use tomcom::console::lesson::{Feedback, Lesson};
 use tomcom::console::model::{Dialog, Level, Recording};
 use tomcom::console::panels::Panel;
 use tomcom::console::picker::{Picker, Question};
@@ -263,6 +264,40 @@ fn a_gaze_map_fills_the_room_of_what_the_wizard_may_not_see() {
     stage.session.spec.console.visibility = Visibility::State;
     stage.model.see(stage.model.now, GazeSample::new(0.30, 0.4, 0.97));
     insta::assert_snapshot!("gaze_map_120x40", stage.screen((120, 40)));
+}
+
+#[test]
+fn a_training_says_what_to_do_keeps_what_it_said_and_ends_when_that_is_read() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.console.visibility = Visibility::State;
+    stage.model.playback = Some(Playback::new("seed1-S001".to_string()));
+    let task = ["Press . to start.", "A hit is the first signal about a false belief that leads to an error."];
+    let lesson = Lesson { task: task.map(str::to_string).to_vec(), score: "0 hit".to_string(), ..Lesson::default() };
+    stage.model.lesson = Some(lesson.clone());
+    assert!(stage.screen((120, 40)).contains("A hit is the first signal"));
+    let said = |seconds: f64, level: Level, text: &str| {
+        let clock = SessionTime::from_secs_f64(seconds);
+        Feedback { clock, level, text: text.to_string() }
+    };
+    let long = "missed, with 2 errors: recipe of tuna nigiri: believed salmon nigiri, truly tuna nigiri; right would have been: recipe of order 1";
+    let feedback = vec![
+        said(4.0, Level::Done, "highlight plate: told already"),
+        said(9.0, Level::Refused, long),
+        said(12.0, Level::Done, "recipe of order 1: hit: believed wrong for 3.1 s"),
+    ];
+    stage.model.lesson = Some(Lesson { feedback, begun: true, ..lesson });
+    for size in SIZES {
+        insta::assert_snapshot!(format!("training_{}x{}", size.0, size.1), stage.screen(size));
+    }
+    stage.control('b');
+    assert!(stage.notice().contains("not shown in this session"), "{}", stage.notice());
+    stage.model.dialog = Some(Dialog::Report(vec!["1 of 2 hit".to_string(), "    missed; ".to_string() + long]));
+    insta::assert_snapshot!("training_over_120x40", stage.screen((120, 40)));
+    stage.wait(1.0);
+    stage.key(KeyCode::Char('q'));
+    assert!(stage.model.dialog.is_some(), "a signal that came too late closes nothing");
+    stage.key(KeyCode::Enter);
+    assert_eq!(stage.model.dialog, None);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::effect::{Measure, Pair, pairs};
 use super::figures::{ConditionFigures, StudyFigures};
-use super::roc::Roc;
+use super::roc::{Point, Roc};
 use super::svg::{Axis, Chart};
 use super::trial::{Trial, mean};
 use crate::communication::concept::ConceptName;
@@ -137,30 +137,34 @@ pub fn roc(figures: &StudyFigures) -> Option<String> {
         chart.band(class_of(roc.concept), &roc.band);
     }
     for roc in &figures.roc {
-        curve(&mut chart, roc, |point| (point.fpr, point.tpr));
+        curve(&mut chart, roc, f64::INFINITY, |point| (point.fpr, point.tpr));
     }
     Some(chart.finish("Receiver operating characteristics of communication concepts"))
 }
 
+/// More signals per 100 presses of the human than these are drawn nowhere.
+const MOST_SIGNALS: f64 = 25.0;
+
 /// The same against interruptions.
 pub fn equal_signals(figures: &StudyFigures) -> Option<String> {
-    let points = || figures.roc.iter().flat_map(|roc| &roc.points);
-    points().next()?;
-    let x = Axis::over("signals per 100 presses of the human", points().map(|point| point.signals_per_100_actions));
+    figures.roc.iter().flat_map(|roc| &roc.points).next()?;
+    let x = Axis::between("signals per 100 presses of the human", 0.0, MOST_SIGNALS);
     let y = Axis::between("belief related errors prevented", 0.0, 1.0);
     let mut chart = Chart::new(420.0, 380.0, x, y);
     for roc in &figures.roc {
-        curve(&mut chart, roc, |point| (point.signals_per_100_actions, point.tpr));
+        curve(&mut chart, roc, MOST_SIGNALS, |point| (point.signals_per_100_actions, point.tpr));
     }
     Some(chart.finish("Errors prevented at so many signals"))
 }
 
-fn curve(chart: &mut Chart, roc: &Roc, of: fn(&super::roc::Point) -> (f64, f64)) {
+/// The points of a concept, up to a place on the x axis, and the line through them.
+fn curve(chart: &mut Chart, roc: &Roc, to: f64, of: fn(&Point) -> (f64, f64)) {
     let class = class_of(roc.concept);
-    let mut points: Vec<(f64, f64)> = roc.points.iter().map(of).collect();
+    let is_drawn = |point: &&Point| of(point).0 <= to;
+    let mut points: Vec<(f64, f64)> = roc.points.iter().filter(is_drawn).map(of).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     chart.line(class, &points);
-    for point in &roc.points {
+    for point in roc.points.iter().filter(is_drawn) {
         let (x, y) = of(point);
         let title = format!("{} at {}: {y:.2} prevented, {x:.2}", roc.concept.title(), point.parameter);
         chart.point(&format!("small {class}"), x, y, &title);

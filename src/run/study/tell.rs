@@ -85,7 +85,8 @@ fn of_effect(effect: &Effect) -> String {
         return format!("effect of assistance: not to be told from {} pairs of trials\n", with + without);
     };
     let p = effect.permutation_p.map_or("-".to_string(), |p| format!("{p:.4}"));
-    let reduction = effect.reduction.map_or(String::new(), |found| {
+    let bounded = effect.reduction.filter(|found| found.low.is_finite() && found.high.is_finite());
+    let reduction = bounded.map_or(String::new(), |found| {
         format!(
             ", {:.1} errors fewer in 100 presses of the human ({:.1} to {:.1})",
             100.0 * found.estimate,

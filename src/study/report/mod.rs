@@ -84,10 +84,11 @@ fn p_value(p: Option<f64>) -> String {
     }
 }
 
-/// From … to …; a dash where one of them is unknown.
+/// From … to …; words where that is not bounded, a dash where it is unknown.
 fn range(low: Option<f64>, high: Option<f64>, digits: usize) -> String {
     match low.zip(high) {
         None => "\u{2013}".to_string(),
+        Some((low, high)) if low.is_infinite() && high.is_infinite() => "no interval: too few".to_string(),
         Some((low, high)) => {
             let end = |value: f64| match value {
                 f64::INFINITY => "\u{221e}".to_string(),

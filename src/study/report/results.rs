@@ -78,10 +78,14 @@ pub(super) fn assistance(figures: &StudyFigures, trials: &[Trial]) -> String {
         "r",
         "p of r",
         "permutation p",
-        "less by (95 %)",
+        "less by",
         "Hedges\u{2019} g",
     ];
-    text += &format!("<h3>Tests</h3>\n<div class=\"scroll\">{}</div>\n", table(&heads, &rows));
+    text += &format!(
+        "<h3>Tests</h3>\n<div class=\"scroll\">{}</div>\n<p class=\"note\">Participants: assisted in the second trial + in the \
+         first. What assistance takes away is the Hodges-Lehmann estimate with its interval (at least 95 %).</p>\n",
+        table(&heads, &rows)
+    );
     if let Some(first) = figures.effects.first() {
         text += &anova(first);
     }
@@ -129,12 +133,14 @@ fn conditions(figures: &StudyFigures) -> String {
 fn in_words(effect: &Effect) -> String {
     let (Some(reduction), Some(test)) = (effect.reduction, effect.assistance()) else { return String::new() };
     let [estimate, low, high] = [reduction.estimate, reduction.low, reduction.high].map(|value| 100.0 * value);
+    let interval = match low.is_finite() && high.is_finite() {
+        true => format!(", interval of {:.1} %: {}", 100.0 * reduction.level, range(Some(low), Some(high), 1)),
+        false => ", with too few participants for an interval".to_string(),
+    };
     format!(
-        "<p>Assistance takes {} errors away from 100 presses of the human (Hodges-Lehmann; interval of {:.1} %: {}). Interaction \
-         of period and starting group: F({:.0}, {:.0}) = {}, p = {}.</p>\n",
+        "<p>Assistance takes {} errors away from 100 presses of the human (Hodges-Lehmann{interval}). Interaction of period and \
+         starting group: F({:.0}, {:.0}) = {}, p = {}.</p>\n",
         number(Some(estimate), 1),
-        100.0 * reduction.level,
-        range(Some(low), Some(high), 1),
         test.df[0],
         test.df[1],
         number(Some(test.f), 2),
@@ -146,7 +152,7 @@ fn effect_row(effect: &Effect) -> Vec<String> {
     let test = effect.assistance();
     let reduction = effect.reduction;
     let interval = reduction.map_or("\u{2013}".to_string(), |found| {
-        format!("{} ({})", number(Some(found.estimate), 3), range(Some(found.low), Some(found.high), 3))
+        format!("{}<small>{}</small>", number(Some(found.estimate), 3), range(Some(found.low), Some(found.high), 3))
     });
     vec![
         effect.measure.title().to_string(),
@@ -244,7 +250,7 @@ pub(super) fn concepts(figures: &StudyFigures) -> String {
 
 fn banded(value: Option<f64>, low: Option<f64>, high: Option<f64>) -> String {
     match low.zip(high) {
-        Some(_) => format!("{} ({})", number(value, 2), range(low, high, 2)),
+        Some(_) => format!("{}<small>{}</small>", number(value, 2), range(low, high, 2)),
         None => number(value, 2),
     }
 }

@@ -303,12 +303,17 @@ fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     // With a plan it says the conditions.
     files.spec.trial.condition = match args.condition {
         SimulatedCondition::None => Condition::None,
+        SimulatedCondition::Wizard => Condition::Wizard,
         SimulatedCondition::Assistant => Condition::Assistant,
     };
+    if files.spec.unattended(files.spec.trial.condition) != files.spec.trial.condition {
+        let found = "--condition wizard, with a wizard who is a person".to_string();
+        return Err(wrong_argument(&args.session, found, "[wizard] with kind = \"scripted\" in the session file"));
+    }
     files.spec.assistant.concept = args.concept.map_or(files.spec.assistant.concept, ConceptName::from);
     files.spec.assistant.shadow = if args.shadow { Shadow::On } else { Shadow::Off };
-    let simulation = simulate::Simulation { files, trials, out: args.out.clone() };
-    let bar = progress(trials, "trials");
+    let simulation = simulate::Simulation { files, trials, shard: args.shard, out: args.out.clone() };
+    let bar = progress(simulation.own_trials().count() as u64, "trials");
     let figures = simulate::simulate(&simulation, || bar.inc(1))?;
     bar.finish_and_clear();
     if args.rerun {

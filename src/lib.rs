@@ -16,3 +16,4 @@ pub mod run;
 pub mod scene;
 pub mod session;
 pub mod study;
+pub mod wizard;

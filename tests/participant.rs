@@ -13,7 +13,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, AspectKind, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent};
 use tomcom::kitchen::{Recipes, State};
 use tomcom::mind::BeliefWitness;
-use tomcom::participant::population::{Population, Spread};
+use tomcom::participant::population::{Experience, Population, Spread};
 use tomcom::participant::{Deed, SimulatedParticipant};
 use tomcom::run::engine::Engine;
 use tomcom::run::headless;
@@ -241,7 +241,7 @@ impl Bench {
     fn new(population: &Population, seed: u64) -> Bench {
         let kitchen = kitchen("sushi");
         let state = kitchen.empty_state();
-        let mut one = SimulatedParticipant::of_population(kitchen.clone(), population, seed, 0, 0);
+        let mut one = SimulatedParticipant::new(kitchen.clone(), population, seed, 0, 0, Experience::default());
         assert_eq!(one.next_due(), None, "nothing before the trial");
         one.on_trial_start(SessionTime::ZERO, state);
         let cost = CostToGo::new(kitchen.clone());

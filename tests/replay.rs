@@ -20,7 +20,7 @@ use tomcom::run::compare::{Request, Watcher};
 use tomcom::run::engine::Engine;
 use tomcom::run::film::Film;
 use tomcom::run::replay::Replay;
-use tomcom::run::simulate::{Simulation, simulate};
+use tomcom::run::simulate::{Shard, Simulation, simulate};
 use tomcom::run::verify::verify;
 use tomcom::scene::{Derived, Moment, Scene, Shown};
 use tomcom::session::event::{EndReason, SignalEnd};
@@ -53,7 +53,8 @@ fn simulated(name: &str, out: &str, trials: u64, seed: u64) -> PathBuf {
     files.spec.seed = seed;
     files.spec.trial.seconds = 120.0;
     let out = folder(out);
-    simulate(&Simulation { files, trials, out: out.clone() }, || ()).expect("the folder can be written");
+    simulate(&Simulation { files, trials, shard: Shard::WHOLE, out: out.clone() }, || ())
+        .expect("the folder can be written");
     out
 }
 
@@ -356,7 +357,8 @@ fn assisted(name: &str, out: &str, by: ConceptName) -> PathBuf {
     files.spec.assistant.rollout.rollouts = 8;
     files.spec.assistant.rollout.states = 8;
     let out = folder(out);
-    simulate(&Simulation { files, trials: 2, out: out.clone() }, || ()).expect("the folder can be written");
+    simulate(&Simulation { files, trials: 2, shard: Shard::WHOLE, out: out.clone() }, || ())
+        .expect("the folder can be written");
     out
 }
 
@@ -502,7 +504,8 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
     files.spec.trial.seconds = 45.0;
     files.spec.assistant.concept = ConceptName::Tom;
     let out = folder("shadow");
-    simulate(&Simulation { files, trials: 1, out: out.clone() }, || ()).expect("the folder can be written");
+    simulate(&Simulation { files, trials: 1, shard: Shard::WHOLE, out: out.clone() }, || ())
+        .expect("the folder can be written");
     let mut log = LogReader::open(&out.join("seed1-S001")).expect("a recording");
     let request = Request { with: vec![ConceptName::Dev], window: 3 };
     let watcher = || Watcher::new(log.kitchen.clone(), &log.header.session, &request);

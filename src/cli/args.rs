@@ -10,6 +10,7 @@ use super::study::StudyArgs;
 use super::wizard::{CompareArgs, TrainArgs};
 use crate::communication::concept::ConceptName;
 use crate::mind::fitting::Parameter;
+use crate::run::simulate::Shard;
 
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
 #[derive(Debug, Parser)]
@@ -168,6 +169,8 @@ impl From<ConceptArg> for ConceptName {
 pub(super) enum SimulatedCondition {
     /// Nobody.
     None,
+    /// The wizard, where the session scripts one.
+    Wizard,
     /// The assistant, by itself.
     Assistant,
 }
@@ -219,7 +222,8 @@ pub(super) struct PlanArgs {
     pub(super) format: Format,
 }
 
-/// Simulates whole trials, faster than real time. Participants are simulated; nobody signals, or the assistant does.
+/// Simulates whole trials, faster than real time. Participants are simulated; nobody signals, or the assistant
+/// does, or a scripted wizard.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom simulate sessions/default.toml --trials 20 --seed 7 --out recordings")]
 pub(super) struct SimulateArgs {
@@ -229,10 +233,14 @@ pub(super) struct SimulateArgs {
     /// session with a plan, the first so many of its trials, participant by participant. By default 1, or the whole plan.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(super) trials: Option<u64>,
+    /// Only a part of the trials, "2/8" the second of eight, so that a job array makes them all: the parts have no trial in
+    /// common, and together they are the whole.
+    #[arg(long, value_name = "PART/PARTS", default_value = "1/1", hide_default_value = true)]
+    pub(super) shard: Shard,
     /// Everything random follows from it; by default the session file's.
     #[arg(long)]
     pub(super) seed: Option<u64>,
-    /// Who sends signals.
+    /// Who sends signals; of a session with a plan, the plan says it.
     #[arg(long, value_enum, default_value = "none")]
     pub(super) condition: SimulatedCondition,
     /// By what the assistant decides, instead of the session file's concept.

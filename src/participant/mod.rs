@@ -31,7 +31,7 @@ use beliefs::{Beliefs, wanted_dish};
 use decision::Intent;
 use eyes::Eyes;
 use memory::Memory;
-use population::{Individual, Population, chance};
+use population::{Experience, Individual, Population, chance};
 
 /// Something that the participant does.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,15 +85,17 @@ pub struct SimulatedParticipant {
 }
 
 impl SimulatedParticipant {
-    /// The participant of this trial, from the default population. Who it is follows from `person`, what it happens to do
-    /// from `trial`: one person may have several trials, each of which it begins afresh.
-    pub fn new(kitchen: Arc<Kitchen>, seed: u64, person: u64, trial: u64) -> Self {
-        Self::of_population(kitchen, &Population::default(), seed, person, trial)
-    }
-
-    /// The same, drawn from a population.
-    pub fn of_population(kitchen: Arc<Kitchen>, population: &Population, seed: u64, person: u64, trial: u64) -> Self {
-        let person = population.draw(&mut stream(seed, "participant", person));
+    /// The participant of this trial, drawn from a population. Who it is follows from `person`, what it happens to do from
+    /// `trial`: one person may have several trials. What the earlier ones taught it, `experience` says.
+    pub fn new(
+        kitchen: Arc<Kitchen>,
+        population: &Population,
+        seed: u64,
+        person: u64,
+        trial: u64,
+        experience: Experience,
+    ) -> Self {
+        let person = population.draw(&mut stream(seed, "participant", person)).after(experience, population);
         let mut beliefs = Beliefs::of_state(&kitchen, kitchen.empty_state(), SURE_AT_START);
         let recall = stream(seed, "participant's memory", trial);
         let memory = Memory::new(&kitchen, population, &person, recall, &mut beliefs);
@@ -116,7 +118,7 @@ impl SimulatedParticipant {
             display,
             rethink: true,
             press_at: SessionTime::ZERO,
-            presses: 0,
+            presses: (experience.presses * population.practice_kept) as u32,
             looks_first: 0,
             idle_since: None,
             robot_pressed_at: SessionTime::ZERO,

@@ -104,8 +104,20 @@ pub struct Population {
     pub signal_after_s: [f64; 2],
     /// Chance to read a shown recipe wrongly.
     pub misreads_signal: f64,
+    /// How the odds of knowing a recipe grow with every trial that the person has had (1: each begins as the first did).
+    pub recipes_gained: f64,
+    /// The share of the presses in earlier trials that count as practice (0: each begins as the first did).
+    pub practice_kept: f64,
     /// Accuracy of the tracker on this person, in metres on the display (1 deg at 2 m is 0.035 m).
     pub tracker_offset_m: f64,
+}
+
+/// The trials that a person has had before the present one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Experience {
+    pub trials: u32,
+    /// The presses that it made in them.
+    pub presses: f64,
 }
 
 impl Default for Population {
@@ -140,6 +152,8 @@ impl Default for Population {
             notices_signal: Spread::of(0.82, 0.15),
             signal_after_s: [0.5, 1.5],
             misreads_signal: 0.03,
+            recipes_gained: 1.0,
+            practice_kept: 0.0,
             tracker_offset_m: 0.02,
         }
     }
@@ -172,10 +186,82 @@ pub struct Individual {
     pub notices_signal: f64,
 }
 
+/// What would be right of a trait that is a probability, and of one that is a quantity.
+const CHANCE_SPREAD: &str = "{ median = …, sigma = … }: a median between 0 and 1, a spread from 0 to 2";
+const AMOUNT_SPREAD: &str = "{ median = …, sigma = … }: a median above 0, a spread from 0 to 2";
+/// No trait spreads wider: beyond it, hardly anybody would be like anybody else.
+const MOST_SIGMA: f64 = 2.0;
+
 /// More is not asked of anybody's attention (study, "Simulated participants").
 const MOST_SIGNALS_NOTICED: f64 = 0.85;
 
 impl Population {
+    /// The first parameter that cannot be: its name in a session file, what it is, and what would be right.
+    pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
+        let chances = [
+            ("slip", self.slip),
+            ("look_alike_slip", self.look_alike_slip),
+            ("thoughtless", self.thoughtless),
+            ("checks", self.checks),
+            ("makes_sure", self.makes_sure),
+            ("capture", self.capture),
+            ("order_capture", self.order_capture),
+            ("wanders", self.wanders),
+            ("misreads", self.misreads),
+            ("doubts_robot_hand", self.doubts_robot_hand),
+            ("doubts_places", self.doubts_places),
+            ("learned", self.learned),
+            ("half_forgotten", self.half_forgotten),
+            ("takes_hints", self.takes_hints),
+            ("notices_signal", self.notices_signal),
+        ];
+        let amounts = [
+            ("press_s", self.press_s),
+            ("watches_robot", self.watches_robot),
+            ("fixation_s", self.fixation_s),
+            ("half_life_s", self.half_life_s),
+            ("loses_thread_per_min", self.loses_thread_per_min),
+            ("patience_s", self.patience_s),
+            ("commitment_s", self.commitment_s),
+        ];
+        let is_chance = |median: f64| median > 0.0 && median < 1.0;
+        let is_amount = |median: f64| median.is_finite() && median > 0.0;
+        let spreads = chances.map(|(key, spread)| (key, spread, is_chance(spread.median), CHANCE_SPREAD));
+        let spreads = spreads
+            .into_iter()
+            .chain(amounts.map(|(key, spread)| (key, spread, is_amount(spread.median), AMOUNT_SPREAD)));
+        let wrong = |spread: &Spread, is_median: bool| !is_median || !(0.0..=MOST_SIGMA).contains(&spread.sigma);
+        for (key, spread, is_median, remedy) in spreads {
+            if wrong(&spread, is_median) {
+                return Some((key, format!("median = {}, sigma = {}", spread.median, spread.sigma), remedy));
+            }
+        }
+        self.fault_of_number()
+    }
+
+    /// The same of those that do not differ from person to person.
+    fn fault_of_number(&self) -> Option<(&'static str, String, &'static str)> {
+        let share = |key, value: f64| (key, value, (0.0..=1.0).contains(&value), "a number from 0 to 1");
+        let above = |key, value: f64| (key, value, value.is_finite() && value > 0.0, "a number above 0");
+        let small = |key, value: f64, right| (key, value, (0.0..=2.0).contains(&value), right);
+        let [least, most] = self.signal_after_s;
+        let is_in_order = least >= 0.0 && most >= least && most.is_finite();
+        let checks = [
+            small("press_jitter", self.press_jitter, "a number from 0 to 2"),
+            share("notices_slip", self.notices_slip),
+            share("misreads_signal", self.misreads_signal),
+            share("practice_kept", self.practice_kept),
+            small("novice_slowdown", self.novice_slowdown, "a number from 0 to 2"),
+            above("practice_presses", self.practice_presses),
+            above("confuses_look_alikes", self.confuses_look_alikes),
+            above("recipes_gained", self.recipes_gained),
+            small("tracker_offset_m", self.tracker_offset_m, "metres, from 0 to 2"),
+            ("signal_after_s", least, is_in_order, "[least, most], in seconds"),
+        ];
+        let wrong = checks.into_iter().find(|(_, _, is_right, _)| !is_right);
+        wrong.map(|(key, value, _, remedy)| (key, format!("{key} = {value}"), remedy))
+    }
+
     /// Draws one person.
     pub fn draw(&self, random: &mut Stream) -> Individual {
         Individual {
@@ -201,6 +287,18 @@ impl Population {
             patience_s: self.patience_s.draw(random),
             commitment_s: self.commitment_s.draw(random),
             notices_signal: self.notices_signal.draw_chance(random).min(MOST_SIGNALS_NOTICED),
+        }
+    }
+}
+
+impl Individual {
+    /// The same person after some trials: it knows the recipes better.
+    pub fn after(self, experience: Experience, population: &Population) -> Individual {
+        let gain = population.recipes_gained.powi(experience.trials as i32);
+        let better = |p: f64| gain * p / (1.0 - p + gain * p);
+        match experience.trials {
+            0 => self,
+            _ => Individual { learned: better(self.learned), half_forgotten: better(self.half_forgotten), ..self },
         }
     }
 }

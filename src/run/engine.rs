@@ -4,28 +4,31 @@
 //! It has no clock: whoever runs it says what time it is, so that real time, virtual time and the check of a recording
 //! go through the same code.
 
+mod informing;
+
 use std::sync::Arc;
 
+use self::informing::participant_of;
 use super::advisor::{Advisor, Question};
 use super::follower::Follower;
 use crate::base::time::SessionTime;
 use crate::communication::Sender;
 use crate::communication::recommendation::Recommendation;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, ButtonId, Kitchen, State};
+use crate::kitchen::{Agent, ButtonId, Kitchen};
 use crate::measures::JudgedPress;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::participant::{Deed, SimulatedParticipant};
 use crate::robot::timed::{RobotDeed, TimedRobot};
 use crate::session::admit::{admit, hygiene};
 use crate::session::apply::ApplyError;
-use crate::session::calibration::Check;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::orders::OrderList;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::timers::TimerQueue;
 use crate::session::{Effect, Event, Phase, Session, SessionSpec, Stamped, Timer};
+use crate::wizard::ScriptedWizard;
 
 /// A running session.
 #[derive(Clone, Debug)]
@@ -35,6 +38,8 @@ pub struct Engine {
     orders: OrderList,
     robot: TimedRobot,
     participant: Option<SimulatedParticipant>,
+    /// Who sends signals by a script.
+    wizard: Option<ScriptedWizard>,
     next_seq: u64,
     /// Stamped events that were not handed out yet.
     out: Vec<Stamped>,
@@ -60,6 +65,7 @@ enum Source {
     Timer,
     Robot,
     Participant,
+    Wizard,
 }
 
 impl Engine {
@@ -68,14 +74,15 @@ impl Engine {
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64, cost: CostToGo) -> Engine {
         let orders = OrderList::new(kitchen.dishes.len(), &spec, trial);
         let robot = TimedRobot::new(spec.robot.press_s, spec.robot.press_spread, spec.seed, trial);
-        let is_simulated = spec.participant.kind == ParticipantKind::Simulated;
-        // In a plan the same person has several trials.
-        let person = spec.step.as_ref().map_or(trial, |step| u64::from(step.participant));
-        let participant = is_simulated.then(|| SimulatedParticipant::new(kitchen.clone(), spec.seed, person, trial));
+        let participant = (spec.participant.kind == ParticipantKind::Simulated)
+            .then(|| participant_of(kitchen.clone(), &spec, trial));
+        let wizard = spec.scripts_wizard().then(|| {
+            ScriptedWizard::new(kitchen.clone(), spec.wizard.clone(), spec.signals.own_hand, spec.seed, trial)
+        });
         let follower = Follower::new(kitchen, spec, cost);
         let timers = TimerQueue::default();
         let (out, questions) = (Vec::new(), Vec::new());
-        Engine { follower, timers, orders, robot, participant, next_seq: 0, out, to_ask: None, questions }
+        Engine { follower, timers, orders, robot, participant, wizard, next_seq: 0, out, to_ask: None, questions }
     }
 
     /// The assistant of this session; its answers come back as [`Event::Advised`].
@@ -151,6 +158,7 @@ impl Engine {
             // An arm that was held is due since a while, and nothing happens before what has happened.
             (self.robot.next_due().map(|due| due.max(self.session().time)), Source::Robot),
             (participant, Source::Participant),
+            (self.wizard.as_ref().and_then(ScriptedWizard::next_due), Source::Wizard),
         ];
         sources.into_iter().filter_map(|(due, source)| Some((due?, source))).min()
     }
@@ -167,6 +175,7 @@ impl Engine {
                 }
             }
             Source::Participant => self.let_participant_act(now),
+            Source::Wizard => self.let_wizard_act(now),
         }
         self.settle(now);
     }
@@ -191,6 +200,17 @@ impl Engine {
                 self.record_own(now, Event::ParticipantBelieves(belief));
                 self.record_own(now, Event::Press { agent: Agent::Human, button, at_ns: None });
             }
+        }
+    }
+
+    fn let_wizard_act(&mut self, now: SessionTime) {
+        let state = self.session().state;
+        let Some(signal) = self.wizard.as_mut().and_then(|one| one.act(now, state, &mut self.follower.cost)) else {
+            return;
+        };
+        let event = Event::SignalShown { by: Sender::Wizard, signal, accepted: None };
+        if admit(self.session(), &event).is_ok() {
+            self.record_own(now, event);
         }
     }
 
@@ -264,6 +284,7 @@ impl Engine {
         self.next_seq += 1;
         effects.into_iter().for_each(|effect| self.perform(effect));
         self.tell_participant(&stamped, before);
+        self.tell_wizard(&stamped, before);
         let given_up = self.tell_robot(&stamped);
         if self.session().is_running() && self.session().spec.asks_assistant() && changes_task(&stamped.event) {
             self.to_ask = Some((stamped.seq, now));
@@ -287,27 +308,6 @@ impl Engine {
         self.check_criterion(now);
         self.measure_calibration(now);
         Ok(())
-    }
-
-    /// What the wizard does to the robot by an event that was just applied; the press that it gives up because of it.
-    fn tell_robot(&mut self, stamped: &Stamped) -> Option<RobotDeed> {
-        let kitchen = self.session().kitchen.clone();
-        match &stamped.event {
-            Event::RobotStopped => return self.robot.stop(),
-            Event::RobotResumed => self.robot.resume(),
-            Event::RobotHeld { .. } => self.robot.hold(true),
-            Event::RobotReleased { .. } => self.robot.hold(false),
-            Event::RobotSkipped { .. } => return self.robot.skip(stamped.time),
-            Event::RobotDriven { button, .. } => {
-                return kitchen.button_named(Agent::Robot, button).and_then(|button| self.robot.drive(button));
-            }
-            Event::KitchenCorrected { .. } => {
-                let state = self.session().state;
-                return self.robot.reconsider(&kitchen, &mut self.follower.cost, state);
-            }
-            _ => {}
-        }
-        None
     }
 
     /// When a familiarisation is over: whether the participant may go on to the first trial.
@@ -354,32 +354,11 @@ impl Engine {
                 if let Some(participant) = &mut self.participant {
                     participant.postpone(by);
                 }
+                if let Some(wizard) = &mut self.wizard {
+                    wizard.postpone(by);
+                }
             }
             Effect::Close => {}
-        }
-    }
-
-    /// What the participant may notice of an event that was just applied; `before` is the state that it met.
-    fn tell_participant(&mut self, stamped: &Stamped, before: State) {
-        let Some(participant) = &mut self.participant else { return };
-        let session = &self.follower.session;
-        let (now, state, kitchen) = (stamped.time, session.state, &session.kitchen);
-        match &stamped.event {
-            Event::TrialStarted => participant.on_trial_start(now, state),
-            Event::Press { agent, button, .. } if session.is_running() => {
-                if let Some(button) = kitchen.button_named(*agent, button) {
-                    // A press that has an effect changes the state.
-                    participant.on_press(now, *agent, button, before, (state != before).then_some(state));
-                }
-            }
-            Event::SignalShown { signal, .. } => {
-                if let Some(location) = kitchen.location_named(signal.target()) {
-                    participant.on_signal(now, location, signal, state);
-                }
-            }
-            Event::SignalEnded { .. } => participant.on_signal_end(now),
-            Event::Calibration(_) => participant.on_target(now, session.calibration.as_ref().and_then(Check::target)),
-            _ => {}
         }
     }
 }

@@ -1,14 +1,15 @@
 //! What the commands print as figures. A figure that cannot be computed yet is null.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::follower::Follower;
 use crate::kitchen::{Agent, DishId};
 use crate::measures::attribution::Cause;
-use crate::measures::median;
 use crate::measures::sequences::{Sequence, sequences, sequences_by_target};
 use crate::session::Happening;
-use crate::session::settings::ParticipantKind;
+use crate::session::settings::{Condition, ParticipantKind};
 
 /// The figures of one trial.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -103,23 +104,9 @@ pub struct BeliefFigures {
 impl BeliefFigures {
     /// Sums up trials.
     pub fn of<'a>(trials: impl IntoIterator<Item = &'a TrialFigures>) -> BeliefFigures {
-        let trials: Option<Vec<&TrialBeliefs>> = trials.into_iter().map(|trial| trial.beliefs.as_ref()).collect();
-        let Some(trials) = trials else { return BeliefFigures::default() };
-        let sum = |of: fn(&TrialBeliefs) -> u64| Some(trials.iter().map(|trial| of(trial)).sum());
-        let lengths = |of: fn(&TrialBeliefs) -> &[Sequence]| {
-            mean(trials.iter().flat_map(|trial| of(trial)).map(|sequence| f64::from(sequence.length)))
-        };
-        let recovery = |sequence: &Sequence| Some(sequence.recovered?.secs_since(sequence.began));
-        BeliefFigures {
-            belief_related_errors: sum(|trial| trial.related),
-            errors_of_two_beliefs: sum(|trial| trial.related_to_pairs),
-            sequences: sum(|trial| trial.sequences.len() as u64),
-            mean_sequence_length: lengths(|trial| &trial.sequences),
-            mean_recovery_s: mean(trials.iter().flat_map(|trial| &trial.sequences).filter_map(recovery)),
-            sequences_by_aspect: sum(|trial| trial.by_target.len() as u64),
-            mean_sequence_length_by_aspect: lengths(|trial| &trial.by_target),
-            false_belief_episodes: sum(|trial| trial.episodes),
-        }
+        let mut sums = BeliefSums::default();
+        trials.into_iter().for_each(|trial| sums.add(trial.beliefs.as_ref()));
+        sums.figures()
     }
 
     /// The figures for people; `errors` is the number of all errors.
@@ -139,8 +126,24 @@ impl BeliefFigures {
     }
 }
 
-/// The figures of `tomcom simulate`.
+/// The trials of one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ConditionFigures {
+    pub condition: Condition,
+    pub trials: u64,
+    pub human_actions: u64,
+    pub errors: u64,
+    pub signals: u64,
+}
+
+impl Default for ConditionFigures {
+    fn default() -> Self {
+        ConditionFigures { condition: Condition::None, trials: 0, human_actions: 0, errors: 0, signals: 0 }
+    }
+}
+
+/// The figures of `tomcom simulate`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SimulationFigures {
     pub trials: u64,
     pub human_actions: u64,
@@ -160,37 +163,138 @@ pub struct SimulationFigures {
     pub wall_s: f64,
     /// Recordings that are excluded: they are left out of the figures.
     pub excluded: u64,
+    /// Recordings that were there already, whole; they were read and not made again.
+    pub found: u64,
+    /// By who sends signals.
+    pub conditions: Vec<ConditionFigures>,
     pub recordings: Vec<String>,
 }
 
-impl SimulationFigures {
-    /// Sums up trials. `plan_lengths`: the least presses for each dish from an empty kitchen.
-    pub fn of(trials: &[TrialFigures], plan_lengths: &[u32]) -> SimulationFigures {
-        let sum = |of: fn(&TrialFigures) -> u64| trials.iter().map(of).sum();
-        let served = || trials.iter().flat_map(|trial| &trial.served);
-        SimulationFigures {
-            trials: trials.len() as u64,
-            human_actions: sum(|trial| trial.human_actions),
-            robot_actions: sum(|trial| trial.robot_actions),
-            errors: sum(|trial| trial.errors),
-            races: sum(|trial| trial.races),
-            beliefs: BeliefFigures::of(trials),
-            signals: sum(|trial| trial.signals),
-            orders_served: served().count() as u64,
-            presses_per_order: median(served().map(|(_, presses)| f64::from(*presses)).collect()),
-            optimal_presses_per_order: median(
-                served().map(|(dish, _)| f64::from(plan_lengths[dish.index()])).collect(),
-            ),
-            simulated_s: trials.iter().map(|trial| trial.seconds).sum(),
-            wall_s: 0.0,
-            excluded: 0,
-            recordings: Vec::new(),
+/// What false beliefs did in several trials, summed up trial by trial.
+#[derive(Clone, Debug, Default)]
+struct BeliefSums {
+    /// Of some trial it is not known what the human believed.
+    unknown: bool,
+    related: u64,
+    related_to_pairs: u64,
+    lengths: Mean,
+    recovery_s: Mean,
+    lengths_by_aspect: Mean,
+    episodes: u64,
+}
+
+impl BeliefSums {
+    fn add(&mut self, trial: Option<&TrialBeliefs>) {
+        let Some(trial) = trial else {
+            self.unknown = true;
+            return;
+        };
+        self.related += trial.related;
+        self.related_to_pairs += trial.related_to_pairs;
+        self.episodes += trial.episodes;
+        for sequence in &trial.sequences {
+            self.lengths.add(f64::from(sequence.length));
+            if let Some(recovered) = sequence.recovered {
+                self.recovery_s.add(recovered.secs_since(sequence.began));
+            }
+        }
+        trial.by_target.iter().for_each(|sequence| self.lengths_by_aspect.add(f64::from(sequence.length)));
+    }
+
+    fn figures(&self) -> BeliefFigures {
+        if self.unknown {
+            return BeliefFigures::default();
+        }
+        BeliefFigures {
+            belief_related_errors: Some(self.related),
+            errors_of_two_beliefs: Some(self.related_to_pairs),
+            sequences: Some(self.lengths.count),
+            mean_sequence_length: self.lengths.mean(),
+            mean_recovery_s: self.recovery_s.mean(),
+            sequences_by_aspect: Some(self.lengths_by_aspect.count),
+            mean_sequence_length_by_aspect: self.lengths_by_aspect.mean(),
+            false_belief_episodes: Some(self.episodes),
         }
     }
 }
 
-/// The mean; none of nothing.
-fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
-    (count > 0).then(|| sum / f64::from(count))
+/// A mean that grows value by value; none of nothing.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mean {
+    count: u64,
+    sum: f64,
+}
+
+impl Mean {
+    fn add(&mut self, value: f64) {
+        self.count += 1;
+        self.sum += value;
+    }
+
+    fn mean(self) -> Option<f64> {
+        (self.count > 0).then(|| self.sum / self.count as f64)
+    }
+}
+
+/// Simulated trials, summed up one by one: how many there are takes no memory.
+#[derive(Clone, Debug, Default)]
+pub struct SimulationSums {
+    figures: SimulationFigures,
+    beliefs: BeliefSums,
+    /// How many served orders took so many presses, and would have taken so many at best.
+    presses_per_order: BTreeMap<u32, u64>,
+    optimal_presses_per_order: BTreeMap<u32, u64>,
+}
+
+impl SimulationSums {
+    /// Adds a trial. `plan_lengths`: the least presses for each dish from an empty kitchen.
+    pub fn add(&mut self, condition: Condition, trial: &TrialFigures, plan_lengths: &[u32]) {
+        let sums = &mut self.figures;
+        sums.trials += 1;
+        sums.human_actions += trial.human_actions;
+        sums.robot_actions += trial.robot_actions;
+        sums.errors += trial.errors;
+        sums.races += trial.races;
+        sums.signals += trial.signals;
+        sums.orders_served += trial.served.len() as u64;
+        sums.simulated_s += trial.seconds;
+        let index = sums.conditions.iter().position(|one| one.condition >= condition);
+        let index = index.unwrap_or(sums.conditions.len());
+        if sums.conditions.get(index).is_none_or(|one| one.condition != condition) {
+            sums.conditions.insert(index, ConditionFigures { condition, ..ConditionFigures::default() });
+        }
+        let one = &mut sums.conditions[index];
+        one.trials += 1;
+        one.human_actions += trial.human_actions;
+        one.errors += trial.errors;
+        one.signals += trial.signals;
+        self.beliefs.add(trial.beliefs.as_ref());
+        for (dish, presses) in &trial.served {
+            *self.presses_per_order.entry(*presses).or_default() += 1;
+            *self.optimal_presses_per_order.entry(plan_lengths[dish.index()]).or_default() += 1;
+        }
+    }
+
+    /// The figures of all of them.
+    pub fn figures(&self) -> SimulationFigures {
+        SimulationFigures {
+            beliefs: self.beliefs.figures(),
+            presses_per_order: median_of(&self.presses_per_order),
+            optimal_presses_per_order: median_of(&self.optimal_presses_per_order),
+            ..self.figures.clone()
+        }
+    }
+}
+
+/// The median of numbers that occur so often; of an even number of them the mean of the middle two; none of nothing.
+fn median_of(counts: &BTreeMap<u32, u64>) -> Option<f64> {
+    let all: u64 = counts.values().sum();
+    let nth = |wanted: u64| {
+        let mut before = 0;
+        counts.iter().find_map(|(value, count)| {
+            before += count;
+            (before > wanted).then_some(f64::from(*value))
+        })
+    };
+    Some((nth(all.checked_sub(1)? / 2)? + nth(all / 2)?) / 2.0)
 }

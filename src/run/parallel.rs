@@ -1,6 +1,8 @@
 //! Independent work on all processors.
 
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard};
+
+use rayon::prelude::*;
 
 /// Does the same with every item on all processors; the results have the order of the items. `done` is called after each.
 pub fn each<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync, done: impl Fn() + Sync) -> Vec<R> {
@@ -8,31 +10,49 @@ pub fn each<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync, done: 
 }
 
 /// The same, where every thread has something of its own from item to item.
-pub fn each_with<T: Sync, R: Send, W>(
+pub fn each_with<T: Sync, R: Send, W: Send>(
     items: &[T],
     own: impl Fn() -> W + Sync,
     work: impl Fn(&mut W, &T) -> R + Sync,
     done: impl Fn() + Sync,
 ) -> Vec<R> {
-    let left = Mutex::new(items.iter().enumerate());
-    let results = Mutex::new(Vec::with_capacity(items.len()));
-    let worker = || {
-        let mut own = own();
-        loop {
-            let one = left.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).next();
-            let Some((index, item)) = one else { return };
-            let result = work(&mut own, item);
-            results.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push((index, result));
+    Workers::new(own).each(items, work, done)
+}
+
+/// Threads with something of their own that lasts: a cache, say, which changes the time that work takes, and not what comes
+/// of it.
+pub struct Workers<W, F: Fn() -> W> {
+    own: F,
+    /// What nobody works with at the moment.
+    idle: Mutex<Vec<W>>,
+}
+
+impl<W: Send, F: Fn() -> W + Sync> Workers<W, F> {
+    /// Workers who make what they need with `own`, at most once for each thread.
+    pub fn new(own: F) -> Workers<W, F> {
+        Workers { own, idle: Mutex::new(Vec::new()) }
+    }
+
+    /// Does the same with every item; the results have the order of the items. `done` is called after each.
+    pub fn each<T: Sync, R: Send>(
+        &self,
+        items: &[T],
+        work: impl Fn(&mut W, &T) -> R + Sync,
+        done: impl Fn() + Sync,
+    ) -> Vec<R> {
+        let one = |item: &T| {
+            let idle = self.idle().pop();
+            let mut mine = idle.unwrap_or_else(&self.own);
+            let result = work(&mut mine, item);
+            self.idle().push(mine);
             done();
-        }
-    };
-    let threads = std::thread::available_parallelism().map_or(1, |count| count.get()).min(items.len());
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(worker);
-        }
-    });
-    let mut results = results.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
-    results.sort_by_key(|(index, _)| *index);
-    results.into_iter().map(|(_, result)| result).collect()
+            result
+        };
+        // Items take long and differ, so each is given out by itself.
+        items.par_iter().with_max_len(1).map(one).collect()
+    }
+
+    fn idle(&self) -> MutexGuard<'_, Vec<W>> {
+        self.idle.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
 }

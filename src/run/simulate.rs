@@ -1,18 +1,19 @@
 //! `tomcom simulate`: whole trials in virtual time, each independent of how many there are.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex};
+use std::str::FromStr;
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::engine::Engine;
-use super::figures::{SimulationFigures, TrialFigures};
+use super::figures::{ConditionFigures, SimulationFigures, SimulationSums, TrialFigures};
 use super::follower::Follower;
+use super::parallel::Workers;
 use super::{headless, kitchen, options};
 use crate::base::words::count;
 use crate::communication::settings::Shadow;
 use crate::edge::files::{FileError, SessionFiles};
-use crate::edge::log::{LogWriter, WriteError, check_simulated, ruling};
+use crate::edge::log::{LogReader, LogWriter, WriteError, at_line, check_simulated, is_whole, ruling};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::settings::{Condition, ParticipantSpec, SessionSpec};
@@ -34,15 +35,55 @@ pub enum SimulateError {
 pub struct Simulation {
     pub files: SessionFiles,
     pub trials: u64,
+    /// Which of the trials.
+    pub shard: Shard,
     /// Where the recordings go.
     pub out: PathBuf,
 }
 
-/// The settings of a simulated trial without a plan. No wizard is there, so without the assistant it is
-/// unassisted; every trial has a participant of its own, with a code of its own.
+impl Simulation {
+    /// The trials of the shard, in their order.
+    pub fn own_trials(&self) -> impl Iterator<Item = u64> + Clone {
+        let Shard { number, of } = self.shard;
+        (number - 1..self.trials).step_by(of as usize)
+    }
+}
+
+/// A part of the trials: of `of` parts the one with this number, 1 the first. The parts have no trial in common, and all of
+/// them together are the whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    pub number: u64,
+    pub of: u64,
+}
+
+impl Shard {
+    /// All trials.
+    pub const WHOLE: Shard = Shard { number: 1, of: 1 };
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Shard, String> {
+        let parts = text.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+        match parts {
+            Some((number, of)) if number >= 1 && number <= of && of <= MAX_SHARDS => Ok(Shard { number, of }),
+            _ => Err("a part and how many there are, such as 1/8 to 8/8".to_string()),
+        }
+    }
+}
+
+/// No job array is larger.
+const MAX_SHARDS: u64 = 100_000;
+/// So many trials are under way before what came of them is summed up, so that memory does not grow with their number.
+const BLOCK: usize = 256;
+
+/// The settings of a simulated trial without a plan. Where the wizard is a person, nobody is there, so without the
+/// assistant it is unassisted; every trial has a participant of its own, with a code of its own.
 pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
     let mut spec = spec.clone();
-    if spec.trial.condition == Condition::Wizard {
+    if spec.unattended(spec.trial.condition) != spec.trial.condition {
         // Whose shadow the assistant would be.
         (spec.trial.condition, spec.assistant.shadow) = (Condition::None, Shadow::Off);
     }
@@ -50,62 +91,75 @@ pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
     spec
 }
 
-/// Simulates the trials on all processors. `done` is called after each trial.
+/// Simulates the trials on all processors. What is there already, whole, is read and not made again. `done` is called after
+/// each trial.
 ///
 /// # Errors
 /// A recording that could not be written, another one where it would be, or one with a broken file about its exclusion.
 pub fn simulate(simulation: &Simulation, done: impl Fn() + Sync) -> Result<SimulationFigures, SimulateError> {
+    let mut sums = SimulationSums::default();
     let began = Instant::now();
+    let plan_lengths = kitchen::plan_lengths(
+        &simulation.files.kitchen.kitchen,
+        &mut CostToGo::new(Arc::new(simulation.files.kitchen.kitchen.clone())),
+    );
+    let (mut excluded, mut found, mut recordings) = (0, 0, Vec::new());
+    each_trial(simulation, done, |trial| {
+        recordings.push(trial.folder.display().to_string());
+        found += u64::from(trial.found);
+        // The same recording may have been made and excluded before.
+        match ruling(&trial.folder).map_err(Box::new)?.is_some_and(|ruling| ruling.excluded) {
+            true => excluded += 1,
+            false => sums.add(trial.condition, &trial.figures, &plan_lengths),
+        }
+        Ok(())
+    })?;
+    let wall_s = began.elapsed().as_secs_f64();
+    Ok(SimulationFigures { excluded, found, recordings, wall_s, ..sums.figures() })
+}
+
+/// A trial that was simulated.
+pub struct Simulated {
+    pub folder: PathBuf,
+    pub condition: Condition,
+    pub figures: TrialFigures,
+    /// It was there already.
+    pub found: bool,
+}
+
+/// Simulates the trials on all processors and hands them over one by one, in their order.
+///
+/// # Errors
+/// Those of [`simulate`], and the first of `take`.
+pub fn each_trial(
+    simulation: &Simulation,
+    done: impl Fn() + Sync,
+    mut take: impl FnMut(Simulated) -> Result<(), SimulateError>,
+) -> Result<(), SimulateError> {
     // Before the first trial, so that none is simulated in vain.
-    for trial in 0..simulation.trials {
+    for trial in simulation.own_trials() {
         let header = header_of_trial(simulation, trial);
         check_simulated(&folder_of_trial(&simulation.out, &header.session), &header)?;
     }
     let kitchen = Arc::new(simulation.files.kitchen.kitchen.clone());
-    let mut cost = CostToGo::new(kitchen.clone());
-    let plan_lengths = kitchen::plan_lengths(&kitchen, &mut cost);
-    let next = AtomicU64::new(0);
-    let results = Mutex::new(Vec::new());
-    let work = |mut cost: CostToGo| {
-        loop {
-            let trial = next.fetch_add(1, Ordering::Relaxed);
-            if trial >= simulation.trials {
-                return;
-            }
-            let (result, used) = match simulate_trial(simulation, &kitchen, trial, cost) {
-                Ok((folder, figures, cost)) => (Ok((folder, figures)), Some(cost)),
-                Err(error) => (Err(error), None),
-            };
-            results.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push((trial, result));
-            done();
-            let Some(used) = used else { return };
-            cost = used;
+    let cost = CostToGo::new(kitchen.clone());
+    let workers = Workers::new(|| Some(cost.clone()));
+    let mut trials = simulation.own_trials();
+    loop {
+        let block: Vec<u64> = trials.by_ref().take(BLOCK).collect();
+        if block.is_empty() {
+            return Ok(());
         }
-    };
-    let threads = std::thread::available_parallelism().map_or(1, |count| count.get()).min(simulation.trials as usize);
-    std::thread::scope(|scope| {
-        for _ in 0..threads.max(1) {
-            let cost = cost.clone();
-            scope.spawn(|| work(cost));
-        }
-    });
-    let mut results = results.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
-    results.sort_by_key(|(trial, _)| *trial);
-    let results: Vec<(PathBuf, TrialFigures)> =
-        results.into_iter().map(|(_, result)| result).collect::<Result<_, WriteError>>()?;
-    let folders: Vec<PathBuf> = results.iter().map(|(folder, _)| folder.clone()).collect();
-    // The same recording may have been made and excluded before.
-    let mut trials = Vec::new();
-    for (folder, trial) in results {
-        if ruling(&folder).map_err(Box::new)?.is_none_or(|ruling| !ruling.excluded) {
-            trials.push(trial);
+        let one = |own: &mut Option<CostToGo>, trial: &u64| {
+            let mine = own.take().unwrap_or_else(|| cost.clone());
+            let (simulated, used) = simulate_trial(simulation, &kitchen, *trial, mine)?;
+            *own = Some(used);
+            Ok(simulated)
+        };
+        for simulated in workers.each(&block, one, &done) {
+            simulated.and_then(&mut take)?;
         }
     }
-    let mut figures = SimulationFigures::of(&trials, &plan_lengths);
-    figures.excluded = (folders.len() - trials.len()) as u64;
-    figures.recordings = folders.iter().map(|folder| folder.display().to_string()).collect();
-    figures.wall_s = began.elapsed().as_secs_f64();
-    Ok(figures)
 }
 
 /// A recording to train a wizard with, of the default kitchen: an unassisted trial of so many seconds, in a folder that is
@@ -124,7 +178,7 @@ pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>,
     })?;
     // What differs in length is another recording.
     let out = out.join(format!("{seconds}s"));
-    let figures = simulate(&Simulation { files, trials: 1, out }, || ())?;
+    let figures = simulate(&Simulation { files, trials: 1, shard: Shard::WHOLE, out }, || ())?;
     Ok(figures.recordings.iter().map(PathBuf::from).collect())
 }
 
@@ -153,15 +207,35 @@ fn simulate_trial(
     kitchen: &Arc<Kitchen>,
     trial: u64,
     cost: CostToGo,
-) -> Result<(PathBuf, TrialFigures, CostToGo), WriteError> {
+) -> Result<(Simulated, CostToGo), SimulateError> {
     let header = header_of_trial(simulation, trial);
+    let condition = header.session.trial.condition;
     let folder = folder_of_trial(&simulation.out, &header.session);
-    let mut log = LogWriter::create_simulated(&folder, &header)?;
-    let mut engine = Engine::new(kitchen.clone(), header.session, header.trial, cost);
-    headless::run(&mut engine, |stamped: &Stamped| log.append(stamped))?;
-    log.flush()?;
-    let follower: Follower = engine.into_follower();
-    Ok((folder, TrialFigures::of(&follower), follower.cost))
+    let found = is_whole(&folder, &header);
+    let follower = match found {
+        true => read_trial(&folder, cost)?,
+        false => {
+            let mut log = LogWriter::create_simulated(&folder, &header)?;
+            let mut engine = Engine::new(kitchen.clone(), header.session, header.trial, cost);
+            headless::run(&mut engine, |stamped: &Stamped| log.append(stamped))?;
+            log.flush()?;
+            engine.into_follower()
+        }
+    };
+    let figures = TrialFigures::of(&follower);
+    Ok((Simulated { folder, condition, figures, found }, follower.cost))
+}
+
+/// Follows the recording of a trial that was simulated before.
+fn read_trial(folder: &Path, cost: CostToGo) -> Result<Follower, SimulateError> {
+    let mut log = LogReader::open(folder).map_err(Box::new)?;
+    let mut follower = Follower::new(log.kitchen.clone(), log.header.session.clone(), cost);
+    while let Some(line) = log.next_line().map_err(Box::new)? {
+        let applied = follower.apply(&line.stamped);
+        applied
+            .map_err(|error| Box::new(at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy)))?;
+    }
+    Ok(follower)
 }
 
 /// The figures for people.
@@ -174,11 +248,20 @@ pub fn describe(figures: &SimulationFigures) -> String {
         0 => String::new(),
         some => format!("{} excluded, and left out of these figures\n", count(some, "recording is", "recordings are")),
     };
-    let share = 100.0 * figures.errors as f64 / figures.human_actions.max(1) as f64;
+    let share = |errors: u64, actions: u64| 100.0 * errors as f64 / actions.max(1) as f64;
+    let found = match figures.found {
+        0 => String::new(),
+        some => format!(", {some} of them before"),
+    };
+    let by_condition: String = match &figures.conditions[..] {
+        [] | [_] => String::new(),
+        several => several.iter().map(describe_condition).collect(),
+    };
     format!(
-        "{} of simulated participants, {:.0} s simulated in {:.1} s\n\
+        "{} of simulated participants, {:.0} s simulated in {:.1} s{found}\n\
          presses: {} of the human, {} of the robot\n\
-         errors: {} ({share:.1} % of the human's presses)\n\
+         errors: {} ({:.1} % of the human's presses, {:.1} % of all)\n\
+         {by_condition}\
          {}\n\
          orders served: {}{each}\n\
          {excluded}\
@@ -189,8 +272,21 @@ pub fn describe(figures: &SimulationFigures) -> String {
         figures.human_actions,
         figures.robot_actions,
         figures.errors,
+        share(figures.errors, figures.human_actions),
+        share(figures.errors, figures.human_actions + figures.robot_actions),
         figures.beliefs.describe(figures.errors),
         figures.orders_served,
         figures.recordings.iter().map(|path| format!("  {path}")).collect::<Vec<_>>().join("\n"),
     )
+}
+
+fn describe_condition(one: &ConditionFigures) -> String {
+    let who = match one.condition {
+        Condition::None => "unassisted",
+        Condition::Wizard => "with the wizard",
+        Condition::Assistant => "with the assistant",
+    };
+    let per_100 = |number: u64| 100.0 * number as f64 / one.human_actions.max(1) as f64;
+    let (errors, signals) = (per_100(one.errors), per_100(one.signals));
+    format!("  {who}: {errors:.1} %, {signals:.1} signals per 100 presses\n")
 }

@@ -78,6 +78,9 @@ fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'
 /// The reason why not, in words for the wizard.
 pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(), String> {
     let Event::SignalShown { by: Sender::Wizard, signal, .. } = event else { return Ok(()) };
+    if session.spec.scripts_wizard() {
+        return Err("the scripted wizard sends the signals in this session".to_string());
+    }
     if session.shown.as_ref().is_some_and(|shown| shown.by == Sender::Wizard && shown.signal == *signal) {
         return Err("that signal is shown already".to_string());
     }
@@ -120,7 +123,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         Event::Calibration(event) => event.is_external(),
         Event::TrialEnded { reason } => *reason == EndReason::Wizard,
         Event::Protocol(event) => !matches!(event, ProtocolEvent::CriterionChecked { .. }),
-        Event::SignalShown { by, .. } => *by == Sender::Wizard,
+        Event::SignalShown { by, .. } => *by == Sender::Wizard && !session.spec.scripts_wizard(),
         Event::SignalEnded { reason } => *reason == SignalEnd::TakenBack,
         Event::Gaze(_) => !participant.simulates_gaze(),
         Event::Press { agent, .. } => *agent == Agent::Human && participant.kind != ParticipantKind::Simulated,

@@ -256,6 +256,13 @@ impl Session {
         paused.fold(end - at, |age, pause| age - pause)
     }
 
+    /// The location that the gaze is on, by a sample that came at `now`.
+    pub fn looked_at(&self, now: SessionTime) -> Option<LocationId> {
+        let places = self.kitchen.locations.len();
+        let at = self.gaze.looked_at[..places].iter().position(|at| *at == Some(now));
+        at.map(|index| LocationId(index as u8))
+    }
+
     /// Gaze samples a second at `now`; nothing if none came for a second.
     pub fn gaze_hz(&self, now: SessionTime) -> Option<f64> {
         let arrived = self.gaze.arrived.filter(|&arrived| now.secs_since(arrived) <= SILENT_S);

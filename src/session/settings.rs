@@ -8,6 +8,8 @@ use super::stream::RerunSpec;
 use super::tracker::TrackerSpec;
 use crate::communication::settings::{AssistantSpec, Shadow};
 use crate::mind::model::HumanModel;
+use crate::participant::population::Population;
+use crate::wizard::settings::{WizardKind, WizardSpec};
 
 /// A session file: who takes part, under which condition, and for how long.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,6 +28,9 @@ pub struct SessionSpec {
     pub tracker: TrackerSpec,
     #[serde(default)]
     pub robot: RobotSpec,
+    /// Who the wizard is: a person, or a script.
+    #[serde(default, skip_serializing_if = "WizardSpec::is_default")]
+    pub wizard: WizardSpec,
     #[serde(default)]
     pub signals: SignalSpec,
     #[serde(default)]
@@ -133,10 +138,16 @@ impl SessionSpec {
         let of = |table: &str, (key, found, remedy): (&str, String, &'static str)| {
             Err(SettingError::new(format!("{table}.{key}"), found, remedy))
         };
-        match (self.human.fault(), self.assistant.fault()) {
-            (Some(fault), _) => of("human", fault),
-            (None, Some(fault)) => of("assistant", fault),
-            (None, None) => Ok(()),
+        let population = self.participant.population.as_ref().and_then(Population::fault);
+        let parts = [
+            ("human", self.human.fault()),
+            ("assistant", self.assistant.fault()),
+            ("wizard", self.wizard.fault()),
+            ("population", population),
+        ];
+        match parts.into_iter().find_map(|(table, fault)| Some((table, fault?))) {
+            Some((table, fault)) => of(table, fault),
+            None => Ok(()),
         }
     }
 }
@@ -151,6 +162,19 @@ impl SessionSpec {
     /// Whether the assistant is asked: where it acts, and as a shadow beside whoever does.
     pub fn asks_assistant(&self) -> bool {
         self.trial.condition == Condition::Assistant || self.assistant.shadow == Shadow::On
+    }
+
+    /// Whether the signals come from a scripted wizard.
+    pub fn scripts_wizard(&self) -> bool {
+        self.trial.condition == Condition::Wizard && self.wizard.kind == WizardKind::Scripted
+    }
+
+    /// Who sends signals where no person is at the console: a wizard only if it is scripted.
+    pub fn unattended(&self, condition: Condition) -> Condition {
+        match condition {
+            Condition::Wizard if self.wizard.kind == WizardKind::Person => Condition::None,
+            condition => condition,
+        }
     }
 }
 
@@ -174,7 +198,7 @@ impl Default for TrialSpec {
 }
 
 /// Who sends signals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Condition {
     /// Nobody: the unassisted condition.
@@ -206,12 +230,21 @@ pub struct ParticipantSpec {
     pub gaze: GazeSource,
     /// Where the JSON gaze input listens, on localhost.
     pub gaze_port: u16,
+    /// From what population simulated participants are drawn; none: the program's own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub population: Option<Population>,
 }
 
 impl Default for ParticipantSpec {
     fn default() -> Self {
         let code = "P01".to_string();
-        ParticipantSpec { code, kind: ParticipantKind::Simulated, gaze: GazeSource::Simulated, gaze_port: 50021 }
+        ParticipantSpec {
+            code,
+            kind: ParticipantKind::Simulated,
+            gaze: GazeSource::Simulated,
+            gaze_port: 50021,
+            population: None,
+        }
     }
 }
 

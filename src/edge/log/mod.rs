@@ -14,7 +14,7 @@ use crate::session::Stamped;
 pub use exclusion::{EXCLUSION_NAME, Ruling, RulingError, rule, ruling};
 pub use lock::Lock;
 pub use reader::{LogLine, LogReader, at_line};
-pub use writer::{LogWriter, check_continued, check_simulated};
+pub use writer::{LogWriter, check_continued, check_simulated, is_whole};
 
 /// The name of the log in its folder.
 pub const LOG_NAME: &str = "events.jsonl";

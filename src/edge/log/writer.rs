@@ -182,6 +182,24 @@ pub fn check_simulated(folder: &Path, header: &Header) -> Result<(), WriteError>
     Err(WriteError::Taken { folder: folder.to_path_buf(), what })
 }
 
+/// Whether the simulated recording of this header is in this folder, whole: with the end of its session.
+pub fn is_whole(folder: &Path, header: &Header) -> bool {
+    /// The last line is shorter, in bytes.
+    const LAST: u64 = 256;
+    let ends = || -> io::Result<bool> {
+        let mut log = File::open(folder.join(LOG_NAME))?;
+        let length = log.seek(io::SeekFrom::End(0))?;
+        log.seek(io::SeekFrom::Start(length.saturating_sub(LAST)))?;
+        let mut end = Vec::new();
+        io::Read::read_to_end(&mut log, &mut end)?;
+        let end = String::from_utf8_lossy(&end);
+        let last = end.strip_suffix('\n').and_then(|lines| lines.rsplit('\n').next());
+        let last = last.and_then(|line| serde_json::from_str::<Stamped>(line).ok());
+        Ok(last.is_some_and(|last| last.event == Event::SessionEnded))
+    };
+    ends().unwrap_or(false) && LogReader::open(folder).is_ok_and(|log| log.header == *header)
+}
+
 fn write_line(out: &mut impl Write, value: &impl serde::Serialize) -> io::Result<()> {
     serde_json::to_writer(&mut *out, value)?;
     out.write_all(b"\n")

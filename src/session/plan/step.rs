@@ -175,13 +175,13 @@ impl Study {
         (spec, trial_number(wanted))
     }
 
-    /// The settings of a simulated trial, and its number. Nobody is there to signal, so it is an unassisted one; to whom
-    /// nothing is explained, and who is asked nothing.
+    /// The settings of a simulated trial, and its number. Nothing is explained, and nothing asked; and where the wizard is
+    /// a person, nobody is there to signal: it is an unassisted one.
     pub fn simulated(&self, participant: usize, period: u32) -> (SessionSpec, u64) {
         let slots = self.slots(participant);
         let slot = slots.iter().position(|slot| slot.period == Some(period)).unwrap_or(0);
         let (mut spec, trial) = self.settings(Wanted { participant, slot, attempt: 1, instructed: true });
-        spec.trial.condition = Condition::None;
+        spec.trial.condition = spec.unattended(spec.trial.condition);
         if let Some(step) = &mut spec.step {
             step.phases = vec![PhaseSpec::Trial];
         }

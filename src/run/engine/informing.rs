@@ -1,0 +1,94 @@
+//! What those around a running session are told of its events: robot, simulated participant, scripted wizard.
+
+use std::sync::Arc;
+
+use super::Engine;
+use crate::kitchen::{Agent, Kitchen, State};
+use crate::participant::SimulatedParticipant;
+use crate::participant::population::Experience;
+use crate::robot::timed::RobotDeed;
+use crate::session::calibration::Check;
+use crate::session::{Event, SessionSpec, Stamped};
+
+/// The simulated participant of a trial. In a plan the same person has several trials, and has learnt from the earlier ones
+/// what its population learns.
+pub(super) fn participant_of(kitchen: Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> SimulatedParticipant {
+    let person = spec.step.as_ref().map_or(trial, |step| u64::from(step.participant));
+    let trials = spec.step.as_ref().and_then(|step| step.period).map_or(0, |period| period.saturating_sub(1));
+    // About half of the presses are the human's.
+    let presses = f64::from(trials) * f64::from(spec.trial.presses) / 2.0;
+    let population = spec.participant.population.clone().unwrap_or_default();
+    SimulatedParticipant::new(kitchen, &population, spec.seed, person, trial, Experience { trials, presses })
+}
+
+impl Engine {
+    /// What the wizard does to the robot by an event that was just applied; the press that it gives up because of it.
+    pub(super) fn tell_robot(&mut self, stamped: &Stamped) -> Option<RobotDeed> {
+        let kitchen = self.session().kitchen.clone();
+        match &stamped.event {
+            Event::RobotStopped => return self.robot.stop(),
+            Event::RobotResumed => self.robot.resume(),
+            Event::RobotHeld { .. } => self.robot.hold(true),
+            Event::RobotReleased { .. } => self.robot.hold(false),
+            Event::RobotSkipped { .. } => return self.robot.skip(stamped.time),
+            Event::RobotDriven { button, .. } => {
+                return kitchen.button_named(Agent::Robot, button).and_then(|button| self.robot.drive(button));
+            }
+            Event::KitchenCorrected { .. } => {
+                let state = self.session().state;
+                return self.robot.reconsider(&kitchen, &mut self.follower.cost, state);
+            }
+            _ => {}
+        }
+        None
+    }
+
+    /// What the participant may notice of an event that was just applied; `before` is the state that it met.
+    pub(super) fn tell_participant(&mut self, stamped: &Stamped, before: State) {
+        let Some(participant) = &mut self.participant else { return };
+        let session = &self.follower.session;
+        let (now, state, kitchen) = (stamped.time, session.state, &session.kitchen);
+        match &stamped.event {
+            Event::TrialStarted => participant.on_trial_start(now, state),
+            Event::Press { agent, button, .. } if session.is_running() => {
+                if let Some(button) = kitchen.button_named(*agent, button) {
+                    // A press that has an effect changes the state.
+                    participant.on_press(now, *agent, button, before, (state != before).then_some(state));
+                }
+            }
+            Event::SignalShown { signal, .. } => {
+                if let Some(location) = kitchen.location_named(signal.target()) {
+                    participant.on_signal(now, location, signal, state);
+                }
+            }
+            Event::SignalEnded { .. } => participant.on_signal_end(now),
+            Event::Calibration(_) => participant.on_target(now, session.calibration.as_ref().and_then(Check::target)),
+            _ => {}
+        }
+    }
+
+    /// What a scripted wizard sees of an event that was just applied: kitchen, presses and gaze.
+    pub(super) fn tell_wizard(&mut self, stamped: &Stamped, before: State) {
+        let Some(wizard) = &mut self.wizard else { return };
+        let session = &self.follower.session;
+        let (now, state, kitchen) = (stamped.time, session.state, &session.kitchen);
+        match &stamped.event {
+            Event::TrialStarted => wizard.on_trial_start(state),
+            Event::Gaze(_) => wizard.on_gaze(now, session.looked_at(now), state),
+            Event::Press { agent: Agent::Human, button, .. } if session.is_running() => {
+                let judged = self.follower.judged.last().filter(|press| press.seq == stamped.seq);
+                let is_error = judged.is_some_and(|press| press.verdict.error);
+                if let Some(button) = kitchen.button_named(Agent::Human, button) {
+                    wizard.on_human_press(now, button, before, state, is_error, &mut self.follower.cost);
+                }
+            }
+            Event::SignalShown { signal, .. } => {
+                if let Some(location) = kitchen.location_named(signal.target()) {
+                    wizard.on_signal(now, location, state);
+                }
+            }
+            _ if state != before => wizard.on_change(now, before, state),
+            _ => {}
+        }
+    }
+}

@@ -1,6 +1,7 @@
 //! The command line. A command is listed when it works.
 
 mod args;
+mod data;
 mod estimates;
 mod review;
 mod study;
@@ -137,6 +138,8 @@ pub fn main() -> ExitCode {
         Command::Kitchen(args) => kitchen(&args),
         Command::Keys(args) => keys(&args),
         Command::Exclude(args) => exclude(&args),
+        Command::Codes(args) => data::codes(&args),
+        Command::Forget(args) => data::forget(&args),
         Command::Doctor(args) => examine(&args),
         Command::Completions(args) => completions(&args),
         Command::Man(args) => man(&args),
@@ -244,6 +247,9 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     if args.timing {
         let figures = timing::measure(recording)?;
         return print(args.format, &figures, || timing::describe(&figures));
+    }
+    if let Some(rater) = &args.rater {
+        return data::rate(recording, rater);
     }
     if args.format == Format::Text && std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
         return Ok(console_over::review(recording, args.follow, None)?);

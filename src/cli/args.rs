@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::data::{CodesArgs, ForgetArgs};
 use super::review::ReviewArgs;
 use super::study::StudyArgs;
 use super::wizard::{CompareArgs, TrainArgs};
@@ -39,6 +40,8 @@ pub(super) enum Command {
     Kitchen(KitchenArgs),
     Keys(KeysArgs),
     Exclude(ExcludeArgs),
+    Codes(CodesArgs),
+    Forget(ForgetArgs),
     Doctor(DoctorArgs),
     Completions(CompletionsArgs),
     Man(ManArgs),
@@ -203,6 +206,10 @@ pub(super) struct ReplayArgs {
     /// Watch a session that is still running, until it ends.
     #[arg(long)]
     pub(super) follow: bool,
+    /// Code the errors of the recording as this rater (a code, never a name), without any estimate in view: letters say
+    /// what was believed wrong, 1 a slip, 2 a race, 3 another cause. It is kept beside the log.
+    #[arg(long, value_name = "CODE", conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy", "format"])]
+    pub(super) rater: Option<String>,
     /// How to print the result.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: Format,

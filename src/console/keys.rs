@@ -7,6 +7,7 @@ use std::fmt;
 use std::ops::Range;
 
 use super::chord::Chord;
+use super::coding::Rate;
 use super::comparison::Step;
 use super::hands::Hand;
 use super::keymap::KeyMap;
@@ -47,6 +48,8 @@ pub enum Action {
     Belief,
     /// Where wizard and assistant differ.
     Differ(Step),
+    /// Code an error.
+    Rate(Rate),
     Help,
     Quit,
 }
@@ -134,6 +137,8 @@ pub struct Keys {
     marks: Vec<Option<Chord>>,
     /// The lines that act only where wizard and assistant are compared.
     comparing: Vec<Binding>,
+    /// The lines that act only where errors are coded.
+    coding: Vec<Binding>,
 }
 
 impl Keys {
@@ -142,7 +147,7 @@ impl Keys {
     /// # Errors
     /// A key with two meanings, or a line of the key file that cannot be.
     pub fn live(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyMap) -> Result<Keys, KeyError> {
-        let (comparing, mut bindings) = without_comparing(lines(kitchen, map)?, Section::Console);
+        let Consoles { comparing, mut bindings, .. } = Consoles::of(lines(kitchen, map)?, Section::Console);
         let marks = marks(kitchen, &bindings);
         let at_keyboard = spec.participant.kind == ParticipantKind::Keyboard;
         bindings.retain(|line| match &line.action {
@@ -160,7 +165,7 @@ impl Keys {
                 line.help.clone_from(&spec.console.notes[index]);
             }
         }
-        Ok(Keys { bindings, marks, comparing })
+        Ok(Keys { bindings, marks, comparing, coding: Vec::new() })
     }
 
     /// The table of a training: the signals, and what the console itself needs.
@@ -180,15 +185,27 @@ impl Keys {
     /// # Errors
     /// As of [`Keys::live`].
     pub fn replay(kitchen: &Kitchen, map: &KeyMap) -> Result<Keys, KeyError> {
-        let (comparing, mut bindings) = without_comparing(lines(kitchen, map)?, Section::Replay);
+        let Consoles { comparing, coding, mut bindings } = Consoles::of(lines(kitchen, map)?, Section::Replay);
         let marks = marks(kitchen, &bindings);
         bindings.retain(|line| line.section == Section::Replay && !line.chords.is_empty());
-        Ok(Keys { bindings, marks, comparing })
+        Ok(Keys { bindings, marks, comparing, coding })
     }
 
     /// The same with the keys of the comparison.
     pub fn with_comparison(mut self) -> Keys {
         self.bindings.append(&mut self.comparing);
+        self
+    }
+
+    /// The same with the keys of a rater: the letters of the signals say what was believed wrong, and so no letter quits.
+    pub fn with_coding(mut self, kitchen: &Kitchen) -> Keys {
+        for line in &mut self.bindings {
+            let marks = &self.marks;
+            line.chords.retain(|chord| !marks.contains(&Some(*chord)));
+        }
+        self.bindings.append(&mut self.coding);
+        self.bindings.extend(table::causes(kitchen, &self.marks));
+        self.bindings.retain(|line| !line.chords.is_empty());
         self
     }
 
@@ -220,12 +237,24 @@ impl Keys {
     }
 }
 
-/// The lines of a console that compare, and all the others.
-fn without_comparing(lines: Vec<Binding>, section: Section) -> (Vec<Binding>, Vec<Binding>) {
-    let (mut comparing, others): (Vec<Binding>, Vec<Binding>) =
-        lines.into_iter().partition(|line| matches!(line.action, Action::Differ(_)));
-    comparing.retain(|line| line.section == section && !line.chords.is_empty());
-    (comparing, others)
+/// The lines of a console: those that compare, those that code errors, and all the others.
+struct Consoles {
+    comparing: Vec<Binding>,
+    coding: Vec<Binding>,
+    bindings: Vec<Binding>,
+}
+
+impl Consoles {
+    fn of(lines: Vec<Binding>, section: Section) -> Consoles {
+        let (mut comparing, others): (Vec<Binding>, Vec<Binding>) =
+            lines.into_iter().partition(|line| matches!(line.action, Action::Differ(_)));
+        let (mut coding, bindings): (Vec<Binding>, Vec<Binding>) =
+            others.into_iter().partition(|line| matches!(line.action, Action::Rate(_)));
+        for some in [&mut comparing, &mut coding] {
+            some.retain(|line| line.section == section && !line.chords.is_empty());
+        }
+        Consoles { comparing, coding, bindings }
+    }
 }
 
 /// Every line of both consoles for a kitchen, with the keys of a key file; no key has two meanings, whatever the

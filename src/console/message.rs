@@ -32,6 +32,8 @@ pub enum Command {
     Start(Event),
     /// Another place in a recording.
     Move(Move),
+    /// What the rater says has changed: it is to be kept.
+    Code,
     /// Close this recording and do its trial again in another one.
     Redo,
     /// This recording is done: close it and go on to the next one of the series.

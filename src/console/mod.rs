@@ -5,6 +5,7 @@ pub mod arrange;
 pub mod belief;
 pub mod calibration;
 pub mod chord;
+pub mod coding;
 pub mod comparison;
 pub mod display;
 pub mod form;

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use crossterm::event::KeyCode;
 
 use super::belief::BeliefTrack;
+use super::coding::Coding;
 use super::comparison::Compared;
 use super::display::DisplayHealth;
 use super::keys::{Keys, Layer};
@@ -138,6 +139,8 @@ pub struct Model {
     pub comparison: Option<Compared>,
     /// Set when a wizard is trained.
     pub lesson: Option<Lesson>,
+    /// Set when the errors of a recording are coded.
+    pub coding: Option<Coding>,
     /// Set when a recording is replayed.
     pub playback: Option<Playback>,
     /// The terminal tells key repeat from key press.
@@ -173,6 +176,7 @@ impl Model {
             belief: BeliefTrack::default(),
             comparison: None,
             lesson: None,
+            coding: None,
             playback: None,
             exact_keys: false,
             pressed: None,

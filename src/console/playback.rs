@@ -18,6 +18,8 @@ pub enum Move {
     Faster,
     Slower,
     ToStart,
+    /// Behind the event of this number.
+    ToEvent(u64),
     /// To the end; a followed recording stays at its growing end.
     ToEnd,
 }

@@ -1,17 +1,19 @@
 //! The lines of the table of keys, as they are before a key file changes them.
 
 use crossterm::event::KeyCode::{
-    self, BackTab, Backspace, Down, End, Enter, Esc, Home, Left, PageDown, PageUp, Right, Tab, Up,
+    self, BackTab, Backspace, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp, Right, Tab, Up,
 };
 
 use super::chord::Chord;
+use super::coding::Rate;
 use super::comparison::Step;
 use super::hands::Hand;
 use super::keys::{Action, Binding, Layer, Section};
 use super::panels::Look;
 use super::playback::Move;
 use crate::communication::{self, Signal};
-use crate::kitchen::{Agent, ButtonId, Kitchen};
+use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId};
+use crate::measures::coding::Kind;
 use crate::session::settings::MAX_NOTES;
 
 const SIGNALS: &str = "Signals to the participant";
@@ -22,6 +24,7 @@ const ROBOT: &str = "Robot";
 const BUTTONS: &str = "The participant's buttons";
 const CONSOLE: &str = "Console";
 const COMPARISON: &str = "Wizard and assistant";
+const CODING: &str = "Why it was an error";
 
 /// What the key does that looks at one aspect of the belief.
 const BELIEF: &str = "one belief over time; again: the next";
@@ -135,8 +138,34 @@ pub fn replay() -> Vec<Binding> {
     ];
     lines.extend(looks(Tab, BackTab));
     lines.extend(differences());
+    lines.extend(codes());
     lines.extend(moves.map(|(name, keys, to, help, footer)| of_move(name, &keys, to, help, footer)));
     lines.into_iter().map(|line| Binding { section: Section::Replay, ..line }).collect()
+}
+
+/// What a rater says about errors; only where they are coded.
+fn codes() -> [Binding; 6] {
+    let code = |name, key: Chord, rate, help, footer| line(name, &[key], Action::Rate(rate), CODING, help, footer);
+    let cause = |name, key, kind, help| code(name, Chord::char(key), Rate::Cause(kind), help, None);
+    [
+        code("next_error", Chord::plain(Enter), Rate::Next, "to the next error", Some("next error")),
+        code("last_error", Chord::plain(Backspace), Rate::Last, "to the error before", None),
+        Binding { footer: Some("slip"), ..cause("slip", '1', Kind::Slip, "a slip: nothing was believed wrong") },
+        Binding { footer: Some("race"), ..cause("race", '2', Kind::Race, "a race: the robot was quicker") },
+        Binding { footer: Some("other"), ..cause("other_cause", '3', Kind::Other, "another cause") },
+        code("clear_code", Chord::plain(Delete), Rate::Clear, "not coded after all", None),
+    ]
+}
+
+/// What was believed wrong, by the letters of the signals.
+pub fn causes(kitchen: &Kitchen, marks: &[Option<Chord>]) -> Vec<Binding> {
+    let cause = |(index, mark): (usize, &Option<Chord>)| {
+        let (id, chord) = (LocationId(index as u8), (*mark)?);
+        let help = format!("wrong about {}", kitchen.location(id).label());
+        let footer = (index == 0).then_some("wrong about ...");
+        Some(line(&kitchen.location(id).name, &[chord], Action::Rate(Rate::Belief(id)), CODING, &help, footer))
+    };
+    marks.iter().enumerate().filter_map(cause).collect()
 }
 
 /// Where wizard and assistant differ; only where they are compared.

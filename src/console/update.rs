@@ -5,6 +5,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 use super::arrange::Plan;
 use super::belief;
 use super::chord::Chord;
+use super::coding;
 use super::comparison::Step;
 use super::form::{self, sheet};
 use super::hands::{self, Hand};
@@ -325,6 +326,7 @@ pub(super) fn act(model: &mut Model, session: &Session, action: Action) -> Optio
             differ(model, session, step);
             None
         }
+        Action::Rate(rate) => coding::act(model, session, rate),
         Action::Help => {
             (model.dialog, model.help_from) = (Some(Dialog::Help), 0);
             None

@@ -6,6 +6,7 @@ pub mod display;
 pub mod doctor;
 pub mod export;
 pub mod files;
+pub mod forget;
 pub mod gaze_file;
 pub mod gaze_input;
 pub mod gaze_json;

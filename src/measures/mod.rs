@@ -2,6 +2,7 @@
 
 pub mod attribution;
 pub mod beliefs;
+pub mod coding;
 pub mod detection;
 pub mod errors;
 pub mod flags;

@@ -277,6 +277,11 @@ impl SimulatedParticipant {
         let kitchen = self.kitchen.clone();
         let action = kitchen.button(Agent::Human, button).action;
         let (state, recipes) = self.beliefs.point(&kitchen);
+        let has_failed = !effective && kitchen.press(state, &recipes, Agent::Human, button).is_some();
+        if has_failed && self.population.insists > 0.0 && chance(&mut self.mind, self.population.insists) {
+            self.intent.plan.push_front(button);
+            return;
+        }
         let is_surprised = learning::learn(&kitchen, &mut self.beliefs, button, effective);
         for place in kitchen.involved(Agent::Human, button) {
             if is_surprised {

@@ -62,6 +62,9 @@ pub struct Population {
     pub thoughtless: Spread,
     /// Chance to notice that the own hand slipped.
     pub notices_slip: f64,
+    /// Chance to press again, as if it had not been pressed well, what should have done something and did not, before asking
+    /// oneself why (perseveration).
+    pub insists: f64,
     /// Chance to look at a place right before using it.
     pub checks: Spread,
     /// Chance to look once more before a press if the last look is some time ago.
@@ -131,6 +134,7 @@ impl Default for Population {
             look_alike_slip: Spread::of(0.012, 0.4),
             thoughtless: Spread::of(0.005, 0.4),
             notices_slip: 0.85,
+            insists: 0.0,
             checks: Spread::of(0.9, 0.3),
             makes_sure: Spread::of(0.4, 0.5),
             capture: Spread::of(0.6, 0.3),
@@ -249,6 +253,7 @@ impl Population {
         let checks = [
             small("press_jitter", self.press_jitter, "a number from 0 to 2"),
             share("notices_slip", self.notices_slip),
+            ("insists", self.insists, (0.0..1.0).contains(&self.insists), "a number from 0 to below 1"),
             share("misreads_signal", self.misreads_signal),
             share("practice_kept", self.practice_kept),
             small("novice_slowdown", self.novice_slowdown, "a number from 0 to 2"),

@@ -8,6 +8,7 @@ use super::standing::Standing;
 use crate::base::time::SessionTime;
 use crate::console::belief::{BeliefTrack, Moment};
 use crate::edge::files::FileResult;
+use crate::session::settings::Visibility;
 use crate::session::{Event, Session, Stamped, apply};
 
 /// A session is kept every so many events.
@@ -51,6 +52,20 @@ impl Film {
         };
         film.read()?;
         Ok(film)
+    }
+
+    /// Shows no estimate from now on: to whoever is to judge for oneself. Before anything is wound.
+    pub fn blinded(mut self) -> Film {
+        for session in self.kept.iter_mut().chain([&mut self.session]) {
+            session.spec.console.visibility = Visibility::State;
+        }
+        self
+    }
+
+    /// The numbers of the presses that were errors.
+    pub fn error_presses(&self) -> Vec<u64> {
+        let judged = self.replay.follower.judged.iter();
+        judged.filter(|press| press.verdict.error).map(|press| press.seq).collect()
     }
 
     /// Reads what was added since; whether anything was.

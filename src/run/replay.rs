@@ -27,8 +27,13 @@ impl Replay {
     pub fn open(recording: &Path) -> FileResult<Replay> {
         let log = LogReader::open(recording)?;
         let cost = CostToGo::new(log.kitchen.clone());
+        Ok(Replay::over(log, cost))
+    }
+
+    /// A replay of this log; `cost` is for its kitchen, and may have been used before.
+    pub fn over(log: LogReader, cost: CostToGo) -> Replay {
         let follower = Follower::new(log.kitchen.clone(), log.header.session.clone(), cost);
-        Ok(Replay { log, follower })
+        Replay { log, follower }
     }
 
     /// The same without looking for the causes of errors.

@@ -9,11 +9,14 @@ use tokio::time::{Instant, sleep_until};
 use super::compare::{Request, WatchDesk, Watcher};
 use super::film::Film;
 use crate::base::time::SessionTime;
+use crate::console::coding::Coding;
 use crate::console::comparison::Compared;
 use crate::console::keys::KeyError;
+use crate::console::model::Level;
 use crate::console::playback::{Move, Playback, SPEEDS};
 use crate::console::{Command, Keys, Message, Model, update};
 use crate::edge::files::{FileError, key_map};
+use crate::edge::log::codes;
 use crate::edge::terminal::{Hands, Screen, asked_to_end, theme};
 use crate::session::Event;
 
@@ -56,8 +59,24 @@ impl From<FileError> for ReviewError {
 /// The recording cannot be read, or there is no terminal.
 pub fn review(recording: &Path, follow: bool, compare: Option<&Request>) -> Result<(), ReviewError> {
     let film = Film::open(recording)?;
+    on_thread(Review::open(film, recording, follow, compare, None)?)
+}
+
+/// Opens the console over a recording for a rater, who codes its errors and sees what a wizard without estimates sees; what
+/// was said is kept beside the log after every key.
+///
+/// # Errors
+/// The recording or its codes cannot be read, or there is no terminal.
+pub fn rate(recording: &Path, rater: &str) -> Result<(), ReviewError> {
+    let film = Film::open(recording)?.blinded();
+    let codes = codes::read(film.replay.log().folder(), rater)?;
+    let coding = Coding { rater: rater.to_string(), errors: film.error_presses(), codes };
+    on_thread(Review::open(film, recording, false, None, Some(coding))?)
+}
+
+fn on_thread(review: Review) -> Result<(), ReviewError> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(ReviewError::Terminal)?;
-    runtime.block_on(Review::open(film, recording, follow, compare)?.run())
+    runtime.block_on(review.run())
 }
 
 struct Review {
@@ -77,14 +96,22 @@ struct Review {
 }
 
 impl Review {
-    fn open(film: Film, recording: &Path, follow: bool, compare: Option<&Request>) -> Result<Review, ReviewError> {
+    fn open(
+        film: Film,
+        recording: &Path,
+        follow: bool,
+        compare: Option<&Request>,
+        coding: Option<Coding>,
+    ) -> Result<Review, ReviewError> {
         let screen = Screen::take().map_err(ReviewError::Terminal)?;
         let size = Screen::size().map_err(ReviewError::Terminal)?;
         let keys = film.replay.log().header.keys.as_ref();
         let keys = Keys::replay(&film.session.kitchen, &key_map(keys)?)?;
         let keys = if compare.is_some() { keys.with_comparison() } else { keys };
+        let keys = if coding.is_some() { keys.with_coding(&film.session.kitchen) } else { keys };
         let mut model = Model::new(keys, theme(&film.session.spec.console, screen.ground), size);
         model.comparison = compare.map(|_| Compared::default());
+        model.coding = coding;
         let watch = compare.map(|request| {
             let session = &film.session;
             Watcher::new(session.kitchen.clone(), &session.spec, request).without_causes().on_thread()
@@ -106,7 +133,9 @@ impl Review {
             watch,
         };
         review.tell(0);
-        review.playback(|playback| playback.playing = true);
+        // Who codes goes from error to error.
+        let plays = review.model.coding.is_none();
+        review.playback(|playback| playback.playing = plays);
         if follow {
             review.go(Move::ToEnd);
         }
@@ -147,10 +176,19 @@ impl Review {
         self.tick();
         match update(&mut self.model, &self.film.session, message) {
             Some(Command::Move(to)) => self.go(to),
+            Some(Command::Code) => self.keep(),
             Some(Command::Quit) => return true,
             Some(Command::Input(_) | Command::Start(_) | Command::Next | Command::Redo) | None => {}
         }
         false
+    }
+
+    /// Keeps what the rater says.
+    fn keep(&mut self) {
+        let Some(coding) = &self.model.coding else { return };
+        if let Err(error) = codes::write(self.film.replay.log().folder(), &coding.rater, &coding.codes) {
+            self.model.say(Level::Alarm, format!("not kept: {error}"));
+        }
     }
 
     /// Moves the clock on that also runs while the replay stands.
@@ -183,6 +221,7 @@ impl Review {
             Move::StepForward => self.stand_at(self.film.next_step()),
             Move::StepBack => self.stand_at(self.film.last_step()),
             Move::ToStart => self.stand_at(0),
+            Move::ToEvent(number) => self.stand_at(number as usize + 1),
             Move::SeekForward => self.seek(self.now + SEEK),
             Move::SeekBack => self.seek(self.now - SEEK),
             Move::ToEnd => {

@@ -7,13 +7,13 @@ use std::time::Instant;
 
 use super::engine::Engine;
 use super::figures::{ConditionFigures, SimulationFigures, SimulationSums, TrialFigures};
-use super::follower::Follower;
 use super::parallel::Workers;
+use super::replay::Replay;
 use super::{headless, kitchen, options};
 use crate::base::words::count;
 use crate::communication::settings::Shadow;
 use crate::edge::files::{FileError, SessionFiles};
-use crate::edge::log::{LogReader, LogWriter, WriteError, at_line, check_simulated, is_whole, ruling};
+use crate::edge::log::{LogReader, LogWriter, WriteError, check_simulated, is_whole, ruling};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::settings::{Condition, ParticipantSpec, SessionSpec};
@@ -213,7 +213,11 @@ fn simulate_trial(
     let folder = folder_of_trial(&simulation.out, &header.session);
     let found = is_whole(&folder, &header);
     let follower = match found {
-        true => read_trial(&folder, cost)?,
+        true => {
+            let mut replay = Replay::over(LogReader::open(&folder).map_err(Box::new)?, cost);
+            replay.run().map_err(Box::new)?;
+            replay.follower
+        }
         false => {
             let mut log = LogWriter::create_simulated(&folder, &header)?;
             let mut engine = Engine::new(kitchen.clone(), header.session, header.trial, cost);
@@ -224,18 +228,6 @@ fn simulate_trial(
     };
     let figures = TrialFigures::of(&follower);
     Ok((Simulated { folder, condition, figures, found }, follower.cost))
-}
-
-/// Follows the recording of a trial that was simulated before.
-fn read_trial(folder: &Path, cost: CostToGo) -> Result<Follower, SimulateError> {
-    let mut log = LogReader::open(folder).map_err(Box::new)?;
-    let mut follower = Follower::new(log.kitchen.clone(), log.header.session.clone(), cost);
-    while let Some(line) = log.next_line().map_err(Box::new)? {
-        let applied = follower.apply(&line.stamped);
-        applied
-            .map_err(|error| Box::new(at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy)))?;
-    }
-    Ok(follower)
 }
 
 /// The figures for people.

@@ -6,6 +6,7 @@ use super::paint::{Brush, width};
 use super::regions::Regions;
 use super::theme::Role;
 use super::{comparison, timeline};
+use crate::console::coding::Rate;
 use crate::console::form::sheet;
 use crate::console::hands::Hand;
 use crate::console::keys::{Action, Binding, Layer};
@@ -64,6 +65,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
                 format!("1-{}", session.spec.console.notes.len())
             }
             // One label for the keys of both directions.
+            Action::Rate(Rate::Belief(_)) => "letters".to_string(),
             Action::Move(Move::StepForward) => "left/right".to_string(),
             Action::Move(Move::SeekForward) => "pgup/pgdn".to_string(),
             Action::Move(Move::Faster) => "+/-".to_string(),

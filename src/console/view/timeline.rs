@@ -24,7 +24,9 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         return;
     }
     let is_small = regions.room == Room::Small;
-    let inside = if is_small { area } else { brush.panel(area, TITLE, &legend(brush)) };
+    let coding = coding(session, model);
+    let title = coding.as_ref().map_or(TITLE.to_string(), |words| format!("{TITLE}: {words}"));
+    let inside = if is_small { area } else { brush.panel(area, &title, &legend(brush)) };
     let rows: &[&str] = match is_small {
         // Signals, orders and notes share a row.
         true => &["", "human", "robot", "events"],
@@ -51,6 +53,16 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         .filter(|mark| mark.y < plot.bottom())
         .collect();
     place(brush, plot, &in_view);
+    if let Some(words) = coding.filter(|_| is_small) {
+        let strong = brush.style(Role::Strong);
+        brush.text(inside.x + 1, inside.y, inside.width, &format!("{words} "), strong);
+    }
+}
+
+/// Where a rater stands, where errors are coded.
+fn coding(session: &Session, model: &Model) -> Option<String> {
+    let (coding, playback) = (model.coding.as_ref()?, model.playback.as_ref()?);
+    Some(coding.describe(&session.kitchen, playback.event))
 }
 
 /// What stands at the right edge: now; in a pause the last that happened, since that is when one looks back.

@@ -21,7 +21,7 @@ impl Live {
             Some(Command::Quit) => return Some(Leaving::Quit),
             Some(Command::Next) => return Some(Leaving::Next),
             Some(Command::Redo) => return Some(Leaving::Redo),
-            Some(Command::Move(_)) | None => {}
+            Some(Command::Move(_) | Command::Code) | None => {}
         }
         None
     }

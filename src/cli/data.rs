@@ -1,0 +1,145 @@
+//! `tomcom codes` and `tomcom forget`.
+
+use std::io::{BufRead, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::args::Format;
+use super::{Failure, print, progress};
+use crate::base::words::count;
+use crate::edge::forget::{self, Found};
+use crate::run::codes::{self, Coded, CodesError, CodesFigures};
+use crate::run::review;
+use crate::session::settings::is_code;
+
+/// Prints what raters say about the errors of recordings, and how far they agree; takes it from a table, or writes one.
+#[derive(Debug, Args)]
+#[command(after_help = "tomcom replay RECORDING --rater R1 is where errors are coded.\n\
+                  Examples: tomcom codes sessions/2026-03-14-P07-1\n          \
+                  tomcom codes sessions/*-P*-* --export codes.csv")]
+pub(super) struct CodesArgs {
+    /// The folders of recordings, or their events.jsonl.
+    #[arg(required = true, value_name = "RECORDING")]
+    recordings: Vec<PathBuf>,
+    /// Take codes from this table, with the columns recording, rater, press, cause, aspect.
+    #[arg(long, value_name = "FILE")]
+    import: Option<PathBuf>,
+    /// Write all codes into such a table.
+    #[arg(long, value_name = "FILE")]
+    export: Option<PathBuf>,
+    /// How to print the figures.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+}
+
+impl From<CodesError> for Failure {
+    fn from(error: CodesError) -> Failure {
+        match error {
+            CodesError::File(error) => Failure::from(*error),
+            CodesError::Recording(error) => Failure::from(error),
+        }
+    }
+}
+
+pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
+    let bar = progress(args.recordings.len() as u64, "recordings");
+    let read = crate::run::parallel::each(&args.recordings, |recording| Coded::open(recording), || bar.inc(1));
+    bar.finish_and_clear();
+    let mut recordings = read.into_iter().collect::<Result<Vec<Coded>, _>>()?;
+    if let Some(file) = &args.import {
+        codes::import(&mut recordings, file)?;
+    }
+    if let Some(file) = &args.export {
+        codes::export(&recordings, file)?;
+    }
+    let figures = CodesFigures::of(&recordings);
+    print(args.format, &figures, || codes::describe(&figures))
+}
+
+/// Codes the errors of a recording at the console.
+pub(super) fn rate(recording: &Path, rater: &str) -> Result<(), Failure> {
+    if !is_code(rater) {
+        let help = "a code of 1 to 32 letters, digits, - and _, such as R1; never a name";
+        return Err(Failure::Wrong(miette::miette!(help = help, "found the rater \"{rater}\"")));
+    }
+    if !std::io::stdin().is_terminal() || !std::io::stdout().is_terminal() {
+        let help = "a terminal; tomcom codes takes codes from a table";
+        return Err(Failure::Wrong(miette::miette!(help = help, "found no terminal to code errors at")));
+    }
+    Ok(review::rate(recording, rater)?)
+}
+
+/// Deletes a participant everywhere below a folder: recordings with their parts, streams and codes, rows of tables, reports, and
+/// what a wizard has trained on them. Of a wizard's code: the records of training.
+#[derive(Debug, Args)]
+#[command(after_help = "Session files stay, and so does what an eye tracker has recorded by itself.\n\
+                  Exit code 0: deleted. 1: there was nothing, or not all of it could be deleted.\n\
+                  Example: tomcom forget P07 --in sessions")]
+pub(super) struct ForgetArgs {
+    /// The code of the participant.
+    code: String,
+    /// Where to look.
+    #[arg(long = "in", value_name = "FOLDER", default_value = "sessions")]
+    folder: PathBuf,
+    /// Do not ask.
+    #[arg(long)]
+    yes: bool,
+    /// How to print what was deleted.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+}
+
+/// What was deleted, as JSON.
+#[derive(Debug, Serialize)]
+struct Forgotten<'a> {
+    code: &'a str,
+    deleted: bool,
+    #[serde(flatten)]
+    found: &'a Found,
+}
+
+pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
+    let code = &args.code;
+    if !is_code(code) {
+        let help = "a code of 1 to 32 letters, digits, - and _, such as P07";
+        return Err(Failure::Wrong(miette::miette!(help = help, "found the code \"{code}\"")));
+    }
+    let found = forget::find(&args.folder, code)?;
+    let deletes = !found.is_empty() && (args.yes || is_meant(args, &found)?);
+    if deletes {
+        forget::delete(&found, code)?;
+    }
+    let figures = Forgotten { code, deleted: deletes, found: &found };
+    print(args.format, &figures, || match (found.is_empty(), deletes) {
+        (true, _) => format!("nothing of {code} is in {}\n", args.folder.display()),
+        (false, true) => format!("deleted:\n{}", listed(&found)),
+        (false, false) => "nothing was deleted\n".to_string(),
+    })?;
+    if deletes { Ok(()) } else { Err(Failure::No) }
+}
+
+/// Shows what would be deleted, and asks for the code.
+fn is_meant(args: &ForgetArgs, found: &Found) -> Result<bool, Failure> {
+    let (mut out, input) = (std::io::stderr(), std::io::stdin());
+    writeln!(out, "{}", listed(found))?;
+    if !input.is_terminal() {
+        let help = "--yes, or a terminal to answer at";
+        return Err(Failure::Wrong(miette::miette!(help = help, "found nobody to ask whether this is to be deleted")));
+    }
+    write!(out, "It cannot be brought back. To delete it, type the code {} again: ", args.code)?;
+    out.flush()?;
+    let mut answer = String::new();
+    input.lock().read_line(&mut answer)?;
+    Ok(answer.trim() == args.code)
+}
+
+fn listed(found: &Found) -> String {
+    let line = |path: &Path, what: &str| format!("  {}{what}\n", path.display());
+    let recordings = found.recordings.iter().map(|path| line(path, " (recording)"));
+    let files = found.files.iter().map(|path| line(path, ""));
+    let tables = found.tables.iter().map(|(path, rows)| line(path, &format!(" ({})", count(*rows, "row", "rows"))));
+    let trainings = found.trainings.iter().map(|path| line(path, " (what was trained on these recordings)"));
+    recordings.chain(files).chain(tables).chain(trainings).collect()
+}

@@ -1,0 +1,157 @@
+//! `codes-RATER.csv`, beside a log: what one rater says about its errors. The log stays as it is.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use super::WriteError;
+use crate::edge::files::{FileError, FileResult};
+use crate::measures::coding::{Code, Codes, Kind};
+use crate::session::settings::is_code;
+
+/// The columns of the file; those of an export of several recordings have two more before them.
+const COLUMNS: [&str; 3] = ["press", "cause", "aspect"];
+const EXPORT_COLUMNS: [&str; 5] = ["recording", "rater", "press", "cause", "aspect"];
+/// What would be right.
+const REMEDY: &str = "press,cause,aspect: the number of the press in its log; belief, slip, race or other; and of beliefs the \
+                      location that is believed wrong";
+
+/// A row of an export.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// The line of the file, for messages.
+    pub line: usize,
+    /// The name of the recording's folder.
+    pub recording: String,
+    pub rater: String,
+    pub press: u64,
+    pub code: Code,
+}
+
+/// What one rater says about the recording in this folder; nothing, if there is no such file.
+///
+/// # Errors
+/// The file is there but cannot be read, or says something else.
+pub fn read(folder: &Path, rater: &str) -> FileResult<Codes> {
+    let path = path(folder, rater);
+    let text = match fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Codes::default()),
+        Err(reason) => return Err(FileError::unreadable(&path, reason, "a readable text file (UTF-8)")),
+    };
+    let rows = rows(&path, &text, &COLUMNS)?;
+    Ok(Codes(rows.into_iter().map(|(_, _, press, code)| (press, code)).collect()))
+}
+
+/// What all raters say about the recording in this folder, by rater.
+///
+/// # Errors
+/// Those of [`read`], or the folder cannot be read.
+pub fn read_all(folder: &Path) -> FileResult<BTreeMap<String, Codes>> {
+    let unreadable = |reason| FileError::unreadable(folder, reason, "the folder of a recording");
+    let mut all = BTreeMap::new();
+    for entry in fs::read_dir(folder).map_err(unreadable)? {
+        let name = entry.map_err(unreadable)?.file_name().to_string_lossy().into_owned();
+        let rater = name.strip_prefix("codes-").and_then(|name| name.strip_suffix(".csv"));
+        if let Some(rater) = rater.filter(|rater| is_code(rater)) {
+            all.insert(rater.to_string(), read(folder, rater)?);
+        }
+    }
+    Ok(all)
+}
+
+/// Writes what a rater says; whoever reads meanwhile finds the old file or the new one.
+///
+/// # Errors
+/// The folder cannot be written to.
+pub fn write(folder: &Path, rater: &str, codes: &Codes) -> Result<(), WriteError> {
+    let path = path(folder, rater);
+    let failed = |reason| WriteError::unwritable(&path, reason);
+    let mut table = csv::Writer::from_writer(Vec::new());
+    let mut put = |fields: [&str; 3]| table.write_record(fields).map_err(std::io::Error::from);
+    put(COLUMNS).map_err(failed)?;
+    for (press, code) in &codes.0 {
+        put([&press.to_string(), code.kind().name(), code.aspect().unwrap_or_default()]).map_err(failed)?;
+    }
+    let bytes = table.into_inner().map_err(|error| failed(std::io::Error::other(error.to_string())))?;
+    let new = folder.join(format!("codes-{rater}.csv.new"));
+    fs::write(&new, bytes).and_then(|()| fs::rename(&new, &path)).map_err(failed)
+}
+
+/// Reads an export: the codes of several raters about several recordings.
+///
+/// # Errors
+/// It cannot be read, or is none.
+pub fn read_export(path: &Path) -> FileResult<(String, Vec<Row>)> {
+    let text = crate::edge::files::read_text(path)?;
+    let row = |(line, before, press, code): ParsedRow| {
+        let [recording, rater] = [before[0].clone(), before[1].clone()];
+        Row { line, recording, rater, press, code }
+    };
+    let rows = rows(path, &text, &EXPORT_COLUMNS)?.into_iter().map(row).collect();
+    Ok((text, rows))
+}
+
+/// Writes an export.
+///
+/// # Errors
+/// It cannot be written.
+pub fn write_export(path: &Path, rows: &[Row]) -> Result<(), WriteError> {
+    let failed = |reason| WriteError::unwritable(path, reason);
+    let write = || -> csv::Result<()> {
+        let mut table = csv::Writer::from_path(path)?;
+        table.write_record(EXPORT_COLUMNS)?;
+        for row in rows {
+            let (press, kind) = (row.press.to_string(), row.code.kind().name());
+            table.write_record([&row.recording, &row.rater, &press, kind, row.code.aspect().unwrap_or_default()])?;
+        }
+        Ok(table.flush()?)
+    };
+    write().map_err(|error| failed(error.into()))
+}
+
+/// An error about a line of such a file.
+pub fn wrong_line(path: &Path, text: &str, line: usize, found: String, remedy: &str) -> FileError {
+    let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+    let length = text[before..].lines().next().map_or(0, str::len);
+    FileError::at(path, text, Some(before..before + length), found, remedy.to_string())
+}
+
+/// Line, the fields before the code, the number of the press, and the code.
+type ParsedRow = (usize, Vec<String>, u64, Code);
+
+/// The rows of a table; the last three of its columns are a press and its code.
+fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<ParsedRow>> {
+    let mut table = csv::Reader::from_reader(text.as_bytes());
+    let broken = |error: csv::Error| {
+        let line = error.position().map_or(1, |position| position.line() as usize);
+        wrong_line(path, text, line, error.to_string(), REMEDY)
+    };
+    let head: Vec<String> = table.headers().map_err(broken)?.iter().map(str::to_string).collect();
+    if head != columns {
+        let remedy = format!("the columns {}", columns.join(","));
+        return Err(wrong_line(path, text, 1, format!("the columns {}", head.join(",")), &remedy));
+    }
+    let mut rows = Vec::new();
+    for record in table.records() {
+        let record = record.map_err(broken)?;
+        let line = record.position().map_or(1, |position| position.line() as usize);
+        let before: Vec<String> = record.iter().take(columns.len() - 3).map(str::to_string).collect();
+        let field = |back: usize| record.get(columns.len() - back).unwrap_or_default();
+        let aspect = Some(field(1)).filter(|aspect| !aspect.is_empty());
+        let code = Kind::named(field(2)).and_then(|kind| Code::new(kind, aspect));
+        match (field(3).parse(), code) {
+            (Ok(press), Some(code)) => rows.push((line, before, press, code)),
+            _ => {
+                let found = format!("press \"{}\", cause \"{}\", aspect \"{}\"", field(3), field(2), field(1));
+                return Err(wrong_line(path, text, line, found, REMEDY));
+            }
+        }
+    }
+    Ok(rows)
+}
+
+fn path(folder: &Path, rater: &str) -> PathBuf {
+    folder.join(format!("codes-{rater}.csv"))
+}

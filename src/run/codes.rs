@@ -1,0 +1,218 @@
+//! `tomcom codes`: what raters say about the errors of recordings, and how far they agree.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::replay::Replay;
+use crate::base::words::count;
+use crate::edge::files::{FileError, FileResult};
+use crate::edge::log::{WriteError, codes};
+use crate::measures::coding::{Agreement, AgreementTable, Codes};
+use crate::session::settings::{ParticipantKind, is_code};
+
+/// Why codes could not be read or written.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum CodesError {
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    File(#[from] Box<FileError>),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Recording(#[from] WriteError),
+}
+
+impl From<FileError> for CodesError {
+    fn from(error: FileError) -> CodesError {
+        CodesError::File(Box::new(error))
+    }
+}
+
+/// A recording with what was said about its errors.
+#[derive(Clone, Debug)]
+pub struct Coded {
+    pub folder: PathBuf,
+    /// The names of the kitchen's locations.
+    places: Vec<String>,
+    /// The numbers of the presses that were errors.
+    pub errors: Vec<u64>,
+    /// By rater.
+    pub codes: BTreeMap<String, Codes>,
+    /// Of a simulated participant: what is true.
+    pub known: Option<Codes>,
+}
+
+impl Coded {
+    /// Reads a recording and the codes beside it.
+    ///
+    /// # Errors
+    /// It cannot be read, or a file with codes is broken.
+    pub fn open(recording: &Path) -> FileResult<Coded> {
+        let mut replay = Replay::open(recording)?;
+        if replay.session().spec.participant.kind != ParticipantKind::Simulated {
+            replay = replay.without_causes();
+        }
+        replay.run()?;
+        let judged = &replay.follower.judged;
+        let kitchen = &replay.session().kitchen;
+        let is_known = !judged.is_empty() && judged.iter().all(|press| press.belief_known);
+        let folder = replay.log().folder().to_path_buf();
+        Ok(Coded {
+            places: kitchen.locations.iter().map(|location| location.name.clone()).collect(),
+            errors: judged.iter().filter(|press| press.verdict.error).map(|press| press.seq).collect(),
+            codes: codes::read_all(&folder)?,
+            known: is_known.then(|| Codes::known(kitchen, judged)),
+            folder,
+        })
+    }
+
+    /// The name of its folder.
+    pub fn name(&self) -> String {
+        let resolved = self.folder.canonicalize().unwrap_or_else(|_| self.folder.clone());
+        resolved.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+}
+
+/// The figures of `tomcom codes`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CodesFigures {
+    pub recordings: Vec<CodedFigures>,
+    /// Each pair of raters who have coded the same errors.
+    pub agreements: Vec<PairFigures>,
+    /// Each rater against what simulated participants believed.
+    pub known: Vec<PairFigures>,
+}
+
+/// One recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CodedFigures {
+    pub recording: String,
+    pub errors: u64,
+    /// How many of them each rater has coded.
+    pub coded: BTreeMap<String, u64>,
+}
+
+/// Two raters.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PairFigures {
+    pub of: String,
+    pub with: String,
+    #[serde(flatten)]
+    pub agreement: Agreement,
+}
+
+impl CodesFigures {
+    /// Sums up recordings.
+    pub fn of(recordings: &[Coded]) -> CodesFigures {
+        let mut pairs: BTreeMap<(String, String), AgreementTable> = BTreeMap::new();
+        let mut known: BTreeMap<String, AgreementTable> = BTreeMap::new();
+        for one in recordings {
+            for (index, (of, codes)) in one.codes.iter().enumerate() {
+                for (with, other) in one.codes.iter().skip(index + 1) {
+                    pairs.entry((of.clone(), with.clone())).or_default().add(codes, other);
+                }
+                if let Some(truth) = &one.known {
+                    known.entry(of.clone()).or_default().add(codes, truth);
+                }
+            }
+        }
+        let recording = |one: &Coded| CodedFigures {
+            recording: one.name(),
+            errors: one.errors.len() as u64,
+            coded: one.codes.iter().map(|(rater, codes)| (rater.clone(), codes.0.len() as u64)).collect(),
+        };
+        let pair = |((of, with), table): ((String, String), AgreementTable)| PairFigures {
+            of,
+            with,
+            agreement: table.agreement(),
+        };
+        CodesFigures {
+            recordings: recordings.iter().map(recording).collect(),
+            agreements: pairs.into_iter().map(pair).collect(),
+            known: known.into_iter().map(|(of, table)| pair(((of, "simulation".to_string()), table))).collect(),
+        }
+    }
+}
+
+/// Takes the rows of a file over into the recordings, beside what was there. Nothing is written if a row is wrong.
+///
+/// # Errors
+/// The file cannot be read, or a row is about no error of these recordings; or a folder cannot be written to.
+pub fn import(recordings: &mut [Coded], file: &Path) -> Result<u64, CodesError> {
+    let (text, rows) = codes::read_export(file)?;
+    let mut changed = vec![Vec::new(); recordings.len()];
+    for row in &rows {
+        let wrong = |found: String, remedy: &str| codes::wrong_line(file, &text, row.line, found, remedy);
+        let Some(index) = recordings.iter().position(|one| one.name() == row.recording) else {
+            let found = format!("the recording \"{}\"", row.recording);
+            return Err(wrong(found, "one of the recordings that were named").into());
+        };
+        let one = &mut recordings[index];
+        if !is_code(&row.rater) {
+            let remedy = "a code of 1 to 32 letters, digits, - and _; never a name";
+            return Err(wrong(format!("the rater \"{}\"", row.rater), remedy).into());
+        }
+        if !one.errors.contains(&row.press) {
+            return Err(wrong(format!("press {}, which was no error", row.press), "the number of an error").into());
+        }
+        if let Some(aspect) = row.code.aspect().filter(|aspect| !one.places.iter().any(|place| place == aspect)) {
+            let remedy = format!("one of {}", one.places.join(", "));
+            return Err(wrong(format!("the aspect \"{aspect}\""), &remedy).into());
+        }
+        one.codes.entry(row.rater.clone()).or_default().0.insert(row.press, row.code.clone());
+        changed[index].push(row.rater.clone());
+    }
+    for (one, mut raters) in recordings.iter().zip(changed) {
+        raters.sort();
+        raters.dedup();
+        for rater in raters {
+            codes::write(&one.folder, &rater, &one.codes[&rater])?;
+        }
+    }
+    Ok(rows.len() as u64)
+}
+
+/// Writes all codes of the recordings into a file.
+///
+/// # Errors
+/// It cannot be written.
+pub fn export(recordings: &[Coded], file: &Path) -> Result<u64, CodesError> {
+    let mut rows = Vec::new();
+    for one in recordings {
+        for (rater, codes) in &one.codes {
+            rows.extend(codes.0.iter().map(|(press, code)| codes::Row {
+                line: 0,
+                recording: one.name(),
+                rater: rater.clone(),
+                press: *press,
+                code: code.clone(),
+            }));
+        }
+    }
+    codes::write_export(file, &rows)?;
+    Ok(rows.len() as u64)
+}
+
+/// The figures for people.
+pub fn describe(figures: &CodesFigures) -> String {
+    let mut text = String::new();
+    for one in &figures.recordings {
+        let coded: Vec<String> = one.coded.iter().map(|(rater, number)| format!("{rater} {number}")).collect();
+        let coded = if coded.is_empty() { "nobody has coded any".to_string() } else { coded.join(", ") };
+        text += &format!("{}: {}, coded: {coded}\n", one.recording, count(one.errors, "error", "errors"));
+    }
+    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
+    for pair in figures.agreements.iter().chain(&figures.known) {
+        let Agreement { errors, same_cause, kappa_cause, beliefs, same_aspect, kappa_aspect } = pair.agreement;
+        text += &format!(
+            "{} and {}: the same cause for {same_cause} of {errors} errors (kappa {}), the same wrong belief for \
+             {same_aspect} of {beliefs} (kappa {})\n",
+            pair.of,
+            pair.with,
+            number(kappa_cause),
+            number(kappa_aspect),
+        );
+    }
+    text
+}

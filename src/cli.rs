@@ -35,7 +35,7 @@ use crate::run::review::{self as console_over, ReviewError};
 use crate::run::series::{self, Sitting};
 use crate::run::simulate::SimulateError;
 use crate::run::standing::{self, Standing};
-use crate::run::{kitchen, simulate, tell, timing, verify};
+use crate::run::{kitchen, simulate, sweep, tell, timing, verify};
 use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
 
 /// Exit code: something failed.
@@ -295,6 +295,9 @@ fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         return Err(wrong_argument(&args.session, found, "kind = \"simulated\" and gaze = \"simulated\""));
     }
     files.spec.seed = args.seed.unwrap_or(files.spec.seed);
+    if !args.sweep.is_empty() {
+        files.spec.plan = None;
+    }
     let trials = match (args.trials, files.study()) {
         (trials, None) => trials.unwrap_or(1),
         (trials, Some(study)) => {
@@ -308,6 +311,7 @@ fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     };
     // With a plan it says the conditions.
     files.spec.trial.condition = match args.condition {
+        SimulatedCondition::None if !args.sweep.is_empty() => Condition::Assistant,
         SimulatedCondition::None => Condition::None,
         SimulatedCondition::Wizard => Condition::Wizard,
         SimulatedCondition::Assistant => Condition::Assistant,
@@ -319,6 +323,12 @@ fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     files.spec.assistant.concept = args.concept.map_or(files.spec.assistant.concept, ConceptName::from);
     files.spec.assistant.shadow = if args.shadow { Shadow::On } else { Shadow::Off };
     let simulation = simulate::Simulation { files, trials, shard: args.shard, out: args.out.clone() };
+    if !args.sweep.is_empty() {
+        let bar = progress(sweep::trials(&simulation, &args.sweep), "trials");
+        let figures = sweep::sweep(&simulation, &args.sweep, || bar.inc(1))?;
+        bar.finish_and_clear();
+        return print(args.format, &figures, || sweep::describe(&figures, &args.sweep));
+    }
     let bar = progress(simulation.own_trials().count() as u64, "trials");
     let figures = simulate::simulate(&simulation, || bar.inc(1))?;
     bar.finish_and_clear();

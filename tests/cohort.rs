@@ -8,12 +8,17 @@ use std::sync::Arc;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::Sender;
 use tomcom::edge::files::{SessionFiles, read_session};
+use tomcom::edge::forget;
+use tomcom::edge::log::codes::{read_all, write};
 use tomcom::edge::log::{LOG_NAME, LogReader};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, DishId, Kitchen, LocationId};
+use tomcom::measures::coding::{AgreementTable, Code, Codes, Kind};
 use tomcom::participant::SimulatedParticipant;
 use tomcom::participant::population::{Experience, Population};
+use tomcom::run::codes::{Coded, CodesFigures, export, import};
 use tomcom::run::simulate::{Shard, Simulation, simulate};
+use tomcom::run::sweep::{Axis, TABLE_NAME, sweep, trials};
 use tomcom::run::verify::verify;
 use tomcom::session::Event;
 use tomcom::session::admit::hygiene;
@@ -231,4 +236,230 @@ fn trials_teach_recipes_and_presses_where_the_population_learns() {
     assert!((odds(after.learned) / odds(before.learned) - 2.0).abs() < 1e-9);
     assert_eq!(after.slip, before.slip, "it is the same person");
     assert!(kitchen.buttons[Agent::Human.index()].len() > 1);
+}
+
+/// The errors of one recording, coded by two people: so many pairs of what the one and the other say.
+fn coded(pairs: &[(&str, &str, u64)]) -> AgreementTable {
+    let code = |text: &str| match text.split_once(' ') {
+        Some(("belief", place)) => Code::Belief(place.to_string()),
+        _ => Code::new(Kind::named(text).expect("a kind"), None).expect("a code"),
+    };
+    let (mut one, mut other) = (Codes::default(), Codes::default());
+    for (a, b, number) in pairs {
+        for _ in 0..*number {
+            let press = one.0.len() as u64;
+            one.0.insert(press, code(a));
+            other.0.insert(press, code(b));
+        }
+    }
+    // What only one of them has coded does not count.
+    one.0.insert(10_000, Code::Slip);
+    let mut table = AgreementTable::default();
+    table.add(&one, &other);
+    table
+}
+
+#[test]
+fn kappa_is_that_of_known_tables() {
+    // Fleiss, Levin and Paik, "Statistical Methods for Rates and Proportions", 2003, table 18.1: 200 subjects by two
+    // raters, agreement .89, kappa .676.
+    let rows = [
+        ("slip", "slip", 106),
+        ("slip", "race", 10),
+        ("slip", "other", 4),
+        ("race", "slip", 22),
+        ("race", "race", 28),
+        ("race", "other", 10),
+        ("other", "slip", 2),
+        ("other", "race", 12),
+        ("other", "other", 6),
+    ];
+    let found = coded(&rows).agreement();
+    // By hand: (140/200 - (120*130 + 60*50 + 20*20)/200^2) / (1 - the same).
+    let expected = (0.7 - 0.475) / (1.0 - 0.475);
+    assert_eq!((found.errors, found.same_cause), (200, 140));
+    assert!((found.kappa_cause.expect("a kappa") - expected).abs() < 1e-12, "{found:?}");
+    assert_eq!((found.beliefs, found.kappa_aspect), (0, None));
+
+    // Cohen's textbook case of two categories: 20 and 15 agreed, 5 and 10 not: kappa 0.4.
+    let two = coded(&[("slip", "slip", 20), ("slip", "other", 5), ("other", "slip", 10), ("other", "other", 15)]);
+    assert!((two.agreement().kappa_cause.expect("a kappa") - 0.4).abs() < 1e-12);
+
+    // The aspect is held against only where both see a belief, the cause whatever the aspect.
+    let beliefs = coded(&[
+        ("belief pot", "belief pot", 20),
+        ("belief pot", "belief board", 5),
+        ("belief board", "belief pot", 10),
+        ("belief board", "belief board", 15),
+        ("belief pot", "slip", 3),
+    ]);
+    let found = beliefs.agreement();
+    assert_eq!((found.errors, found.same_cause, found.beliefs, found.same_aspect), (53, 50, 50, 35));
+    assert!((found.kappa_aspect.expect("a kappa") - 0.4).abs() < 1e-12);
+    assert_eq!(coded(&[("slip", "slip", 9)]).agreement().kappa_cause, None, "who always says the same proves nothing");
+}
+
+#[test]
+fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
+    let out = folder("codes");
+    let made = run(&paper(120), 1, Shard::WHOLE, &out);
+    let recording = PathBuf::from(&made.recordings[0]);
+    let log = fs::read(recording.join(LOG_NAME)).expect("a log");
+    let mut coded = vec![Coded::open(&recording).expect("a recording")];
+    assert_eq!(coded[0].errors.len() as u64, made.errors);
+    let truth = coded[0].known.clone().expect("a simulated participant tells");
+    assert_eq!(truth.0.len(), coded[0].errors.len());
+    write(&recording, "R1", &truth).expect("written");
+    // The second rater takes every belief for a slip.
+    let slips = Codes(truth.0.keys().map(|press| (*press, Code::Slip)).collect());
+    write(&recording, "R2", &slips).expect("written");
+    assert_eq!(read_all(&recording).expect("readable")["R1"], truth);
+
+    coded = vec![Coded::open(&recording).expect("a recording")];
+    let figures = CodesFigures::of(&coded);
+    assert_eq!(figures.agreements.len(), 1);
+    let with_truth: Vec<f64> = figures.known.iter().filter_map(|pair| pair.agreement.kappa_cause).collect();
+    assert_eq!(with_truth, [1.0, 0.0], "who says what is true, and who always says the same");
+    assert_eq!(truth.agreed(&slips).0.len() as u64, figures.agreements[0].agreement.same_cause);
+
+    let table = out.join("codes.csv");
+    assert_eq!(export(&coded, &table).expect("written"), 2 * truth.0.len() as u64);
+    for rater in ["R1", "R2"] {
+        fs::remove_file(recording.join(format!("codes-{rater}.csv"))).expect("removed");
+    }
+    coded = vec![Coded::open(&recording).expect("a recording")];
+    import(&mut coded, &table).expect("its own export");
+    assert_eq!(read_all(&recording).expect("readable"), [("R1".into(), truth), ("R2".into(), slips)].into());
+    assert!(fs::read(recording.join(LOG_NAME)).expect("a log") == log, "the log stays as it is");
+
+    let name = recording.file_name().expect("a name").to_string_lossy().into_owned();
+    let first = coded[0].errors[0];
+    for (row, found) in [
+        (format!("{name},R1,{first},belief,the_moon"), "the aspect \"the_moon\""),
+        (format!("{name},R1,{first},belief,"), "cause \"belief\", aspect \"\""),
+        (format!("{name},R1,1,slip,"), "press 1, which was no error"),
+        (format!("{name},Jane Doe,{first},slip,"), "the rater \"Jane Doe\""),
+        (format!("elsewhere,R1,{first},slip,"), "the recording \"elsewhere\""),
+    ] {
+        fs::write(&table, format!("recording,rater,press,cause,aspect\n{row}\n")).expect("written");
+        let told = import(&mut coded, &table).expect_err(&row).to_string();
+        assert!(told.contains(found) && told.contains("codes.csv:2"), "{told}");
+    }
+}
+
+#[test]
+fn a_participant_is_forgotten_everywhere_and_nobody_else() {
+    let out = folder("forget");
+    run(&paper(10), 4, Shard::WHOLE, &out);
+    let is_there = |name: &str| out.join(name).exists();
+    let put = |name: &str, text: &str| {
+        let path = out.join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        fs::write(path, text).expect("written");
+    };
+    put("exports/trials.csv", "participant,note\nP01,\"two\nlines\"\nP02,\"of P011\"\nP01,x\n");
+    put("exports/clean.csv", "participant\nP02\n");
+    put("report.html", "<td>P01</td>");
+    put("other.html", "<td>P011</td>");
+    put("seed1-P01-2.rrd", "");
+    put("study.toml", "participants = [\"P01\"]");
+    put("seed1-P01-1/recording.rrd", "");
+    put("seed1-P01-1-part2/session.toml", "[participant]\ncode = \"P01\"");
+    let found = forget::find(&out, "P01").expect("readable");
+    assert_eq!((found.recordings.len(), found.files.len(), found.tables.len()), (3, 2, 1), "{found:?}");
+    // Nothing goes while one of the recordings is being written.
+    let lock = tomcom::edge::log::Lock::take(&out.join("seed1-P01-2")).expect("a lock");
+    assert!(forget::delete(&found, "P01").expect_err("in use").to_string().contains("writes this recording"));
+    assert!(is_there("report.html") && is_there("seed1-P01-1"));
+    drop(lock);
+    forget::delete(&found, "P01").expect("deleted");
+    for gone in ["seed1-P01-1", "seed1-P01-2", "seed1-P01-1-part2", "report.html", "seed1-P01-2.rrd"] {
+        assert!(!is_there(gone), "{gone}");
+    }
+    for stays in ["seed1-P02-1", "seed1-P02-2", "other.html", "study.toml", "exports/clean.csv"] {
+        assert!(is_there(stays), "{stays}");
+    }
+    let table = fs::read_to_string(out.join("exports/trials.csv")).expect("a table");
+    assert_eq!(table, "participant,note\nP02,\"of P011\"\n");
+    assert!(forget::find(&out, "P01").expect("readable").is_empty());
+}
+
+#[test]
+fn forgetting_asks_first_and_a_wizards_code_is_that_of_the_training() {
+    let out = folder("asks");
+    run(&paper(10), 1, Shard::WHOLE, &out);
+    let record = |wizard: &str, recordings: &[&str]| {
+        let judged = |name: &&str| {
+            format!(
+                "{{\"recording\":\"{name}\",\"complete\":true,\"presses\":1,\"signals\":[],\"measures\":{},\"kappa_with_oneself\":null}}",
+                serde_json::to_string(&tomcom::measures::wizard::WizardMeasures::of(&[], None)).expect("JSON")
+            )
+        };
+        let judged: Vec<String> = recordings.iter().map(judged).collect();
+        format!(
+            "{{\"wizard\":\"{wizard}\",\"at\":\"2026-03-14T10:00:00Z\",\"minutes\":1.0,\"criterion\":{{\"hits\":0.6,\"wrong\":0.4}},\"met\":true,\"recordings\":[{}]}}",
+            judged.join(",")
+        )
+    };
+    let training = out.join("training");
+    fs::create_dir_all(&training).expect("made");
+    fs::write(training.join("W1-1.json"), record("W1", &["seed1-P01-1", "seed9-S001"])).expect("written");
+    fs::write(training.join("W1-2.json"), record("W1", &["seed1-P01-1"])).expect("written");
+    fs::write(training.join("W2-1.json"), record("W2", &["seed9-S001"])).expect("written");
+    let tomcom = |arguments: &[&str]| {
+        let out = out.to_str().expect("UTF-8");
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_tomcom"));
+        let done = command.args(arguments).args(["--in", out]).stdin(std::process::Stdio::null()).output();
+        let done = done.expect("the program starts");
+        (done.status.code(), String::from_utf8_lossy(&[done.stdout, done.stderr].concat()).into_owned())
+    };
+    let (code, told) = tomcom(&["forget", "P01"]);
+    assert!(code == Some(2) && told.contains("seed1-P01-1 (recording)") && told.contains("--yes"), "{told}");
+    assert!(out.join("seed1-P01-1").exists());
+    assert_eq!(tomcom(&["forget", "P01", "--yes"]).0, Some(0));
+    assert!(!out.join("seed1-P01-1").exists() && !training.join("W1-2.json").exists());
+    let left = fs::read_to_string(training.join("W1-1.json")).expect("what was trained on others stays");
+    assert!(left.contains("seed9-S001") && !left.contains("P01"), "{left}");
+    assert_eq!(tomcom(&["forget", "P01", "--yes"]).0, Some(1), "there is nothing left");
+    assert_eq!(tomcom(&["forget", "W1", "--yes"]).0, Some(0));
+    assert!(!training.join("W1-1.json").exists() && training.join("W2-1.json").exists());
+    assert_eq!(tomcom(&["forget", "Jane Doe", "--yes"]).0, Some(2));
+}
+
+#[test]
+fn a_sweep_has_a_line_for_every_combination_and_pairs_the_same_trials() {
+    let mut files = paper(24);
+    (files.spec.plan, files.spec.trial.condition) = (None, Condition::Assistant);
+    // Rollouts so few that a debug build is quick.
+    (files.spec.assistant.rollout.rollouts, files.spec.assistant.rollout.least_rollouts) = (2, 2);
+    let out = folder("sweep");
+    let simulation = Simulation { files, trials: 2, shard: Shard::WHOLE, out: out.clone() };
+    let axes: Vec<Axis> = ["cost=0.1,100", "gaze=on,off"].iter().map(|text| text.parse().expect("an axis")).collect();
+    assert_eq!(trials(&simulation, &axes), 10);
+    let figures = sweep(&simulation, &axes, || ()).expect("the folder can be written");
+    let settings: Vec<String> =
+        figures.rows.iter().map(|row| serde_json::to_string(&row.settings).expect("JSON")).collect();
+    assert_eq!(settings.len(), 5);
+    assert_eq!(settings[0], "{}");
+    assert_eq!(settings[2], "{\"cost\":\"0.1\",\"gaze\":\"off\"}");
+    for dear in &figures.rows[3..] {
+        assert_eq!((dear.signals_per_100, dear.spared_per_100), (0.0, Some(0.0)), "who says nothing changes nothing");
+    }
+    assert_eq!(figures.rows[0].spared_per_100, None);
+    let table = fs::read_to_string(out.join(TABLE_NAME)).expect("a table");
+    assert_eq!(table.lines().count(), 6, "{table}");
+    assert!(table.starts_with("condition,trials,cost,gaze,errors_per_100,"), "{table}");
+    // Without gaze the recording has none, and still comes out the same again.
+    let blind = out.join("cost-0.1_gaze-off/seed1-S001");
+    let (_, log) = events(&blind);
+    assert!(log.iter().all(|stamped| !matches!(stamped.event, Event::Gaze(_))));
+    assert!(verify(&blind).expect("readable").verified);
+    assert_eq!(sweep(&simulation, &axes, || ()).expect("it is there"), figures, "what is there is read");
+    for wrong in ["cost", "cost=", "cost=a", "cost=nan", "horizon=1.5", "gaze=maybe", "colour=red"] {
+        assert!(wrong.parse::<Axis>().is_err(), "{wrong}");
+    }
+    let axis = |text: &str| text.parse::<Axis>().expect("an axis");
+    let refused = |axes: &[Axis]| sweep(&simulation, axes, || ()).expect_err("wrong").to_string();
+    assert!(refused(&[axis("cost=1"), axis("cost=2")]).contains("cost twice"));
+    assert!(refused(&[axis("radius=-1")]).contains("radius_deg = -1"));
 }

@@ -12,6 +12,7 @@ use super::wizard::{CompareArgs, TrainArgs};
 use crate::communication::concept::ConceptName;
 use crate::mind::fitting::Parameter;
 use crate::run::simulate::Shard;
+use crate::run::sweep::Axis;
 
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
 #[derive(Debug, Parser)]
@@ -232,7 +233,10 @@ pub(super) struct PlanArgs {
 /// Simulates whole trials, faster than real time. Participants are simulated; nobody signals, or the assistant
 /// does, or a scripted wizard.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom simulate sessions/default.toml --trials 20 --seed 7 --out recordings")]
+#[command(
+    after_help = "Examples: tomcom simulate sessions/default.toml --trials 20 --seed 7 --out recordings\n          \
+                  tomcom simulate sessions/default.toml --trials 100 --sweep cost=0.5,1.5,2.4 --sweep gaze=on,off --out grid"
+)]
 pub(super) struct SimulateArgs {
     /// The session file.
     pub(super) session: PathBuf,
@@ -253,6 +257,12 @@ pub(super) struct SimulateArgs {
     /// By what the assistant decides, instead of the session file's concept.
     #[arg(long, value_enum)]
     pub(super) concept: Option<ConceptArg>,
+    /// Simulate the trials for every value of a setting, and without signals, and print what matters how much: cost=0.5,1.5,
+    /// threshold (of tom), horizon, rollouts, tau, radius, gaze=on,off. Several make a grid. The assistant sends the
+    /// signals, unless --condition says otherwise; of a session with a plan its settings count, and each trial is of
+    /// another participant.
+    #[arg(long, value_name = "SETTING=VALUES", conflicts_with_all = ["shadow", "rerun"])]
+    pub(super) sweep: Vec<Axis>,
     /// Let the assistant advise in unassisted trials too; its advice is recorded and shown to nobody.
     #[arg(long)]
     pub(super) shadow: bool,

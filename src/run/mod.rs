@@ -30,6 +30,7 @@ pub mod similarity;
 pub mod simulate;
 pub mod standing;
 pub mod study;
+pub mod sweep;
 pub mod tell;
 pub mod timing;
 pub mod train;

@@ -1,0 +1,317 @@
+//! `tomcom simulate --sweep`: what matters how much. The same trials again and again, each time with another setting, and
+//! beside them without signals: the participants, orders and chances are the same, so differences are paired.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::figures::{SimulationFigures, SimulationSums, TrialFigures};
+use super::kitchen::plan_lengths;
+use super::simulate::{SimulateError, Simulation, each_trial};
+use crate::communication::settings::Shadow;
+use crate::edge::files::FileError;
+use crate::edge::log::WriteError;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::session::SessionSpec;
+use crate::session::settings::{Condition, GazeSource};
+
+/// The name of the table, in the folder of the recordings.
+pub const TABLE_NAME: &str = "sweep.csv";
+/// No grid has more cells.
+const MAX_CELLS: usize = 1000;
+
+/// A setting that is swept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Knob {
+    /// Presses that a signal must save at least.
+    Cost,
+    /// Of ToM: how wrong a belief must be expected to be.
+    Threshold,
+    /// Decisions of the human in a rollout, and how many rollouts there are at most.
+    Horizon,
+    Rollouts,
+    /// Of the human model: how strictly fewer presses are preferred, and the radius of what is read around the fixation.
+    Tau,
+    Radius,
+    /// Whether the assistant sees the gaze.
+    Gaze,
+}
+
+/// Names and what they set.
+const KNOBS: [(&str, Knob); 7] = [
+    ("cost", Knob::Cost),
+    ("threshold", Knob::Threshold),
+    ("horizon", Knob::Horizon),
+    ("rollouts", Knob::Rollouts),
+    ("tau", Knob::Tau),
+    ("radius", Knob::Radius),
+    ("gaze", Knob::Gaze),
+];
+
+/// One setting with its values: `cost=0.5,1,1.5`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    name: &'static str,
+    knob: Knob,
+    /// As they were typed; each is right for the knob.
+    values: Vec<String>,
+}
+
+impl FromStr for Axis {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Axis, String> {
+        let names: Vec<&str> = KNOBS.iter().map(|(name, _)| *name).collect();
+        let right = || format!("SETTING=VALUE,VALUE,…, with one of {}", names.join(", "));
+        let (name, values) = text.split_once('=').ok_or_else(right)?;
+        let (name, knob) = *KNOBS.iter().find(|(known, _)| *known == name).ok_or_else(right)?;
+        let values: Vec<String> = values.split(',').map(str::to_string).collect();
+        let is_right = |value: &String| match knob {
+            Knob::Gaze => value == "on" || value == "off",
+            Knob::Horizon | Knob::Rollouts => value.parse::<usize>().is_ok(),
+            _ => value.parse::<f64>().is_ok_and(f64::is_finite),
+        };
+        match values.iter().find(|value| !is_right(value)) {
+            None => Ok(Axis { name, knob, values }),
+            Some(wrong) => {
+                let right = match knob {
+                    Knob::Gaze => "on and off",
+                    Knob::Horizon | Knob::Rollouts => "whole numbers",
+                    _ => "numbers",
+                };
+                Err(format!("\"{wrong}\": {name} takes {right}"))
+            }
+        }
+    }
+}
+
+impl Axis {
+    /// Sets the value; it was looked at when it was read.
+    fn set(&self, spec: &mut SessionSpec, value: &str) {
+        let number = value.parse().unwrap_or_default();
+        let whole = value.parse().unwrap_or_default();
+        match self.knob {
+            Knob::Cost => spec.assistant.cost_of_communication = number,
+            Knob::Threshold => spec.assistant.belief_threshold = number,
+            Knob::Horizon => spec.assistant.rollout.horizon = whole,
+            Knob::Rollouts => {
+                spec.assistant.rollout.rollouts = whole;
+                spec.assistant.rollout.least_rollouts = spec.assistant.rollout.least_rollouts.min(whole);
+            }
+            Knob::Tau => spec.human.decision.tau = number,
+            Knob::Radius => spec.human.perception.radius_deg = number,
+            Knob::Gaze if value == "off" => spec.participant.gaze = GazeSource::None,
+            Knob::Gaze => {}
+        }
+    }
+}
+
+/// One point of the grid: its settings by name, as they were typed.
+type Cell = Vec<(&'static str, String)>;
+
+/// One line of the table.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// What was set, by name; nothing in the line without signals.
+    pub settings: serde_json::Map<String, serde_json::Value>,
+    pub trials: u64,
+    /// Errors and signals per 100 presses of the human.
+    pub errors_per_100: f64,
+    pub signals_per_100: f64,
+    /// Errors per 100 presses of the human fewer than without signals, over the same trials: mean and standard error.
+    pub spared_per_100: Option<f64>,
+    pub spared_error: Option<f64>,
+    pub mean_sequence_length: Option<f64>,
+    pub presses_per_order: Option<f64>,
+}
+
+/// The table.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SweepFigures {
+    /// The first is without signals.
+    pub rows: Vec<Row>,
+    pub table: PathBuf,
+}
+
+/// How many trials a sweep takes in all.
+pub fn trials(simulation: &Simulation, axes: &[Axis]) -> u64 {
+    let cells: usize = axes.iter().map(|axis| axis.values.len()).product();
+    (cells as u64 + 1) * simulation.own_trials().count() as u64
+}
+
+/// Simulates the trials for every combination of the values, each in a folder of its own, and writes the table beside them.
+/// `done` is called after each trial.
+///
+/// # Errors
+/// Those of simulations, too many combinations, or a value that cannot be.
+pub fn sweep(simulation: &Simulation, axes: &[Axis], done: impl Fn() + Sync) -> Result<SweepFigures, SimulateError> {
+    let cells = grid(axes)?;
+    let specs = cells.iter().map(|cell| spec_of(&simulation.files.spec, axes, cell)).collect::<Result<Vec<_>, _>>()?;
+    let mut unassisted = simulation.clone();
+    unassisted.files.spec.trial.condition = Condition::None;
+    unassisted.out = simulation.out.join("unassisted");
+    let (before, figures) = of_cell(&unassisted, &done)?;
+    let mut rows = vec![row(&Cell::new(), &figures, None)];
+    for (cell, spec) in cells.iter().zip(specs) {
+        let mut one = simulation.clone();
+        one.files.spec = spec;
+        one.out = simulation.out.join(folder_of(cell));
+        let (trials, figures) = of_cell(&one, &done)?;
+        rows.push(row(cell, &figures, Some((&before, &trials))));
+    }
+    let table = simulation.out.join(TABLE_NAME);
+    write_table(&table, axes, &rows).map_err(|reason| WriteError::Unwritable {
+        path: table.clone(),
+        reason,
+        saved: None,
+    })?;
+    Ok(SweepFigures { rows, table })
+}
+
+/// Every combination of the values, the last axis the quickest.
+fn grid(axes: &[Axis]) -> Result<Vec<Cell>, SimulateError> {
+    let wrong = |found: String, remedy: String| {
+        Err(Box::new(FileError::at(Path::new("--sweep"), "", None, found, remedy)).into())
+    };
+    let twice = axes.iter().enumerate().find(|(index, axis)| axes[..*index].iter().any(|one| one.name == axis.name));
+    if let Some((_, axis)) = twice {
+        return wrong(format!("{} twice", axis.name), "each setting once, with all its values".to_string());
+    }
+    let count: usize = axes.iter().map(|axis| axis.values.len()).product();
+    if count > MAX_CELLS {
+        return wrong(format!("{count} combinations"), format!("at most {MAX_CELLS}"));
+    }
+    let mut cells = vec![Cell::new()];
+    for axis in axes {
+        let longer = |cell: &Cell, value: &String| {
+            let mut cell = cell.clone();
+            cell.push((axis.name, value.clone()));
+            cell
+        };
+        cells = cells.iter().flat_map(|cell| axis.values.iter().map(move |value| longer(cell, value))).collect();
+    }
+    Ok(cells)
+}
+
+fn spec_of(spec: &SessionSpec, axes: &[Axis], cell: &Cell) -> Result<SessionSpec, SimulateError> {
+    let mut spec = spec.clone();
+    for (axis, (_, value)) in axes.iter().zip(cell) {
+        axis.set(&mut spec, value);
+    }
+    match spec.check() {
+        Ok(()) => Ok(spec),
+        Err(error) => {
+            let path = Path::new("--sweep");
+            Err(Box::new(FileError::at(path, "", None, error.found, error.remedy.to_string())).into())
+        }
+    }
+}
+
+/// "cost-1.5_gaze-off".
+fn folder_of(cell: &Cell) -> String {
+    cell.iter().map(|(name, value)| format!("{name}-{value}")).collect::<Vec<_>>().join("_")
+}
+
+/// The trials of one cell, and the figures of all of them.
+fn of_cell(
+    simulation: &Simulation,
+    done: &(impl Fn() + Sync),
+) -> Result<(Vec<[u64; 2]>, SimulationFigures), SimulateError> {
+    let mut simulation = simulation.clone();
+    // The assistant advises where it acts; advice beside a trial without signals would only take time.
+    simulation.files.spec.assistant.shadow = Shadow::Off;
+    let kitchen = Arc::new(simulation.files.kitchen.kitchen.clone());
+    let plan_lengths = plan_lengths(&kitchen, &mut CostToGo::new(kitchen.clone()));
+    let (mut trials, mut sums) = (Vec::new(), SimulationSums::default());
+    each_trial(&simulation, done, |trial| {
+        let TrialFigures { errors, human_actions, .. } = trial.figures;
+        trials.push([errors, human_actions]);
+        sums.add(trial.condition, &trial.figures, &plan_lengths);
+        Ok(())
+    })?;
+    Ok((trials, sums.figures()))
+}
+
+/// A line of the table; `paired`: errors and presses of each trial without signals, and with them.
+fn row(cell: &Cell, figures: &SimulationFigures, paired: Option<(&[[u64; 2]], &[[u64; 2]])>) -> Row {
+    let per_100 = |number: u64, presses: u64| 100.0 * number as f64 / presses.max(1) as f64;
+    let rate = |[errors, presses]: [u64; 2]| per_100(errors, presses);
+    let spared: Vec<f64> = paired.map_or(Vec::new(), |(before, after)| {
+        before.iter().zip(after).map(|(before, after)| rate(*before) - rate(*after)).collect()
+    });
+    let count = spared.len() as f64;
+    let mean = (count > 0.0).then(|| spared.iter().sum::<f64>() / count);
+    let squares = mean.map(|mean| spared.iter().map(|one| (one - mean) * (one - mean)).sum::<f64>());
+    Row {
+        settings: cell.iter().map(|(name, value)| (name.to_string(), value.as_str().into())).collect(),
+        trials: figures.trials,
+        errors_per_100: per_100(figures.errors, figures.human_actions),
+        signals_per_100: per_100(figures.signals, figures.human_actions),
+        spared_per_100: mean,
+        spared_error: squares.filter(|_| count > 1.0).map(|squares| (squares / (count - 1.0) / count).sqrt()),
+        mean_sequence_length: figures.beliefs.mean_sequence_length,
+        presses_per_order: figures.presses_per_order,
+    }
+}
+
+/// What stands in a column of numbers; nothing where it is not known.
+fn numbers(row: &Row) -> [String; 6] {
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.4}"));
+    [
+        number(Some(row.errors_per_100)),
+        number(Some(row.signals_per_100)),
+        number(row.spared_per_100),
+        number(row.spared_error),
+        number(row.mean_sequence_length),
+        number(row.presses_per_order),
+    ]
+}
+
+fn setting(row: &Row, axis: &Axis) -> String {
+    row.settings.get(axis.name).and_then(|value| value.as_str()).unwrap_or_default().to_string()
+}
+
+fn write_table(path: &Path, axes: &[Axis], rows: &[Row]) -> std::io::Result<()> {
+    let mut table = csv::Writer::from_path(path)?;
+    let head = ["errors_per_100", "signals_per_100", "spared_per_100", "spared_error", "mean_sequence_length"];
+    let names = ["condition", "trials"].into_iter().chain(axes.iter().map(|axis| axis.name));
+    table.write_record(names.chain(head).chain(["presses_per_order"]))?;
+    for (index, row) in rows.iter().enumerate() {
+        let condition = if index == 0 { "unassisted" } else { "signals" };
+        let settings = axes.iter().map(|axis| setting(row, axis));
+        let first = [condition.to_string(), row.trials.to_string()].into_iter().chain(settings);
+        table.write_record(first.chain(numbers(row)))?;
+    }
+    table.flush()
+}
+
+/// The table for people.
+pub fn describe(figures: &SweepFigures, axes: &[Axis]) -> String {
+    let settings: String = axes.iter().map(|axis| format!("{:>10}", axis.name)).collect();
+    let mut text = format!(
+        "{settings}{:>12}{:>12}{:>18}{:>10}{:>15}\n",
+        "errors/100", "signals/100", "errors spared", "sequence", "presses/order"
+    );
+    let number = |value: Option<f64>, digits: usize| value.map_or("-".to_string(), |value| format!("{value:.digits$}"));
+    for (index, row) in figures.rows.iter().enumerate() {
+        let settings: String = match index {
+            0 => format!("{:>width$}", "no signals", width = 10 * axes.len()),
+            _ => axes.iter().map(|axis| format!("{:>10}", setting(row, axis))).collect(),
+        };
+        let spared =
+            row.spared_per_100.map_or("-".to_string(), |mean| format!("{mean:.2} ± {}", number(row.spared_error, 2)));
+        text += &format!(
+            "{settings}{:>12}{:>12}{spared:>18}{:>10}{:>15}\n",
+            number(Some(row.errors_per_100), 1),
+            number(Some(row.signals_per_100), 1),
+            number(row.mean_sequence_length, 2),
+            number(row.presses_per_order, 1),
+        );
+    }
+    text + &format!(
+        "per 100 presses of the human; spared: mean and standard error over trials\n{}\n",
+        figures.table.display()
+    )
+}

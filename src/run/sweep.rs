@@ -111,6 +111,9 @@ impl Axis {
 /// One point of the grid: its settings by name, as they were typed.
 type Cell = Vec<(&'static str, String)>;
 
+/// Errors and presses of the human in each trial.
+type Counts = Vec<[u64; 2]>;
+
 /// One line of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
@@ -159,7 +162,7 @@ pub fn sweep(simulation: &Simulation, axes: &[Axis], done: impl Fn() + Sync) -> 
         one.files.spec = spec;
         one.out = simulation.out.join(folder_of(cell));
         let (trials, figures) = of_cell(&one, &done)?;
-        rows.push(row(cell, &figures, Some((&before, &trials))));
+        rows.push(row(cell, &figures, Some([&before, &trials])));
     }
     let table = simulation.out.join(TABLE_NAME);
     write_table(&table, axes, &rows).map_err(|reason| WriteError::Unwritable {
@@ -215,16 +218,13 @@ fn folder_of(cell: &Cell) -> String {
 }
 
 /// The trials of one cell, and the figures of all of them.
-fn of_cell(
-    simulation: &Simulation,
-    done: &(impl Fn() + Sync),
-) -> Result<(Vec<[u64; 2]>, SimulationFigures), SimulateError> {
+fn of_cell(simulation: &Simulation, done: &(impl Fn() + Sync)) -> Result<(Counts, SimulationFigures), SimulateError> {
     let mut simulation = simulation.clone();
     // The assistant advises where it acts; advice beside a trial without signals would only take time.
     simulation.files.spec.assistant.shadow = Shadow::Off;
     let kitchen = Arc::new(simulation.files.kitchen.kitchen.clone());
     let plan_lengths = plan_lengths(&kitchen, &mut CostToGo::new(kitchen.clone()));
-    let (mut trials, mut sums) = (Vec::new(), SimulationSums::default());
+    let (mut trials, mut sums) = (Counts::new(), SimulationSums::default());
     each_trial(&simulation, done, |trial| {
         let TrialFigures { errors, human_actions, .. } = trial.figures;
         trials.push([errors, human_actions]);
@@ -235,10 +235,10 @@ fn of_cell(
 }
 
 /// A line of the table; `paired`: errors and presses of each trial without signals, and with them.
-fn row(cell: &Cell, figures: &SimulationFigures, paired: Option<(&[[u64; 2]], &[[u64; 2]])>) -> Row {
+fn row(cell: &Cell, figures: &SimulationFigures, paired: Option<[&Counts; 2]>) -> Row {
     let per_100 = |number: u64, presses: u64| 100.0 * number as f64 / presses.max(1) as f64;
     let rate = |[errors, presses]: [u64; 2]| per_100(errors, presses);
-    let spared: Vec<f64> = paired.map_or(Vec::new(), |(before, after)| {
+    let spared: Vec<f64> = paired.map_or(Vec::new(), |[before, after]| {
         before.iter().zip(after).map(|(before, after)| rate(*before) - rate(*after)).collect()
     });
     let count = spared.len() as f64;

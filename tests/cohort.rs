@@ -318,8 +318,10 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     coded = vec![Coded::open(&recording).expect("a recording")];
     let figures = CodesFigures::of(&coded);
     assert_eq!(figures.agreements.len(), 1);
-    let with_truth: Vec<f64> = figures.known.iter().filter_map(|pair| pair.agreement.kappa_cause).collect();
-    assert_eq!(with_truth, [1.0, 0.0], "who says what is true, and who always says the same");
+    let right: Vec<(&str, u64)> =
+        figures.known.iter().map(|pair| (pair.of.as_str(), pair.agreement.same_cause)).collect();
+    let slips_in_truth = truth.0.values().filter(|code| **code == Code::Slip).count() as u64;
+    assert_eq!(right, [("R1", made.errors), ("R2", slips_in_truth)]);
     assert_eq!(truth.agreed(&slips).0.len() as u64, figures.agreements[0].agreement.same_cause);
 
     let table = out.join("codes.csv");

@@ -89,17 +89,11 @@ pub fn act(model: &mut Model, session: &Session, rate: Rate) -> Option<Command> 
         model.say(Level::Refused, "there is no error yet that could be coded");
         return None;
     };
-    let said = match code {
-        Some(code) => {
-            let said = describe(kitchen, &code);
-            coding.codes.0.insert(press, code);
-            said
-        }
-        None => {
-            coding.codes.0.remove(&press);
-            "not coded".to_string()
-        }
+    match code {
+        Some(code) => coding.codes.0.insert(press, code),
+        None => coding.codes.0.remove(&press),
     };
-    model.say(Level::Done, said);
+    // What was said stands beside the error, where an older notice would hide it.
+    model.notice = None;
     Some(Command::Code)
 }

@@ -272,7 +272,7 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         std::thread::sleep(FOLLOW_INTERVAL);
     }
     let standing = Standing::of(replay.session(), replay.log())?;
-    let figures = tell::RecordingFigures::of(&replay.follower, events, replay.log().is_cut(), standing);
+    let figures = tell::RecordingFigures::of(&replay.follower, events, replay.log().ending(), standing);
     print(args.format, &figures, || figures.describe())
 }
 

@@ -53,7 +53,7 @@ const ONLY_IN: [(&str, &[&str]); 8] = [
     ("ratatui", &["src/console", "src/edge"]),
     ("crossterm", &["src/console", "src/edge"]),
     ("tokio", &["src/edge", "src/run", "src/main.rs", "src/cli.rs"]),
-    ("rerun", &["src/edge/rerun.rs"]),
+    ("rerun", &["src/edge/rerun.rs", "src/edge/rerun"]),
     ("zeromq", &["src/edge"]),
     ("nalgebra", &["src/robot", "src/scene", "src/edge/rerun.rs"]),
     ("urdf_rs", &["src/robot"]),

@@ -435,7 +435,7 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     assert!(knew["advice"].is_object(), "{knew}");
     let opened = check(&["compare", recordings[0], "--with", "dev", "--open", "1"], 0);
     let opened = String::from_utf8_lossy(&opened.stdout).into_owned();
-    for told in ["not said by", "believed, by the estimate", "truly: ", "on the wizard's screen: "] {
+    for told in ["not said by", "believed wrong, by the estimate", "truly: ", "on the wizard's screen: "] {
         assert!(opened.contains(told), "{told} in\n{opened}");
     }
     assert!(complaint(&["compare", recordings[0], "--open", "999"]).contains("a number of the list of differences"));

@@ -22,7 +22,7 @@ use tomcom::run::film::Film;
 use tomcom::run::replay::Replay;
 use tomcom::run::simulate::{Shard, Simulation, simulate};
 use tomcom::run::verify::verify;
-use tomcom::scene::{Derived, Moment, Scene, Shown};
+use tomcom::scene::{Derived, Moment, Row, Scene, Shown};
 use tomcom::session::event::{EndReason, SignalEnd};
 use tomcom::session::header::VERSION;
 use tomcom::session::settings::{Condition, GazeSource, ParticipantKind};
@@ -574,9 +574,28 @@ fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
         assert_eq!(steps_of("assistant/benefit/cost_line"), advice, "{name}");
         let sent = moments.iter().flat_map(|moment| &moment.rows).filter(|row| {
             row.entity == "wizard/signals"
-                && matches!(&row.shown, Shown::Words { text, .. } if !text.starts_with("took"))
+                && matches!(&row.shown, Shown::Words { text, .. } if !text.starts_with("wizard: took"))
         });
         assert_eq!(sent.count(), signals.len(), "{name}");
+        assert!(moments.iter().map(|moment| moment.trial).is_sorted(), "{name}: the trial's clock never goes back");
+        let started = events.iter().find(|stamped| stamped.event == Event::TrialStarted).expect("a trial").time;
+        for moment in moments.iter().filter(|moment| moment.time <= started) {
+            assert_eq!(moment.trial, SessionTime::ZERO, "{name}: before the trial its clock stands");
+        }
+        let lines = |entity: &str| -> Vec<String> {
+            let text = |row: &Row| match &row.shown {
+                Shown::Words { text, .. } if row.entity.starts_with(entity) => Some(text.clone()),
+                _ => None,
+            };
+            moments.iter().flat_map(|moment| &moment.rows).filter_map(text).collect()
+        };
+        let happened = lines("happened");
+        assert!(happened.len() > presses[0].len() + presses[1].len(), "{name}: more than presses happened");
+        let [mut ordered, mut told] = [happened.clone(), lines("")];
+        ordered.extend(happened);
+        ordered.sort();
+        told.sort();
+        assert_eq!(ordered, told, "{name}: every line stands in the list of what happened once more");
     }
 }
 

@@ -6,13 +6,15 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::Failure;
-use crate::run::rerun::{RerunError, Review, Reviewed, review as open, until_asked_to_end};
+use crate::base::time::SessionTime;
+use crate::run::rerun::{RerunError, Review, Reviewed, Running, Saved, review as open, running, until_asked_to_end};
 
 /// Opens recordings in Rerun's viewer: kitchen, arm, beliefs, signals and what happened, over time.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Without a viewer of Rerun in PATH it is served for a browser. Several recordings stand side by side, with \
-                  their trials' starts at the same time.\nExample: tomcom review sessions/2026-03-14-P07-1"
+    after_help = "Without a viewer of Rerun in PATH it is served for a browser. Several recordings stand side by side, by the \
+                  clocks of their trials.\nExamples: tomcom review sessions/2026-03-14-P07-1\n          \
+                  tomcom review sessions/2026-03-14-P07-1 --at 1:34"
 )]
 pub(super) struct ReviewArgs {
     /// The folders of recordings, or their events.jsonl.
@@ -24,9 +26,23 @@ pub(super) struct ReviewArgs {
     /// Serve the viewer for a browser, even if there is another one.
     #[arg(long, conflicts_with = "save")]
     web: bool,
-    /// Open at this moment, as the console shows it: seconds since the session began, of several since their trials' starts.
-    #[arg(long, value_name = "SECONDS", conflicts_with_all = ["save", "web"])]
-    at: Option<f64>,
+    /// Open at this moment of the trial's clock, as the console shows it: 1:34, or seconds.
+    #[arg(long, value_name = "TIME", value_parser = moment, conflicts_with = "save")]
+    at: Option<SessionTime>,
+}
+
+/// A moment as the console shows it, or in seconds.
+fn moment(text: &str) -> Result<SessionTime, String> {
+    let wrong = || "minutes and seconds, as 1:34, or seconds, as 94.6".to_string();
+    let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite() && *number >= 0.0);
+    let (minutes, seconds) = match text.split_once(':') {
+        None => (0.0, number(text)),
+        Some((minutes, seconds)) => {
+            let minutes: u32 = minutes.parse().map_err(|_| wrong())?;
+            (f64::from(minutes), number(seconds).filter(|seconds| *seconds < 60.0))
+        }
+    };
+    seconds.map(|seconds| SessionTime::from_secs_f64(minutes * 60.0 + seconds)).ok_or_else(wrong)
 }
 
 impl From<RerunError> for Failure {
@@ -39,30 +55,52 @@ impl From<RerunError> for Failure {
 }
 
 pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
-    if let (Some(None), 2..) = (&args.save, args.recordings.len()) {
-        let help = "--save=FILE: several recordings have no folder of their own";
+    let (mut recordings, mut save) = (args.recordings.clone(), args.save.clone());
+    // No recording is called that: it stands behind `--save`, where others have no `=`.
+    let is_stream = |path: &mut PathBuf| path.extension().is_some_and(|extension| extension == "rrd");
+    if save == Some(None)
+        && recordings.len() > 1
+        && let Some(file) = recordings.pop_if(is_stream)
+    {
+        save = Some(Some(file));
+    }
+    if let (Some(None), 2..) = (&save, recordings.len()) {
+        let help = "--save=out.rrd: several recordings have no folder of their own";
         return Err(Failure::Wrong(miette::miette!(
             help = help,
-            "found --save, with {} recordings",
-            args.recordings.len()
+            "found --save without a file, with {} recordings",
+            recordings.len()
         )));
     }
-    let asked = Review { recordings: args.recordings.clone(), save: args.save.clone(), web: args.web, at_s: args.at };
     let mut out = std::io::stdout();
+    for one in running(&recordings)? {
+        write!(out, "{}", still_running(&one))?;
+    }
+    let asked = Review { recordings, save, web: args.web, at: args.at };
     match open(&asked)? {
-        Reviewed::Saved { path, made } => {
-            let how = if made { "made from the log" } else { "is there already" };
-            writeln!(out, "{} {how}", path.display())?;
+        Reviewed::Saved(file) => {
+            let how = if file.made { "made from the log" } else { "is there already" };
+            writeln!(out, "{} {how}{}", file.path.display(), because(&file))?;
         }
-        Reviewed::Opened { path } => writeln!(out, "the viewer opens {}", path.display())?,
+        Reviewed::Opened(file) => writeln!(out, "the viewer opens {}{}", file.path.display(), because(&file))?,
         Reviewed::Served { url, because, _serving } => {
             writeln!(out, "{because}: it is served here, for a browser on this machine, until ctrl+c\n{url}")?;
             if let Some(at) = args.at {
-                writeln!(out, "in the time panel, go to +{at} s")?;
+                writeln!(out, "it plays from {at} on")?;
             }
             out.flush()?;
             until_asked_to_end()?;
         }
     }
     Ok(())
+}
+
+/// Why a file that was there had to be made anew.
+fn because(file: &Saved) -> String {
+    file.because.map_or(String::new(), |because| format!(", anew: {because}"))
+}
+
+fn still_running(one: &Running) -> String {
+    let live = one.viewers.as_ref().map_or(String::new(), |viewers| format!("; live: rerun {viewers}"));
+    format!("{}: this session is still running, and is shown up to now{live}\n", one.recording.display())
 }

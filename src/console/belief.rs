@@ -72,6 +72,12 @@ pub struct BeliefTrack {
 }
 
 impl BeliefTrack {
+    /// The moments from which on something is believed wrong that was not before.
+    pub fn newly_false(&self) -> impl Iterator<Item = SessionTime> {
+        let begins = |moment: &&Moment| moment.wrong_since.contains(&Some(moment.time));
+        self.moments.iter().filter(begins).map(|moment| moment.time)
+    }
+
     /// Keeps a moment, unless it is one of many gaze samples that change little.
     pub fn note(&mut self, mut moment: Moment) {
         if let Some(last) = self.moments.last().filter(|_| moment.by_gaze) {

@@ -5,12 +5,17 @@ use std::sync::Arc;
 use super::belief::Held;
 use super::words;
 use crate::base::time::SessionTime;
+use crate::base::words::count;
 use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
 use crate::kitchen::{AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::measures::matching::{Content, Kind, Likeness, Said, Similarity, Tally, matched};
+use crate::measures::sequences::FALSE_BELOW;
 use crate::session::screen::Screen;
+
+/// What is known at least so well is no doubt.
+const SURE: f64 = 0.9;
 
 /// What was known when something could be said.
 #[derive(Clone, Debug, PartialEq)]
@@ -183,17 +188,15 @@ impl Comparison {
         let apart = |near: &&Spoken| near.said.press.abs_diff(spoken.said.press);
         let near = match other.spoken.iter().min_by_key(apart) {
             Some(near) => {
-                let presses = apart(&near);
-                format!(
-                    "{}; next to it {} at {}, {presses} presses away",
-                    other.name,
-                    near.what.words(),
-                    near.said.clock
-                )
+                let presses = count(apart(&near), "press", "presses");
+                format!("whose nearest is {} at {}, {presses} away", near.what.words(), near.said.clock)
             }
-            None => format!("{} said nothing in this trial", other.name),
+            None => "which said nothing in this trial".to_string(),
         };
-        let mut lines = vec![self.headline(difference), format!("press {}, not said by {near}", spoken.said.press)];
+        let mut lines = vec![
+            self.headline(difference),
+            format!("after press {}; not said by {}, {near}", spoken.said.press, other.name),
+        ];
         let Some(known) = &spoken.known else {
             lines.push("nothing was asked yet: before the first press or order".to_string());
             return lines;
@@ -201,7 +204,7 @@ impl Comparison {
         if let Some(advice) = self.advice(difference) {
             lines.push(format!("{} then: {}", self.lanes[self.assistant(difference)].name, thought(advice)));
         }
-        lines.push(format!("believed, by the estimate without what was just sent: {}", believed(kitchen, known)));
+        lines.extend(believed(kitchen, known));
         lines.push(format!("truly: {}", truly(kitchen, known.state)));
         lines.push(format!("on the wizard's screen: {}", seen(known.screen.as_ref())));
         lines
@@ -271,21 +274,34 @@ fn thought(advice: &Recommendation) -> String {
     }
 }
 
-/// What is believed, the most doubtful first.
-fn believed(kitchen: &Kitchen, known: &Known) -> String {
+/// What is believed wrong, the wrongest first, and what is right but not sure.
+fn believed(kitchen: &Kitchen, known: &Known) -> [String; 2] {
     let mut doubtful: Vec<(usize, &Held)> =
-        known.held.iter().enumerate().filter(|(_, held)| held.p_truth < 0.9).collect();
+        known.held.iter().enumerate().filter(|(_, held)| f64::from(held.p_truth) < SURE).collect();
     doubtful.sort_by(|a, b| a.1.p_truth.total_cmp(&b.1.p_truth));
+    let (wrong, unsure): (Vec<_>, Vec<_>) =
+        doubtful.into_iter().partition(|(_, held)| f64::from(held.p_truth) < FALSE_BELOW);
     let told = |&(index, held): &(usize, &Held)| {
         let aspect = &kitchen.aspects[index];
-        let truth = &aspect.labels[kitchen.true_value(known.state, AspectId(index as u8))];
-        let believes = &aspect.labels[usize::from(held.believes)];
-        format!("{} = {believes} {:.2} (truly {truth} {:.2})", aspect.name, held.p, held.p_truth)
+        let truth = kitchen.true_value(known.state, AspectId(index as u8));
+        let name = words::location(&aspect.name);
+        let (believes, truth_label) = (&aspect.labels[usize::from(held.believes)], &aspect.labels[truth]);
+        match usize::from(held.believes) == truth {
+            true => format!("{name}: most likely {truth_label}, but only {:.2}", held.p_truth),
+            false => format!("{name}: {believes} {:.2}, truly {truth_label} {:.2}", held.p, held.p_truth),
+        }
     };
-    match doubtful.is_empty() {
-        true => "everything as it is (above 0.9)".to_string(),
-        false => doubtful.iter().take(4).map(told).collect::<Vec<_>>().join("; "),
-    }
+    let doubted = |&(index, held): &(usize, &Held)| {
+        format!("{} {:.2}", words::location(&kitchen.aspects[index].name), held.p_truth)
+    };
+    let list = |told: Vec<String>| if told.is_empty() { "nothing".to_string() } else { told.join("; ") };
+    [
+        format!(
+            "believed wrong, by the estimate without what was just sent: {}",
+            list(wrong.iter().take(4).map(told).collect())
+        ),
+        format!("right, but less than {SURE} sure: {}", list(unsure.iter().take(6).map(doubted).collect())),
+    ]
 }
 
 /// What lay where, without what is empty.

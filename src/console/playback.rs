@@ -5,6 +5,17 @@ use crate::base::time::SessionTime;
 /// The speeds of a replay, as multiples of real time; infinity is as fast as it goes.
 pub const SPEEDS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, f64::INFINITY];
 
+/// What is looked for in a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Landmark {
+    /// A press that was an error.
+    Error,
+    Signal,
+    Marker,
+    /// Something is believed wrong from here on, as it is estimated.
+    FalseBelief,
+}
+
 /// What a key asks of a replay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Move {
@@ -12,6 +23,9 @@ pub enum Move {
     /// To the next or the last event that is no gaze sample.
     StepForward,
     StepBack,
+    /// To the next or the last moment of this kind.
+    On(Landmark),
+    BackTo(Landmark),
     /// Ten seconds on or back.
     SeekForward,
     SeekBack,
@@ -41,6 +55,8 @@ pub struct Playback {
     pub follows: bool,
     /// The recording ends without its end event.
     pub cut: bool,
+    /// Somebody still writes it, and it is not followed.
+    pub running: bool,
     /// It was left out of the analysis after it was closed.
     pub excluded: bool,
 }
@@ -57,6 +73,7 @@ impl Playback {
             events: 0,
             follows: false,
             cut: false,
+            running: false,
             excluded: false,
         }
     }

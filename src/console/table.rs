@@ -10,7 +10,7 @@ use super::comparison::Step;
 use super::hands::Hand;
 use super::keys::{Action, Binding, Layer, Section};
 use super::panels::Look;
-use super::playback::Move;
+use super::playback::{Landmark, Move};
 use crate::communication::{self, Signal};
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId};
 use crate::measures::coding::Kind;
@@ -121,6 +121,20 @@ pub fn replay() -> Vec<Binding> {
     let moves = [
         ("step_forward", plain(Right), Move::StepForward, "to the next event", Some("step")),
         ("step_back", plain(Left), Move::StepBack, "to the last event", None),
+        ("next_error", [Chord::char('e')], Move::On(Landmark::Error), "to the next error", Some("error")),
+        ("last_error", [Chord::char('E')], Move::BackTo(Landmark::Error), "to the error before", None),
+        ("next_signal", [Chord::char('s')], Move::On(Landmark::Signal), "to the next signal", None),
+        ("last_signal", [Chord::char('S')], Move::BackTo(Landmark::Signal), "to the signal before", None),
+        ("next_marker", [Chord::char('m')], Move::On(Landmark::Marker), "to the next marker", None),
+        ("last_marker", [Chord::char('M')], Move::BackTo(Landmark::Marker), "to the marker before", None),
+        ("next_false_belief", [Chord::char('b')], Move::On(Landmark::FalseBelief), "to the next false belief", None),
+        (
+            "last_false_belief",
+            [Chord::char('B')],
+            Move::BackTo(Landmark::FalseBelief),
+            "to the false belief before",
+            None,
+        ),
         ("seek_forward", plain(PageDown), Move::SeekForward, "ten seconds on", Some("10 s")),
         ("seek_back", plain(PageUp), Move::SeekBack, "ten seconds back", None),
         ("faster", [Chord::char('+')], Move::Faster, "faster", Some("speed")),

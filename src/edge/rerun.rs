@@ -1,8 +1,10 @@
-//! Rerun: the one file that knows it. Moments of a scene become rows of a stream, which goes to a file, to viewers that
+//! Rerun: this file and `rerun/layout.rs` alone know it. Moments of a scene become rows of a stream, which goes to a file, to viewers that
 //! connect to a server of the program, or both.
 //!
 //! The program never connects to a viewer: one that is slow or stopped would hold up the stream, and the file with it.
 //! Viewers connect to the program, and take what the server keeps for them.
+
+mod layout;
 
 use std::io;
 use std::net::SocketAddr;
@@ -10,11 +12,6 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use nalgebra::Isometry3;
-use rerun::blueprint::components::PanelState;
-use rerun::blueprint::{
-    Blueprint, BlueprintPanel, ContainerLike, Horizontal, SelectionPanel, Spatial2DView, Spatial3DView,
-    StateTimelineView, Tabs, TextDocumentView, TextLogView, TimePanel, TimeSeriesView, Vertical,
-};
 use rerun::components::{InterpolationMode, MarkerShape};
 use rerun::external::re_grpc_server::{MemoryLimit, ServerOptions};
 use rerun::grpc_server::GrpcServerSink;
@@ -23,6 +20,7 @@ use rerun::sink::FileSink;
 use rerun::web_viewer::WebViewerConfig;
 use rerun::{AsComponents, Color, FillMode, Quaternion, RecordingStream, RecordingStreamBuilder, TextLogLevel};
 
+use self::layout::{Layout, Opens};
 use crate::base::time::SessionTime;
 use crate::robot::urdf::{Shape, Solid};
 use crate::scene::shown::{Area, Disc, Level, Point, Series};
@@ -32,6 +30,10 @@ use crate::scene::{Moment, Row, Shown};
 pub const VERSION: &str = "0.36.3";
 /// All recordings share one blueprint.
 const APPLICATION: &str = "tomcom";
+/// The timeline that viewers open with: the trial's clock, as the console shows it.
+pub const TRIAL_TIME: &str = "trial_time";
+/// In nanoseconds.
+const MS: u64 = 1_000_000;
 /// What viewers see is so old at most.
 const PIECE: Duration = Duration::from_millis(300);
 /// Every piece of every entity costs some 2 kB beside its rows: in a file they are longer.
@@ -60,6 +62,8 @@ pub struct Outlets {
     pub file: Option<PathBuf>,
     /// Where viewers connect; `true`: they are given all of it, however much that is.
     pub server: Option<(SocketAddr, bool)>,
+    /// Viewers that connect play from this moment of the trial's clock on; else they wait at the beginning, or follow.
+    pub at: Option<SessionTime>,
 }
 
 /// One of the recordings in a stream.
@@ -67,8 +71,8 @@ pub struct Outlets {
 pub struct Lane {
     /// Its entities are below this one; empty: at the top.
     pub root: String,
-    /// Its time 0, where several are aligned.
-    pub origin: SessionTime,
+    /// What the viewer calls it among others.
+    pub title: String,
 }
 
 /// A stream that is being written: to each of its outlets by itself, so that none holds up another.
@@ -86,15 +90,19 @@ impl Writer {
         if let Some(path) = &outlets.file {
             let stream = stream(identity, PIECE_OF_FILE)?;
             stream.set_sinks((FileSink::new(path).map_err(io::Error::other)?,));
+            Layout::of(lanes, Opens::Waiting).send(&stream)?;
             streams.push(stream);
         }
         if let Some((address, all)) = outlets.server {
             let stream = stream(identity, PIECE)?;
             stream.set_sinks((server(address, all)?,));
+            let opens = match outlets.at {
+                Some(at) => Opens::From(at),
+                None if all => Opens::Waiting,
+                None => Opens::Following,
+            };
+            Layout::of(lanes, opens).send(&stream)?;
             streams.push(stream);
-        }
-        for stream in &streams {
-            blueprint(lanes).send(stream, Default::default()).map_err(io::Error::other)?;
         }
         Ok(Writer { streams })
     }
@@ -106,9 +114,11 @@ impl Writer {
 
     /// Writes a moment; the number of its rows.
     pub fn moment(&self, lane: &Lane, moment: &Moment) -> u64 {
-        let since_origin = moment.time.0 as i64 - lane.origin.0 as i64;
+        let nanoseconds = |time: u64| rerun::TimeCell::from_duration_nanos(i64::try_from(time).unwrap_or(i64::MAX));
         for stream in &self.streams {
-            stream.set_time("session_time", rerun::TimeCell::from_duration_nanos(since_origin));
+            // Whole milliseconds are read more easily, and nothing is shown that is closer together.
+            stream.set_time(TRIAL_TIME, nanoseconds(moment.trial.0 / MS * MS));
+            stream.set_time("session_time", nanoseconds(moment.time.0));
             stream.set_time_sequence("step", i64::try_from(moment.step).unwrap_or(i64::MAX));
         }
         moment.rows.iter().for_each(|row| self.row(lane, row, false));
@@ -294,90 +304,4 @@ fn solids_in_3d(solids: &[Solid], colour: Color) -> Vec<Part> {
         parts.push(Box::new(shapes.with_radii(all().map(|one| one.1)).with_colors([colour])));
     }
     parts
-}
-
-/// What a viewer shows without a click: kitchen and arm above, beliefs and what signals are worth below, what happened at
-/// the side; several lanes beside each other.
-fn blueprint(lanes: &[Lane]) -> Blueprint {
-    let root: ContainerLike = match lanes {
-        [only] => alone(only),
-        lanes => Horizontal::new(lanes.iter().map(beside)).into(),
-    };
-    let hidden = PanelState::Hidden;
-    Blueprint::new(root)
-        .with_blueprint_panel(BlueprintPanel::from_state(hidden))
-        .with_selection_panel(SelectionPanel::from_state(hidden))
-        .with_time_panel(TimePanel::new().with_state(PanelState::Collapsed).with_timeline("session_time"))
-        .with_auto_views(false)
-}
-
-/// One recording.
-fn alone(lane: &Lane) -> ContainerLike {
-    let above = Horizontal::new([kitchen(lane), arm(lane)]).with_column_shares([3.0, 2.0]);
-    let wrong = StateTimelineView::new("Believed wrong")
-        .with_origin(path(lane, "human/belief/wrong"))
-        .with_contents([path(lane, "human/belief/wrong/**")]);
-    let beliefs = Tabs::new([
-        series(lane, "Estimated belief: p(truth)", &["human/belief/estimated/**", "human/errors/**"]),
-        series(lane, "True belief (simulated)", &["human/belief/true/**", "human/errors/**"]),
-        wrong.into(),
-    ]);
-    let benefit = series(lane, "Net benefit of signals (presses)", &["assistant/benefit/**"]);
-    let below = Horizontal::new([beliefs.into(), benefit]);
-    let side = Vertical::new([believed(lane), log(lane)]).with_row_shares([2.0, 3.0]);
-    let left = Vertical::new([above.into(), below.into()]).with_row_shares([5.0, 3.0]);
-    Horizontal::new([left.into(), side.into()]).with_column_shares([5.0, 2.0]).into()
-}
-
-/// One of several recordings.
-fn beside(lane: &Lane) -> ContainerLike {
-    let belief = series(lane, "Estimated belief", &["human/belief/estimated/**", "human/errors/**"]);
-    let all = [kitchen(lane), arm(lane), belief, believed(lane), log(lane)];
-    Vertical::new(all).with_name(&lane.root).with_row_shares([3.0, 2.0, 2.0, 2.0, 3.0]).into()
-}
-
-fn path(lane: &Lane, entities: &str) -> String {
-    let path = format!("{}/{entities}", lane.root);
-    format!("/{}", path.trim_matches('/'))
-}
-
-fn kitchen(lane: &Lane) -> ContainerLike {
-    let contents = ["kitchen/**", "human/gaze"].map(|entities| path(lane, entities));
-    Spatial2DView::new(titled(lane, "Kitchen")).with_origin(path(lane, "kitchen")).with_contents(contents).into()
-}
-
-fn arm(lane: &Lane) -> ContainerLike {
-    let contents = ["robot/**", "human/hand"].map(|entities| path(lane, entities));
-    Spatial3DView::new(titled(lane, "Arm")).with_origin(path(lane, "robot")).with_contents(contents).into()
-}
-
-fn series(lane: &Lane, name: &str, entities: &[&str]) -> ContainerLike {
-    let contents: Vec<String> = entities.iter().map(|entities| path(lane, entities)).collect();
-    TimeSeriesView::new(titled(lane, name)).with_origin(path(lane, "")).with_contents(contents).into()
-}
-
-fn believed(lane: &Lane) -> ContainerLike {
-    let page = path(lane, "human/belief/page");
-    TextDocumentView::new(titled(lane, "What the participant believes"))
-        .with_origin(page.clone())
-        .with_contents([page])
-        .into()
-}
-
-fn log(lane: &Lane) -> ContainerLike {
-    let entities = [
-        "human/presses",
-        "human/errors",
-        "robot/presses",
-        "wizard/**",
-        "assistant/signals",
-        "assistant/advice",
-        "trial/events",
-    ];
-    let contents = entities.map(|entities| path(lane, entities));
-    TextLogView::new(titled(lane, "What happened")).with_origin(path(lane, "")).with_contents(contents).into()
-}
-
-fn titled(lane: &Lane, name: &str) -> String {
-    if lane.root.is_empty() { name.to_string() } else { format!("{name}: {}", lane.root) }
 }

@@ -1,8 +1,11 @@
-//! What a file of Rerun says of itself, without reading it: whether it is whole, and what wrote it.
+//! What a file of Rerun says of itself, and what is said of it beside it: whether it is whole, what wrote it, whether it is
+//! as it was written, and whether it shows the log as that is now.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
 
 use super::rerun::VERSION;
 use crate::scene;
@@ -16,6 +19,10 @@ const ENDS: &[u8] = b"FOOT";
 /// Where these are looked for, in bytes.
 const HEAD: u64 = 4096;
 const TAIL: u64 = 64;
+/// What the name of a stream's seal ends with; before that it is the stream's.
+const SEALED: &str = ".toml";
+/// A file is read in pieces of so many bytes.
+const PIECE: usize = 1 << 16;
 
 /// Stands in the name of every stream that holds a recording from its beginning, as this program would write it today.
 pub fn mark() -> String {
@@ -30,14 +37,90 @@ pub enum RrdState {
     Cut,
     /// Another version wrote it, or it begins in the middle of the session.
     Other,
+    /// Nothing says which log it shows.
+    Unsealed,
+    /// It is not as it was written.
+    Damaged,
+    /// It shows another log, or the log as it was before.
+    Stale,
     Whole,
 }
 
-/// Looks at a file.
+impl RrdState {
+    /// Why it has to be made anew, in words; nothing to tell where there was none.
+    pub fn reason(self) -> Option<&'static str> {
+        match self {
+            RrdState::Missing | RrdState::Whole => None,
+            RrdState::Cut => Some("it was not written to its end"),
+            RrdState::Other => Some("another version wrote it, or it began in the middle of the session"),
+            RrdState::Unsealed => Some("nothing said which log it shows"),
+            RrdState::Damaged => Some("it was damaged or exchanged"),
+            RrdState::Stale => Some("it did not show the log as that is now"),
+        }
+    }
+}
+
+/// Length and checksum of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Sum {
+    bytes: u64,
+    crc32: u32,
+}
+
+impl Sum {
+    fn of(path: &Path) -> io::Result<Sum> {
+        let mut file = File::open(path)?;
+        let (mut hasher, mut bytes, mut piece) = (crc32fast::Hasher::new(), 0, vec![0; PIECE]);
+        loop {
+            match file.read(&mut piece)? {
+                0 => return Ok(Sum { bytes, crc32: hasher.finalize() }),
+                read => {
+                    hasher.update(&piece[..read]);
+                    bytes += read as u64;
+                }
+            }
+        }
+    }
+}
+
+/// What stands beside a stream that was written to its end.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Seal {
+    stream: Sum,
+    /// Of all parts, the first one first.
+    logs: Vec<Sum>,
+}
+
+impl Seal {
+    fn path(stream: &Path) -> PathBuf {
+        let mut name = stream.as_os_str().to_os_string();
+        name.push(SEALED);
+        PathBuf::from(name)
+    }
+
+    /// None where there is none that can be read: then the stream is made anew.
+    fn read(stream: &Path) -> Option<Seal> {
+        toml::from_str(&fs::read_to_string(Seal::path(stream)).ok()?).ok()
+    }
+}
+
+/// Keeps beside a stream that was written to its end how it is, and how the logs are that it shows.
 ///
 /// # Errors
-/// It is there and cannot be read.
-pub fn state(path: &Path) -> io::Result<RrdState> {
+/// One of them cannot be read, or the folder cannot be written to.
+pub fn seal(stream: &Path, logs: &[PathBuf]) -> io::Result<()> {
+    let logs = logs.iter().map(|log| Sum::of(log)).collect::<io::Result<_>>()?;
+    let seal = Seal { stream: Sum::of(stream)?, logs };
+    fs::write(Seal::path(stream), toml::to_string(&seal).map_err(io::Error::other)?)
+}
+
+/// Looks at a stream, and holds it against the logs that it should show.
+///
+/// # Errors
+/// It is there and cannot be read, or a log cannot.
+pub fn state(path: &Path, logs: &[PathBuf]) -> io::Result<RrdState> {
     let mut file = match File::open(path) {
         Ok(file) => file,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(RrdState::Missing),
@@ -53,11 +136,18 @@ pub fn state(path: &Path) -> io::Result<RrdState> {
     let version: Vec<u8> = VERSION.split('.').filter_map(|part| part.parse().ok()).collect();
     let is_ours =
         head.starts_with(BEGINS) && head[BEGINS.len()..].starts_with(&version) && has(&head, mark().as_bytes());
-    Ok(match (is_ours, has(&tail, ENDS)) {
-        (_, false) => RrdState::Cut,
-        (true, true) => RrdState::Whole,
-        (false, true) => RrdState::Other,
-    })
+    if !has(&tail, ENDS) {
+        return Ok(RrdState::Cut);
+    }
+    if !is_ours {
+        return Ok(RrdState::Other);
+    }
+    let Some(seal) = Seal::read(path) else { return Ok(RrdState::Unsealed) };
+    if Sum::of(path)? != seal.stream {
+        return Ok(RrdState::Damaged);
+    }
+    let logs = logs.iter().map(|log| Sum::of(log)).collect::<io::Result<Vec<Sum>>>()?;
+    Ok(if logs == seal.logs { RrdState::Whole } else { RrdState::Stale })
 }
 
 #[cfg(test)]
@@ -65,22 +155,35 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_says_whether_it_is_whole_and_ours() {
+    fn a_file_says_whether_it_is_whole_and_ours_and_its_seal_whether_it_shows_this_log() {
         let folder = std::env::temp_dir().join(format!("tomcom-rrd-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
-        let path = folder.join(RRD_NAME);
-        assert_eq!(state(&path).unwrap(), RrdState::Missing);
+        fs::create_dir_all(&folder).unwrap();
+        let (path, logs) = (folder.join(RRD_NAME), [folder.join("events.jsonl")]);
+        let is = |state: RrdState| assert_eq!(super::state(&path, &logs).unwrap(), state);
+        fs::write(&logs[0], "the log").unwrap();
+        is(RrdState::Missing);
         let whole = [b"RRF2\x00\x24\x03\x00 id ", mark().as_bytes(), &[7; 200], b"RRF2FOOT", &[0; 24]].concat();
-        for (bytes, is) in [
-            (whole.clone(), RrdState::Whole),
+        for (bytes, state) in [
+            (whole.clone(), RrdState::Unsealed),
             (whole[..whole.len() - 100].to_vec(), RrdState::Cut),
             (Vec::new(), RrdState::Cut),
             ([b"RRF2\x00\x25\x00\x00", &whole[8..]].concat(), RrdState::Other),
             ([&whole[..12], b"another scene", &whole[40..]].concat(), RrdState::Other),
         ] {
-            std::fs::write(&path, bytes).unwrap();
-            assert_eq!(state(&path).unwrap(), is);
+            fs::write(&path, bytes).unwrap();
+            is(state);
         }
-        std::fs::remove_dir_all(folder).unwrap();
+        fs::write(&path, &whole).unwrap();
+        seal(&path, &logs).unwrap();
+        is(RrdState::Whole);
+        let mut damaged = whole.clone();
+        damaged[100] = 8;
+        fs::write(&path, damaged).unwrap();
+        is(RrdState::Damaged);
+        fs::write(&path, &whole).unwrap();
+        is(RrdState::Whole);
+        fs::write(&logs[0], "the lag").unwrap();
+        is(RrdState::Stale);
+        fs::remove_dir_all(folder).unwrap();
     }
 }

@@ -18,7 +18,7 @@ const WAITING: usize = 4096;
 /// So long the end of a session waits for its file to be written.
 const END: Duration = Duration::from_secs(5);
 /// So many ports are tried after the one that is asked for.
-const PORTS: u16 = 20;
+pub const PORTS: u16 = 20;
 
 /// How the stream fares.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,7 +59,8 @@ impl Stream {
         opening: Moment,
     ) -> io::Result<Stream> {
         let server = server.map(free_port).transpose()?;
-        let outlets = Outlets { file: file.map(Path::to_path_buf), server: server.map(|address| (address, false)) };
+        let outlets =
+            Outlets { file: file.map(Path::to_path_buf), server: server.map(|address| (address, false)), at: None };
         let lane = Lane::default();
         let writer = Writer::open(identity, &outlets, std::slice::from_ref(&lane))?;
         let (news, told) = sync_channel::<Vec<Moment>>(WAITING);
@@ -94,14 +95,16 @@ impl Stream {
         Fares { written: self.counters.written.load(Relaxed), dropped: self.counters.dropped.load(Relaxed) }
     }
 
-    /// Ends the stream, and waits a moment for its file. One that is not whole is taken away: it can be made from the log.
-    pub fn close(self) {
+    /// Ends the stream, and waits a moment for its file, which is handed out. One that is not whole is taken away: it can
+    /// be made from the log.
+    pub fn close(self) -> Option<PathBuf> {
         let Stream { file, news, counters, done, .. } = self;
         drop(news);
-        let is_written = done.recv_timeout(END).is_ok();
-        if let Some(file) = file.filter(|_| !is_written || counters.dropped.load(Relaxed) > 0) {
+        let is_whole = done.recv_timeout(END).is_ok() && counters.dropped.load(Relaxed) == 0;
+        if let Some(file) = file.as_ref().filter(|_| !is_whole) {
             let _ = fs::remove_file(file);
         }
+        file.filter(|_| is_whole)
     }
 }
 
@@ -138,16 +141,17 @@ mod tests {
         let identity = Identity { id: rrd::mark(), name: "test".to_string() };
         let moment = |step: u64| {
             let rows = vec![Row::new("a", Shown::Value(step as f64))];
-            Moment { time: SessionTime(step * 1_000_000), step, rows }
+            let time = SessionTime(step * 1_000_000);
+            Moment { time, trial: time, step, rows }
         };
         let stream = Stream::open(&identity, Some(&path), Some(taken), Vec::new(), moment(0)).unwrap();
         let server = stream.server.unwrap();
         assert!(server.port() != taken.port() && server.ip() == taken.ip());
         (1..1000).for_each(|step| stream.tell(vec![moment(step)]));
-        assert_eq!(rrd::state(&path).unwrap(), RrdState::Cut, "it is not written to its end yet");
+        assert_eq!(rrd::state(&path, &[]).unwrap(), RrdState::Cut, "it is not written to its end yet");
         assert_eq!(stream.fares().dropped, 0);
-        stream.close();
-        assert_eq!(rrd::state(&path).unwrap(), RrdState::Whole);
+        assert_eq!(stream.close().as_ref(), Some(&path));
+        assert_eq!(rrd::state(&path, &[]).unwrap(), RrdState::Unsealed, "it is whole, and waits for its seal");
         fs::remove_dir_all(folder).unwrap();
     }
 }

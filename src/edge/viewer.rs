@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use super::rerun::VERSION;
+use super::rerun::{TRIAL_TIME, VERSION};
 use super::stream::free_port;
 
 /// A viewer that is opened listens on this port, or one of the next.
@@ -65,7 +65,7 @@ pub fn has_screen() -> bool {
 }
 
 /// Opens the viewer on a file; it stays when this program ends, and writes nothing into its terminal. With a time in
-/// nanoseconds on the timeline of the session, it is shown that moment as soon as it is ready.
+/// nanoseconds on the trial's clock, it is shown that moment as soon as it is ready.
 ///
 /// # Errors
 /// It cannot be started, or it cannot be shown the moment.
@@ -90,7 +90,7 @@ fn go_to(port: u16, at_ns: u64) -> io::Result<()> {
     let mut viewer = TcpStream::connect((Ipv4Addr::LOCALHOST, port))?;
     viewer.set_read_timeout(Some(ANSWER))?;
     // SetTimeCursorRequest { timeline (2): Timeline { name (1) }, time (3): TimelineTime { time (1) } }
-    let mut request = field(2, &field(1, b"session_time"));
+    let mut request = field(2, &field(1, TRIAL_TIME.as_bytes()));
     request.extend(field(3, &[&[0x08], &varint(at_ns)[..]].concat()));
     let length = (request.len() as u32).to_be_bytes();
     let head = format!(

@@ -7,6 +7,7 @@ use super::replay::Replay;
 use super::standing::Standing;
 use crate::base::time::SessionTime;
 use crate::console::belief::{BeliefTrack, Moment};
+use crate::console::playback::Landmark;
 use crate::edge::files::FileResult;
 use crate::session::settings::Visibility;
 use crate::session::{Event, Session, Stamped, apply};
@@ -142,6 +143,28 @@ impl Film {
         let steps = |end: usize| self.events[..end].iter().rposition(|stamped| !is_gaze(stamped));
         let last = steps(self.position).unwrap_or(0);
         steps(last).map_or(0, |index| index + 1)
+    }
+
+    /// The place after everything of the next moment of this kind, or of the last one before.
+    pub fn landmark(&self, what: Landmark, forward: bool) -> Option<usize> {
+        let now = self.time();
+        let is_it = |event: &Event| match what {
+            Landmark::Signal => matches!(event, Event::SignalShown { .. }),
+            Landmark::Marker => matches!(event, Event::Marker { .. }),
+            Landmark::Error | Landmark::FalseBelief => false,
+        };
+        let times: Vec<SessionTime> = match what {
+            Landmark::Error => self.errors.clone(),
+            Landmark::FalseBelief => self.beliefs.newly_false().collect(),
+            Landmark::Signal | Landmark::Marker => {
+                self.events.iter().filter(|stamped| is_it(&stamped.event)).map(|stamped| stamped.time).collect()
+            }
+        };
+        let found = match forward {
+            true => times.into_iter().find(|&time| time > now),
+            false => times.into_iter().rev().find(|&time| time < now),
+        };
+        found.map(|time| self.until(time))
     }
 
     /// The time of the last applied event.

@@ -43,8 +43,8 @@ impl LiveEnd {
             format!("left out of the analysis: {}\n", self.standing.describe())
         };
         format!(
-            "{presses}, {signals}, {served} served\n{standing}recorded in {folder}\n\
-             look at it again: tomcom replay {folder}"
+            "{presses} of both, {signals}, {served} served\n{standing}recorded in {folder}\n\
+             look at it again: tomcom replay {folder}, or in Rerun: tomcom review {folder}"
         )
     }
 }

@@ -10,13 +10,13 @@ use crate::edge::files::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, Lock, LogReader};
 use crate::edge::rerun::{Identity, Lane, Outlets, WebViewer, Writer, uri};
 use crate::edge::rrd::{self, RRD_NAME, RrdState};
-use crate::edge::stream::free_port;
+use crate::edge::stream::{PORTS, free_port};
 use crate::edge::terminal::asked_to_end;
 use crate::edge::viewer::{self, Viewer};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::scene::shown::slug;
 use crate::scene::{Derived, Scene};
-use crate::session::{Event, Stamped};
+use crate::session::Stamped;
 
 /// Where the server and the viewer for browsers are looked for, and the ports after.
 const SERVER_PORT: u16 = 9878;
@@ -31,9 +31,9 @@ pub enum RerunError {
     #[error("{}: the stream cannot be written: {reason}", path.display())]
     #[diagnostic(help("a place that can be written to, with --save=FILE"))]
     Unwritable { path: PathBuf, reason: io::Error },
-    #[error("the viewer cannot be served on this machine: {0}")]
-    #[diagnostic(help("a native viewer: {}", viewer::REMEDY))]
-    Web(io::Error),
+    #[error("the viewer cannot be served on this machine: {reason}")]
+    #[diagnostic(help("{remedy}"))]
+    Web { reason: io::Error, remedy: String },
     #[error("{}: the viewer cannot be started: {reason}", path.display())]
     #[diagnostic(help("--web serves one for a browser"))]
     Viewer { path: PathBuf, reason: io::Error },
@@ -53,37 +53,65 @@ pub struct Review {
     pub save: Option<Option<PathBuf>>,
     /// The viewer is served for a browser, whether there is another one or not.
     pub web: bool,
-    /// The moment to open at, in seconds: of one recording since it began, of several since their trials' starts.
-    pub at_s: Option<f64>,
+    /// The moment to open at, by the trial's clock.
+    pub at: Option<SessionTime>,
+}
+
+/// A file of a stream, and how it came about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Saved {
+    pub path: PathBuf,
+    /// It was made from the log just now.
+    pub made: bool,
+    /// Why the one that was there did not do.
+    pub because: Option<&'static str>,
+}
+
+/// A recording that somebody still writes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Running {
+    pub recording: PathBuf,
+    /// Where viewers can look on, if they can.
+    pub viewers: Option<String>,
+}
+
+/// Which of these recordings are of sessions that still run: what is shown of them ends now.
+///
+/// # Errors
+/// One that cannot be read.
+pub fn running(recordings: &[PathBuf]) -> FileResult<Vec<Running>> {
+    let mut running = Vec::new();
+    for recording in recordings {
+        if let Some(holder) = Lock::holder(LogReader::open(recording)?.folder()) {
+            running.push(Running { recording: recording.clone(), viewers: holder.viewers });
+        }
+    }
+    Ok(running)
 }
 
 /// What came of it.
 pub enum Reviewed {
-    /// The file is there; made anew, or as it was.
-    Saved { path: PathBuf, made: bool },
+    /// The file is there.
+    Saved(Saved),
     /// The viewer was opened on the file.
-    Opened { path: PathBuf },
+    Opened(Saved),
     /// The viewer is served until this is dropped.
     Served { url: String, because: &'static str, _serving: Box<(Writer, WebViewer)> },
 }
 
-/// Opens recordings in the viewer, several beside each other with their trials' starts at the same time.
+/// Opens recordings in the viewer, several beside each other by the clocks of their trials.
 ///
 /// # Errors
 /// A recording that cannot be read, a file that cannot be written, or a viewer that cannot be opened.
 pub fn review(asked: &Review) -> Result<Reviewed, RerunError> {
     let viewer = if asked.web { Viewer::None } else { Viewer::find() };
     match (&asked.save, viewer) {
-        (Some(place), _) => {
-            let (path, made) = saved(&asked.recordings, place.as_deref())?;
-            Ok(Reviewed::Saved { path, made })
-        }
+        (Some(place), _) => Ok(Reviewed::Saved(saved(&asked.recordings, place.as_deref())?)),
         (None, Viewer::Ready(viewer)) => {
-            let (path, _) = saved(&asked.recordings, None)?;
-            let at = asked.at_s.map(|at_s| SessionTime::from_secs_f64(at_s).0);
-            let opened = viewer::open(&viewer, &path, at);
+            let file = saved(&asked.recordings, None)?;
+            let opened = viewer::open(&viewer, &file.path, asked.at.map(|at| at.0));
             opened.map_err(|reason| RerunError::Viewer { path: viewer, reason })?;
-            Ok(Reviewed::Opened { path })
+            Ok(Reviewed::Opened(file))
         }
         (None, other) => {
             let because = match other {
@@ -92,7 +120,7 @@ pub fn review(asked: &Review) -> Result<Reviewed, RerunError> {
                 _ if asked.web => "as asked for",
                 _ => "there is no viewer in PATH",
             };
-            serve(&asked.recordings, because)
+            serve(&asked.recordings, asked.at, because)
         }
     }
 }
@@ -106,49 +134,78 @@ pub fn until_asked_to_end() -> io::Result<()> {
     runtime.block_on(asked_to_end())
 }
 
-/// The file of the stream of a recording: that beside its log where it is whole, else made from the log.
+/// The file of the stream of a recording: that beside its log where it shows this log, else made from it.
 ///
 /// # Errors
 /// The recording cannot be read, or the file not be written.
 pub fn save(recording: &Path) -> Result<PathBuf, RerunError> {
-    Ok(saved(&[recording.to_path_buf()], None)?.0)
+    Ok(saved(&[recording.to_path_buf()], None)?.path)
 }
 
 /// Streams recordings to a server, and serves the viewer for browsers.
-fn serve(recordings: &[PathBuf], because: &'static str) -> Result<Reviewed, RerunError> {
-    let local = |port: u16| free_port(SocketAddr::from((Ipv4Addr::LOCALHOST, port))).map_err(RerunError::Web);
-    let playing = playing(recordings)?;
-    let (server, web) = (local(SERVER_PORT)?, local(WEB_PORT)?);
-    let outlets = Outlets { file: None, server: Some((server, true)) };
-    let writer = write(playing, recordings, &outlets)?.map_err(RerunError::Web)?;
-    let viewer = WebViewer::serve(web.port()).map_err(RerunError::Web)?;
+fn serve(recordings: &[PathBuf], at: Option<SessionTime>, because: &'static str) -> Result<Reviewed, RerunError> {
+    let (server, writer) = on_free_port(SERVER_PORT, |server| {
+        let outlets = Outlets { file: None, server: Some((server, true)), at };
+        write(playing(recordings)?, recordings, &outlets)
+    })?;
+    let (web, viewer) = on_free_port(WEB_PORT, |web| Ok(WebViewer::serve(web.port())))?;
     let url = format!("http://{web}/?url={}", uri(server).replace('+', "%2B").replace(':', "%3A").replace('/', "%2F"));
     viewer::browse(&url);
     Ok(Reviewed::Served { url, because, _serving: Box::new((writer, viewer)) })
 }
 
-/// The file of the stream of these recordings: that beside the log where it is whole, else made from the log.
-fn saved(recordings: &[PathBuf], place: Option<&Path>) -> Result<(PathBuf, bool), RerunError> {
-    let mut locked = None;
+/// Serves something on a port that is free, from this one on. Somebody else may take it between our look and our use:
+/// then the next one is tried.
+fn on_free_port<T>(
+    first: u16,
+    mut serve: impl FnMut(SocketAddr) -> Result<io::Result<T>, RerunError>,
+) -> Result<(SocketAddr, T), RerunError> {
+    let remedy = |port: u16| {
+        let last = port.saturating_add(PORTS);
+        format!("ports {port} to {last} of this machine: end another tomcom review, or see who listens there")
+    };
+    let failed = |reason| RerunError::Web { reason, remedy: remedy(first) };
+    let mut port = first;
+    loop {
+        let address = free_port(SocketAddr::from((Ipv4Addr::LOCALHOST, port))).map_err(failed)?;
+        match serve(address)? {
+            Ok(served) => return Ok((address, served)),
+            Err(_) if address.port() < first.saturating_add(PORTS) => port = address.port() + 1,
+            Err(reason) => return Err(failed(reason)),
+        }
+    }
+}
+
+/// The file of the stream of these recordings: that beside the log where it shows this log, else made from it.
+fn saved(recordings: &[PathBuf], place: Option<&Path>) -> Result<Saved, RerunError> {
+    let (mut locked, mut because, mut logs) = (None, None, None);
     let path = match (place, recordings) {
         (Some(place), _) => place.to_path_buf(),
         (None, [recording]) => {
-            let folder = LogReader::open(recording)?.folder().to_path_buf();
+            let log = LogReader::open(recording)?;
+            let (folder, parts) = (log.folder().to_path_buf(), log.logs());
             let path = folder.join(RRD_NAME);
-            if matches!(rrd::state(&path), Ok(RrdState::Whole)) {
-                return Ok((path, false));
+            let state = rrd::state(&path, &parts).unwrap_or(RrdState::Unsealed);
+            if state == RrdState::Whole {
+                return Ok(Saved { path, made: false, because: None });
             }
             // Nobody else may be writing it: then, or where nothing can be written, it goes elsewhere.
             locked = Lock::take(&folder).ok();
-            if locked.is_some() { path } else { elsewhere(recordings) }
+            if locked.is_some() {
+                (because, logs) = (state.reason(), Some(parts));
+                path
+            } else {
+                elsewhere(recordings)
+            }
         }
         (None, several) => elsewhere(several),
     };
-    let outlets = Outlets { file: Some(path.clone()), server: None };
+    let outlets = Outlets { file: Some(path.clone()), server: None, at: None };
     let written = write(playing(recordings)?, recordings, &outlets)?;
+    let sealed = written.and_then(|_| logs.map_or(Ok(()), |logs| rrd::seal(&path, &logs)));
     drop(locked);
-    match written {
-        Ok(_) => Ok((path, true)),
+    match sealed {
+        Ok(()) => Ok(Saved { path, made: true, because }),
         Err(reason) => Err(RerunError::Unwritable { path, reason }),
     }
 }
@@ -165,26 +222,19 @@ fn name(recording: &Path) -> String {
     folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Recordings on their way into a stream: one as it is; several below their names, by the time since their trials' starts.
+/// Recordings on their way into a stream: one as it is; several below their names, each with its participant and condition.
 fn playing(recordings: &[PathBuf]) -> FileResult<Vec<Playing>> {
     let one = |(nth, recording): (usize, &PathBuf)| {
-        let root = format!("{}_{}", nth + 1, slug(&name(recording)));
-        match recordings.len() {
-            1 => Playing::open(recording, Lane::default()),
-            _ => Playing::open(recording, Lane { root, origin: trial_start(recording)? }),
+        let playing = Playing::open(recording)?;
+        if recordings.len() == 1 {
+            return Ok(playing);
         }
+        let name = name(recording);
+        let spec = &playing.replay.log().header.session;
+        let title = format!("{} {} ({name})", spec.participant.code, spec.trial.condition.name());
+        Ok(Playing { lane: Lane { root: format!("{}_{}", nth + 1, slug(&name)), title }, ..playing })
     };
     recordings.iter().enumerate().map(one).collect()
-}
-
-fn trial_start(recording: &Path) -> FileResult<SessionTime> {
-    let mut log = LogReader::open(recording)?;
-    while let Some(line) = log.next_line()? {
-        if line.stamped.event == Event::TrialStarted {
-            return Ok(line.stamped.time);
-        }
-    }
-    Ok(SessionTime::ZERO)
 }
 
 /// Writes recordings to these outlets, one after the other; the outer error is theirs, the inner one of the outlets.
@@ -212,10 +262,10 @@ struct Playing {
 }
 
 impl Playing {
-    fn open(recording: &Path, lane: Lane) -> FileResult<Playing> {
+    fn open(recording: &Path) -> FileResult<Playing> {
         let replay = Replay::open(recording)?.without_causes();
         let scene = Scene::new(replay.session(), 0);
-        Ok(Playing { replay, scene, lane })
+        Ok(Playing { replay, scene, lane: Lane::default() })
     }
 
     /// What tells it from other recordings of the same name.

@@ -13,10 +13,10 @@ use crate::console::coding::Coding;
 use crate::console::comparison::Compared;
 use crate::console::keys::KeyError;
 use crate::console::model::Level;
-use crate::console::playback::{Move, Playback, SPEEDS};
+use crate::console::playback::{Landmark, Move, Playback, SPEEDS};
 use crate::console::{Command, Keys, Message, Model, update};
 use crate::edge::files::{FileError, key_map};
-use crate::edge::log::codes;
+use crate::edge::log::{Ending, codes};
 use crate::edge::terminal::{Hands, Screen, asked_to_end, theme};
 use crate::session::Event;
 
@@ -118,7 +118,8 @@ impl Review {
         });
         let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
         let excluded = film.standing()?.excluded.is_some();
-        model.playback = Some(Playback { excluded, ..Playback::new(name) });
+        let running = !follow && film.replay.log().ending() == Ending::Running;
+        model.playback = Some(Playback { excluded, running, ..Playback::new(name) });
         let now = Instant::now();
         let mut review = Review {
             film,
@@ -220,6 +221,8 @@ impl Review {
             Move::Slower => self.playback(|playback| playback.speed = playback.speed.saturating_sub(1)),
             Move::StepForward => self.stand_at(self.film.next_step()),
             Move::StepBack => self.stand_at(self.film.last_step()),
+            Move::On(what) => self.look_for(what, true),
+            Move::BackTo(what) => self.look_for(what, false),
             Move::ToStart => self.stand_at(0),
             Move::ToEvent(number) => self.stand_at(number as usize + 1),
             Move::SeekForward => self.seek(self.now + SEEK),
@@ -243,6 +246,23 @@ impl Review {
         self.wind(position);
         self.now = self.film.time();
         self.playback(|playback| playback.playing = false);
+    }
+
+    /// Stands at the next or the last moment of this kind; where there is none it stays.
+    fn look_for(&mut self, what: Landmark, forward: bool) {
+        match self.film.landmark(what, forward) {
+            Some(position) => self.stand_at(position),
+            None => {
+                let which = if forward { "further" } else { "earlier" };
+                let what = match what {
+                    Landmark::Error => "error",
+                    Landmark::Signal => "signal",
+                    Landmark::Marker => "marker",
+                    Landmark::FalseBelief => "false belief",
+                };
+                self.model.say(Level::Refused, format!("no {which} {what}"));
+            }
+        }
     }
 
     fn seek(&mut self, time: SessionTime) {

@@ -8,6 +8,7 @@ use super::compare::{Request, Watcher};
 use super::parallel;
 use super::standing::Standing;
 use super::wizard::{self, WizardFigures, WizardLog};
+use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
 use crate::console::comparison::{Comparison, Difference};
@@ -22,6 +23,9 @@ use crate::session::settings::Condition;
 
 /// The windows of `--sweep`.
 pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;
+
+/// So many differences of a kind are listed for people.
+const LISTED: usize = 20;
 
 /// What `tomcom compare` prints.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -116,6 +120,11 @@ pub struct DifferenceFigures {
     pub headline: String,
     pub by: String,
     pub not_by: String,
+    /// The assistant that it is about, by its lane, and whether who sent the signals said it.
+    #[serde(skip)]
+    pair: usize,
+    #[serde(skip)]
+    by_sender: bool,
     #[serde(flatten)]
     pub spoken: SpokenFigures,
     pub knew: Option<KnownFigures>,
@@ -269,6 +278,8 @@ impl DifferenceFigures {
             headline: comparison.headline(difference),
             by: comparison.lanes[difference.lane].name.clone(),
             not_by: comparison.lanes[difference.not].name.clone(),
+            pair: difference.lane.max(difference.not),
+            by_sender: difference.lane == 0,
             spoken: SpokenFigures::of(spoken),
             knew,
         }
@@ -319,8 +330,45 @@ pub fn describe(figures: &CompareFigures) -> String {
             text += &format!("left out of the analysis: {}\n", one.standing.describe());
         }
         text += &one.wizard.as_ref().map_or(String::new(), wizard::describe);
-        let lines = one.differences.iter().map(|one| format!("{:>4}  {}\n", one.number, one.headline));
-        text.extend(lines);
+        text += &describe_differences(&one.differences);
+        if let Some(first) = one.differences.first() {
+            text += &format!(
+                "what each knew: --open {}; the moment itself: tomcom review {} --at {}\n",
+                first.number,
+                one.recording,
+                SessionTime::from_secs_f64(first.spoken.clock_s)
+            );
+        }
+    }
+    text
+}
+
+/// Differences by who said what the other did not: the session's own concept first. Their numbers go by time.
+fn describe_differences(differences: &[DifferenceFigures]) -> String {
+    let mut groups: Vec<(String, Vec<&DifferenceFigures>)> = Vec::new();
+    let mut sorted: Vec<&DifferenceFigures> = differences.iter().collect();
+    sorted.sort_by_key(|one| (one.pair, !one.by_sender, one.number));
+    for one in sorted {
+        let who = format!("only {}, not {}", one.by, one.not_by);
+        match groups.iter_mut().find(|(of, _)| *of == who) {
+            Some((_, group)) => group.push(one),
+            None => groups.push((who, vec![one])),
+        }
+    }
+    let sums: Vec<String> = groups.iter().map(|(who, group)| format!("{} {who}", group.len())).collect();
+    let mut text = match differences.len() as u64 {
+        0 => return "no differences\n".to_string(),
+        number => format!("{}: {}\n", count(number, "difference", "differences"), sums.join("; ")),
+    };
+    for (who, group) in groups {
+        text += &format!("{who}:\n");
+        for one in group.iter().take(LISTED) {
+            let clock = SessionTime::from_secs_f64(one.spoken.clock_s);
+            text += &format!("{:>4}  {clock}  {}\n", one.number, one.spoken.says);
+        }
+        if let Some(more @ 1..) = group.len().checked_sub(LISTED) {
+            text += &format!("      … and {more} more: --format json has all\n");
+        }
     }
     text
 }

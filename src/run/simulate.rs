@@ -249,6 +249,9 @@ pub fn describe(figures: &SimulationFigures) -> String {
         [] | [_] => String::new(),
         several => several.iter().map(describe_condition).collect(),
     };
+    let look = figures.recordings.first().map_or(String::new(), |first| {
+        format!("look at one: tomcom replay {first}, or in Rerun: tomcom review {first}\n")
+    });
     format!(
         "{} of simulated participants, {:.0} s simulated in {:.1} s{found}\n\
          presses: {} of the human, {} of the robot\n\
@@ -257,7 +260,7 @@ pub fn describe(figures: &SimulationFigures) -> String {
          {}\n\
          orders served: {}{each}\n\
          {excluded}\
-         recordings:\n{}\n",
+         recordings:\n{}\n{look}",
         count(figures.trials, "trial", "trials"),
         figures.simulated_s,
         figures.wall_s,

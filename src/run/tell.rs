@@ -7,27 +7,30 @@ use super::follower::Follower;
 use super::gaze_figures::{self, GazeFigures};
 use super::standing::Standing;
 use crate::base::words::count;
-use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
-use crate::console::words;
+use crate::console::words::{self, location as said};
+use crate::edge::log::Ending;
 use crate::kitchen::{Agent, Kitchen};
 use crate::measures::attribution::Cause;
+use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::BeliefWitness;
-use crate::mind::witness::EstimateWitness;
+use crate::mind::witness::{AspectEstimate, EstimateWitness};
 use crate::robot::{AbortReason, IdleReason};
 use crate::session::display::DisplayEvent;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::preflight::{Check, Verdict};
 use crate::session::screen::Screen;
-use crate::session::{Event, Stamped};
+use crate::session::{Event, Phase, Stamped};
 
 /// What `tomcom replay RECORDING` prints as figures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordingFigures {
     pub events: u64,
-    /// The recording ends without its end event.
+    /// The recording ends without its end event, and nobody writes on.
     pub cut: bool,
+    /// Its session still runs: these are the figures up to now.
+    pub running: bool,
     #[serde(flatten)]
     pub standing: Standing,
     pub human_actions: u64,
@@ -49,11 +52,12 @@ pub struct RecordingFigures {
 }
 
 impl RecordingFigures {
-    pub fn of(follower: &Follower, events: u64, cut: bool, standing: Standing) -> RecordingFigures {
+    pub fn of(follower: &Follower, events: u64, ending: Ending, standing: Standing) -> RecordingFigures {
         let trial = TrialFigures::of(follower);
         RecordingFigures {
             events,
-            cut,
+            cut: ending == Ending::Cut,
+            running: ending == Ending::Running,
             standing,
             human_actions: trial.human_actions,
             robot_actions: trial.robot_actions,
@@ -71,7 +75,11 @@ impl RecordingFigures {
 
     /// The figures for people.
     pub fn describe(&self) -> String {
-        let cut = if self.cut { "; it ends without its end event" } else { "" };
+        let cut = match (self.running, self.cut) {
+            (true, _) => "; it is still running: --follow",
+            (false, true) => "; it ends without its end event",
+            (false, false) => "",
+        };
         let standing = match self.standing.counts() {
             true => String::new(),
             false => format!("left out of the analysis: {}\n", self.standing.describe()),
@@ -121,32 +129,38 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::FocusLost => "the terminal lost the keyboard".to_string(),
         Event::FocusRegained => "the terminal has the keyboard again".to_string(),
         Event::Press { agent, button, .. } => {
-            format!("{} presses {button}{}", agent.name(), verdict(stamped, follower))
+            format!("{} presses {}{}", agent.name(), said(button), verdict(stamped, follower))
         }
-        Event::OrderShown { order, dish } => format!("{order} wants {dish}"),
-        Event::OrderCleared { order } => format!("{order} is cleared"),
-        Event::RobotIntends { button, .. } => format!("robot sets out for {button}"),
+        Event::OrderShown { order, dish } => format!("{} wants {dish}", said(order)),
+        Event::OrderCleared { order } => format!("{} is cleared", said(order)),
+        Event::RobotIntends { button, .. } => format!("robot sets out for {}", said(button)),
         Event::RobotAborts { button, reason: AbortReason::NoLongerUseful } => {
-            format!("robot gives up {button}: no longer useful")
+            format!("robot gives up {}: no longer useful", said(button))
         }
-        Event::RobotAborts { button, reason: AbortReason::Stopped } => format!("robot gives up {button}: stopped"),
+        Event::RobotAborts { button, reason: AbortReason::Stopped } => {
+            format!("robot gives up {}: stopped", said(button))
+        }
         Event::RobotIdles { reason: IdleReason::NoOrder } => "robot idles: no order".to_string(),
         Event::RobotIdles { reason: IdleReason::HumanTurn } => "robot idles: only the human can go on".to_string(),
-        Event::RobotAborts { button, reason: AbortReason::Skipped } => format!("robot gives up {button}: skipped"),
+        Event::RobotAborts { button, reason: AbortReason::Skipped } => {
+            format!("robot gives up {}: skipped", said(button))
+        }
         Event::RobotAborts { button, reason: AbortReason::Driven } => {
-            format!("robot gives up {button}: the wizard chose another press")
+            format!("robot gives up {}: the wizard chose another press", said(button))
         }
         Event::RobotIdles { reason: IdleReason::Skipped } => "robot idles: its only press was skipped".to_string(),
         Event::RobotHeld { .. } => "robot held by the wizard before its next press".to_string(),
         Event::RobotReleased { .. } => "robot released by the wizard".to_string(),
         Event::RobotSkipped { .. } => "the wizard skips the robot's press".to_string(),
-        Event::RobotDriven { button, .. } => format!("the wizard drives the robot to {button}"),
-        Event::KitchenCorrected { location, content } => format!("corrected by hand: {location} holds {content}"),
+        Event::RobotDriven { button, .. } => format!("the wizard drives the robot to {}", said(button)),
+        Event::KitchenCorrected { location, content } => {
+            format!("corrected by hand: {} holds {content}", said(location))
+        }
         Event::RobotStopped => "robot stopped by the wizard".to_string(),
         Event::RobotResumed => "robot goes on".to_string(),
         // Advice is worth a line where something should be said.
         Event::Advised(advice) => advised(advice, follower.session.spec.assistant.concept)?,
-        Event::SignalShown { signal: shown, .. } => format!("signal: {}", signal(shown)),
+        Event::SignalShown { signal: shown, .. } => format!("signal: {}", words::signal(shown)),
         Event::SignalEnded { reason: SignalEnd::Elapsed } => "signal ends".to_string(),
         Event::SignalEnded { reason: SignalEnd::TakenBack } => "signal taken back".to_string(),
         Event::Marker { note } => format!("marker: {note}"),
@@ -157,7 +171,11 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::ParticipantBelieves(belief) => believes(belief),
         Event::SessionEnded => "session over".to_string(),
     };
-    Some(format!("{:>9.3} s  {words}", follower.session.trial_clock(stamped.time).as_secs_f64()))
+    let session = &follower.session;
+    Some(match session.phase {
+        Phase::Ready => format!("{:>11}  {words}", "before"),
+        _ => format!("{:>9.3} s  {words}", session.trial_clock(stamped.time).as_secs_f64()),
+    })
 }
 
 fn preflight(checks: &[Check], overridden: bool) -> String {
@@ -212,35 +230,35 @@ fn because(cause: Option<Cause>, kitchen: &Kitchen) -> String {
 }
 
 fn believes(belief: &BeliefWitness) -> String {
-    let wrong = belief.aspects.iter().filter(|aspect| aspect.p_truth < 0.5);
-    let wrong: Vec<String> = wrong.map(|aspect| format!("{} = {}", aspect.aspect, aspect.believes)).collect();
+    let wrong = belief.aspects.iter().filter(|aspect| aspect.p_truth < FALSE_BELOW);
+    let wrong: Vec<String> = wrong.map(|aspect| format!("{} = {}", said(&aspect.aspect), aspect.believes)).collect();
+    // Why it presses what it presses is worth a word where something wrong is the reason.
+    let cause = match belief.cause.as_str() {
+        "as it is" => String::new(),
+        cause => format!(" ({})", said(cause)),
+    };
     match wrong.is_empty() {
-        true => format!("participant believes what is true ({})", belief.cause),
-        false => format!("participant believes {} ({})", wrong.join(", "), belief.cause),
+        true => format!("participant believes nothing wrong{cause}"),
+        false => format!("participant believes {}{cause}", wrong.join(", ")),
     }
 }
 
 fn estimated(estimate: &EstimateWitness) -> Option<String> {
-    let wrong = estimate.aspects.iter().filter(|aspect| aspect.p_truth < 0.5);
-    let wrong: Vec<String> =
-        wrong.map(|aspect| format!("{} = {} ({:.2})", aspect.aspect, aspect.believes, 1.0 - aspect.p_truth)).collect();
+    let wrong = estimate.aspects.iter().filter(|aspect| aspect.p_truth < FALSE_BELOW);
+    let told = |aspect: &AspectEstimate| {
+        format!("{} = {} (wrong {:.2})", said(&aspect.aspect), aspect.believes, 1.0 - aspect.p_truth)
+    };
+    let wrong: Vec<String> = wrong.map(told).collect();
     (!wrong.is_empty()).then(|| format!("estimated: participant believes {}", wrong.join(", ")))
-}
-
-/// A signal by the names of the log.
-fn signal(signal: &Signal) -> String {
-    match signal {
-        Signal::ShowRecipe(order) => format!("recipe of {order}"),
-        Signal::Highlight(place) => format!("highlight {place}"),
-    }
 }
 
 fn advised(advice: &Recommendation, by: ConceptName) -> Option<String> {
     if let Some(proposal) = &advice.proposal {
-        return Some(format!("proposed after the error: {}", proposal.presses.join(", ")));
+        let presses: Vec<String> = proposal.presses.iter().map(|press| said(press)).collect();
+        return Some(format!("proposed after the error: {}", presses.join(", ")));
     }
     let best = advice.top().filter(|option| Some(&option.signal) == advice.best.as_ref())?;
-    let what = signal(&best.signal);
+    let what = words::signal(&best.signal);
     let worth = match by {
         ConceptName::Tom => format!("belief off by {:.2}", best.benefit),
         _ => format!("saves {:.1} presses (±{:.1})", best.benefit, best.standard_error),

@@ -13,7 +13,7 @@ use super::follower::Follower;
 use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
 use crate::edge::files::FileResult;
-use crate::edge::log::{LogLine, LogReader, at_line, event_line};
+use crate::edge::log::{Ending, LogLine, LogReader, at_line, event_line};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::admit::is_external;
 use crate::session::{Event, Stamped};
@@ -24,8 +24,10 @@ pub struct Verification {
     pub verified: bool,
     /// Recorded events.
     pub events: u64,
-    /// The recording ends without its end event; it was verified up to there.
+    /// The recording ends without its end event, and nobody writes on; it was verified up to there.
     pub cut: bool,
+    /// Its session still runs; it was verified up to now.
+    pub running: bool,
     /// Where recording and re-run differ first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difference: Option<Difference>,
@@ -53,7 +55,8 @@ pub fn verify(recording: &Path) -> FileResult<Verification> {
     let Rerun { log, again, replayed, difference } = Rerun::of(LogReader::open(recording)?)?;
     let same_end = difference.is_some() || log.is_cut() || again.ends_like(&replayed);
     let verified = difference.is_none() && same_end;
-    Ok(Verification { verified, events: log.events(), cut: log.is_cut(), difference })
+    let (cut, running) = (log.ending() == Ending::Cut, log.ending() == Ending::Running);
+    Ok(Verification { verified, events: log.events(), cut, running, difference })
 }
 
 /// A recording that was run again to where it ends.
@@ -149,7 +152,11 @@ impl Again {
 
 /// Says it in words.
 pub fn describe(found: &Verification) -> String {
-    let until = if found.cut { ", up to where it was cut" } else { "" };
+    let until = match (found.running, found.cut) {
+        (true, _) => "; the session is still running, and this is what was written so far",
+        (false, true) => ", up to where it was cut",
+        (false, false) => "",
+    };
     match &found.difference {
         None if found.verified => {
             let events = count(found.events, "event", "events");

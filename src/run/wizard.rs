@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::follower::Follower;
 use crate::base::time::SessionTime;
+use crate::base::words::count;
 use crate::communication::Sender;
 use crate::communication::recommendation::aspects_told;
 use crate::measures::wizard::{Sent, Spell, WizardMeasures};
@@ -113,8 +114,9 @@ pub fn describe(figures: &WizardFigures) -> String {
     let latency = measures.latency_s.map_or("-".to_string(), |times| format!("{:.1} s in the median", times.median));
     let blind = if figures.unblinded { "; saw what assistants would say" } else { "" };
     let mut text = format!(
-        "wizard: {} signals, {} taken back, from key to display {drawn}{blind}\n",
-        measures.signals, measures.taken_back
+        "wizard: {}, {} taken back, from key to display {drawn}{blind}\n",
+        count(measures.signals, "signal", "signals"),
+        measures.taken_back
     );
     match measures.episodes {
         None => text += "        what was believed is not known, so neither are hits and omissions\n",

@@ -48,7 +48,8 @@ fn wrong(aspect: &str) -> String {
 pub fn fixed(kitchen: &Kitchen) -> Vec<Row> {
     let mut rows = Vec::new();
     for (nth, aspect) in kitchen.aspects.iter().enumerate() {
-        let series = Series { name: words::location(&aspect.name), colour: colours::of_series(nth) };
+        let colour = colours::of_aspect(AspectId(nth as u8));
+        let series = Series { name: words::location(&aspect.name), colour };
         rows.push(Row::new(estimated(&aspect.name), Shown::Line(series.clone())));
         rows.push(Row::new(held_truly(&aspect.name), Shown::Line(series)));
     }
@@ -128,29 +129,34 @@ fn truly(witness: &BeliefWitness) -> Vec<Row> {
     witness.aspects.iter().map(value).collect()
 }
 
-/// What is believed wrong or not surely, the wrongest first.
+/// What is believed wrong, the wrongest first, and what is not known surely.
 fn page(session: &Session, held: &[Held]) -> String {
     let kitchen = &session.kitchen;
     let mut doubtful: Vec<usize> = (0..held.len()).filter(|&index| held[index].p_truth < KNOWN).collect();
     doubtful.sort_by(|&a, &b| held[a].p_truth.total_cmp(&held[b].p_truth));
-    let mut text = String::from("| what | is taken for | truly | knows it |\n|:--|:--|:--|--:|\n");
-    for index in doubtful {
-        let aspect = &kitchen.aspects[index];
-        let p_truth = held[index].p_truth;
+    let wrong = doubtful.iter().filter(|&&index| held[index].p_truth < FALSE_BELOW);
+    let unsure = doubtful.iter().filter(|&&index| held[index].p_truth >= FALSE_BELOW);
+    let name = |index: usize| words::location(&kitchen.aspects[index].name);
+    let percent = |index: usize| (held[index].p_truth * 100.0).round();
+    let line = |&index: &usize| {
         let (believes, truth) = (taken_for_what(session, index, &held[index]), truth(kitchen, session.state, index));
-        let percent = (p_truth * 100.0).round();
-        let name = words::location(&aspect.name);
-        let line = match p_truth < FALSE_BELOW {
-            true => format!("| **{name}** | **{believes}** | **{truth}** | **{percent} %** |\n"),
-            false => format!("| {name} | {believes} | {truth} | {percent} % |\n"),
-        };
-        text.push_str(&line);
+        format!("| **{}** | **{believes}** | {truth} | {} % |\n", name(index), percent(index))
+    };
+    let lines: String = wrong.map(line).collect();
+    let mut text = match lines.is_empty() {
+        true => "Nothing is believed wrong.\n".to_string(),
+        false => format!("| believed wrong | taken for | truly | P(truth), estimate |\n|:--|:--|:--|--:|\n{lines}"),
+    };
+    let unsure: Vec<String> = unsure.map(|&index| format!("{} {} %", name(index), percent(index))).collect();
+    let less = format!("below {:.0} %", KNOWN * 100.0);
+    match unsure.is_empty() {
+        true => text.push_str(&format!("\nNothing else has an estimated P(truth) {less}.\n")),
+        false => text.push_str(&format!("\nRight, but with an estimated P(truth) {less}: {}.\n", unsure.join(", "))),
     }
-    text.push_str("\nAll else is known as it is.\n");
     text
 }
 
-/// What an aspect is taken for, where it is not known surely.
+/// What an aspect that is believed wrong is taken for.
 fn taken_for_what<'a>(session: &Session, aspect: usize, held: &Held<'a>) -> &'a str {
     if held.believes == truth(&session.kitchen, session.state, aspect) { "not sure" } else { held.believes }
 }

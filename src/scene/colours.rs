@@ -1,6 +1,6 @@
 //! Colours that can be told apart and read on dark and on light ground. The same agent has the same colour everywhere; ingredients that look alike have like ones.
 
-use crate::kitchen::{Agent, ContentId, Kitchen};
+use crate::kitchen::{Agent, AspectId, ContentId, Kitchen};
 
 /// Red, green, blue, opacity.
 pub type Colour = [u8; 4];
@@ -45,8 +45,9 @@ pub fn of_item(kitchen: &Kitchen, item: ContentId) -> Colour {
     of_hue(hue, (0.85 - 0.22 * paler).max(0.25), 0.98)
 }
 
-/// The colour of the nth of several series.
-pub fn of_series(nth: usize) -> Colour {
+/// The colour of an aspect: of its curves, and of the place's name in the kitchen.
+pub fn of_aspect(aspect: AspectId) -> Colour {
+    let nth = aspect.index();
     of_hue((0.02 + nth as f64 * 0.618).fract(), if nth.is_multiple_of(2) { 0.75 } else { 0.45 }, 0.95)
 }
 

@@ -7,7 +7,7 @@ use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, signals};
 use crate::console::words;
-use crate::kitchen::Agent;
+use crate::kitchen::{Agent, AspectId};
 use crate::measures::JudgedPress;
 use crate::session::event::SignalEnd;
 use crate::session::protocol::ProtocolEvent;
@@ -17,6 +17,9 @@ use crate::session::{Entry, Happening, Session, Stamped};
 const ERROR_MARKS: &str = "human/errors/marks";
 /// Above this line a signal is worth more than it costs.
 const COST_LINE: &str = "assistant/benefit/cost_line";
+
+/// Where all lines of the log stand.
+const HAPPENED: &str = "happened";
 
 fn benefit(target: &str) -> String {
     format!("assistant/benefit/{}", slug(target))
@@ -28,10 +31,14 @@ pub fn fixed(session: &Session) -> Vec<Row> {
     let line = |entity: String, name: String, colour: Colour| Row::new(entity, Shown::Line(Series { name, colour }));
     let mut rows: Vec<Row> = signals(kitchen, session.spec.signals.own_hand)
         .iter()
-        .enumerate()
-        .map(|(nth, (_, signal))| line(benefit(signal.target()), words::signal(signal), colours::of_series(nth)))
+        .map(|(_, signal)| {
+            let place = kitchen.location_named(signal.target());
+            let colour = place.map_or(colours::QUIET, |place| colours::of_aspect(AspectId::of_location(place)));
+            line(benefit(signal.target()), words::signal(signal), colour)
+        })
         .collect();
-    rows.push(line(COST_LINE.to_string(), format!("cost of a signal ({})", assistant.price()), colours::SIGNAL));
+    let worth = format!("worth its cost ({}) above this line", assistant.price());
+    rows.push(line(COST_LINE.to_string(), worth, colours::SIGNAL));
     let marks = Series { name: "errors".to_string(), colour: colours::ERROR };
     rows.push(Row::new(ERROR_MARKS, Shown::Marks(marks)));
     rows
@@ -41,13 +48,27 @@ fn say(entity: &str, level: Level, text: String, colour: Colour) -> Row {
     Row::new(entity, Shown::Words { level, text, colour })
 }
 
-/// A new entry of the timeline.
-pub fn entry(session: &Session, entry: &Entry) -> Row {
+/// All lines of the log in the order in which they happened.
+pub fn in_order(rows: &[Row]) -> Vec<Row> {
+    let lines = rows.iter().filter(|row| matches!(row.shown, Shown::Words { .. }));
+    lines.map(|row| Row::new(HAPPENED, row.shown.clone())).collect()
+}
+
+/// A new entry of the timeline. A press that was just judged an error says so.
+pub fn entry(session: &Session, entry: &Entry, error: Option<&JudgedPress>) -> Row {
     let (who, text) = words::happening(&session.kitchen, &entry.what);
+    let text = if who.is_empty() { text } else { format!("{who}: {text}") };
     match entry.what {
         Happening::Press { agent, effective, .. } => {
-            let level = if effective { Level::Info } else { Level::Warning };
-            say(&format!("{}/presses", agent.name()), level, text, colours::of(agent))
+            let entity = format!("{}/presses", agent.name());
+            match error.filter(|_| agent == Agent::Human) {
+                Some(press) => {
+                    let lost = count(press.verdict.regret.unsigned_abs(), "press", "presses");
+                    say(&entity, Level::Error, format!("{text} (error: loses {lost})"), colours::ERROR)
+                }
+                None if effective => say(&entity, Level::Info, text, colours::of(agent)),
+                None => say(&entity, Level::Warning, text, colours::of(agent)),
+            }
         }
         Happening::Signal { by: Sender::Wizard, .. } => say("wizard/signals", Level::Info, text, colours::WIZARD),
         Happening::Signal { by: Sender::Assistant, .. } => {
@@ -55,10 +76,7 @@ pub fn entry(session: &Session, entry: &Entry) -> Row {
         }
         Happening::SignalEnded(SignalEnd::TakenBack) => say("wizard/signals", Level::Warning, text, colours::WIZARD),
         _ if who == "wizard" || who == "note" => say("wizard/hands", Level::Info, text, colours::WIZARD),
-        _ => {
-            let text = if who.is_empty() { text } else { format!("{who} {text}") };
-            say("trial/events", Level::Info, text, colours::QUIET)
-        }
+        _ => say("trial/events", Level::Info, text, colours::QUIET),
     }
 }
 
@@ -68,18 +86,14 @@ pub fn protocol(event: &ProtocolEvent) -> Row {
 }
 
 /// The press that was just judged, if it was an error.
-pub fn error(session: &Session, stamped: &Stamped, judged: &[JudgedPress]) -> Vec<Row> {
-    let press = judged.binary_search_by_key(&stamped.seq, |press| press.seq).ok().map(|index| judged[index]);
-    let Some(press) = press.filter(|press| press.verdict.error) else { return Vec::new() };
-    let pressed = session.timeline.iter().rev().find_map(|entry| match entry.what {
-        Happening::Press { agent: Agent::Human, button, .. } => {
-            Some(words::button(&session.kitchen, Agent::Human, button))
-        }
-        _ => None,
-    });
-    let lost = count(press.verdict.regret.unsigned_abs(), "press", "presses");
-    let text = format!("error: {} loses {lost}", pressed.unwrap_or_default());
-    vec![say("human/errors", Level::Error, text, colours::ERROR), Row::new(ERROR_MARKS, Shown::Value(0.0))]
+pub fn error<'a>(stamped: &Stamped, judged: &'a [JudgedPress]) -> Option<&'a JudgedPress> {
+    let press = judged.binary_search_by_key(&stamped.seq, |press| press.seq).ok().map(|index| &judged[index]);
+    press.filter(|press| press.verdict.error)
+}
+
+/// Its mark below the beliefs.
+pub fn mark() -> Row {
+    Row::new(ERROR_MARKS, Shown::Value(0.0))
 }
 
 /// What signals are worth without their cost, and what the assistant would say.
@@ -93,7 +107,7 @@ pub fn advice(advice: &Recommendation) -> Vec<Row> {
     if let Some(best) = &advice.best {
         let net = advice.top().map_or(0.0, |top| top.net);
         let why = advice.reason.as_ref().map_or_else(String::new, |reason| format!("; {}", reason.words()));
-        let text = format!("advises: {} (net {net:+.2}){why}", words::signal(best));
+        let text = format!("assistant advises: {} (net {net:+.2}){why}", words::signal(best));
         rows.push(say("assistant/advice", Level::Info, text, colours::ASSISTANT));
     }
     rows

@@ -20,12 +20,14 @@ use belief::BeliefScene;
 pub use shown::{Row, Shown};
 
 /// What is shown, and where, changes with this number: a stream of another one is made anew from the log.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// What entities show from a time on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
     pub time: SessionTime,
+    /// The same by the trial's clock, as the console shows it: without what was before the trial, and without pauses.
+    pub trial: SessionTime,
     /// The number of the newest event.
     pub step: u64,
     pub rows: Vec<Row>,
@@ -80,7 +82,8 @@ impl Scene {
         let mut rows: Vec<Row> = places::contents(&kitchen, None, state).collect();
         rows.extend(places::shown_signal(&self.session));
         rows.extend(self.arm.opening());
-        Moment { time: self.session.time, step: self.step(), rows }
+        let time = self.session.time;
+        Moment { time, trial: self.session.trial_clock(time), step: self.step(), rows }
     }
 
     /// The number of the newest event.
@@ -107,7 +110,8 @@ impl Scene {
         self.next = stamped.seq + 1;
         let rows = self.changes(stamped, before, derived);
         if !rows.is_empty() {
-            moments.push(Moment { time: stamped.time, step: stamped.seq, rows });
+            let trial = self.session.trial_clock(stamped.time);
+            moments.push(Moment { time: stamped.time, trial, step: stamped.seq, rows });
         }
         moments
     }
@@ -115,7 +119,9 @@ impl Scene {
     /// What moves between events, until this time.
     pub fn until(&mut self, time: SessionTime) -> Vec<Moment> {
         let step = self.step();
-        self.arm.until(time).into_iter().map(|(time, rows)| Moment { time, step, rows }).collect()
+        let session = &self.session;
+        let moment = |(time, rows)| Moment { time, trial: session.trial_clock(time), step, rows };
+        self.arm.until(time).into_iter().map(moment).collect()
     }
 
     fn changes(&mut self, stamped: &Stamped, before: State, derived: Derived<'_>) -> Vec<Row> {
@@ -131,9 +137,11 @@ impl Scene {
             Event::Protocol(event) => rows.push(happenings::protocol(event)),
             _ => {}
         }
-        rows.extend(session.timeline[self.told..].iter().map(|entry| happenings::entry(session, entry)));
+        let error = happenings::error(stamped, derived.judged);
+        rows.extend(session.timeline[self.told..].iter().map(|entry| happenings::entry(session, entry, error)));
         self.told = session.timeline.len();
-        rows.extend(happenings::error(session, stamped, derived.judged));
+        rows.extend(happenings::in_order(&rows));
+        rows.extend(error.map(|_| happenings::mark()));
         rows.extend(self.arm.follow(session, stamped));
         rows.extend(self.belief.follow(session, stamped, derived.belief));
         rows

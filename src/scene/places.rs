@@ -7,7 +7,9 @@ use crate::communication::Signal;
 use crate::console::words;
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 use crate::kitchen::layout::Storage;
-use crate::kitchen::{self, Agent, ContentId, Kitchen, Location, LocationId, LocationKind, OrderContent, State};
+use crate::kitchen::{
+    self, Agent, AspectId, ContentId, Kitchen, Location, LocationId, LocationKind, OrderContent, State,
+};
 use crate::session::Session;
 
 /// Half the widths of lines, in millimetres.
@@ -37,22 +39,25 @@ fn words_at(at: [f64; 2], words: &str, colour: Colour) -> Disc {
 /// The display's edge, the names of the places, and the storages.
 pub fn fixed(kitchen: &Kitchen) -> Vec<Row> {
     let whole = kitchen::Area { x: 0.0, y: 0.0, w: 1.0, h: 1.0 };
-    let name = |location: &Location| {
-        let Area { left, top, width, .. } = area(kitchen, location.display, colours::QUIET);
-        words_at([left + width / 2.0, top - ABOVE_MM], &location.label(), colours::QUIET)
+    let name = |(index, location): (usize, &Location)| {
+        // In the colour of its curves, which have no room for a legend.
+        let colour = colours::of_aspect(AspectId::of_location(LocationId(index as u8)));
+        let Area { left, top, width, .. } = area(kitchen, location.display, colour);
+        words_at([left + width / 2.0, top - ABOVE_MM], &location.label(), colour)
     };
     let mut rows = vec![
         Row::new("kitchen/display", Shown::Areas(vec![area(kitchen, whole, colours::FRAME)])),
-        Row::new("kitchen/names", Shown::Discs(kitchen.locations.iter().map(name).collect())),
+        Row::new("kitchen/names", Shown::Discs(kitchen.locations.iter().enumerate().map(name).collect())),
     ];
     for agent in Agent::BOTH {
         let own = || kitchen.storages.iter().filter(|storage| storage.agent == agent);
         let entity = format!("kitchen/storage/{}", agent.name());
         let areas = own().map(|storage| area(kitchen, storage.display, dimmed(colours::of(agent))));
         rows.push(Row::new(&entity, Shown::Areas(areas.collect())));
-        let content =
-            |storage: &Storage| content(kitchen, storage.display, &[storage.item], &storage.label, colours::QUIET);
-        rows.push(Row::new(format!("{entity}/items"), Shown::Discs(own().flat_map(content).collect())));
+        rows.push(Row::new(
+            format!("{entity}/items"),
+            Shown::Discs(own().flat_map(|storage| stored(kitchen, storage)).collect()),
+        ));
     }
     rows
 }
@@ -109,6 +114,19 @@ fn content(kitchen: &Kitchen, on: kitchen::Area, items: &[ContentId], words: &st
     };
     let below = words_at([left + width / 2.0, top + height], words, colour);
     items.iter().enumerate().map(disc).chain((!words.is_empty()).then_some(below)).collect()
+}
+
+/// A storage's item above its name: both in its own area, for the next one follows at once.
+fn stored(kitchen: &Kitchen, storage: &Storage) -> [Disc; 2] {
+    let Area { left, top, width, height, .. } = area(kitchen, storage.display, colours::QUIET);
+    let middle = left + width / 2.0;
+    let disc = Disc {
+        at: [middle, top + height * 0.26],
+        radius: (height * 0.2).min(width * 0.3),
+        words: String::new(),
+        colour: colours::of_item(kitchen, storage.item),
+    };
+    [disc, words_at([middle, top + height * 0.42], &storage.label, colours::QUIET)]
 }
 
 /// What the participant is shown now: a place, or a recipe at its order.

@@ -21,17 +21,17 @@ def run(*command):
     return subprocess.run([str(part) for part in command], check=True, capture_output=True, text=True).stdout
 
 
-def rows_of(path):
-    """For every entity, the (session time in ns, step) of every row that is not static."""
+def rows_of(path, timeline="session_time"):
+    """For every entity, the (time in ns on this timeline, step) of every row that is not static."""
     rows = {}
     for chunk in RrdReader(path).stream():
         if chunk.is_static or str(chunk.entity_path).startswith("/__"):
             continue
         batch = chunk.to_record_batch()
         names = batch.schema.names
-        if "session_time" not in names:
+        if timeline not in names:
             continue
-        times = batch.column("session_time").cast("int64").to_pylist()
+        times = batch.column(timeline).cast("int64").to_pylist()
         steps = batch.column("step").to_pylist()
         rows.setdefault(str(chunk.entity_path).strip("/"), []).extend(zip(times, steps))
     return {entity: sorted(places) for entity, places in rows.items()}
@@ -99,6 +99,16 @@ def compare(stream, log):
     print(f"  {len(wanted)} entities, {sum(map(len, wanted.values()))} rows as the log has them")
 
 
+def on_trials_clock(stream):
+    """A simulated trial begins with its session and is never paused: both clocks are the same, but for milliseconds."""
+    session, trial = rows_of(stream), rows_of(stream, "trial_time")
+    assert session.keys() == trial.keys()
+    for entity, rows in trial.items():
+        ends = max(time for time, _ in rows), max(time for time, _ in session[entity])
+        assert all(time % 1_000_000 == 0 for time, _ in rows), f"{entity}: not in milliseconds"
+        assert ends[0] <= ends[1], f"{entity}: {ends}"
+
+
 def main():
     tomcom, scratch = sys.argv[1], Path(sys.argv[2])
     run(RERUN, "analytics", "disable")
@@ -111,19 +121,41 @@ def main():
         run(RERUN, "rrd", "verify", stream)
         compare(stream, log)
         assert "is there already" in run(tomcom, "review", recording, "--save"), "a whole stream is not made again"
-        stream.write_bytes(stream.read_bytes()[:-1000])
-        assert "made from the log" in run(tomcom, "review", recording, "--save"), "a cut stream is made again"
-        run(RERUN, "rrd", "verify", stream)
-        compare(stream, log)
+        on_trials_clock(stream)
+        whole, lines = stream.read_bytes(), log.read_bytes()
+        seal = recording / "recording.rrd.toml"
+        middle = len(whole) // 2
+        spoils = {
+            "it was not written to its end": lambda: stream.write_bytes(whole[:-1000]),
+            "it was damaged or exchanged": lambda: stream.write_bytes(
+                whole[:middle] + b"\xff" * 20_000 + whole[middle + 20_000 :]
+            ),
+            "nothing said which log it shows": seal.unlink,
+            "it did not show the log as that is now": lambda: seal.write_text(
+                seal.read_text().replace("[[logs]]\nbytes = ", "[[logs]]\nbytes = 1")
+            ),
+        }
+        for reason, spoil in spoils.items():
+            spoil()
+            told = run(tomcom, "review", recording, "--save")
+            assert "made from the log" in told and reason in told, f"{reason}: {told}"
+            run(RERUN, "rrd", "verify", stream)
+            compare(stream, log)
+            assert "is there already" in run(tomcom, "review", recording, "--save"), "it is sealed again"
+        log.write_bytes(lines[: len(lines) // 2] + b"\xff" * 100 + lines[len(lines) // 2 + 100 :])
+        told = subprocess.run([tomcom, "review", recording, "--save"], capture_output=True, text=True)
+        assert told.returncode == 2 and "events.jsonl" in told.stderr, f"a damaged log is told: {told}"
+        log.write_bytes(lines)
     both = scratch / "both.rrd"
     recordings = [next((scratch / session).iterdir()) for session in ("default", "burger")]
-    run(tomcom, "review", *recordings, f"--save={both}")
+    run(tomcom, "review", *recordings, "--save", both)
     run(RERUN, "rrd", "verify", both)
-    roots = Counter(entity.split("/")[0] for entity in rows_of(both))
+    rows = rows_of(both, "trial_time")
+    roots = Counter(entity.split("/")[0] for entity in rows)
     assert len(roots) == 2, roots
-    starts = {root: min(place[0] for entity, places in rows_of(both).items() if entity.startswith(root) for place in places) for root in roots}
+    starts = {root: min(place[0] for entity, places in rows.items() if entity.startswith(root) for place in places) for root in roots}
     assert set(starts.values()) == {0}, f"trials begin at the same time: {starts}"
-    print("  two recordings side by side, from their trials' starts on")
+    print("  two recordings side by side, by the clocks of their trials")
 
 
 main()

@@ -119,8 +119,10 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
             let (speed, event, events) = (playback.speed_label(), playback.event, playback.events);
             let label = format!("{state} {speed}{follows} {what} {event}/{events}");
             healths.push((label, Role::Strong));
-            if playback.cut && !playback.follows {
-                healths.push(("cut".to_string(), Role::Alarm));
+            match (playback.follows, playback.running) {
+                (false, true) => healths.push(("still running: --follow".to_string(), Role::Strong)),
+                (false, false) if playback.cut => healths.push(("cut".to_string(), Role::Alarm)),
+                _ => {}
             }
         }
         None => healths.push(match &model.recording {

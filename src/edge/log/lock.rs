@@ -1,12 +1,13 @@
 //! A recording is written by one program at a time.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{Read, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use super::WriteError;
 
-/// The name of the lock in the folder of a recording that is being written, with the number of the process in it.
+/// The name of the lock in the folder of a recording that is being written, with the number of the process in it, and
+/// where viewers connect.
 const LOCK_NAME: &str = "lock";
 /// How often somebody else may give the lock up between our opening and taking it.
 const ATTEMPTS: usize = 8;
@@ -17,6 +18,25 @@ const ATTEMPTS: usize = 8;
 pub struct Lock {
     file: File,
     path: PathBuf,
+}
+
+/// Who writes a recording now, as far as that is told.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Holder {
+    pub pid: Option<u32>,
+    /// Where viewers can look on.
+    pub viewers: Option<String>,
+}
+
+impl Holder {
+    fn read(file: &mut File) -> Holder {
+        let mut text = String::new();
+        // Who cannot be asked holds it all the same.
+        let _ = file.read_to_string(&mut text);
+        let mut lines = text.lines();
+        let pid = lines.next().and_then(|line| line.trim().parse().ok());
+        Holder { pid, viewers: lines.next().map(str::to_string) }
+    }
 }
 
 impl Lock {
@@ -34,8 +54,7 @@ impl Lock {
                 // Where a file system has no locks, a recording is still worth more than none.
                 Ok(()) | Err(TryLockError::Error(_)) => {}
                 Err(TryLockError::WouldBlock) => {
-                    let mut text = String::new();
-                    let pid = file.read_to_string(&mut text).ok().and_then(|_| text.trim().parse().ok());
+                    let pid = Holder::read(&mut file).pid;
                     return Err(WriteError::InUse { folder: folder.to_path_buf(), pid });
                 }
             }
@@ -46,6 +65,23 @@ impl Lock {
             }
         }
         Err(WriteError::InUse { folder: folder.to_path_buf(), pid: None })
+    }
+
+    /// Who writes the recording in this folder; none where nobody does.
+    pub fn holder(folder: &Path) -> Option<Holder> {
+        let mut file = File::open(folder.join(LOCK_NAME)).ok()?;
+        match file.try_lock_shared() {
+            Err(TryLockError::WouldBlock) => Some(Holder::read(&mut file)),
+            Ok(()) | Err(TryLockError::Error(_)) => None,
+        }
+    }
+
+    /// Tells whoever asks who writes here where viewers can look on.
+    ///
+    /// # Errors
+    /// The lock cannot be written to.
+    pub fn announce(&mut self, viewers: &str) -> io::Result<()> {
+        writeln!(self.file, "{viewers}")
     }
 }
 

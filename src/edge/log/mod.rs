@@ -13,8 +13,8 @@ use std::path::PathBuf;
 
 use crate::session::Stamped;
 pub use exclusion::{EXCLUSION_NAME, Ruling, RulingError, rule, ruling};
-pub use lock::Lock;
-pub use reader::{LogLine, LogReader, at_line};
+pub use lock::{Holder, Lock};
+pub use reader::{Ending, LogLine, LogReader, at_line};
 pub use writer::{LogWriter, check_continued, check_simulated, is_whole};
 
 /// The name of the log in its folder.

@@ -5,7 +5,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::LOG_NAME;
+use super::{LOG_NAME, Lock};
 use crate::edge::files::{FileError, FileResult, compile_kitchen};
 use crate::kitchen::Kitchen;
 use crate::session::header::{Continues, FORMAT, VERSION};
@@ -23,6 +23,17 @@ pub struct LogLine {
     pub number: usize,
     pub text: String,
     pub stamped: Stamped,
+}
+
+/// How the end of what was read of a recording is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// The session is over.
+    Closed,
+    /// Somebody still writes it.
+    Running,
+    /// The session's end is missing, and nobody writes on.
+    Cut,
 }
 
 /// Reads a log, line by line, with the parts that it continues before it. A log that is still being written can be read
@@ -121,6 +132,22 @@ impl LogReader {
     /// Whether what was read so far lacks the session's end.
     pub fn is_cut(&self) -> bool {
         !self.ended
+    }
+
+    /// The same, and whether more is to come.
+    pub fn ending(&self) -> Ending {
+        match (self.ended, Lock::holder(self.folder())) {
+            (true, _) => Ending::Closed,
+            (false, Some(_)) => Ending::Running,
+            (false, None) => Ending::Cut,
+        }
+    }
+
+    /// The logs of all its parts, the first one first, before any of it was read.
+    pub fn logs(&self) -> Vec<PathBuf> {
+        let mut logs = self.before.as_ref().map_or_else(Vec::new, |before| before.logs());
+        logs.push(self.path.clone());
+        logs
     }
 
     /// The number of events that were read so far.

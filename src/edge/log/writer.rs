@@ -24,7 +24,7 @@ pub struct LogWriter {
     prompt: bool,
     flushed_at: SessionTime,
     settings: String,
-    _lock: Lock,
+    lock: Lock,
 }
 
 impl LogWriter {
@@ -79,12 +79,18 @@ impl LogWriter {
         let mut out = BufWriter::with_capacity(1 << 16, file);
         write_line(&mut out, header).and_then(|()| out.flush()).map_err(failed)?;
         fs::rename(&begun, &path).map_err(failed)?;
-        Ok(LogWriter { folder, path, out, prompt, flushed_at: SessionTime::ZERO, settings, _lock: lock })
+        Ok(LogWriter { folder, path, out, prompt, flushed_at: SessionTime::ZERO, settings, lock })
     }
 
     /// The folder of the recording.
     pub fn folder(&self) -> &Path {
         &self.folder
+    }
+
+    /// Tells whoever finds the recording while it is written where viewers can look on.
+    pub fn announce(&mut self, viewers: &str) {
+        // Nothing depends on it.
+        let _ = self.lock.announce(viewers);
     }
 
     /// Adds an event.

@@ -270,7 +270,7 @@ impl Live {
             self.flush();
         }
         if let Some(viewing) = self.viewing.take() {
-            viewing.close();
+            viewing.close(&self.log);
         }
         let folder = self.log.folder().to_path_buf();
         match self.failed {

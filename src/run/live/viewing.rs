@@ -5,7 +5,8 @@ use std::net::SocketAddr;
 use super::Live;
 use crate::base::time::SessionTime;
 use crate::console::model::{Level, Viewers};
-use crate::edge::rerun::Identity;
+use crate::edge::log::{LOG_NAME, LogWriter};
+use crate::edge::rerun::{Identity, uri};
 use crate::edge::rrd::{self, RRD_NAME};
 use crate::edge::stream::Stream;
 use crate::scene::{Derived, Scene};
@@ -18,12 +19,17 @@ const BEHIND: SessionTime = SessionTime(100_000_000);
 pub(super) struct Viewing {
     scene: Scene,
     stream: Stream,
+    /// It shows the session from its beginning.
+    is_whole: bool,
 }
 
 impl Viewing {
-    /// Ends the stream.
-    pub(super) fn close(self) {
-        self.stream.close();
+    /// Ends the stream. The log is complete by now: a file that shows all of it is sealed.
+    pub(super) fn close(self, log: &LogWriter) {
+        if let Some(file) = self.stream.close().filter(|_| self.is_whole) {
+            // Without its seal it is made anew when somebody asks for it.
+            let _ = rrd::seal(&file, &[log.folder().join(LOG_NAME)]);
+        }
     }
 }
 
@@ -49,7 +55,12 @@ impl Live {
             Stream::open(&identity, file.as_deref(), server, fixed, opening).map_err(|error| error.to_string())
         });
         match opened {
-            Ok(stream) => self.viewing = Some(Viewing { scene, stream }),
+            Ok(stream) => {
+                if let Some(server) = stream.server {
+                    self.log.announce(&uri(server));
+                }
+                self.viewing = Some(Viewing { scene, stream, is_whole: is_new });
+            }
             Err(reason) => self.model.say(Level::Alarm, format!("the session goes on without Rerun: {reason}")),
         }
         self.tell_viewing();
@@ -57,7 +68,7 @@ impl Live {
 
     /// Shows what has just been recorded.
     pub(super) fn view(&mut self, events: &[Stamped]) {
-        let Some(Viewing { scene, stream }) = &mut self.viewing else { return };
+        let Some(Viewing { scene, stream, .. }) = &mut self.viewing else { return };
         let judged = self.engine.judged();
         for (index, stamped) in events.iter().enumerate() {
             let belief = (index + 1 == events.len()).then(|| self.engine.belief());
@@ -68,7 +79,7 @@ impl Live {
     /// Shows what moved since the last event.
     pub(super) fn view_motion(&mut self) {
         let until = self.clock.now() - BEHIND;
-        if let Some(Viewing { scene, stream }) = &mut self.viewing {
+        if let Some(Viewing { scene, stream, .. }) = &mut self.viewing {
             stream.tell(scene.until(until));
         }
     }

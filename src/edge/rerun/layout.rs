@@ -1,0 +1,191 @@
+//! What a viewer shows without a click: kitchen and arm above, beliefs and what signals are worth below, what happened at
+//! the side; several recordings beside each other.
+
+use std::io;
+
+use rerun::blueprint::components::{LoopMode, PanelState, PlayState};
+use rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
+use rerun::blueprint::{
+    Blueprint, BlueprintPanel, ContainerLike, Horizontal, SelectionPanel, Spatial2DView, Spatial3DView,
+    StateTimelineView, Tabs, TextDocumentView, TextLogView, TimePanel, TimeSeriesView, Vertical,
+};
+use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, TimeInt};
+use rerun::external::re_sdk_types::blueprint::archetypes::{PlotLegend, ScalarAxis, TextLogColumns};
+use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
+
+use super::{APPLICATION, Lane, TRIAL_TIME};
+use crate::base::time::SessionTime;
+
+/// The axis of probabilities, with room for curves at its ends.
+const PROBABILITY: [f64; 2] = [-0.03, 1.03];
+
+/// A property of a view: where it stands in the blueprint, and what it is.
+type Property = (String, Vec<SerializedComponentBatch>);
+
+/// What a viewer does when it has opened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Opens {
+    /// It stands at the beginning.
+    Waiting,
+    /// It shows the newest, because more is to come.
+    Following,
+    /// It plays from this moment of the trial's clock on: nothing else that a layout can say makes it go there.
+    From(SessionTime),
+}
+
+/// The views, and properties that Rerun's own description of views leaves out.
+pub(super) struct Layout {
+    blueprint: Blueprint,
+    properties: Vec<Property>,
+}
+
+impl Layout {
+    /// The layout of these recordings.
+    pub(super) fn of(lanes: &[Lane], opens: Opens) -> Layout {
+        let mut properties = Vec::new();
+        let root: ContainerLike = match lanes {
+            [only] => alone(only, &mut properties),
+            lanes => Horizontal::new(lanes.iter().map(|lane| beside(lane, &mut properties))).into(),
+        };
+        let hidden = PanelState::Hidden;
+        let time = TimePanel::new().with_state(PanelState::Collapsed).with_timeline(TRIAL_TIME);
+        let time = match opens {
+            Opens::Waiting => time.with_play_state(PlayState::Paused),
+            Opens::Following => time.with_play_state(PlayState::Following),
+            Opens::From(at) => {
+                let from = TimeInt::new_temporal(i64::try_from(at.0).unwrap_or(i64::MAX));
+                time.with_play_state(PlayState::Playing)
+                    .with_loop_mode(LoopMode::Selection)
+                    .with_time_selection(from..=TimeInt::MAX)
+            }
+        };
+        let blueprint = Blueprint::new(root)
+            .with_blueprint_panel(BlueprintPanel::from_state(hidden))
+            .with_selection_panel(SelectionPanel::from_state(hidden))
+            .with_time_panel(time)
+            .with_auto_views(false);
+        Layout { blueprint, properties }
+    }
+
+    /// Sends it ahead of what a stream shows. The properties go into the same blueprint as the views, before it is made the
+    /// one in force.
+    pub(super) fn send(self, stream: &RecordingStream) -> io::Result<()> {
+        let memory = || RecordingStreamBuilder::new(APPLICATION).enabled(true);
+        let (views, kept) = memory().memory().map_err(io::Error::other)?;
+        self.blueprint.send(&views, Default::default()).map_err(io::Error::other)?;
+        let mut messages = kept.take();
+        let named = messages.iter().find_map(|message| match message {
+            LogMsg::BlueprintActivationCommand(command) => Some(command.blueprint_id.clone()),
+            _ => None,
+        });
+        let id = named.ok_or_else(|| io::Error::other("the layout has no name"))?;
+        let is_it = |message: &LogMsg| *message.store_id() == id;
+        messages.retain(|message| is_it(message) && !matches!(message, LogMsg::BlueprintActivationCommand(_)));
+        let more = memory().recording_id(id.recording_id().clone()).blueprint();
+        let (more, kept) = more.memory().map_err(io::Error::other)?;
+        more.set_time_sequence("blueprint", 0);
+        for (place, property) in self.properties {
+            more.log_serialized_batches(place, false, property).map_err(io::Error::other)?;
+        }
+        messages.extend(kept.take().into_iter().filter(|message| matches!(message, LogMsg::ArrowMsg(..))));
+        let command = BlueprintActivationCommand { blueprint_id: id, make_active: true, make_default: true };
+        stream.send_blueprint(messages, command);
+        Ok(())
+    }
+}
+
+/// One recording.
+fn alone(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
+    let above = Horizontal::new([kitchen(lane), arm(lane)]).with_column_shares([3.0, 2.0]);
+    let wrong = StateTimelineView::new("Believed wrong")
+        .with_origin(path(lane, "human/belief/wrong"))
+        .with_contents([path(lane, "human/belief/wrong/**")]);
+    let truly = beliefs(lane, "P(truth), simulated participant", "human/belief/true/**", properties);
+    let beliefs = beliefs(lane, "P(truth), estimate", "human/belief/estimated/**", properties);
+    let beliefs = Tabs::new([beliefs, truly, wrong.into()]);
+    let below = Horizontal::new([beliefs.into(), benefit(lane, properties)]);
+    let side = Vertical::new([believed(lane), happened(lane, properties)]).with_row_shares([2.0, 3.0]);
+    let left = Vertical::new([above.into(), below.into()]).with_row_shares([5.0, 3.0]);
+    Horizontal::new([left.into(), side.into()]).with_column_shares([5.0, 2.0]).into()
+}
+
+/// One of several recordings.
+fn beside(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
+    let belief = beliefs(lane, "P(truth)", "human/belief/estimated/**", properties);
+    let below = Horizontal::new([belief, benefit(lane, properties)]);
+    let words = Horizontal::new([believed(lane), happened(lane, properties)]);
+    Vertical::new([kitchen(lane), below.into(), words.into()]).with_row_shares([5.0, 3.0, 3.0]).into()
+}
+
+fn path(lane: &Lane, entities: &str) -> String {
+    let path = format!("{}/{entities}", lane.root);
+    format!("/{}", path.trim_matches('/'))
+}
+
+fn titled(lane: &Lane, name: &str) -> String {
+    if lane.title.is_empty() { name.to_string() } else { format!("{}: {name}", lane.title) }
+}
+
+/// A view with a property of its own.
+fn with(
+    view: impl Into<ContainerLike>,
+    name: &str,
+    property: &dyn AsComponents,
+    properties: &mut Vec<Property>,
+) -> ContainerLike {
+    let view = view.into();
+    if let ContainerLike::View(view) = &view {
+        properties.push((format!("{}/{name}", view.blueprint_path()), property.as_serialized_batches()));
+    }
+    view
+}
+
+fn kitchen(lane: &Lane) -> ContainerLike {
+    let contents = ["kitchen/**", "human/gaze"].map(|entities| path(lane, entities));
+    Spatial2DView::new(titled(lane, "Kitchen")).with_origin(path(lane, "kitchen")).with_contents(contents).into()
+}
+
+fn arm(lane: &Lane) -> ContainerLike {
+    let contents = ["robot/**", "human/hand"].map(|entities| path(lane, entities));
+    Spatial3DView::new(titled(lane, "Arm")).with_origin(path(lane, "robot")).with_contents(contents).into()
+}
+
+/// Curves. A legend would cover them: their colours are those of the names in the kitchen, and a viewer names the one that
+/// the mouse is over.
+fn series(lane: &Lane, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
+    let contents: Vec<String> = entities.iter().map(|entities| path(lane, entities)).collect();
+    let view = TimeSeriesView::new(titled(lane, name)).with_origin(path(lane, "")).with_contents(contents);
+    with(view, "PlotLegend", &PlotLegend::new().with_visible(false), properties)
+}
+
+fn beliefs(lane: &Lane, name: &str, entities: &str, properties: &mut Vec<Property>) -> ContainerLike {
+    let view = series(lane, name, &[entities, "human/errors/**"], properties);
+    with(view, "ScalarAxis", &ScalarAxis::new().with_range(PROBABILITY), properties)
+}
+
+fn benefit(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
+    series(lane, "Net benefit of signals (presses)", &["assistant/benefit/**"], properties)
+}
+
+fn believed(lane: &Lane) -> ContainerLike {
+    let page = path(lane, "human/belief/page");
+    TextDocumentView::new(titled(lane, "What the participant believes"))
+        .with_origin(page.clone())
+        .with_contents([page])
+        .into()
+}
+
+/// What happened, with nothing beside it but the trial's clock.
+fn happened(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
+    let lines = path(lane, "happened");
+    let view = TextLogView::new(titled(lane, "What happened")).with_origin(path(lane, "")).with_contents([lines]);
+    let column = |kind, visible: bool| TextLogColumn { kind, visible: visible.into() };
+    let columns = TextLogColumns::new()
+        .with_timeline_columns([TimelineColumn { timeline: TRIAL_TIME.into(), visible: true.into() }])
+        .with_text_log_columns([
+            column(TextLogColumnKind::Body, true),
+            column(TextLogColumnKind::LogLevel, false),
+            column(TextLogColumnKind::EntityPath, false),
+        ]);
+    with(view, "TextLogColumns", &columns, properties)
+}

@@ -11,6 +11,7 @@ use tomcom::communication::concept::ConceptName;
 use tomcom::communication::recommendation::Recommendation;
 use tomcom::communication::{Sender, Signal, signals};
 use tomcom::console::comparison::Known;
+use tomcom::console::playback::Landmark;
 use tomcom::edge::files::{SessionFiles, read_session};
 use tomcom::edge::log::{LOG_NAME, LogReader, LogWriter};
 use tomcom::gaze::GazeSample;
@@ -621,4 +622,29 @@ fn a_scene_tells_a_belief_before_the_press_as_the_log_does() {
         }
     }
     assert!(count > 20, "{count} presses");
+}
+
+#[test]
+fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
+    let out = simulated("default.toml", "landmarks", 1, 3);
+    let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
+    let mut film = Film::open(&recording).expect("a recording");
+    let mut errors = film.errors.clone();
+    errors.dedup();
+    assert!(errors.len() > 2, "{errors:?}");
+    let mut visited = Vec::new();
+    while let Some(position) = film.landmark(Landmark::Error, true) {
+        film.wind(position);
+        visited.push(film.time());
+    }
+    assert_eq!(visited, errors);
+    let back = film.landmark(Landmark::Error, false).expect("the error before");
+    film.wind(back);
+    assert_eq!(film.time(), errors[errors.len() - 2]);
+    assert_eq!(film.landmark(Landmark::Signal, true), None, "nobody sends signals");
+    film.wind(0);
+    let wrong = film.landmark(Landmark::FalseBelief, true).expect("something is believed wrong");
+    film.wind(wrong);
+    let moment = film.beliefs.until(film.time()).last().expect("an estimate");
+    assert!(moment.held.iter().any(|held| held.is_false()), "{moment:?}");
 }

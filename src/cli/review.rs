@@ -104,3 +104,18 @@ fn still_running(one: &Running) -> String {
     let live = one.viewers.as_ref().map_or(String::new(), |viewers| format!("; live: rerun {viewers}"));
     format!("{}: this session is still running, and is shown up to now{live}\n", one.recording.display())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_moment_is_written_as_the_console_shows_it_or_in_seconds() {
+        for (text, seconds) in [("1:34", 94.0), ("94.6", 94.6), ("0:07.5", 7.5), ("12:00", 720.0)] {
+            assert_eq!(moment(text), Ok(SessionTime::from_secs_f64(seconds)), "{text}");
+        }
+        for text in ["", "1:60", "-3", "1:2:3", "x", "nan", ":30"] {
+            assert!(moment(text).is_err(), "{text}");
+        }
+    }
+}

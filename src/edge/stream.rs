@@ -108,6 +108,14 @@ impl Stream {
     }
 }
 
+/// Whether something can listen at this address now.
+///
+/// # Errors
+/// Nothing can.
+pub fn is_free(address: SocketAddr) -> io::Result<()> {
+    TcpListener::bind(address).map(drop)
+}
+
 /// This address, or that with the next free port.
 ///
 /// # Errors
@@ -116,7 +124,7 @@ pub fn free_port(wanted: SocketAddr) -> io::Result<SocketAddr> {
     let ports = wanted.port()..=wanted.port().saturating_add(PORTS);
     let mut tried = ports.map(|port| {
         let address = SocketAddr::new(wanted.ip(), port);
-        TcpListener::bind(address).and_then(|listener| listener.local_addr())
+        is_free(address).map(|()| address)
     });
     let first = tried.next().unwrap_or_else(|| Err(io::ErrorKind::AddrInUse.into()));
     first.or_else(|error| tried.find_map(Result::ok).ok_or(error))

@@ -1,5 +1,6 @@
 //! `tomcom review`: recordings in Rerun's viewer, from the stream beside their log, or made from the log.
 
+use std::fs;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -10,7 +11,7 @@ use crate::edge::files::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, Lock, LogReader};
 use crate::edge::rerun::{Identity, Lane, Outlets, WebViewer, Writer, uri};
 use crate::edge::rrd::{self, RRD_NAME, RrdState};
-use crate::edge::stream::{PORTS, free_port};
+use crate::edge::stream::{PORTS, is_free};
 use crate::edge::terminal::asked_to_end;
 use crate::edge::viewer::{self, Viewer};
 use crate::mind::dirichlet::DirichletBelief;
@@ -31,9 +32,12 @@ pub enum RerunError {
     #[error("{}: the stream cannot be written: {reason}", path.display())]
     #[diagnostic(help("a place that can be written to, with --save=FILE"))]
     Unwritable { path: PathBuf, reason: io::Error },
-    #[error("the viewer cannot be served on this machine: {reason}")]
-    #[diagnostic(help("{remedy}"))]
-    Web { reason: io::Error, remedy: String },
+    #[error("the viewer cannot be served on this machine: {0}")]
+    #[diagnostic(help(
+        "a free port from {WEB_PORT} and from {SERVER_PORT} on, up to {PORTS} further: end another tomcom review, or see who \
+         listens there"
+    ))]
+    Web(io::Error),
     #[error("{}: the viewer cannot be started: {reason}", path.display())]
     #[diagnostic(help("--web serves one for a browser"))]
     Viewer { path: PathBuf, reason: io::Error },
@@ -144,36 +148,28 @@ pub fn save(recording: &Path) -> Result<PathBuf, RerunError> {
 
 /// Streams recordings to a server, and serves the viewer for browsers.
 fn serve(recordings: &[PathBuf], at: Option<SessionTime>, because: &'static str) -> Result<Reviewed, RerunError> {
-    let (server, writer) = on_free_port(SERVER_PORT, |server| {
-        let outlets = Outlets { file: None, server: Some((server, true)), at };
-        write(playing(recordings)?, recordings, &outlets)
-    })?;
-    let (web, viewer) = on_free_port(WEB_PORT, |web| Ok(WebViewer::serve(web.port())))?;
+    let playing = playing(recordings)?;
+    let (server, web, viewer) = ports().map_err(RerunError::Web)?;
+    let outlets = Outlets { file: None, server: Some((server, true)), at };
+    let writer = write(playing, recordings, &outlets)?.map_err(RerunError::Web)?;
     let url = format!("http://{web}/?url={}", uri(server).replace('+', "%2B").replace(':', "%3A").replace('/', "%2F"));
     viewer::browse(&url);
     Ok(Reviewed::Served { url, because, _serving: Box::new((writer, viewer)) })
 }
 
-/// Serves something on a port that is free, from this one on. Somebody else may take it between our look and our use:
-/// then the next one is tried.
-fn on_free_port<T>(
-    first: u16,
-    mut serve: impl FnMut(SocketAddr) -> Result<io::Result<T>, RerunError>,
-) -> Result<(SocketAddr, T), RerunError> {
-    let remedy = |port: u16| {
-        let last = port.saturating_add(PORTS);
-        format!("ports {port} to {last} of this machine: end another tomcom review, or see who listens there")
-    };
-    let failed = |reason| RerunError::Web { reason, remedy: remedy(first) };
-    let mut port = first;
-    loop {
-        let address = free_port(SocketAddr::from((Ipv4Addr::LOCALHOST, port))).map_err(failed)?;
-        match serve(address)? {
-            Ok(served) => return Ok((address, served)),
-            Err(_) if address.port() < first.saturating_add(PORTS) => port = address.port() + 1,
-            Err(reason) => return Err(failed(reason)),
+/// The first port that is free for a stream, with that of the viewer's page, which is served already. They go in pairs: of
+/// two programs that look at the same moment only one gets the page, and a server of Rerun does not say that its port was
+/// taken meanwhile.
+fn ports() -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
+    let mut failed = io::Error::from(io::ErrorKind::AddrInUse);
+    for nth in 0..=PORTS {
+        let [server, web] = [SERVER_PORT, WEB_PORT].map(|port| SocketAddr::from((Ipv4Addr::LOCALHOST, port + nth)));
+        match WebViewer::serve(web.port()).and_then(|viewer| is_free(server).map(|()| viewer)) {
+            Ok(viewer) => return Ok((server, web, viewer)),
+            Err(reason) => failed = reason,
         }
     }
+    Err(failed)
 }
 
 /// The file of the stream of these recordings: that beside the log where it shows this log, else made from it.
@@ -200,13 +196,29 @@ fn saved(recordings: &[PathBuf], place: Option<&Path>) -> Result<Saved, RerunErr
         }
         (None, several) => elsewhere(several),
     };
-    let outlets = Outlets { file: Some(path.clone()), server: None, at: None };
-    let written = write(playing(recordings)?, recordings, &outlets)?;
-    let sealed = written.and_then(|_| logs.map_or(Ok(()), |logs| rrd::seal(&path, &logs)));
+    let sealed = put(recordings, &path)?.and_then(|()| logs.map_or(Ok(()), |logs| rrd::seal(&path, &logs)));
     drop(locked);
     match sealed {
         Ok(()) => Ok(Saved { path, made: true, because }),
         Err(reason) => Err(RerunError::Unwritable { path, reason }),
+    }
+}
+
+/// Makes the file of the stream of these recordings. What was there stays until all of the new one is: a log that turns out
+/// to be damaged costs nothing.
+fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunError> {
+    let mut begun = path.as_os_str().to_os_string();
+    begun.push(".new");
+    let begun = PathBuf::from(begun);
+    let outlets = Outlets { file: Some(begun.clone()), server: None, at: None };
+    let written = playing(recordings).map_err(RerunError::from).and_then(|all| write(all, recordings, &outlets));
+    match written {
+        Ok(Ok(_)) => Ok(fs::rename(&begun, path)),
+        failed => {
+            // Left behind it does no harm.
+            let _ = fs::remove_file(&begun);
+            failed.map(|written| written.map(|_| ()))
+        }
     }
 }
 

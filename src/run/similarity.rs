@@ -253,6 +253,11 @@ impl SpokenFigures {
 }
 
 impl DifferenceFigures {
+    /// What matters most has the lowest: what concerns the first assistant, and what the sender said alone.
+    fn rank(&self) -> (usize, bool, usize) {
+        (self.pair, !self.by_sender, self.number)
+    }
+
     fn of(watched: &Watched, index: usize, difference: &Difference) -> DifferenceFigures {
         let comparison = &watched.comparison;
         let spoken = comparison.spoken(difference);
@@ -331,7 +336,8 @@ pub fn describe(figures: &CompareFigures) -> String {
         }
         text += &one.wizard.as_ref().map_or(String::new(), wizard::describe);
         text += &describe_differences(&one.differences);
-        if let Some(first) = one.differences.first() {
+        // That of the session's own concept, if there is one.
+        if let Some(first) = one.differences.iter().min_by_key(|one| one.rank()) {
             text += &format!(
                 "what each knew: --open {}; the moment itself: tomcom review {} --at {}\n",
                 first.number,
@@ -347,7 +353,7 @@ pub fn describe(figures: &CompareFigures) -> String {
 fn describe_differences(differences: &[DifferenceFigures]) -> String {
     let mut groups: Vec<(String, Vec<&DifferenceFigures>)> = Vec::new();
     let mut sorted: Vec<&DifferenceFigures> = differences.iter().collect();
-    sorted.sort_by_key(|one| (one.pair, !one.by_sender, one.number));
+    sorted.sort_by_key(|one| one.rank());
     for one in sorted {
         let who = format!("only {}, not {}", one.by, one.not_by);
         match groups.iter_mut().find(|(of, _)| *of == who) {

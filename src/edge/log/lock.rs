@@ -110,3 +110,26 @@ pub fn is_same(file: &File, path: &Path) -> bool {
 pub fn is_same(_: &File, path: &Path) -> bool {
     path.exists()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lock_tells_who_writes_and_where_viewers_look_on_until_it_is_dropped() {
+        let folder = std::env::temp_dir().join(format!("tomcom-lock-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        assert_eq!(Lock::holder(&folder), None);
+        let mut lock = Lock::take(&folder).unwrap();
+        let pid = Some(std::process::id());
+        assert_eq!(Lock::holder(&folder), Some(Holder { pid, viewers: None }));
+        lock.announce("rerun+http://127.0.0.1:9876/proxy").unwrap();
+        let viewers = Some("rerun+http://127.0.0.1:9876/proxy".to_string());
+        assert_eq!(Lock::holder(&folder), Some(Holder { pid, viewers }));
+        drop(lock);
+        assert_eq!(Lock::holder(&folder), None);
+        fs::write(folder.join(LOCK_NAME), "1\n").unwrap();
+        assert_eq!(Lock::holder(&folder), None, "what a killed program left behind is held by nobody");
+        fs::remove_dir_all(folder).unwrap();
+    }
+}

@@ -116,13 +116,13 @@ impl Reason {
         })
     }
 
-    /// What is taken for what, in words: "takes order 1 for tuna nigiri (wrong 0.83)".
+    /// What is taken for what, in words: "takes order 1 for tuna nigiri (0.83)".
     pub fn taken(&self) -> String {
         let Reason { aspect, believes, p_wrong, .. } = self;
-        format!("takes {} for {} (wrong {p_wrong:.2})", aspect.replace('_', " "), phrase(believes))
+        format!("takes {} for {} ({p_wrong:.2})", aspect.replace('_', " "), phrase(believes))
     }
 
-    /// In words: "takes order 1 for tuna nigiri (wrong 0.83): would press "take tuna" instead of "take salmon"".
+    /// In words: "takes order 1 for tuna nigiri (0.83): would press "take tuna" instead of "take salmon"".
     pub fn words(&self) -> String {
         let said = |name: &str| name.replace('_', " ");
         let taken = self.taken();

@@ -1,10 +1,17 @@
 //! The study: statistics, what concepts would have prevented, tables and report.
 
+use std::fs;
+use std::path::Path;
+
 use csv::Writer;
 use serde::Serialize;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
+use tomcom::edge::log::codes;
 use tomcom::kitchen::AspectId;
+use tomcom::measures::coding::{Code, Codes};
+use tomcom::run::codes::Coded;
+use tomcom::run::study::reading::{self, Extent};
 use tomcom::session::settings::{Condition, ParticipantKind};
 use tomcom::study::effect::{Measure, effect, pairs};
 use tomcom::study::facts::Facts;
@@ -65,6 +72,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         wizard: None,
         lanes: None,
         swept: Vec::new(),
+        raters: None,
     }
 }
 
@@ -277,4 +285,44 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
         trials.into_iter().map(|trial| Trial { kind: ParticipantKind::Display, ..trial }).collect();
     let page = report::page(&StudyFigures::of(&people, &Facts::default(), 0), &people, &Facts::default());
     assert!(!page.contains("simulated participants</title>"));
+}
+
+/// Of people it is estimated what they believed, until two raters have coded every error.
+#[test]
+fn two_raters_say_why_people_erred() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study-raters");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    fs::copy("tests/golden/format-1-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
+    let extent = Extent { concepts: false, events: true };
+    let read = || match reading::read(&folder, "hand", extent) {
+        Ok(Some((_, reading))) => reading,
+        Ok(None) => panic!("it is no practice"),
+        Err(error) => panic!("{error}"),
+    };
+    let basis = |trial: &Trial| trial.beliefs.as_ref().map(|beliefs| beliefs.basis);
+    let estimated = read();
+    assert_eq!(basis(&estimated.trial), Some(Basis::Estimate));
+    let errors = Coded::open(&folder).expect("a recording").errors;
+    assert!(errors.len() as u64 == estimated.trial.errors && errors.len() >= 2, "{errors:?}");
+    let belief = |place: &str| Code::Belief(place.to_string());
+    let say = |rater: &str, of: &dyn Fn(usize) -> Code, count: usize| {
+        let said = errors.iter().take(count).enumerate().map(|(index, &press)| (press, of(index)));
+        codes::write(&folder, rater, &Codes(said.collect())).expect("a file");
+    };
+    // One of them is not done yet.
+    say("anna", &|_| belief("board"), errors.len());
+    say("ben", &|_| belief("plate"), errors.len() - 1);
+    assert_eq!(basis(&read().trial), Some(Basis::Estimate));
+    // They agree that all but the first come of false beliefs, though not about which.
+    say("ben", &|index| if index == 0 { Code::Slip } else { belief("plate") }, errors.len());
+    let coded = read();
+    assert_eq!(basis(&coded.trial), Some(Basis::Raters));
+    let related = errors.len() as u64 - 1;
+    assert_eq!(coded.trial.beliefs.as_ref().map(|beliefs| beliefs.errors), Some(related));
+    let figures = StudyFigures::of(&[coded.trial], &coded.facts, 0);
+    let agreement = figures.raters.expect("an agreement");
+    assert_eq!((agreement.errors, agreement.same_cause, agreement.same_aspect), (related + 1, related, 0));
+    let actions = String::from_utf8(coded.rows[0].clone()).expect("text");
+    assert_eq!(actions.lines().filter(|line| line.contains("belief board,belief plate")).count() as u64, related);
 }

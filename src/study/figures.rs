@@ -9,6 +9,7 @@ use super::facts::Facts;
 use super::roc::{Comparison, Roc, Swept, compare};
 use super::statistics::{Correlation, FTest, Interval, share_interval};
 use super::trial::{Basis, Beliefs, Trial, mean, mean_length};
+use crate::measures::coding::{Agreement, AgreementTable, Codes};
 use crate::measures::matching::{Similarity, Tally};
 use crate::measures::wizard::WizardMeasures;
 use crate::session::settings::{Condition, ParticipantKind};
@@ -47,6 +48,8 @@ pub struct StudyFigures {
     pub wizard: Option<WizardMeasures>,
     pub acceptance: Option<Acceptance>,
     pub questionnaires: Vec<ItemFigures>,
+    /// How far raters agree, where errors are known from them.
+    pub raters: Option<Agreement>,
     pub left_out: Vec<LeftOut>,
     /// Recordings of practice, which are no trials.
     pub practice: u64,
@@ -180,6 +183,7 @@ impl StudyFigures {
             wizard: (!wizards.is_empty()).then(|| WizardMeasures::sum(wizards)),
             acceptance: acceptance(&counting),
             questionnaires: items(&counting),
+            raters: agreement(&counting),
             left_out: left_out.collect(),
             practice,
         }
@@ -291,6 +295,14 @@ fn similarity(trials: &[&Trial]) -> (Option<Similarity>, Vec<TrialSimilarity>) {
         });
     }
     ((!by_trial.is_empty()).then(|| all.similarity()), by_trial)
+}
+
+/// How far the raters of all trials agree.
+fn agreement(trials: &[&Trial]) -> Option<Agreement> {
+    let mut table = AgreementTable::default();
+    let coded: Vec<&[Codes; 2]> = trials.iter().filter_map(|trial| trial.raters.as_ref()).collect();
+    coded.iter().for_each(|[one, other]| table.add(one, other));
+    (!coded.is_empty()).then(|| table.agreement())
 }
 
 /// The items of all questionnaires by condition, in the order in which they occur.

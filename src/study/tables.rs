@@ -147,6 +147,9 @@ pub struct ActionRow {
     pub second_aspect: Option<String>,
     pub gain_nats: Option<f64>,
     pub sequence: Option<u64>,
+    pub cause_estimated: Option<&'static str>,
+    pub rater_1: Option<String>,
+    pub rater_2: Option<String>,
     pub log_p: Option<f64>,
 }
 

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::roc::Swept;
+use crate::measures::coding::Codes;
 use crate::measures::matching::Said;
 use crate::measures::wizard::WizardMeasures;
 use crate::session::settings::{Condition, ParticipantKind};
@@ -52,6 +53,8 @@ pub struct Trial {
     pub lanes: Option<[Vec<Said>; 2]>,
     /// What concepts would have done, where nobody sends signals.
     pub swept: Vec<Swept>,
+    /// What two raters say about its errors, where that is what is gone by.
+    pub raters: Option<[Codes; 2]>,
 }
 
 /// How it is known what the human believed when it erred.
@@ -60,7 +63,7 @@ pub struct Trial {
 pub enum Basis {
     /// A simulated participant tells what it really believed.
     Recorded,
-    /// People coded the errors, and agreed on them.
+    /// Two people coded every error; what both put down to a belief is belief related.
     Raters,
     /// The assistant's estimate: no headline figure.
     Estimate,

@@ -3,16 +3,17 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::rows::RowGatherer;
+use super::rows::{Known, RowGatherer};
 use super::sweep::Sweeper;
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
 use crate::console::comparison::What;
 use crate::edge::files::FileResult;
-use crate::edge::log::{LogReader, at_line};
+use crate::edge::log::{LogReader, at_line, codes};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Kitchen};
 use crate::measures::attribution::{Attributor, Cause};
+use crate::measures::coding::{Codes, Kind};
 use crate::measures::matching::{Said, WINDOW};
 use crate::measures::sequences::{Sequence, sequences, sequences_by_target};
 use crate::measures::{JudgedPress, median};
@@ -168,9 +169,11 @@ pub fn read(recording: &Path, name: &str, extent: Extent) -> FileResult<Option<(
         }
     }
     let standing = Standing::of(&pass.follower().session, &log)?;
+    let raters = raters(&log)?;
     let lanes = lanes(&mut pass);
     let follower = pass.follower();
-    let (judged, basis) = judged(follower, by_estimate.map(|found| found.causes));
+    let by_estimate = by_estimate.map(|found| found.causes);
+    let (judged, basis) = judged(follower, by_estimate.as_deref(), raters.as_ref());
     let mut trial = trial(name, &header, follower, standing);
     trial.beliefs = basis.map(|basis| beliefs(follower, &judged, basis));
     trial.answers = answers;
@@ -184,7 +187,10 @@ pub fn read(recording: &Path, name: &str, extent: Extent) -> FileResult<Option<(
     }
     let follower = pass.follower();
     let errors: Vec<Vec<usize>> = sequence_errors(&judged).into_iter().map(|(_, errors)| errors).collect();
-    let rows = rows.finish(&follower.session, &judged, &errors, &lanes, WINDOW);
+    let known =
+        Known { judged: &judged, sequences: &errors, by_estimate: by_estimate.as_deref(), raters: raters.as_ref() };
+    let rows = rows.finish(&follower.session, &known, &lanes, WINDOW);
+    trial.raters = raters.filter(|_| basis == Some(Basis::Raters));
     Ok(Some((kitchen, Reading { trial, facts: Facts::of(&header, &follower.session), rows })))
 }
 
@@ -217,20 +223,46 @@ fn sent(session: &Session) -> Vec<Said> {
     said
 }
 
-/// The presses of the human with their causes, and how these are known; nothing of the latter where a simulated participant
-/// does not tell.
-fn judged(follower: &Follower, by_estimate: Option<Vec<(u64, Cause)>>) -> (Vec<JudgedPress>, Option<Basis>) {
+/// What the first two raters by name say about a recording; nothing where there are not two.
+fn raters(log: &LogReader) -> FileResult<Option<[Codes; 2]>> {
+    let mut all = codes::read_all(log.folder())?.into_values();
+    Ok(all.next().zip(all.next()).map(|(one, other)| [one, other]))
+}
+
+/// The presses of the human with their causes, and how these are known: what simulated participants tell, or else what two
+/// raters say who have both coded every error, or else the estimate. Nothing of the latter where a simulated participant does
+/// not tell.
+fn judged(
+    follower: &Follower,
+    by_estimate: Option<&[(u64, Cause)]>,
+    raters: Option<&[Codes; 2]>,
+) -> (Vec<JudgedPress>, Option<Basis>) {
     let mut judged = follower.judged.clone();
-    let Some(causes) = by_estimate else {
+    let Some(estimated) = by_estimate else {
         let is_known = judged.iter().all(|press| press.belief_known);
         return (judged, is_known.then_some(Basis::Recorded));
     };
-    for (seq, cause) in causes {
-        if let Ok(at) = judged.binary_search_by_key(&seq, |press| press.seq) {
-            judged[at].cause = Some(cause);
-        }
+    let coded = |codes: &Codes| judged.iter().all(|press| !press.verdict.error || codes.0.contains_key(&press.seq));
+    let raters = raters.filter(|raters| raters.iter().all(coded));
+    for press in judged.iter_mut().filter(|press| press.verdict.error) {
+        press.cause = match raters {
+            Some(raters) => agreed(&follower.session, press.seq, raters),
+            None => estimated.iter().find(|(seq, _)| *seq == press.seq).map(|(_, cause)| *cause),
+        };
     }
-    (judged, Some(Basis::Estimate))
+    (judged, Some(if raters.is_some() { Basis::Raters } else { Basis::Estimate }))
+}
+
+/// The cause that two raters agree on. Where both put an error down to a belief, it is about what the first of them says;
+/// where they differ, it is no belief related error.
+fn agreed(session: &Session, press: u64, [one, other]: &[Codes; 2]) -> Option<Cause> {
+    let (a, b) = (one.0.get(&press)?, other.0.get(&press)?);
+    if a.kind() != Kind::Belief || b.kind() != Kind::Belief {
+        return Some(Cause::Slip);
+    }
+    // In which state the press was met makes no difference to the place that it is about.
+    let target = a.target(&session.kitchen, session.kitchen.empty_state())?;
+    Some(Cause::Belief { gain_nats: f64::NAN, target, with: None })
 }
 
 fn beliefs(follower: &Follower, judged: &[JudgedPress], basis: Basis) -> Beliefs {
@@ -323,6 +355,7 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: Standing) -
         wizard: None,
         lanes: None,
         swept: Vec::new(),
+        raters: None,
     }
 }
 

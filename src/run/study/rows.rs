@@ -8,6 +8,7 @@ use crate::gaze::{MIN_CONFIDENCE, nearest_location};
 use crate::kitchen::{Agent, AspectId, LocationId};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
+use crate::measures::coding::{Code, Codes};
 use crate::measures::matching::{Kind, Likeness, Said, matched};
 use crate::mind::BeliefWitness;
 use crate::mind::witness::{EstimateWitness, rounded};
@@ -38,6 +39,53 @@ pub struct RowGatherer {
     actions: Vec<ActionRow>,
     witness: Option<BeliefWitness>,
     look: Option<Look>,
+}
+
+/// What is known of the presses of the human when all is over.
+#[derive(Clone, Copy, Debug)]
+pub struct Known<'a> {
+    pub judged: &'a [JudgedPress],
+    /// Sequences of belief related errors, as indices of presses.
+    pub sequences: &'a [Vec<usize>],
+    /// Of people, by the numbers of presses.
+    pub by_estimate: Option<&'a [(u64, Cause)]>,
+    pub raters: Option<&'a [Codes; 2]>,
+}
+
+impl Known<'_> {
+    /// Fills in the row of a press.
+    fn judge(&self, session: &Session, index: usize, press: &JudgedPress, row: &mut ActionRow) {
+        let verdict = &press.verdict;
+        (row.regret, row.excess) = (Some(verdict.regret), Some(verdict.excess));
+        (row.race, row.error) = (Some(verdict.race), Some(verdict.error));
+        let sequence = self.sequences.iter().position(|errors| errors.contains(&index));
+        row.sequence = sequence.map(|number| number as u64 + 1);
+        row.cause = press.cause.map(name_of);
+        if let Some(Cause::Belief { gain_nats, target, with }) = press.cause {
+            row.aspect = Some(target.label(&session.kitchen));
+            row.second_aspect = with.map(|target| target.label(&session.kitchen));
+            // Raters give none.
+            row.gain_nats = Some(rounded(gain_nats)).filter(|gain| gain.is_finite());
+        }
+        let estimated = self.by_estimate.and_then(|causes| causes.iter().find(|(seq, _)| *seq == press.seq));
+        row.cause_estimated = estimated.map(|(_, cause)| name_of(*cause));
+        if let Some(raters) = self.raters {
+            let [one, other] = raters.each_ref().map(|codes| codes.0.get(&press.seq).map(in_words));
+            (row.rater_1, row.rater_2) = (one, other);
+        }
+    }
+}
+
+fn name_of(cause: Cause) -> &'static str {
+    match cause {
+        Cause::Slip => "slip",
+        Cause::Belief { .. } => "belief",
+    }
+}
+
+fn in_words(code: &Code) -> String {
+    let kind = code.kind().name();
+    code.aspect().map_or(kind.to_string(), |aspect| format!("{kind} {aspect}"))
 }
 
 impl RowGatherer {
@@ -164,35 +212,18 @@ impl RowGatherer {
         self.write(Table::Gaze, &row);
     }
 
-    /// The rows, in the order of [`Table::OF_EVENTS`]. `judged`: every press of the human, with the sequences of belief
-    /// related errors as their indices. `lanes`: what was sent, and what the assistant would have said.
+    /// The rows, in the order of [`Table::OF_EVENTS`]. `lanes`: what was sent, and what the assistant would have said.
     pub fn finish(
         mut self,
         session: &Session,
-        judged: &[JudgedPress],
-        sequences: &[Vec<usize>],
+        known: &Known,
         lanes: &[(String, Vec<Said>)],
         window: u32,
     ) -> [Vec<u8>; 4] {
         self.end_look(session);
-        for (index, press) in judged.iter().enumerate() {
+        for (index, press) in known.judged.iter().enumerate() {
             let Ok(at) = self.actions.binary_search_by_key(&press.seq, |row| row.seq) else { continue };
-            let row = &mut self.actions[at];
-            let verdict = &press.verdict;
-            (row.regret, row.excess) = (Some(verdict.regret), Some(verdict.excess));
-            (row.race, row.error) = (Some(verdict.race), Some(verdict.error));
-            let sequence = sequences.iter().position(|errors| errors.contains(&index));
-            row.sequence = sequence.map(|number| number as u64 + 1);
-            match press.cause {
-                Some(Cause::Slip) => row.cause = Some("slip"),
-                Some(Cause::Belief { gain_nats, target, with }) => {
-                    row.cause = Some("belief");
-                    row.aspect = Some(target.label(&session.kitchen));
-                    row.second_aspect = with.map(|target| target.label(&session.kitchen));
-                    row.gain_nats = Some(rounded(gain_nats));
-                }
-                None => {}
-            }
+            known.judge(session, index, press, &mut self.actions[at]);
         }
         for row in std::mem::take(&mut self.actions) {
             self.write(Table::Actions, &row);

@@ -36,6 +36,17 @@ pub fn describe(figures: &StudyFigures) -> String {
         ),
         _ => "belief related errors: not known\n".to_string(),
     };
+    if let Some(found) = &figures.raters {
+        text += &format!(
+            "two raters: the same cause of {} of {} errors (kappa {}), the same belief of {} of {} (kappa {})\n",
+            found.same_cause,
+            found.errors,
+            number(found.kappa_cause),
+            found.same_aspect,
+            found.beliefs,
+            number(found.kappa_aspect)
+        );
+    }
     for one in &figures.conditions {
         text += &format!(
             "  {:<10}{:>4} trials, errors {} of the human's presses, {} a sequence, an order in {} s\n",

@@ -27,6 +27,19 @@ pub(super) fn summary(figures: &StudyFigures) -> String {
         text += "<p class=\"warning\">What participants believed is known only as the assistant's estimate. Figures that rest on \
                  it, such as the share of belief related errors, need the codes of two raters to be more than that.</p>\n";
     }
+    if let Some(found) = &figures.raters {
+        text += &format!(
+            "<p>Two raters coded why presses were errors. They say the same cause of {} of {} errors (Cohen\u{2019}s kappa {}), and of \
+             {} errors that both put down to a belief they say of {} that the same is believed wrong (kappa {}). An error is belief \
+             related if both say so.</p>\n",
+            found.same_cause,
+            found.errors,
+            number(found.kappa_cause, 2),
+            found.beliefs,
+            found.same_aspect,
+            number(found.kappa_aspect, 2)
+        );
+    }
     let card = |value: String, what: &str| format!("<div class=\"card\"><b>{value}</b><span>{what}</span></div>\n");
     text += "<div class=\"cards\">\n";
     text += &card(percent(totals.error_rate), "of the presses of both agents are errors of the human");

@@ -311,7 +311,7 @@ fn two_raters_say_why_people_erred() {
         codes::write(&folder, rater, &Codes(said.collect())).expect("a file");
     };
     // One of them is not done yet.
-    say("anna", &|_| belief("board"), errors.len());
+    say("anna", &|_| belief("assembly_board"), errors.len());
     say("ben", &|_| belief("plate"), errors.len() - 1);
     assert_eq!(basis(&read().trial), Some(Basis::Estimate));
     // They agree that all but the first come of false beliefs, though not about which.
@@ -324,5 +324,8 @@ fn two_raters_say_why_people_erred() {
     let agreement = figures.raters.expect("an agreement");
     assert_eq!((agreement.errors, agreement.same_cause, agreement.same_aspect), (related + 1, related, 0));
     let actions = String::from_utf8(coded.rows[0].clone()).expect("text");
-    assert_eq!(actions.lines().filter(|line| line.contains("belief board,belief plate")).count() as u64, related);
+    assert_eq!(
+        actions.lines().filter(|line| line.contains("belief assembly_board,belief plate")).count() as u64,
+        related
+    );
 }

@@ -162,8 +162,8 @@ fn codes() -> [Binding; 6] {
     let code = |name, key: Chord, rate, help, footer| line(name, &[key], Action::Rate(rate), CODING, help, footer);
     let cause = |name, key, kind, help| code(name, Chord::char(key), Rate::Cause(kind), help, None);
     [
-        code("next_error", Chord::plain(Enter), Rate::Next, "to the next error", Some("next error")),
-        code("last_error", Chord::plain(Backspace), Rate::Last, "to the error before", None),
+        code("code_next", Chord::plain(Enter), Rate::Next, "to the next error", Some("next error")),
+        code("code_last", Chord::plain(Backspace), Rate::Last, "to the error before", None),
         Binding { footer: Some("slip"), ..cause("slip", '1', Kind::Slip, "a slip: nothing was believed wrong") },
         Binding { footer: Some("race"), ..cause("race", '2', Kind::Race, "a race: the robot was quicker") },
         Binding { footer: Some("other"), ..cause("other_cause", '3', Kind::Other, "another cause") },

@@ -24,9 +24,9 @@ pub struct Verification {
     pub verified: bool,
     /// Recorded events.
     pub events: u64,
-    /// The recording ends without its end event, and nobody writes on; it was verified up to there.
+    /// The recording ends without its end event; it was verified up to there.
     pub cut: bool,
-    /// Its session still runs; it was verified up to now.
+    /// It does because its session still runs.
     pub running: bool,
     /// Where recording and re-run differ first.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -55,7 +55,7 @@ pub fn verify(recording: &Path) -> FileResult<Verification> {
     let Rerun { log, again, replayed, difference } = Rerun::of(LogReader::open(recording)?)?;
     let same_end = difference.is_some() || log.is_cut() || again.ends_like(&replayed);
     let verified = difference.is_none() && same_end;
-    let (cut, running) = (log.ending() == Ending::Cut, log.ending() == Ending::Running);
+    let (cut, running) = (log.is_cut(), log.ending() == Ending::Running);
     Ok(Verification { verified, events: log.events(), cut, running, difference })
 }
 

@@ -39,7 +39,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         x = brush.text(x, area.y, area.width, label, badge);
     }
     let notice = model.notice.as_ref().filter(|notice| model.clock.secs_since(notice.at) < NOTICE_S);
-    let notice = notice.filter(|notice| !above(brush, regions, notice));
+    let notice = notice.filter(|notice| !above(brush, regions, session, model, notice));
     // An alarm may take the place of the keys.
     let most = if notice.is_some_and(|notice| notice.level == Level::Alarm) { area.width } else { area.width / 2 };
     let said = notice.map_or(0, |notice| width(&notice.text) + 3).min(most);
@@ -85,8 +85,8 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
 }
 
 /// Says it in a title line above, where that has room for it, so that it takes no key its place; whether it did.
-fn above(brush: &mut Brush, regions: &Regions, notice: &Notice) -> bool {
-    let room = timeline::title_room(brush, regions).or_else(|| comparison::title_room(regions));
+fn above(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model, notice: &Notice) -> bool {
+    let room = timeline::title_room(brush, regions, session, model).or_else(|| comparison::title_room(regions));
     let Some(room) = room.filter(|room| width(&notice.text) + 4 <= room.width) else { return false };
     let style = style_of(brush, notice);
     brush.text(room.x, room.y, room.width, &format!(" {} ", notice.text), style);

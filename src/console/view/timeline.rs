@@ -24,9 +24,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         return;
     }
     let is_small = regions.room == Room::Small;
-    let coding = coding(session, model);
-    let title = coding.as_ref().map_or(TITLE.to_string(), |words| format!("{TITLE}: {words}"));
-    let inside = if is_small { area } else { brush.panel(area, &title, &legend(brush)) };
+    let inside = if is_small { area } else { brush.panel(area, &title(session, model), &legend(brush)) };
     let rows: &[&str] = match is_small {
         // Signals, orders and notes share a row.
         true => &["", "human", "robot", "events"],
@@ -53,10 +51,15 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         .filter(|mark| mark.y < plot.bottom())
         .collect();
     place(brush, plot, &in_view);
-    if let Some(words) = coding.filter(|_| is_small) {
+    if let Some(words) = coding(session, model).filter(|_| is_small) {
         let strong = brush.style(Role::Strong);
         brush.text(inside.x + 1, inside.y, inside.width, &format!("{words} "), strong);
     }
+}
+
+/// Its title, with where a rater stands.
+fn title(session: &Session, model: &Model) -> String {
+    coding(session, model).map_or(TITLE.to_string(), |words| format!("{TITLE}: {words}"))
 }
 
 /// Where a rater stands, where errors are coded.
@@ -107,12 +110,12 @@ fn place(brush: &mut Brush, plot: Rect, marks: &[Mark]) {
 }
 
 /// Where there is room for a line in the timeline's title, between its name and what its signs mean.
-pub(super) fn title_room(brush: &Brush, regions: &Regions) -> Option<Rect> {
+pub(super) fn title_room(brush: &Brush, regions: &Regions, session: &Session, model: &Model) -> Option<Rect> {
     let area = regions.timeline;
     if regions.room == Room::Small || area.area() == 0 {
         return None;
     }
-    let from = area.x + 1 + width(TITLE) + 2;
+    let from = area.x + 1 + width(&title(session, model)) + 2;
     let until = area.right().saturating_sub(width(&legend(brush)) + 4);
     Some(Rect { x: from, y: area.y, width: until.saturating_sub(from), height: 1 })
 }

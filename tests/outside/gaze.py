@@ -116,7 +116,7 @@ def send_among_nonsense(console):
         # A tracker that goes in the middle of a line; the next one begins when all of it was read.
         tracker.sendall(b'{"x": 0.5, "y"')
         tracker.close()
-        console.wait_for(f"{20 * (part + 1)} malformed")
+        console.wait_for(f"{21 * (part + 1)} malformed")
     return sent
 
 
@@ -134,7 +134,7 @@ def check_sender(tomcom, scratch):
     pressed = [event["button"] for event in events if event["kind"] == "press" and event["agent"] == "human"]
     assert pressed == ["take rice", "cooking_pot", "cook"], pressed
     verify(tomcom, recording)
-    print(f"gaze over TCP: {len(sent)} samples recorded in order among 60 malformed lines; the recording verifies")
+    print(f"gaze over TCP: {len(sent)} samples recorded in order among 63 malformed lines; the recording verifies")
 
 
 def check_readme_sender(tomcom, scratch):

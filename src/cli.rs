@@ -26,6 +26,7 @@ use crate::edge::doctor;
 use crate::edge::files::{self, FileError};
 use crate::edge::log::{self, RulingError, WriteError};
 use crate::run::compare::Request;
+use crate::run::error::RunError;
 use crate::run::live::LiveError;
 use crate::run::options::{self, Beginning, Overrides, Series};
 use crate::run::plan::{self, Overview};
@@ -33,7 +34,6 @@ use crate::run::replay::Replay;
 use crate::run::rerun::save as save_stream;
 use crate::run::review::{self as console_over, ReviewError};
 use crate::run::series::{self, Sitting};
-use crate::run::simulate::SimulateError;
 use crate::run::standing::{self, Standing};
 use crate::run::{kitchen, simulate, sweep, tell, timing, verify};
 use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
@@ -80,11 +80,11 @@ impl From<RulingError> for Failure {
     }
 }
 
-impl From<SimulateError> for Failure {
-    fn from(error: SimulateError) -> Failure {
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Failure {
         match error {
-            SimulateError::File(error) => Failure::from(*error),
-            SimulateError::Recording(error) => Failure::from(error),
+            RunError::File(error) => Failure::from(*error),
+            RunError::Recording(error) => Failure::from(error),
         }
     }
 }

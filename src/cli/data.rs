@@ -10,7 +10,7 @@ use super::args::Format;
 use super::{Failure, print, progress};
 use crate::base::words::count;
 use crate::edge::forget::{self, Found};
-use crate::run::codes::{self, Coded, CodesError, CodesFigures};
+use crate::run::codes::{self, Coded, CodesFigures};
 use crate::run::review;
 use crate::session::settings::is_code;
 
@@ -32,15 +32,6 @@ pub(super) struct CodesArgs {
     /// How to print the figures.
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
-}
-
-impl From<CodesError> for Failure {
-    fn from(error: CodesError) -> Failure {
-        match error {
-            CodesError::File(error) => Failure::from(*error),
-            CodesError::Recording(error) => Failure::from(error),
-        }
-    }
 }
 
 pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {

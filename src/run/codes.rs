@@ -5,29 +5,13 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::error::RunError;
 use super::replay::Replay;
 use crate::base::words::count;
-use crate::edge::files::{FileError, FileResult};
-use crate::edge::log::{WriteError, codes};
+use crate::edge::files::FileResult;
+use crate::edge::log::codes;
 use crate::measures::coding::{Agreement, AgreementTable, Codes};
 use crate::session::settings::{ParticipantKind, is_code};
-
-/// Why codes could not be read or written.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum CodesError {
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    File(#[from] Box<FileError>),
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Recording(#[from] WriteError),
-}
-
-impl From<FileError> for CodesError {
-    fn from(error: FileError) -> CodesError {
-        CodesError::File(Box::new(error))
-    }
-}
 
 /// A recording with what was said about its errors.
 #[derive(Clone, Debug)]
@@ -139,7 +123,7 @@ impl CodesFigures {
 ///
 /// # Errors
 /// The file cannot be read, or a row is about no error of these recordings; or a folder cannot be written to.
-pub fn import(recordings: &mut [Coded], file: &Path) -> Result<u64, CodesError> {
+pub fn import(recordings: &mut [Coded], file: &Path) -> Result<u64, RunError> {
     let (text, rows) = codes::read_export(file)?;
     let mut changed = vec![Vec::new(); recordings.len()];
     for row in &rows {
@@ -177,7 +161,7 @@ pub fn import(recordings: &mut [Coded], file: &Path) -> Result<u64, CodesError> 
 ///
 /// # Errors
 /// It cannot be written.
-pub fn export(recordings: &[Coded], file: &Path) -> Result<u64, CodesError> {
+pub fn export(recordings: &[Coded], file: &Path) -> Result<u64, RunError> {
     let mut rows = Vec::new();
     for one in recordings {
         for (rater, codes) in &one.codes {

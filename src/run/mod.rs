@@ -8,6 +8,7 @@ pub mod codes;
 pub mod compare;
 mod desk;
 pub mod engine;
+pub mod error;
 pub mod figures;
 pub mod film;
 pub mod fit;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::engine::Engine;
+use super::error::RunError;
 use super::figures::{ConditionFigures, SimulationFigures, SimulationSums, TrialFigures};
 use super::parallel::Workers;
 use super::replay::Replay;
@@ -13,22 +14,11 @@ use super::{headless, kitchen, options};
 use crate::base::words::count;
 use crate::communication::settings::Shadow;
 use crate::edge::files::{FileError, SessionFiles};
-use crate::edge::log::{LogReader, LogWriter, WriteError, check_simulated, is_whole, ruling};
+use crate::edge::log::{LogReader, LogWriter, check_simulated, is_whole, ruling};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::settings::{Condition, ParticipantSpec, SessionSpec};
 use crate::session::{Header, Stamped};
-
-/// Why trials could not be simulated.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum SimulateError {
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    File(#[from] Box<FileError>),
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Recording(#[from] WriteError),
-}
 
 /// What to simulate.
 #[derive(Clone, Debug)]
@@ -96,7 +86,7 @@ pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
 ///
 /// # Errors
 /// A recording that could not be written, another one where it would be, or one with a broken file about its exclusion.
-pub fn simulate(simulation: &Simulation, done: impl Fn() + Sync) -> Result<SimulationFigures, SimulateError> {
+pub fn simulate(simulation: &Simulation, done: impl Fn() + Sync) -> Result<SimulationFigures, RunError> {
     let mut sums = SimulationSums::default();
     let began = Instant::now();
     let plan_lengths = kitchen::plan_lengths(
@@ -134,8 +124,8 @@ pub struct Simulated {
 pub fn each_trial(
     simulation: &Simulation,
     done: impl Fn() + Sync,
-    mut take: impl FnMut(Simulated) -> Result<(), SimulateError>,
-) -> Result<(), SimulateError> {
+    mut take: impl FnMut(Simulated) -> Result<(), RunError>,
+) -> Result<(), RunError> {
     // Before the first trial, so that none is simulated in vain.
     for trial in simulation.own_trials() {
         let header = header_of_trial(simulation, trial);
@@ -167,7 +157,7 @@ pub fn each_trial(
 ///
 /// # Errors
 /// Those of [`simulate`].
-pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>, SimulateError> {
+pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>, RunError> {
     let mut files = options::session_or_default(None).map_err(Box::new)?;
     (files.spec.plan, files.spec.seed) = (None, seed);
     (files.spec.trial.condition, files.spec.assistant.shadow) = (Condition::None, Shadow::Off);
@@ -207,7 +197,7 @@ fn simulate_trial(
     kitchen: &Arc<Kitchen>,
     trial: u64,
     cost: CostToGo,
-) -> Result<(Simulated, CostToGo), SimulateError> {
+) -> Result<(Simulated, CostToGo), RunError> {
     let header = header_of_trial(simulation, trial);
     let condition = header.session.trial.condition;
     let folder = folder_of_trial(&simulation.out, &header.session);

@@ -7,9 +7,10 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::error::RunError;
 use super::figures::{SimulationFigures, SimulationSums, TrialFigures};
 use super::kitchen::plan_lengths;
-use super::simulate::{SimulateError, Simulation, each_trial};
+use super::simulate::{Simulation, each_trial};
 use crate::communication::settings::Shadow;
 use crate::edge::files::FileError;
 use crate::edge::log::WriteError;
@@ -149,7 +150,7 @@ pub fn trials(simulation: &Simulation, axes: &[Axis]) -> u64 {
 ///
 /// # Errors
 /// Those of simulations, too many combinations, or a value that cannot be.
-pub fn sweep(simulation: &Simulation, axes: &[Axis], done: impl Fn() + Sync) -> Result<SweepFigures, SimulateError> {
+pub fn sweep(simulation: &Simulation, axes: &[Axis], done: impl Fn() + Sync) -> Result<SweepFigures, RunError> {
     let cells = grid(axes)?;
     let specs = cells.iter().map(|cell| spec_of(&simulation.files.spec, axes, cell)).collect::<Result<Vec<_>, _>>()?;
     let mut unassisted = simulation.clone();
@@ -174,7 +175,7 @@ pub fn sweep(simulation: &Simulation, axes: &[Axis], done: impl Fn() + Sync) -> 
 }
 
 /// Every combination of the values, the last axis the quickest.
-fn grid(axes: &[Axis]) -> Result<Vec<Cell>, SimulateError> {
+fn grid(axes: &[Axis]) -> Result<Vec<Cell>, RunError> {
     let wrong = |found: String, remedy: String| {
         Err(Box::new(FileError::at(Path::new("--sweep"), "", None, found, remedy)).into())
     };
@@ -198,7 +199,7 @@ fn grid(axes: &[Axis]) -> Result<Vec<Cell>, SimulateError> {
     Ok(cells)
 }
 
-fn spec_of(spec: &SessionSpec, axes: &[Axis], cell: &Cell) -> Result<SessionSpec, SimulateError> {
+fn spec_of(spec: &SessionSpec, axes: &[Axis], cell: &Cell) -> Result<SessionSpec, RunError> {
     let mut spec = spec.clone();
     for (axis, (_, value)) in axes.iter().zip(cell) {
         axis.set(&mut spec, value);
@@ -218,7 +219,7 @@ fn folder_of(cell: &Cell) -> String {
 }
 
 /// The trials of one cell, and the figures of all of them.
-fn of_cell(simulation: &Simulation, done: &(impl Fn() + Sync)) -> Result<(Counts, SimulationFigures), SimulateError> {
+fn of_cell(simulation: &Simulation, done: &(impl Fn() + Sync)) -> Result<(Counts, SimulationFigures), RunError> {
     let mut simulation = simulation.clone();
     // The assistant advises where it acts; advice beside a trial without signals would only take time.
     simulation.files.spec.assistant.shadow = Shadow::Off;

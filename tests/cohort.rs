@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use miette::Diagnostic;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::Sender;
 use tomcom::edge::files::{SessionFiles, read_session};
@@ -18,6 +19,7 @@ use tomcom::participant::SimulatedParticipant;
 use tomcom::participant::population::{Experience, Population};
 use tomcom::run::codes::{Coded, CodesFigures, export, import};
 use tomcom::run::simulate::{Shard, Simulation, simulate};
+use tomcom::run::study::reading::{self, Extent};
 use tomcom::run::sweep::{Axis, TABLE_NAME, sweep, trials};
 use tomcom::run::verify::verify;
 use tomcom::session::Event;
@@ -306,14 +308,14 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     let recording = PathBuf::from(&made.recordings[0]);
     let log = fs::read(recording.join(LOG_NAME)).expect("a log");
     let mut coded = vec![Coded::open(&recording).expect("a recording")];
-    assert_eq!(coded[0].errors.len() as u64, made.errors);
+    assert_eq!(coded[0].codable.errors.len() as u64, made.errors);
     let truth = coded[0].known.clone().expect("a simulated participant tells");
-    assert_eq!(truth.0.len(), coded[0].errors.len());
+    assert_eq!(truth.0.len(), coded[0].codable.errors.len());
     write(&recording, "R1", &truth).expect("written");
     // The second rater takes every belief for a slip.
     let slips = Codes(truth.0.keys().map(|press| (*press, Code::Slip)).collect());
     write(&recording, "R2", &slips).expect("written");
-    assert_eq!(read_all(&recording).expect("readable")["R1"], truth);
+    assert_eq!(read_all(&recording, &coded[0].codable).expect("readable")["R1"], truth);
 
     coded = vec![Coded::open(&recording).expect("a recording")];
     let figures = CodesFigures::of(&coded);
@@ -331,21 +333,43 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     }
     coded = vec![Coded::open(&recording).expect("a recording")];
     import(&mut coded, &table).expect("its own export");
-    assert_eq!(read_all(&recording).expect("readable"), [("R1".into(), truth), ("R2".into(), slips)].into());
+    assert_eq!(
+        read_all(&recording, &coded[0].codable).expect("readable"),
+        [("R1".into(), truth), ("R2".into(), slips)].into()
+    );
     assert!(fs::read(recording.join(LOG_NAME)).expect("a log") == log, "the log stays as it is");
 
     let name = recording.file_name().expect("a name").to_string_lossy().into_owned();
-    let first = coded[0].errors[0];
-    for (row, found) in [
-        (format!("{name},R1,{first},belief,the_moon"), "the aspect \"the_moon\""),
-        (format!("{name},R1,{first},belief,"), "cause \"belief\", aspect \"\""),
-        (format!("{name},R1,1,slip,"), "press 1, which was no error"),
-        (format!("{name},Jane Doe,{first},slip,"), "the rater \"Jane Doe\""),
-        (format!("elsewhere,R1,{first},slip,"), "the recording \"elsewhere\""),
+    let [first, second] = [0, 1].map(|index| coded[0].codable.errors[index]);
+    let right = format!("{name},R3,{second},slip,");
+    for (row, found, remedy) in [
+        (format!("{name},R1,{first},belief,the_moon"), "the aspect \"the_moon\"", "cooking_pot"),
+        (format!("{name},R1,{first},belief,"), "the cause \"belief\" with the aspect \"\"", "location"),
+        (format!("{name},R1,{first},slip,plate"), "the cause \"slip\" with the aspect \"plate\"", "none"),
+        (format!("{name},R1,{first},hunger,"), "the cause \"hunger\"", "belief, slip, race or other"),
+        (format!("{name},R1,1,slip,"), "press 1, which was no error", &format!("the nearest: {first}")),
+        (format!("{name},R1,first,slip,"), "the press \"first\"", "number"),
+        (format!("{name},R3,{second},race,"), &format!("press {second} again, after line 2"), "one line"),
+        (format!("{name},Jane Doe,{first},slip,"), "the rater \"Jane Doe\"", "never a name"),
+        (format!("elsewhere,R1,{first},slip,"), "the recording \"elsewhere\"", name.as_str()),
+        (format!("{name},R1,{first}"), "found record with 3 fields", "as many fields"),
     ] {
-        fs::write(&table, format!("recording,rater,press,cause,aspect\n{row}\n")).expect("written");
-        let told = import(&mut coded, &table).expect_err(&row).to_string();
-        assert!(told.contains(found) && told.contains("codes.csv:2"), "{told}");
+        fs::write(&table, format!("recording,rater,press,cause,aspect\n{right}\n{row}\n")).expect("written");
+        let told = import(&mut coded, &table).expect_err(&row);
+        let help = told.help().map(|help| help.to_string()).unwrap_or_default();
+        let told = told.to_string();
+        assert!(told.contains("codes.csv:3:") && told.contains(found) && help.contains(remedy), "{told}; {help}");
+    }
+    assert!(!recording.join("codes-R3.csv").exists(), "nothing of a table with a wrong row is taken over");
+
+    // The same beside the log, which somebody may have written by hand.
+    for (row, found) in [(format!("{first},belief,the_moon"), "the_moon"), ("1,slip,".to_string(), "no error")] {
+        fs::write(recording.join("codes-R3.csv"), format!("press,cause,aspect\n{row}\n")).expect("written");
+        let told = Coded::open(&recording).expect_err(&row).to_string();
+        assert!(told.contains("codes-R3.csv:2:") && told.contains(found), "{told}");
+        let extent = Extent { concepts: false, events: false };
+        let told = reading::read(&recording, "one", extent).err().map(|error| error.to_string());
+        assert!(told.as_ref().is_some_and(|told| told.contains("codes-R3.csv:2:")), "{told:?}");
     }
 }
 

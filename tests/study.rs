@@ -303,7 +303,7 @@ fn two_raters_say_why_people_erred() {
     let basis = |trial: &Trial| trial.beliefs.as_ref().map(|beliefs| beliefs.basis);
     let estimated = read();
     assert_eq!(basis(&estimated.trial), Some(Basis::Estimate));
-    let errors = Coded::open(&folder).expect("a recording").errors;
+    let errors = Coded::open(&folder).expect("a recording").codable.errors;
     assert!(errors.len() as u64 == estimated.trial.errors && errors.len() >= 2, "{errors:?}");
     let belief = |place: &str| Code::Belief(place.to_string());
     let say = |rater: &str, of: &dyn Fn(usize) -> Code, count: usize| {

@@ -82,7 +82,7 @@ impl Code {
         }
     }
 
-    /// What was believed wrong, in the state that the press met; none where it is no location of this kitchen.
+    /// What was believed wrong, in the state that the press met; none where nothing was.
     pub fn target(&self, kitchen: &Kitchen, state: State) -> Option<Target> {
         let location = kitchen.location_named(self.aspect()?)?;
         Some(match (kitchen.location(location).kind, state.order(location)) {
@@ -90,6 +90,45 @@ impl Code {
             (LocationKind::Order, _) => Target::Order(location, None),
             _ => Target::Place(location),
         })
+    }
+}
+
+/// What codes of a recording can be about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Codable {
+    /// The numbers of the presses that were errors, in order.
+    pub errors: Vec<u64>,
+    /// The names of the kitchen's locations.
+    pub places: Vec<String>,
+}
+
+impl Codable {
+    /// The errors among these presses, and the locations of their kitchen.
+    pub fn of(kitchen: &Kitchen, presses: &[JudgedPress]) -> Codable {
+        Codable {
+            errors: presses.iter().filter(|press| press.verdict.error).map(|press| press.seq).collect(),
+            places: kitchen.locations.iter().map(|location| location.name.clone()).collect(),
+        }
+    }
+
+    /// What cannot be of a code for the press with this number, and what would be right.
+    pub fn fault(&self, press: u64, code: &Code) -> Option<(String, String)> {
+        if !self.errors.contains(&press) {
+            return Some((format!("press {press}, which was no error"), self.nearest(press)));
+        }
+        let aspect = code.aspect().filter(|aspect| !self.places.iter().any(|place| place == aspect))?;
+        Some((format!("the aspect \"{aspect}\""), format!("one of {}", self.places.join(", "))))
+    }
+
+    /// The errors around a press, in words.
+    fn nearest(&self, press: u64) -> String {
+        let after = self.errors.partition_point(|&error| error < press);
+        let around = [after.checked_sub(1).map(|before| self.errors[before]), self.errors.get(after).copied()];
+        let around: Vec<String> = around.iter().flatten().map(u64::to_string).collect();
+        match around.is_empty() {
+            true => "no code: nothing in this recording was an error".to_string(),
+            false => format!("the number of an error in its log; the nearest: {}", around.join(" and ")),
+        }
     }
 }
 

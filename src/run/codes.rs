@@ -10,17 +10,14 @@ use super::replay::Replay;
 use crate::base::words::count;
 use crate::edge::files::FileResult;
 use crate::edge::log::codes;
-use crate::measures::coding::{Agreement, AgreementTable, Codes};
+use crate::measures::coding::{Agreement, AgreementTable, Codable, Codes};
 use crate::session::settings::{ParticipantKind, is_code};
 
 /// A recording with what was said about its errors.
 #[derive(Clone, Debug)]
 pub struct Coded {
     pub folder: PathBuf,
-    /// The names of the kitchen's locations.
-    places: Vec<String>,
-    /// The numbers of the presses that were errors.
-    pub errors: Vec<u64>,
+    pub codable: Codable,
     /// By rater.
     pub codes: BTreeMap<String, Codes>,
     /// Of a simulated participant: what is true.
@@ -42,10 +39,10 @@ impl Coded {
         let kitchen = &replay.session().kitchen;
         let is_known = !judged.is_empty() && judged.iter().all(|press| press.belief_known);
         let folder = replay.log().folder().to_path_buf();
+        let codable = Codable::of(kitchen, judged);
         Ok(Coded {
-            places: kitchen.locations.iter().map(|location| location.name.clone()).collect(),
-            errors: judged.iter().filter(|press| press.verdict.error).map(|press| press.seq).collect(),
-            codes: codes::read_all(&folder)?,
+            codes: codes::read_all(&folder, &codable)?,
+            codable,
             known: is_known.then(|| Codes::known(kitchen, judged)),
             folder,
         })
@@ -103,7 +100,7 @@ impl CodesFigures {
         }
         let recording = |one: &Coded| CodedFigures {
             recording: one.name(),
-            errors: one.errors.len() as u64,
+            errors: one.codable.errors.len() as u64,
             coded: one.codes.iter().map(|(rater, codes)| (rater.clone(), codes.0.len() as u64)).collect(),
         };
         let pair = |((of, with), table): ((String, String), AgreementTable)| PairFigures {
@@ -126,23 +123,21 @@ impl CodesFigures {
 pub fn import(recordings: &mut [Coded], file: &Path) -> Result<u64, RunError> {
     let (text, rows) = codes::read_export(file)?;
     let mut changed = vec![Vec::new(); recordings.len()];
+    let names: Vec<String> = recordings.iter().map(Coded::name).collect();
     for row in &rows {
         let wrong = |found: String, remedy: &str| codes::wrong_line(file, &text, row.line, found, remedy);
-        let Some(index) = recordings.iter().position(|one| one.name() == row.recording) else {
+        let Some(index) = names.iter().position(|name| *name == row.recording) else {
             let found = format!("the recording \"{}\"", row.recording);
-            return Err(wrong(found, "one of the recordings that were named").into());
+            let remedy = format!("a recording that was named: {}", names.join(", "));
+            return Err(wrong(found, &remedy).into());
         };
         let one = &mut recordings[index];
         if !is_code(&row.rater) {
             let remedy = "a code of 1 to 32 letters, digits, - and _; never a name";
             return Err(wrong(format!("the rater \"{}\"", row.rater), remedy).into());
         }
-        if !one.errors.contains(&row.press) {
-            return Err(wrong(format!("press {}, which was no error", row.press), "the number of an error").into());
-        }
-        if let Some(aspect) = row.code.aspect().filter(|aspect| !one.places.iter().any(|place| place == aspect)) {
-            let remedy = format!("one of {}", one.places.join(", "));
-            return Err(wrong(format!("the aspect \"{aspect}\""), &remedy).into());
+        if let Some((found, remedy)) = one.codable.fault(row.press, &row.code) {
+            return Err(wrong(found, &remedy).into());
         }
         one.codes.entry(row.rater.clone()).or_default().0.insert(row.press, row.code.clone());
         changed[index].push(row.rater.clone());

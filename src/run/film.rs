@@ -63,12 +63,6 @@ impl Film {
         self
     }
 
-    /// The numbers of the presses that were errors.
-    pub fn error_presses(&self) -> Vec<u64> {
-        let judged = self.replay.follower.judged.iter();
-        judged.filter(|press| press.verdict.error).map(|press| press.seq).collect()
-    }
-
     /// Reads what was added since; whether anything was.
     ///
     /// # Errors

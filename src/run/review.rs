@@ -18,6 +18,7 @@ use crate::console::{Command, Keys, Message, Model, update};
 use crate::edge::files::{FileError, key_map};
 use crate::edge::log::{Ending, codes};
 use crate::edge::terminal::{Hands, Screen, asked_to_end, theme};
+use crate::measures::coding::Codable;
 use crate::session::Event;
 
 /// At most 30 frames a second.
@@ -69,8 +70,9 @@ pub fn review(recording: &Path, follow: bool, compare: Option<&Request>) -> Resu
 /// The recording or its codes cannot be read, or there is no terminal.
 pub fn rate(recording: &Path, rater: &str) -> Result<(), ReviewError> {
     let film = Film::open(recording)?.blinded();
-    let codes = codes::read(film.replay.log().folder(), rater)?;
-    let coding = Coding { rater: rater.to_string(), errors: film.error_presses(), codes };
+    let codable = Codable::of(&film.replay.session().kitchen, &film.replay.follower.judged);
+    let codes = codes::read(film.replay.log().folder(), rater, &codable)?;
+    let coding = Coding { rater: rater.to_string(), errors: codable.errors, codes };
     on_thread(Review::open(film, recording, false, None, Some(coding))?)
 }
 

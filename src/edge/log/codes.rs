@@ -7,15 +7,14 @@ use std::path::{Path, PathBuf};
 
 use super::WriteError;
 use crate::edge::files::{FileError, FileResult};
-use crate::measures::coding::{Code, Codes, Kind};
+use crate::measures::coding::{Codable, Code, Codes, Kind};
 use crate::session::settings::is_code;
 
 /// The columns of the file; those of an export of several recordings have two more before them.
 const COLUMNS: [&str; 3] = ["press", "cause", "aspect"];
 const EXPORT_COLUMNS: [&str; 5] = ["recording", "rater", "press", "cause", "aspect"];
-/// What would be right.
-const REMEDY: &str = "press,cause,aspect: the number of the press in its log; belief, slip, race or other; and of beliefs the \
-                      location that is believed wrong";
+/// What would be right of a line that is no row at all.
+const REMEDY: &str = "as many fields as the first line has";
 
 /// A row of an export.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,30 +31,36 @@ pub struct Row {
 /// What one rater says about the recording in this folder; nothing, if there is no such file.
 ///
 /// # Errors
-/// The file is there but cannot be read, or says something else.
-pub fn read(folder: &Path, rater: &str) -> FileResult<Codes> {
+/// The file is there but cannot be read, or says something that cannot be of this recording.
+pub fn read(folder: &Path, rater: &str, codable: &Codable) -> FileResult<Codes> {
     let path = path(folder, rater);
     let text = match fs::read_to_string(&path) {
         Ok(text) => text,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Codes::default()),
         Err(reason) => return Err(FileError::unreadable(&path, reason, "a readable text file (UTF-8)")),
     };
-    let rows = rows(&path, &text, &COLUMNS)?;
-    Ok(Codes(rows.into_iter().map(|(_, _, press, code)| (press, code)).collect()))
+    let mut codes = Codes::default();
+    for (line, _, press, code) in rows(&path, &text, &COLUMNS)? {
+        if let Some((found, remedy)) = codable.fault(press, &code) {
+            return Err(wrong_line(&path, &text, line, found, &remedy));
+        }
+        codes.0.insert(press, code);
+    }
+    Ok(codes)
 }
 
 /// What all raters say about the recording in this folder, by rater.
 ///
 /// # Errors
 /// Those of [`read`], or the folder cannot be read.
-pub fn read_all(folder: &Path) -> FileResult<BTreeMap<String, Codes>> {
+pub fn read_all(folder: &Path, codable: &Codable) -> FileResult<BTreeMap<String, Codes>> {
     let unreadable = |reason| FileError::unreadable(folder, reason, "the folder of a recording");
     let mut all = BTreeMap::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let name = entry.map_err(unreadable)?.file_name().to_string_lossy().into_owned();
         let rater = name.strip_prefix("codes-").and_then(|name| name.strip_suffix(".csv"));
         if let Some(rater) = rater.filter(|rater| is_code(rater)) {
-            all.insert(rater.to_string(), read(folder, rater)?);
+            all.insert(rater.to_string(), read(folder, rater, codable)?);
         }
     }
     Ok(all)
@@ -121,7 +126,8 @@ pub fn wrong_line(path: &Path, text: &str, line: usize, found: String, remedy: &
 /// Line, the fields before the code, the number of the press, and the code.
 type ParsedRow = (usize, Vec<String>, u64, Code);
 
-/// The rows of a table; the last three of its columns are a press and its code.
+/// The rows of a table; the last three of its columns are a press and its code. No press stands twice in it, of a rater in a
+/// recording.
 fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<ParsedRow>> {
     let mut table = csv::Reader::from_reader(text.as_bytes());
     let broken = |error: csv::Error| {
@@ -133,23 +139,33 @@ fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<ParsedRow>>
         let remedy = format!("the columns {}", columns.join(","));
         return Err(wrong_line(path, text, 1, format!("the columns {}", head.join(",")), &remedy));
     }
-    let mut rows = Vec::new();
+    let mut rows: Vec<ParsedRow> = Vec::new();
+    let mut lines = BTreeMap::new();
     for record in table.records() {
         let record = record.map_err(broken)?;
         let line = record.position().map_or(1, |position| position.line() as usize);
         let before: Vec<String> = record.iter().take(columns.len() - 3).map(str::to_string).collect();
         let field = |back: usize| record.get(columns.len() - back).unwrap_or_default();
-        let aspect = Some(field(1)).filter(|aspect| !aspect.is_empty());
-        let code = Kind::named(field(2)).and_then(|kind| Code::new(kind, aspect));
-        match (field(3).parse(), code) {
-            (Ok(press), Some(code)) => rows.push((line, before, press, code)),
-            _ => {
-                let found = format!("press \"{}\", cause \"{}\", aspect \"{}\"", field(3), field(2), field(1));
-                return Err(wrong_line(path, text, line, found, REMEDY));
-            }
+        let wrong = |(found, remedy): (String, &str)| wrong_line(path, text, line, found, remedy);
+        let (press, code) = said(field(3), field(2), field(1)).map_err(wrong)?;
+        if let Some(first) = lines.insert((before.clone(), press), line) {
+            let found = format!("press {press} again, after line {first}");
+            return Err(wrong((found, "one line for a press, of each rater")));
         }
+        rows.push((line, before, press, code));
     }
     Ok(rows)
+}
+
+/// A press and its code as they stand in a row, or what was found there and what would be right.
+fn said(press: &str, cause: &str, aspect: &str) -> Result<(u64, Code), (String, &'static str)> {
+    let number = press.parse();
+    let number = number.map_err(|_| (format!("the press \"{press}\""), "the number of the press in its log"))?;
+    let kind = Kind::named(cause);
+    let kind = kind.ok_or_else(|| (format!("the cause \"{cause}\""), "belief, slip, race or other"))?;
+    let code = Code::new(kind, Some(aspect).filter(|aspect| !aspect.is_empty()));
+    let remedy = "the location that is believed wrong with \"belief\", and none with other causes";
+    Ok((number, code.ok_or_else(|| (format!("the cause \"{cause}\" with the aspect \"{aspect}\""), remedy))?))
 }
 
 fn path(folder: &Path, rater: &str) -> PathBuf {

@@ -13,7 +13,7 @@ use crate::edge::log::{LogReader, at_line, codes};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Kitchen};
 use crate::measures::attribution::{Attributor, Cause};
-use crate::measures::coding::{Codes, Kind};
+use crate::measures::coding::{Codable, Codes, Kind};
 use crate::measures::matching::{Said, WINDOW};
 use crate::measures::sequences::{Sequence, sequences, sequences_by_target};
 use crate::measures::{JudgedPress, median};
@@ -169,7 +169,7 @@ pub fn read(recording: &Path, name: &str, extent: Extent) -> FileResult<Option<(
         }
     }
     let standing = Standing::of(&pass.follower().session, &log)?;
-    let raters = raters(&log)?;
+    let raters = raters(&log, pass.follower())?;
     let lanes = lanes(&mut pass);
     let follower = pass.follower();
     let by_estimate = by_estimate.map(|found| found.causes);
@@ -224,8 +224,9 @@ fn sent(session: &Session) -> Vec<Said> {
 }
 
 /// What the first two raters by name say about a recording; nothing where there are not two.
-fn raters(log: &LogReader) -> FileResult<Option<[Codes; 2]>> {
-    let mut all = codes::read_all(log.folder())?.into_values();
+fn raters(log: &LogReader, follower: &Follower) -> FileResult<Option<[Codes; 2]>> {
+    let codable = Codable::of(&follower.session.kitchen, &follower.judged);
+    let mut all = codes::read_all(log.folder(), &codable)?.into_values();
     Ok(all.next().zip(all.next()).map(|(one, other)| [one, other]))
 }
 

@@ -359,7 +359,8 @@ fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
 }
 
 fn examine(args: &DoctorArgs) -> Result<(), Failure> {
-    let found = doctor::examine(&args.out);
+    let files = options::session_or_default(args.session.as_deref())?;
+    let found = doctor::examine(&files.spec, &args.out);
     print(args.format, &found, || doctor::describe(&found))?;
     if found.healthy { Ok(()) } else { Err(Failure::No) }
 }

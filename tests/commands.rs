@@ -1,6 +1,7 @@
 //! The commands as they are typed: exit codes, what is on stdout, and what is said about wrong files.
 
 use std::fs;
+use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -322,7 +323,42 @@ fn doctor_looks_at_the_machine_and_says_how_to_mend_it() {
         assert_eq!(check["remedy"].is_string(), check["verdict"] != "ok", "{check}");
     }
     let told = check(&["doctor", "--out", "/proc/nowhere"], 1);
-    assert!(String::from_utf8_lossy(&told.stdout).contains("FAILED  recordings"), "{told:?}");
+    let told = String::from_utf8_lossy(&told.stdout).into_owned();
+    assert!(told.contains("FAILED  recordings        /proc/nowhere is not there yet, and /proc"), "{told}");
+    assert!(!told.contains("free space"), "where there is no disk, none of it is free:\n{told}");
+}
+
+#[test]
+fn doctor_looks_at_what_a_session_names() {
+    let layout = Path::new(env!("CARGO_MANIFEST_DIR")).join("layouts/sushi.toml");
+    let session = folder("doctor-session").join("session.toml");
+    let taken = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
+    let port = taken.local_addr().expect("an address").port();
+    let session_path = session.to_str().expect("a path in UTF-8");
+    let verdict = |settings: &str, name: &str| {
+        fs::write(&session, format!("layout = \"{}\"\n{settings}", layout.display())).expect("a session file");
+        let found = figures(&["doctor", session_path, "--format", "json"], 1);
+        let check = found["checks"].as_array().and_then(|checks| checks.iter().find(|check| check["name"] == name));
+        let told = |key: &str| check.and_then(|check| check[key].as_str()).unwrap_or_default().to_string();
+        (told("verdict"), told("found"))
+    };
+    for (kind, expected) in [("simulated", "warning"), ("display", "failed")] {
+        let page = format!("[participant]\nkind = \"{kind}\"\n[display]\nport = {port}\n");
+        let (found, words) = verdict(&page, "wall display");
+        assert_eq!((found.as_str(), words.contains(&port.to_string())), (expected, true), "{kind}: {words}");
+    }
+    let (found, words) = verdict(&format!("[participant]\ngaze = \"json\"\ngaze_port = {port}\n"), "gaze");
+    assert_eq!((found.as_str(), words.contains(&port.to_string())), ("failed", true), "{words}");
+    let nobody = "[participant]\ngaze = \"pupil\"\n[tracker]\nport = 1\n";
+    let (found, words) = verdict(nobody, "eye tracker");
+    assert_eq!((found.as_str(), words.contains("127.0.0.1:1")), ("failed", true), "{words}");
+    let surface = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pupil/gaze_positions_on_surface_wall.csv");
+    for (file, expected) in [(surface.as_path(), "ok"), (Path::new("nowhere.csv"), "failed")] {
+        let settings = format!("[participant]\ngaze = \"file\"\n[tracker]\nfile = \"{}\"\n", file.display());
+        let (found, words) = verdict(&settings, "gaze");
+        assert_eq!(found, expected, "{words}");
+    }
+    assert!(complaint(&["doctor", "sessions/nowhere.toml"]).contains("sessions/nowhere.toml"));
 }
 
 #[test]
@@ -433,6 +469,15 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     let knew = &differences[differences.len() - 1]["knew"];
     assert_eq!(knew["beliefs"].as_array().map(Vec::len), Some(16), "every aspect");
     assert!(knew["advice"].is_object(), "{knew}");
+    let only = figures(&["compare", recordings[0], "--only", "dev", "--format", "json"], 0);
+    let only_pairs = only["pairs"].as_array().expect("pairs");
+    assert_eq!(only_pairs.len(), 1, "{only_pairs:?}");
+    assert_eq!((&only_pairs[0]["of"], &only_pairs[0]["with"]), (&pairs[1]["of"], &pairs[1]["with"]));
+    let about_dev = |difference: &&Value| ["by", "not_by"].iter().all(|key| difference[key] != "tom");
+    let expected: Vec<&Value> = differences.iter().filter(about_dev).collect();
+    let found: Vec<&Value> = only["recordings"][0]["differences"].as_array().expect("differences").iter().collect();
+    assert!(!found.is_empty() && found.len() < differences.len(), "{} of {}", found.len(), differences.len());
+    assert_eq!(found, expected, "with the numbers that they have among all");
     let opened = check(&["compare", recordings[0], "--with", "dev", "--open", "1"], 0);
     let opened = String::from_utf8_lossy(&opened.stdout).into_owned();
     for told in ["not said by", "believed wrong, by the estimate", "truly: ", "on the wizard's screen: "] {
@@ -441,6 +486,7 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     assert!(complaint(&["compare", recordings[0], "--open", "999"]).contains("a number of the list of differences"));
     assert!(complaint(&["compare", recordings[0], "--seed", "3"]).contains("--seed, with recordings"));
     assert!(complaint(&["compare", session, "--open", "1"]).contains("--open, with a session"));
+    assert!(complaint(&["compare", session, "--only", "tom"]).contains("--only, with a session"));
     assert!(complaint(&["compare", "tests/golden"]).contains("events.jsonl"));
     let swept = figures(&["compare", recordings[0], "--sweep", "--format", "json"], 0);
     let swept: Vec<u64> =

@@ -23,6 +23,7 @@ use tomcom::console::model::{Dialog, Level, Recording};
 use tomcom::console::panels::Panel;
 use tomcom::console::picker::{Picker, Question};
 use tomcom::console::playback::Playback;
+use tomcom::console::preflight::checks;
 use tomcom::console::screen::screen;
 use tomcom::console::view::regions::Regions;
 use tomcom::console::view::theme::{Ground, Role, Theme};
@@ -794,6 +795,20 @@ fn a_lost_keyboard_is_an_alarm_and_an_event() {
         assert!(screen.contains("NO KEYBOARD") && screen.contains("THE KEYBOARD IS ELSEWHERE"), "{screen}");
     }
     assert_eq!(input(update(&mut stage.model, &stage.session, Message::Focus(true))), Some(Event::FocusRegained));
+}
+
+#[test]
+fn what_mends_is_told_with_the_keys_that_hold() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Display);
+    stage.session.spec.participant.gaze = GazeSource::Pupil;
+    let remedy = |stage: &Stage| {
+        let checks = checks(&stage.session, &stage.model);
+        checks.into_iter().find(|check| check.name == "calibration").and_then(|check| check.remedy).unwrap_or_default()
+    };
+    assert!(remedy(&stage).starts_with("^v checks the gaze"), "{}", remedy(&stage));
+    let map: KeyMap = toml::from_str("[console]\ncheck_gaze = \"f9\"\n").expect("a key file");
+    stage.model.keys = Keys::live(&stage.session.kitchen, &stage.session.spec, &map).expect("f9 is free");
+    assert!(remedy(&stage).starts_with("f9 checks the gaze"), "{}", remedy(&stage));
 }
 
 #[test]

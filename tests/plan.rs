@@ -23,13 +23,41 @@ use tomcom::run::engine::Engine;
 use tomcom::run::verify::verify;
 use tomcom::session::event::EndReason;
 use tomcom::session::orders::OrderList;
-use tomcom::session::plan::{Made, Next, Outcome, Participants, PhaseSpec, Progress, StepSpec, Study, Wanted};
+use tomcom::session::plan::{Item, Made, Next, Outcome, Participants, PhaseSpec, Progress, StepSpec, Study, Wanted};
 use tomcom::session::protocol::ProtocolEvent;
 use tomcom::session::settings::Condition;
 use tomcom::session::{Event, Header, Phase};
 
 fn files() -> SessionFiles {
     read_session(Path::new("sessions/study.toml")).expect("the study of the project")
+}
+
+/// The same questionnaire in another language: only words differ, so that answers are analysed together.
+#[test]
+fn a_session_asks_in_its_own_language() {
+    let folder = folder("language");
+    let root = env!("CARGO_MANIFEST_DIR");
+    let text = fs::read_to_string("sessions/study.toml").expect("the study of the project");
+    let text = text.replace("\"questionnaires/", &format!("\"{root}/sessions/questionnaires/"));
+    let text = text.replace("\"../", &format!("\"{root}/"));
+    fs::write(folder.join("dutch.toml"), "language = \"nl\"\n").expect("written");
+    let in_language = |language: &str| {
+        let session = folder.join("session.toml");
+        fs::write(&session, format!("{text}\n[display]\nlanguage = \"{language}\"\n")).expect("written");
+        match read_session(&session) {
+            Ok(files) => files.questionnaires.into_iter().next().expect("a questionnaire"),
+            Err(error) => panic!("{language}: {error}"),
+        }
+    };
+    let [english, german, dutch] = ["en", "de", "dutch.toml"].map(in_language);
+    assert_eq!((english.language.as_str(), german.language.as_str()), ("en", "de"));
+    assert_eq!(dutch, english, "what is not there in a language is asked as it stands in the plan");
+    assert_eq!((&german.name, german.scale.points), (&english.name, english.scale.points));
+    assert_eq!(german.items.len(), english.items.len());
+    for (one, other) in german.items.iter().zip(&english.items) {
+        assert_ne!(one.text, other.text);
+        assert_eq!(Item { text: other.text.clone(), ..one.clone() }, *other);
+    }
 }
 
 fn study(change: impl Fn(&mut SessionFiles)) -> Study {

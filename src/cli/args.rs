@@ -374,12 +374,16 @@ pub(super) struct ExcludeArgs {
     pub(super) format: Format,
 }
 
-/// Checks terminal, place for recordings, and clocks; says how to mend what is not as it should be.
+/// Checks terminal, place for recordings, clocks, the port of the wall display and where gaze comes from; says how to mend
+/// what is not as it should be.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Exit code 0: the program works here. 1: something is broken.\nExample: tomcom doctor --out recordings"
+    after_help = "Exit code 0: the session works here. 1: something is broken.\nExamples: tomcom doctor --out recordings\n          \
+                  tomcom doctor sessions/study.toml"
 )]
 pub(super) struct DoctorArgs {
+    /// The session file whose settings hold; by default sessions/default.toml, or the one that the program carries.
+    pub(super) session: Option<PathBuf>,
     /// Where the recordings would go.
     #[arg(long, default_value = "sessions")]
     pub(super) out: PathBuf,

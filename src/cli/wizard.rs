@@ -20,7 +20,7 @@ use crate::session::settings::is_code;
 /// Sets wizard and assistants side by side: what each said, what of it matches, and what each knew where they differ.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples: tomcom compare sessions/2026-03-14-P07-1 --with tom,dev\n          tomcom compare sessions/2026-03-14-P07-1 --follow\n          tomcom compare sessions/default.toml"
+    after_help = "Examples: tomcom compare sessions/2026-03-14-P07-1 --with tom,dev\n          tomcom compare sessions/2026-03-14-P07-* --only tom\n          tomcom compare sessions/2026-03-14-P07-1 --follow\n          tomcom compare sessions/default.toml"
 )]
 pub(super) struct CompareArgs {
     /// Folders of recordings, or their events.jsonl; or a session file, to operate it with the comparison in front (by default
@@ -33,6 +33,9 @@ pub(super) struct CompareArgs {
     /// Further concepts beside the session's own, with commas between them.
     #[arg(long, value_enum, value_delimiter = ',')]
     with: Vec<ConceptArg>,
+    /// Show only what is about these concepts, and about no others; each is asked, as by --with.
+    #[arg(long, value_enum, value_delimiter = ',', conflicts_with = "follow")]
+    only: Vec<ConceptArg>,
     /// Communications match within so many presses of the human.
     #[arg(long, default_value_t = WINDOW, value_parser = clap::value_parser!(u32).range(0..=100))]
     window: u32,
@@ -86,7 +89,7 @@ pub(super) struct TrainArgs {
 }
 
 pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
-    let with: Vec<ConceptName> = args.with.iter().map(|&concept| concept.into()).collect();
+    let with: Vec<ConceptName> = args.with.iter().chain(&args.only).map(|&concept| concept.into()).collect();
     let request = |window: u32| Request { with: with.clone(), window };
     let session = match &args.paths[..] {
         [] => Some(None),
@@ -113,6 +116,10 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     for &window in &windows[1..] {
         figures.pairs.extend(CompareFigures::of(&watch(window)?).pairs);
     }
+    if !args.only.is_empty() {
+        let only: Vec<ConceptName> = args.only.iter().map(|&concept| concept.into()).collect();
+        figures = figures.only(&only);
+    }
     if let Some(wizard) = &args.wizard {
         figures.training = Some(TrainingFigures::read(&args.training, &code_of(wizard)?)?);
     }
@@ -134,7 +141,12 @@ fn check_flags(args: &CompareArgs, is_session: bool) -> Result<(), Failure> {
         ("--concept", flags.concept.is_some()),
         ("--seed", flags.seed.is_some()),
     ];
-    let of_recordings = [("--sweep", args.sweep), ("--open", args.open.is_some()), ("--wizard", args.wizard.is_some())];
+    let of_recordings = [
+        ("--sweep", args.sweep),
+        ("--only", !args.only.is_empty()),
+        ("--open", args.open.is_some()),
+        ("--wizard", args.wizard.is_some()),
+    ];
     let (strange, help) = match is_session {
         true => (&of_recordings[..], "recordings, or a session without it"),
         false => (&of_session[..], "a session file, or recordings without it: their headers say it"),

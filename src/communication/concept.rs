@@ -35,6 +35,9 @@ pub enum ConceptName {
 }
 
 impl ConceptName {
+    /// All of them.
+    pub const ALL: [ConceptName; 4] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev, ConceptName::None];
+
     /// As it stands in files.
     pub fn name(self) -> &'static str {
         match self {

@@ -17,7 +17,7 @@ pub const OVERRIDE: char = 'o';
 
 /// Looks at everything.
 pub fn checks(session: &Session, model: &Model) -> Vec<Check> {
-    let mut checks = participant(session, model.now);
+    let mut checks = participant(session, model.now, &key(model, Hand::Calibrate));
     checks.extend(model.display.as_ref().map(DisplayHealth::check));
     checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);
     checks.extend(model.viewers.as_ref().map(viewers));
@@ -29,15 +29,20 @@ pub fn all_ok(checks: &[Check]) -> bool {
     checks.iter().all(|check| check.verdict == Verdict::Ok)
 }
 
+/// The key of something that the hands do.
+fn key(model: &Model, hand: Hand) -> String {
+    model.keys.of(&Action::Hand(hand)).map(|key| key.to_string()).unwrap_or_default()
+}
+
 fn robot(session: &Session, model: &Model) -> Check {
-    let key = |action: &Action| model.keys.of(action).map(|key| key.to_string()).unwrap_or_default();
     match (session.robot.stopped, session.robot.held) {
         (true, _) => {
-            Check::new("robot", Verdict::Failed, "stopped", format!("{} lets it go on", key(&Action::ResumeRobot)))
+            let resume = model.keys.of(&Action::ResumeRobot).map(|key| key.to_string()).unwrap_or_default();
+            Check::new("robot", Verdict::Failed, "stopped", format!("{resume} lets it go on"))
         }
         (false, true) => {
-            let key = key(&Action::Hand(Hand::HoldRobot));
-            Check::new("robot", Verdict::Warning, "held before its first press", format!("{key} releases it"))
+            let release = key(model, Hand::HoldRobot);
+            Check::new("robot", Verdict::Warning, "held before its first press", format!("{release} releases it"))
         }
         (false, false) => Check::ok("robot", "ready"),
     }

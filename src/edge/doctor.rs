@@ -1,9 +1,10 @@
-//! What the program needs of the machine that it runs on: terminal, a place for recordings, clocks. Every finding says
-//! how to mend it.
+//! What the program, and a session, need of the machine: terminal, a place for recordings, clocks, ports, trackers. Every
+//! finding says how to mend it.
+
+mod devices;
 
 use std::fs;
 use std::io::{self, IsTerminal, Write};
-use std::net::{SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -14,14 +15,12 @@ use serde::Serialize;
 use super::ask::ask;
 use super::clock::WallTime;
 use super::log::Lock;
-use super::pupil;
 use super::terminal::theme;
 use super::viewer::{self, Viewer};
 use crate::console::view::theme::Ground;
-use crate::session::display::DisplaySpec;
+use crate::session::SessionSpec;
 use crate::session::preflight::{Check, Verdict, space};
 use crate::session::settings::ConsoleSpec;
-use crate::session::tracker::TrackerSpec;
 
 /// The console breathes from here on, in columns and rows.
 const ROOMY: (u16, u16) = (120, 40);
@@ -38,12 +37,16 @@ pub struct Findings {
     pub checks: Vec<Check>,
 }
 
-/// Looks at everything; `out` is where recordings would go.
-pub fn examine(out: &Path) -> Findings {
-    let mut checks = terminal();
-    checks.push(folder(out));
-    checks.push(space(free_bytes(&existing(out)).ok()));
-    checks.extend([wall_clock(), timer(), display(), viewer(), eye_tracker()]);
+/// Looks at everything that a session with these settings needs; `out` is where its recordings would go.
+pub fn examine(spec: &SessionSpec, out: &Path) -> Findings {
+    let mut checks = terminal(&spec.console);
+    let place = folder(out);
+    // Where nothing can be written, it does not matter how much there is.
+    let room = (place.verdict == Verdict::Ok).then(|| space(free_bytes(&existing(out)).ok()));
+    checks.push(place);
+    checks.extend(room);
+    checks.extend([wall_clock(), timer(), devices::display(spec), viewer()]);
+    checks.push(devices::gaze(spec));
     let healthy = checks.iter().all(|check| check.verdict != Verdict::Failed);
     Findings { healthy, checks }
 }
@@ -62,12 +65,12 @@ pub fn describe(findings: &Findings) -> String {
     findings.checks.iter().map(line).collect()
 }
 
-fn terminal() -> Vec<Check> {
+fn terminal(spec: &ConsoleSpec) -> Vec<Check> {
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
         let remedy = "run it in a terminal, not through a pipe";
         return vec![Check::new("terminal", Verdict::Failed, "input or output is no terminal", remedy)];
     }
-    let mut checks = vec![screen_size(), colours()];
+    let mut checks = vec![screen_size(), colours(spec)];
     let keys = match supports_keyboard_enhancement() {
         Ok(true) => (Verdict::Ok, "the terminal reports them: a held key is told from a second press"),
         _ => (Verdict::Warning, "the terminal does not report them: a held key is told from a second press by time"),
@@ -104,8 +107,8 @@ fn screen_size() -> Check {
     )
 }
 
-fn colours() -> Check {
-    let (theme, count) = (theme(&ConsoleSpec::default(), Ground::Dark), available_color_count());
+fn colours(spec: &ConsoleSpec) -> Check {
+    let (theme, count) = (theme(spec, Ground::Dark), available_color_count());
     let signs = if theme.unicode { "Unicode signs" } else { "ASCII signs" };
     let remedy =
         "TERM=xterm-256color, no NO_COLOR, and a UTF-8 locale such as LC_ALL=C.UTF-8, if the terminal has them";
@@ -135,7 +138,12 @@ fn existing(out: &Path) -> PathBuf {
 
 /// Writes where recordings would be written, and takes it away again.
 fn folder(out: &Path) -> Check {
-    let probe = existing(out).join(format!(".tomcom-doctor-{}", std::process::id()));
+    let there = existing(out);
+    let place = match out.is_dir() {
+        true => out.display().to_string(),
+        false => format!("{} is not there yet, and {} where it will be", out.display(), there.display()),
+    };
+    let probe = there.join(format!(".tomcom-doctor-{}", std::process::id()));
     let tried = fs::create_dir(&probe).map_err(|reason| reason.to_string()).and_then(|()| {
         let _lock = Lock::take(&probe).map_err(|error| error.to_string())?;
         let began = Instant::now();
@@ -147,10 +155,13 @@ fn folder(out: &Path) -> Check {
     let remedy = "a folder that can be written to, with --out";
     match tried {
         Ok(took) => {
-            let found = format!("{} can be written to (64 KiB on the disk in {} ms)", out.display(), took.as_millis());
+            let found = format!("{place} can be written to (64 KiB on the disk in {} ms)", took.as_millis());
             Check::new("recordings", Verdict::Ok, found, remedy)
         }
-        Err(reason) => Check::new("recordings", Verdict::Failed, format!("{}: {reason}", out.display()), remedy),
+        Err(reason) => {
+            let found = format!("{place} cannot be written to: {reason}");
+            Check::new("recordings", Verdict::Failed, found, remedy)
+        }
     }
 }
 
@@ -177,17 +188,6 @@ fn wall_clock() -> Check {
     Check::new("wall clock", verdict, now.rfc3339(), remedy)
 }
 
-/// Whether the participant's page can be served where it is by default.
-fn display() -> Check {
-    let display = DisplaySpec::default();
-    let address = SocketAddr::new(display.listen, display.port);
-    let remedy = "matters for --participant display only: end what uses the port, or set another one under [display]";
-    match TcpListener::bind(address) {
-        Ok(_) => Check::ok("wall display", format!("{address} is free for the participant's page")),
-        Err(reason) => Check::new("wall display", Verdict::Warning, format!("{address}: {reason}"), remedy),
-    }
-}
-
 /// Whether recordings can be looked at in a window; without it, in a browser.
 fn viewer() -> Check {
     let (verdict, found, remedy) = match Viewer::find() {
@@ -201,22 +201,6 @@ fn viewer() -> Check {
         }
     };
     Check::new("viewer", verdict, found, remedy)
-}
-
-/// Whether Pupil Capture answers where it does by default. Nothing is broken if it does not.
-fn eye_tracker() -> Check {
-    let tracker = TrackerSpec::default();
-    let (address, port) = (&tracker.address, tracker.port);
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    let answer = runtime.and_then(|runtime| runtime.block_on(pupil::version(address, port)));
-    let remedy =
-        "matters for --gaze pupil only: start Capture, with Pupil Remote on; elsewhere than here, see [tracker]";
-    match answer {
-        Ok(version) => Check::ok("eye tracker", format!("{version} at {address}:{port}")),
-        Err(reason) => {
-            Check::new("eye tracker", Verdict::Warning, format!("none at {address}:{port} ({reason})"), remedy)
-        }
-    }
 }
 
 /// Whether the machine wakes a program in time: presses and gaze are stamped when it is awake.

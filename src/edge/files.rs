@@ -114,7 +114,7 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
         return Err(FileError::at(path, &text, place_of(&text, "step.digest", 0), found, remedy));
     }
     let questionnaires = match &spec.plan {
-        Some(plan) => read_questionnaires(path, &text, plan)?,
+        Some(plan) => read_questionnaires(path, &text, &spec, plan)?,
         None => Vec::new(),
     };
     let layout_path = folder.join(&spec.layout);
@@ -152,11 +152,16 @@ pub(super) fn missing(
     FileError::at(session, text, place_of(text, path, nth), found, remedy.to_string())
 }
 
-/// Reads the questionnaires of a plan, in its order.
-fn read_questionnaires(session: &Path, text: &str, plan: &PlanSpec) -> FileResult<Vec<Questionnaire>> {
+/// Reads the questionnaires of a plan, in its order and in the session's language.
+fn read_questionnaires(
+    session: &Path,
+    text: &str,
+    spec: &SessionSpec,
+    plan: &PlanSpec,
+) -> FileResult<Vec<Questionnaire>> {
     let folder = session.parent().unwrap_or(Path::new("."));
     let read = |(nth, asked): (usize, &QuestionnaireSpec)| {
-        let path = folder.join(&asked.file);
+        let path = in_language(folder.join(&asked.file), spec.display.code());
         if let Err(reason) = std::fs::metadata(&path) {
             let remedy = "the path of a questionnaire, relative to the session file";
             return Err(missing(session, text, ("questionnaire.file", nth, &asked.file), reason, remedy));
@@ -167,6 +172,15 @@ fn read_questionnaires(session: &Path, text: &str, plan: &PlanSpec) -> FileResul
         Ok(questionnaire)
     };
     plan.questionnaire.iter().enumerate().map(read).collect()
+}
+
+/// A questionnaire in this language, where it stands beside the one that was named: `acceptance.de.toml` beside
+/// `acceptance.toml`.
+fn in_language(path: PathBuf, code: &str) -> PathBuf {
+    // A file with words that names no language stands here with its path.
+    let is_code = code.chars().all(|sign| sign.is_ascii_alphanumeric() || sign == '-');
+    let own = is_code.then(|| path.with_extension(format!("{code}.toml")));
+    own.filter(|own| own.is_file()).unwrap_or(path)
 }
 
 /// The error of a setting in a file's text.

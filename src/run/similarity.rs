@@ -10,6 +10,7 @@ use super::standing::Standing;
 use super::wizard::{self, WizardFigures, WizardLog};
 use crate::base::time::SessionTime;
 use crate::base::words::count;
+use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
 use crate::console::comparison::{Comparison, Difference};
 use crate::edge::files::{FileError, FileResult};
@@ -223,6 +224,21 @@ impl CompareFigures {
             recordings: watched.iter().map(RecordingComparison::of).collect(),
             training: None,
         }
+    }
+}
+
+impl CompareFigures {
+    /// The same without what is about other concepts than these. Differences keep their numbers.
+    pub fn only(mut self, concepts: &[ConceptName]) -> CompareFigures {
+        let hidden = ConceptName::ALL.into_iter().filter(|concept| !concepts.contains(concept));
+        let hidden: Vec<&str> = hidden.map(ConceptName::name).collect();
+        let is_shown = |lane: &str| !hidden.contains(&lane);
+        self.pairs.retain(|pair| is_shown(&pair.of) && is_shown(&pair.with));
+        for one in &mut self.recordings {
+            one.lanes.retain(|lane| is_shown(&lane.name));
+            one.differences.retain(|difference| is_shown(&difference.by) && is_shown(&difference.not_by));
+        }
+        self
     }
 }
 

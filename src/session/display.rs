@@ -57,6 +57,11 @@ impl DisplaySpec {
         !self.listen.is_loopback()
     }
 
+    /// The code of the language: a file with words names its own.
+    pub fn code(&self) -> &str {
+        self.words.get("language").unwrap_or(&self.language)
+    }
+
     /// The languages that the program carries.
     pub const LANGUAGES: [&str; 2] = ["en", "de"];
 

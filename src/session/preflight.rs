@@ -65,8 +65,8 @@ pub fn space(free_bytes: Option<u64>) -> Check {
     Check::new("free space", verdict, format!("{} MB", free / 1_000_000), remedy)
 }
 
-/// Who takes part, where the gaze comes from, and how true it is.
-pub fn participant(session: &Session, now: SessionTime) -> Vec<Check> {
+/// Who takes part, where the gaze comes from, and how true it is; `check_gaze` is the key that checks it by targets.
+pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec<Check> {
     let spec = &session.spec.participant;
     let who = match spec.kind {
         ParticipantKind::Simulated => "simulated",
@@ -84,12 +84,12 @@ pub fn participant(session: &Session, now: SessionTime) -> Vec<Check> {
         GazeSource::Mouse => checks.extend(gaze(session, now)),
         GazeSource::Json => {
             checks.extend(gaze(session, now));
-            checks.extend(calibration(session));
+            checks.extend(calibration(session, check_gaze));
         }
         GazeSource::Pupil => {
             checks.push(tracker(session));
             checks.extend(gaze(session, now));
-            checks.push(calibration(session).unwrap_or_else(unchecked));
+            checks.push(calibration(session, check_gaze).unwrap_or_else(|| unchecked(check_gaze)));
         }
     }
     checks
@@ -155,22 +155,18 @@ fn tracker(session: &Session) -> Check {
 }
 
 /// How the gaze was found to be, if it was looked at.
-fn calibration(session: &Session) -> Option<Check> {
+fn calibration(session: &Session, check_gaze: &str) -> Option<Check> {
     let accuracy_deg = session.calibrated.as_ref()?.accuracy_deg();
     let verdict = match accuracy_deg {
         deg if deg <= GOOD_DEG => Verdict::Ok,
         deg if deg <= USABLE_DEG => Verdict::Warning,
         _ => Verdict::Failed,
     };
-    let remedy = "calibrate the tracker anew, then check it by targets (^v)";
+    let remedy = format!("calibrate the tracker anew, then check it by targets ({check_gaze})");
     Some(Check::new("calibration", verdict, format!("off by {accuracy_deg:.1} deg"), remedy))
 }
 
-fn unchecked() -> Check {
-    Check::new(
-        "calibration",
-        Verdict::Warning,
-        "not checked",
-        "^v checks the gaze by targets (check_gaze in the key file)",
-    )
+fn unchecked(check_gaze: &str) -> Check {
+    let remedy = format!("{check_gaze} checks the gaze by targets (check_gaze in the key file)");
+    Check::new("calibration", Verdict::Warning, "not checked", remedy)
 }

@@ -1,0 +1,95 @@
+//! What is around a session: the participant's page, and where its gaze comes from. What the session does not use is looked
+//! at, too, where it is by default, and breaks nothing.
+
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
+use std::path::Path;
+
+use crate::base::words::count;
+use crate::edge::files::FileError;
+use crate::edge::{gaze_file, pupil};
+use crate::gaze::surface::SurfaceMap;
+use crate::session::SessionSpec;
+use crate::session::preflight::{Check, Verdict};
+use crate::session::settings::{GazeSource, ParticipantKind};
+use crate::session::tracker::TrackerSpec;
+
+/// A display that is its own surface: whether a file can be read does not depend on where its tags stick.
+const WHOLE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+
+/// Whether the participant's page can be served.
+pub(super) fn display(spec: &SessionSpec) -> Check {
+    let address = SocketAddr::new(spec.display.listen, spec.display.port);
+    let is_used = spec.participant.kind == ParticipantKind::Display;
+    let remedy = "end what uses the port, or set another address or port under [display]";
+    match TcpListener::bind(address) {
+        Ok(_) => Check::ok("wall display", format!("{address} is free for the participant's page")),
+        Err(reason) => {
+            missing(is_used, "wall display", format!("{address}: {reason}"), "--participant display", remedy)
+        }
+    }
+}
+
+/// Whether what the session's gaze comes from is there.
+pub(super) fn gaze(spec: &SessionSpec) -> Check {
+    match spec.participant.gaze {
+        GazeSource::Pupil => eye_tracker(&spec.tracker, true),
+        GazeSource::Json => lines(spec.participant.gaze_port),
+        GazeSource::File => file(spec.tracker.file.as_deref().unwrap_or_default()),
+        GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => eye_tracker(&spec.tracker, false),
+    }
+}
+
+/// Something is not there: that breaks a session that uses it, and matters for others only with this flag.
+fn missing(is_used: bool, name: &str, found: String, flag: &str, remedy: &str) -> Check {
+    match is_used {
+        true => Check::new(name, Verdict::Failed, found, remedy),
+        false => Check::new(name, Verdict::Warning, found, format!("matters for {flag} only: {remedy}")),
+    }
+}
+
+/// Whether Pupil Capture answers.
+fn eye_tracker(tracker: &TrackerSpec, is_used: bool) -> Check {
+    let (address, port) = (&tracker.address, tracker.port);
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let answer = runtime.and_then(|runtime| runtime.block_on(pupil::version(address, port)));
+    let remedy = "start Capture, with Pupil Remote on; elsewhere than here, see [tracker]";
+    match answer {
+        Ok(version) => Check::ok("eye tracker", format!("{version} at {address}:{port}")),
+        Err(reason) => {
+            missing(is_used, "eye tracker", format!("none at {address}:{port} ({reason})"), "--gaze pupil", remedy)
+        }
+    }
+}
+
+/// Whether trackers can send lines of JSON.
+fn lines(port: u16) -> Check {
+    let address = (Ipv4Addr::LOCALHOST, port);
+    match TcpListener::bind(address).and_then(|_| UdpSocket::bind(address)) {
+        Ok(_) => Check::ok("gaze", format!("port {port} of localhost is free for lines of JSON")),
+        Err(reason) => {
+            let remedy = "end what uses the port, or set another gaze_port under [participant]";
+            Check::new("gaze", Verdict::Failed, format!("port {port} of localhost: {reason}"), remedy)
+        }
+    }
+}
+
+/// Whether recorded gaze can be replayed.
+fn file(path: &str) -> Check {
+    let remedy =
+        "file under [tracker]: Pupil Player's gaze_positions_on_surface_NAME.csv, or the folder of a recording";
+    let found = SurfaceMap::new(WHOLE).map(|map| gaze_file::read(Path::new(path), &map));
+    match found {
+        Some(Ok(found)) if !found.samples.is_empty() => {
+            Check::ok("gaze", format!("{path}: {}", count(found.samples.len() as u64, "sample", "samples")))
+        }
+        Some(Err(error)) => Check::new("gaze", Verdict::Failed, error.to_string(), told(&error)),
+        _ => Check::new("gaze", Verdict::Failed, format!("{path}: no sample"), remedy),
+    }
+}
+
+/// What would be right of a file.
+fn told(error: &FileError) -> String {
+    match error {
+        FileError::Unreadable { remedy, .. } | FileError::Wrong { remedy, .. } => remedy.clone(),
+    }
+}

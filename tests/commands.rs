@@ -342,8 +342,8 @@ fn doctor_looks_at_what_a_session_names() {
         let told = |key: &str| check.and_then(|check| check[key].as_str()).unwrap_or_default().to_string();
         (told("verdict"), told("found"))
     };
-    for (kind, expected) in [("simulated", "warning"), ("display", "failed")] {
-        let page = format!("[participant]\nkind = \"{kind}\"\n[display]\nport = {port}\n");
+    for (kind, gaze, expected) in [("simulated", "simulated", "warning"), ("display", "mouse", "failed")] {
+        let page = format!("[participant]\nkind = \"{kind}\"\ngaze = \"{gaze}\"\n[display]\nport = {port}\n");
         let (found, words) = verdict(&page, "wall display");
         assert_eq!((found.as_str(), words.contains(&port.to_string())), (expected, true), "{kind}: {words}");
     }

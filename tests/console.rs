@@ -808,7 +808,7 @@ fn what_mends_is_told_with_the_keys_that_hold() {
     assert!(remedy(&stage).starts_with("^v checks the gaze"), "{}", remedy(&stage));
     let map: KeyMap = toml::from_str("[console]\ncheck_gaze = \"f9\"\n").expect("a key file");
     stage.model.keys = Keys::live(&stage.session.kitchen, &stage.session.spec, &map).expect("f9 is free");
-    assert!(remedy(&stage).starts_with("f9 checks the gaze"), "{}", remedy(&stage));
+    assert!(remedy(&stage).starts_with("F9 checks the gaze"), "{}", remedy(&stage));
 }
 
 #[test]

@@ -32,6 +32,8 @@ BURGER = ["take light bun", "board", "take cheese", "board", "take soy", "grill_
 # At most so long from a press to its effect on the screen, in milliseconds, in the median; and at the 99th percentile where
 # browser, program, planner and this script share two cores and nothing but software draws the page.
 LIMIT_MS, SHARED_LIMIT_MS = 50, 150
+# 60 frames a second, and half a millisecond for the rounding of the clock.
+FRAME_MS = 17.2
 
 
 def presses_for(kitchen, dish, order):
@@ -248,15 +250,24 @@ def is_quick(tomcom, browser, folder, seed, presses):
 
 def measure(page, presses, how):
     first, answered = len(page.said), len(page.answered_ms)
+    page.ask("""() => {
+        let last = performance.now();
+        window.frames_ms = [];
+        const tick = (now) => { window.frames_ms?.push(now - last); last = now; if (window.frames_ms) requestAnimationFrame(tick); };
+        requestAnimationFrame(tick);
+    }""")
     for number in range(presses):
         page.press("take rice" if number % 2 == 0 else "trash", "keyboard")
     page.page.wait_for_timeout(300)
+    frames_ms = page.ask("() => { const frames = window.frames_ms; window.frames_ms = null; return frames; }")[1:]
     took = [message["took"] for message in page.said[first:] if message["kind"] == "redrawn"]
     answers = page.answered_ms[answered:]
     assert min(len(took), len(answers)) >= 0.95 * presses, f"{len(took)} of {presses} presses were drawn"
     known, drawn = percentile(answers, 0.99), percentile(took, 0.99)
     print(f"{len(took)} presses {how}: answered p50 {percentile(answers, 0.5):.1f} ms, p99 {known:.1f} ms; "
-          f"on the screen p50 {percentile(took, 0.5):.1f} ms, p99 {drawn:.1f} ms", flush=True)
+          f"on the screen p50 {percentile(took, 0.5):.1f} ms, p99 {drawn:.1f} ms; "
+          f"frames every {percentile(frames_ms, 0.5):.1f} ms, p99 {percentile(frames_ms, 0.99):.1f} ms", flush=True)
+    assert percentile(frames_ms, 0.5) <= FRAME_MS, "the page does not move at 60 frames a second"
     assert percentile(took, 0.5) <= LIMIT_MS and drawn <= SHARED_LIMIT_MS, "a press took too long"
 
 

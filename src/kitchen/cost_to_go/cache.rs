@@ -9,11 +9,18 @@ pub const MAX_BUTTONS: usize = 40;
 /// The lowest bits of a key tell kinds of values of the same state apart, which share a bucket.
 pub const KIND_BITS: u32 = 2;
 
-/// Values of one byte by keys below 2^56, in buckets of eight, one cache line each.
+/// No key is as high. It is written everywhere at first, so that the memory is there when a decision has to be quick.
+const EMPTY: u64 = u64::MAX;
+
+/// Keys, with the value in the lowest byte; or [`EMPTY`].
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Bucket([u64; 8]);
+
+/// Values of one byte by keys below 2^56 - 1, in buckets of eight, one cache line each.
 #[derive(Clone, Debug)]
 pub struct Cache {
-    /// Key plus one, and the value in the lowest byte; 0 is an empty entry.
-    buckets: Vec<[u64; 8]>,
+    buckets: Vec<Bucket>,
     mask: u64,
     /// Which entry of a full bucket goes next.
     turn: usize,
@@ -23,7 +30,7 @@ impl Cache {
     /// A cache of 2^`bits` values.
     pub fn new(bits: u32) -> Cache {
         let buckets = 1usize << (bits - 3);
-        Cache { buckets: vec![[0; 8]; buckets], mask: buckets as u64 - 1, turn: 0 }
+        Cache { buckets: vec![Bucket([EMPTY; 8]); buckets], mask: buckets as u64 - 1, turn: 0 }
     }
 
     #[inline]
@@ -31,22 +38,29 @@ impl Cache {
         (mix(key >> KIND_BITS) & self.mask) as usize
     }
 
+    /// Has the memory fetch what is kept under this key. Whoever asks for several keys does this for all of them first, and
+    /// waits once; what comes back is to be kept from the optimizer.
+    #[inline]
+    pub fn fetch(&self, key: u64) -> u64 {
+        self.buckets[self.bucket(key)].0[0]
+    }
+
     #[inline]
     pub fn get(&self, key: u64) -> Option<u32> {
-        let bucket = &self.buckets[self.bucket(key)];
-        let entry = bucket.iter().find(|&&entry| entry >> 8 == key + 1)?;
+        let Bucket(bucket) = &self.buckets[self.bucket(key)];
+        let entry = bucket.iter().find(|&&entry| entry >> 8 == key)?;
         Some((entry & 0xff) as u32)
     }
 
     pub fn insert(&mut self, key: u64, value: u32) {
         let bucket = self.bucket(key);
-        let bucket = &mut self.buckets[bucket];
-        let known = bucket.iter().position(|&entry| entry >> 8 == key + 1);
-        let place = known.or_else(|| bucket.iter().position(|&entry| entry == 0)).unwrap_or_else(|| {
+        let Bucket(bucket) = &mut self.buckets[bucket];
+        let known = bucket.iter().position(|&entry| entry >> 8 == key);
+        let place = known.or_else(|| bucket.iter().position(|&entry| entry == EMPTY)).unwrap_or_else(|| {
             self.turn = (self.turn + 1) % 8;
             self.turn
         });
-        bucket[place] = (key + 1) << 8 | u64::from(value.min(0xff) as u8);
+        bucket[place] = key << 8 | u64::from(value.min(0xff) as u8);
     }
 }
 
@@ -77,12 +91,23 @@ impl Decisions {
         Decisions { lines: vec![empty; 1 << bits], mask: (1 << bits) - 1 }
     }
 
+    #[inline]
+    fn index(&self, state: State, question: u32) -> usize {
+        let bits = state.bits();
+        let hash = mix(bits as u64 ^ mix((bits >> 64) as u64 ^ u64::from(question) << 32));
+        (hash & self.mask) as usize
+    }
+
+    /// Has the memory fetch the line of a decision; what comes back is to be kept from the optimizer.
+    #[inline]
+    pub fn fetch(&self, state: State, question: u32) -> u32 {
+        self.lines[self.index(state, question)].question
+    }
+
     /// Where the decision belongs, and whether it is there.
     #[inline]
     pub fn find(&self, state: State, question: u32) -> (usize, bool) {
-        let bits = state.bits();
-        let hash = mix(bits as u64 ^ mix((bits >> 64) as u64 ^ u64::from(question) << 32));
-        let index = (hash & self.mask) as usize;
+        let index = self.index(state, question);
         let line = &self.lines[index];
         (index, line.question == question && line.state == state)
     }

@@ -4,6 +4,7 @@
 //! Together with the bound that settles most buttons without a plan.
 
 use super::cache::{Decision, MAX_BUTTONS};
+use super::goal::MAX_TARGETS;
 use super::plan::BLOCKED;
 use super::rating::Rating;
 use super::{CostToGo, Look, UNREACHABLE};
@@ -21,19 +22,20 @@ pub enum Care {
     Rough,
 }
 
-/// A value that was looked up: where it belongs, and what was found there. Without orders it belongs nowhere.
+/// Where the value of a state is kept.
 #[derive(Clone, Copy, Debug)]
-struct Asked {
-    /// Its goal's slot and its key.
-    at: Option<(usize, u64)>,
-    known: Option<u32>,
+enum Kept {
+    /// Under its goal's slot and its key.
+    At(usize, u64),
+    /// Nowhere: without orders, or with one that cannot be made, it is always the same.
+    Always(u32),
 }
 
 /// A state that a button leads to.
 #[derive(Clone, Copy, Debug)]
 struct Next {
     state: State,
-    asked: Asked,
+    kept: Kept,
     /// Whether one press leads back.
     can_be_undone: bool,
 }
@@ -51,8 +53,7 @@ impl CostToGo {
     #[inline]
     pub fn decision_with(&mut self, care: Care, state: State, recipes: &Recipes, agent: Agent) -> &Decision {
         let (mut targets, count) = self.targets(state, recipes);
-        let question =
-            u32::from(targets[0].0) | u32::from(targets[1].0) << 8 | (agent as u32) << 16 | (care as u32) << 17;
+        let question = question(&targets, care, agent);
         let (index, known) = self.decisions.find(state, question);
         if !known {
             let alike = self.stand_in(state, &mut targets[..count]);
@@ -64,6 +65,13 @@ impl CostToGo {
             self.decisions.set(index, state, question, found.here, found.after);
         }
         self.decisions.get(index)
+    }
+
+    /// Has the memory fetch what is remembered of a decision that is asked for soon.
+    #[inline]
+    pub fn announce(&self, care: Care, state: State, recipes: &Recipes, agent: Agent) {
+        let question = question(&self.targets(state, recipes).0, care, agent);
+        std::hint::black_box(self.decisions.fetch(state, question));
     }
 
     /// The buttons of `agent` that bring the goal nearer, one bit each.
@@ -118,23 +126,25 @@ impl CostToGo {
 
     /// The values one by one.
     fn each(&mut self, look: Look, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
+        let nexts = self.nexts(state, recipes, agent);
         let here = self.value(look, state, recipes) as u8;
         let mut after = [here; MAX_BUTTONS];
-        for (after, next) in after.iter_mut().zip(self.nexts(look, state, recipes, agent)) {
-            let Some(Next { state, asked, .. }) = next else { continue };
-            *after = self.answer(look, state, &asked) as u8;
+        for (after, next) in after.iter_mut().zip(nexts) {
+            let Some(Next { state, kept, .. }) = next else { continue };
+            *after = self.value_kept(look, state, kept) as u8;
         }
         (here, after)
     }
 
     /// What follows from bounds and plans.
     fn close(&mut self, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
-        let asked = self.ask(Look::Bound, state, recipes);
-        let most_here = self.bracket(state, &asked, UNREACHABLE).1.unwrap_or(UNREACHABLE);
+        let nexts = self.nexts(state, recipes, agent);
+        let kept = self.kept(state, recipes);
+        let most_here = self.bracket(state, kept, UNREACHABLE).1.unwrap_or(UNREACHABLE);
         let mut here = most_here;
-        let brackets = self.nexts(Look::Bound, state, recipes, agent).map(|next| {
-            let Next { state, asked, can_be_undone } = next?;
-            let (lower, upper) = self.bracket(state, &asked, most_here);
+        let brackets = nexts.map(|next| {
+            let Next { state, kept, can_be_undone } = next?;
+            let (lower, upper) = self.bracket(state, kept, most_here);
             here = here.min(upper.unwrap_or(lower) + 1);
             Some((lower, upper, can_be_undone))
         });
@@ -151,49 +161,44 @@ impl CostToGo {
         (here as u8, after)
     }
 
-    /// The states that the agent's buttons lead to, all looked up before any is computed: so the look-ups wait for memory
-    /// together.
-    fn nexts(&mut self, look: Look, state: State, recipes: &Recipes, agent: Agent) -> [Option<Next>; MAX_BUTTONS] {
+    /// The states that the agent's buttons lead to. What is kept of all of them is fetched at once, so that memory is waited
+    /// for once.
+    fn nexts(&mut self, state: State, recipes: &Recipes, agent: Agent) -> [Option<Next>; MAX_BUTTONS] {
         let kitchen = self.kitchen.clone();
         let mut nexts = [None; MAX_BUTTONS];
+        let mut fetched = 0;
         for (next, button) in nexts.iter_mut().zip(&kitchen.buttons[agent.index()]) {
-            *next = kitchen.act(state, recipes, agent, button.action).map(|there| Next {
-                state: there,
-                asked: self.ask(look, there, recipes),
-                can_be_undone: self.can_be_undone(state, agent, button.action),
-            });
+            let Some(there) = kitchen.act(state, recipes, agent, button.action) else { continue };
+            let kept = self.kept(there, recipes);
+            if let Kept::At(_, key) = kept {
+                fetched ^= self.cache.fetch(key);
+            }
+            *next = Some(Next { state: there, kept, can_be_undone: self.can_be_undone(state, agent, button.action) });
         }
+        std::hint::black_box(fetched);
         nexts
     }
 
-    /// Looks a value up.
     #[inline]
-    fn ask(&mut self, look: Look, state: State, recipes: &Recipes) -> Asked {
+    fn kept(&mut self, state: State, recipes: &Recipes) -> Kept {
         let (mut targets, count) = self.targets(state, recipes);
         if count == 0 {
-            return Asked { at: None, known: Some(0) };
+            return Kept::Always(0);
         }
         match self.key_of_state(state, &mut targets[..count]) {
-            Some((slot, key)) => Asked { at: Some((slot, key)), known: self.known(look, key) },
-            None => Asked { at: None, known: Some(UNREACHABLE) },
+            Some((slot, key)) => Kept::At(slot, key),
+            None => Kept::Always(UNREACHABLE),
         }
     }
 
-    fn answer(&mut self, look: Look, state: State, asked: &Asked) -> u32 {
-        match (asked.known, asked.at) {
-            (Some(value), _) => value,
-            (None, Some((slot, key))) => self.compute_for(look, key, slot, state),
-            (None, None) => UNREACHABLE,
-        }
-    }
-
-    /// The bound of a state, which was looked up, and, if that is not above `most`, what its best plan takes.
-    fn bracket(&mut self, state: State, asked: &Asked, most: u32) -> (u32, Option<u32>) {
-        let Some((slot, key)) = asked.at else {
-            let value = asked.known.unwrap_or(UNREACHABLE);
-            return (value, Some(value));
+    /// The bound of a state and, if that is not above `most`, what its best plan takes.
+    fn bracket(&mut self, state: State, kept: Kept, most: u32) -> (u32, Option<u32>) {
+        let (slot, key) = match kept {
+            Kept::At(slot, key) => (slot, key),
+            Kept::Always(value) => return (value, Some(value)),
         };
-        if let Some(lower) = asked.known {
+        let known = self.known(Look::Bound, key);
+        if let Some(lower) = known {
             if lower > most {
                 return (lower, None);
             }
@@ -204,7 +209,7 @@ impl CostToGo {
         let Some(goal) = self.goals[slot].clone() else { return (UNREACHABLE, None) };
         let classes = self.classes(&goal, state);
         let rating = Rating::new(&self.ground, &goal, &classes);
-        let lower = asked.known.unwrap_or_else(|| self.keep(Look::Bound, key, rating.lower));
+        let lower = known.unwrap_or_else(|| self.keep(Look::Bound, key, rating.lower));
         if lower > most {
             return (lower, None);
         }
@@ -231,7 +236,20 @@ impl CostToGo {
     }
 
     fn value(&mut self, look: Look, state: State, recipes: &Recipes) -> u32 {
-        let asked = self.ask(look, state, recipes);
-        self.answer(look, state, &asked)
+        let kept = self.kept(state, recipes);
+        self.value_kept(look, state, kept)
     }
+
+    fn value_kept(&mut self, look: Look, state: State, kept: Kept) -> u32 {
+        match kept {
+            Kept::At(slot, key) => self.known(look, key).unwrap_or_else(|| self.compute_for(look, key, slot, state)),
+            Kept::Always(value) => value,
+        }
+    }
+}
+
+/// What is asked about a state, in the order of its orders.
+#[inline]
+fn question(targets: &[ContentId; MAX_TARGETS], care: Care, agent: Agent) -> u32 {
+    u32::from(targets[0].0) | u32::from(targets[1].0) << 8 | (agent as u32) << 16 | (care as u32) << 17
 }

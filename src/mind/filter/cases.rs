@@ -8,6 +8,9 @@ use crate::kitchen::{Agent, Recipes, State};
 /// made for its costs.
 const COUNTS: f64 = 0.01;
 
+/// So many cases ahead it is announced what will be asked for.
+const AHEAD: usize = 4;
+
 /// Cases with their numbers of draws.
 #[derive(Clone, Debug, Default)]
 pub struct Cases {
@@ -62,9 +65,15 @@ impl Cases {
 
     /// Finds the costs of all cases that have none yet, of `draws` draws in all.
     pub fn rate(&mut self, cost: &mut CostToGo, draws: usize) {
-        for case in self.known.iter_mut().filter(|case| case.after.is_none()) {
-            let care = if f64::from(case.draws) >= COUNTS * draws as f64 { Care::Close } else { Care::Rough };
-            case.rate(cost, care);
+        let care = |case: &Case| if f64::from(case.draws) >= COUNTS * draws as f64 { Care::Close } else { Care::Rough };
+        for index in 0..self.known.len() {
+            if let Some(later) = self.known.get(index + AHEAD) {
+                cost.announce(care(later), later.state, &later.recipes, Agent::Human);
+            }
+            let case = &mut self.known[index];
+            if case.after.is_none() {
+                case.rate(cost, care(case));
+            }
         }
     }
 

@@ -1,12 +1,16 @@
 //! The robot: its task policy, and the arm that carries it out.
 
+pub mod arm;
 pub mod clearance;
 pub mod inverse;
 pub mod kinematics;
 pub mod motion;
+pub mod physics;
 pub mod policy;
 pub mod reach;
+pub mod safety;
 pub mod timed;
+pub mod trajectory;
 pub mod urdf;
 
 use serde::{Deserialize, Serialize};

@@ -1,0 +1,38 @@
+//! How much faster than real time the arm in the physics is, on one core: presses without anybody near, and with a hand that
+//! it slows for.
+
+use std::path::Path;
+use std::time::Instant;
+
+use nalgebra::Point3;
+use tomcom::edge::files::read_kitchen;
+use tomcom::kitchen::{Agent, ButtonId};
+use tomcom::robot::arm::{ArmPhase, PhysicalArm};
+use tomcom::robot::physics::CYCLE_S;
+use tomcom::robot::physics::hand::HandPlace;
+
+/// So much is simulated, in seconds.
+const SIMULATED_S: f64 = 300.0;
+
+fn main() {
+    let kitchen = read_kitchen(Path::new("layouts/sushi.toml")).expect("the kitchen loads").kitchen;
+    let hand = HandPlace { at_m: Point3::new(0.72, 0.1, 0.1), elbow_m: Point3::new(1.0, 0.1, 0.1) };
+    for (what, hand) in [("alone", None), ("with a hand near", Some(hand))] {
+        let mut arm = PhysicalArm::new(&kitchen);
+        let buttons = kitchen.buttons[Agent::Robot.index()].len();
+        let (began, mut presses) = (Instant::now(), 0);
+        for _ in 0..(SIMULATED_S / CYCLE_S) as usize {
+            match arm.phase() {
+                ArmPhase::Rests => {
+                    let _ = arm.set_out(ButtonId((presses * 5 % buttons) as u8));
+                    presses += 1;
+                }
+                ArmPhase::Hovers => arm.press(),
+                _ => {}
+            }
+            arm.cycle(hand);
+        }
+        let took_s = began.elapsed().as_secs_f64();
+        println!("{what}: {:.0} times real time, {presses} presses", SIMULATED_S / took_s);
+    }
+}

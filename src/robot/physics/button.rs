@@ -1,0 +1,90 @@
+//! A button: a cap that slides down on a spring, clicks on its way, and ends at a stop.
+
+use rapier3d::prelude::{
+    ColliderBuilder, ColliderSet, Group, ImpulseJointSet, InteractionGroups, InteractionTestMode, MotorModel, Pose,
+    PrismaticJointBuilder, RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Rotation, Vector,
+};
+
+use crate::robot::reach::BUTTON_M;
+
+/// How far the cap goes, where it closes on its way down and opens on its way up, in metres.
+const TRAVEL_M: f32 = 0.004;
+const CLOSES_M: f32 = 0.0025;
+const OPENS_M: f32 = 0.001;
+/// The spring: newtons a metre, and so far compressed when the button is up.
+const SPRING_N_M: f32 = 600.0;
+const PRELOAD_M: f32 = 0.003;
+const DAMPING_NS_M: f32 = 3.0;
+const MASS_KG: f32 = 0.02;
+const RADIUS_M: f32 = 0.02;
+
+/// The cap in the physics.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PhysicalButton {
+    body: RigidBodyHandle,
+    up_m: f32,
+    closed: bool,
+}
+
+impl PhysicalButton {
+    /// A button at a place of the table, at rest and out of the simulation.
+    pub fn new(
+        [x, y]: [f64; 2],
+        table_m: f64,
+        bodies: &mut RigidBodySet,
+        colliders: &mut ColliderSet,
+        joints: &mut ImpulseJointSet,
+    ) -> PhysicalButton {
+        let half_m = BUTTON_M as f32 / 2.0;
+        let middle = Vector::new(x as f32, y as f32, table_m as f32 + half_m);
+        let ground = bodies.insert(RigidBodyBuilder::fixed().translation(middle));
+        let cap =
+            RigidBodyBuilder::dynamic().translation(middle).additional_mass(MASS_KG).lock_rotations().enabled(false);
+        let body = bodies.insert(cap);
+        // A cylinder of the physics stands along y.
+        let upright = Pose::from_rotation(Rotation::from_rotation_x(std::f32::consts::FRAC_PI_2));
+        let collider = ColliderBuilder::cylinder(half_m, RADIUS_M)
+            .position(upright)
+            .density(0.0)
+            .collision_groups(CAP)
+            .friction(0.4);
+        colliders.insert_with_parent(collider, body, bodies);
+        let slides = PrismaticJointBuilder::new(Vector::Z)
+            .limits([-TRAVEL_M, 0.0])
+            .motor_model(MotorModel::ForceBased)
+            .motor_position(PRELOAD_M, SPRING_N_M, DAMPING_NS_M);
+        joints.insert(ground, body, slides, true);
+        PhysicalButton { body, up_m: middle.z, closed: false }
+    }
+
+    /// Takes part in the simulation, or is put back up and out of it.
+    pub fn set_active(&mut self, bodies: &mut RigidBodySet, active: bool) {
+        let Some(body) = bodies.get_mut(self.body) else { return };
+        let at = body.translation();
+        body.set_translation(Vector::new(at.x, at.y, self.up_m), active);
+        body.set_linvel(Vector::ZERO, active);
+        body.set_enabled(active);
+        self.closed = false;
+    }
+
+    /// It does not move any more.
+    pub fn jam(&mut self, bodies: &mut RigidBodySet) {
+        if let Some(body) = bodies.get_mut(self.body) {
+            body.lock_translations(true, false);
+        }
+    }
+
+    /// Whether it closed since it was asked last.
+    pub fn clicks(&mut self, bodies: &RigidBodySet) -> bool {
+        let down_m = bodies.get(self.body).map_or(0.0, |body| self.up_m - body.translation().z);
+        let was_closed = self.closed;
+        self.closed = down_m > if was_closed { OPENS_M } else { CLOSES_M };
+        self.closed && !was_closed
+    }
+}
+
+/// Caps meet the stick, and nothing else.
+const CAP: InteractionGroups = InteractionGroups::new(Group::GROUP_1, Group::GROUP_2, InteractionTestMode::And);
+/// The stick meets caps.
+pub(super) const STICK: InteractionGroups =
+    InteractionGroups::new(Group::GROUP_2, Group::GROUP_1, InteractionTestMode::And);

@@ -1,0 +1,102 @@
+//! The human's hand and forearm: a body on the spring that the person's arm is.
+
+use nalgebra::{Point3, Vector3};
+use rapier3d::prelude::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Vector};
+
+use crate::robot::clearance::Capsule;
+
+/// A hand's effective mass and its stiffness, of ISO/TS 15066, annex A.
+const MASS_KG: f32 = 0.6;
+pub const STIFFNESS_N_M: f64 = 75_000.0;
+/// What skin and flesh take of the blow, in newtons a metre and a second: little, so that the peak is the spring's.
+pub const FLESH_NS_M: f64 = 40.0;
+/// What the person's arm holds the hand in its place with: newtons a metre and a metre a second, for an arm at rest about
+/// what is measured (Mussa-Ivaldi, Hogan and Bizzi 1985), damped so that it does not swing.
+const HELD_N_M: f64 = 400.0;
+const HELD_NS_M: f64 = 24.0;
+/// Radii of hand and forearm, and the length of the hand, in metres.
+const HAND_M: f64 = 0.04;
+const FOREARM_M: f64 = 0.04;
+const HAND_LENGTH_M: f64 = 0.09;
+
+/// Where a person holds the hand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HandPlace {
+    /// The middle of the hand, in the frame of the arm's base.
+    pub at_m: Point3<f64>,
+    pub elbow_m: Point3<f64>,
+}
+
+impl HandPlace {
+    /// Hand and forearm.
+    pub fn capsules(&self) -> [Capsule; 2] {
+        let along = (self.elbow_m - self.at_m).try_normalize(1e-6).unwrap_or_else(Vector3::x);
+        let half = along * (HAND_LENGTH_M / 2.0 - HAND_M);
+        let wrist = self.at_m + half;
+        [
+            Capsule { ends_m: [self.at_m - half, wrist], radius_m: HAND_M },
+            Capsule { ends_m: [wrist, self.elbow_m], radius_m: FOREARM_M },
+        ]
+    }
+}
+
+/// The body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hand {
+    body: RigidBodyHandle,
+    pub wanted: HandPlace,
+    /// The height of the table, on which it can be clamped.
+    table_m: f64,
+}
+
+impl Hand {
+    pub fn new(bodies: &mut RigidBodySet, wanted: HandPlace, table_m: f64) -> Hand {
+        let body = RigidBodyBuilder::dynamic()
+            .translation(single(wanted.at_m.coords))
+            .additional_mass(MASS_KG)
+            .lock_rotations()
+            .gravity_scale(0.0)
+            .can_sleep(false);
+        Hand { body: bodies.insert(body), wanted, table_m }
+    }
+
+    pub fn body(&self) -> RigidBodyHandle {
+        self.body
+    }
+
+    /// Where it is: pushed away from where it is wanted, with the forearm.
+    pub fn place(&self, bodies: &RigidBodySet) -> HandPlace {
+        let Some(body) = bodies.get(self.body) else { return self.wanted };
+        let at_m = Point3::from(double(body.translation()));
+        // The forearm yields with it.
+        HandPlace { at_m, elbow_m: self.wanted.elbow_m + (at_m - self.wanted.at_m) }
+    }
+
+    /// How fast it moves, in metres a second.
+    pub fn velocity_m_s(&self, bodies: &RigidBodySet) -> Vector3<f64> {
+        bodies.get(self.body).map_or_else(Vector3::zeros, |body| double(body.linvel()))
+    }
+
+    /// The forces of a step: the person's arm, and what the robot does to it (newtons).
+    pub fn push(&self, bodies: &mut RigidBodySet, by_robot_n: Vector3<f64>) {
+        let at_m = self.place(bodies).at_m;
+        let away = self.wanted.at_m - at_m;
+        let in_table_m = (self.table_m + HAND_M - at_m.z).max(0.0);
+        let by_table_n = Vector3::z() * (in_table_m * STIFFNESS_N_M);
+        let velocity = self.velocity_m_s(bodies);
+        let Some(body) = bodies.get_mut(self.body) else { return };
+        let force = away * HELD_N_M - velocity * HELD_NS_M + by_robot_n + by_table_n;
+        body.reset_forces(false);
+        body.add_force(single(force), true);
+    }
+}
+
+/// In rapier's single precision.
+pub(super) fn single(vector: Vector3<f64>) -> Vector {
+    Vector::new(vector.x as f32, vector.y as f32, vector.z as f32)
+}
+
+/// In the program's double precision.
+pub(super) fn double(vector: Vector) -> Vector3<f64> {
+    Vector3::new(f64::from(vector.x), f64::from(vector.y), f64::from(vector.z))
+}

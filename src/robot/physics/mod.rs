@@ -1,0 +1,409 @@
+//! The arm, the buttons and the human's hand as bodies: rapier at a fixed step.
+//!
+//! The arm is a multibody from the URDF, each joint driven by a motor that follows a commanded angle with no more torque
+//! than the URDF allows. Buttons slide on springs, click on their way and end at a stop. The hand is a body on a spring
+//! that the person's arm is; what it and the robot's arm do to each other is a spring, too, as stiff as a hand (ISO/TS
+//! 15066), because the peak of a rigid contact follows from the step and means nothing.
+
+mod button;
+pub mod hand;
+
+use nalgebra::{Isometry3, Point3, Vector3};
+use rapier3d::prelude::{
+    BroadPhaseBvh, CCDSolver, ColliderBuilder, ColliderSet, GenericJointBuilder, ImpulseJointSet,
+    IntegrationParameters, IslandManager, JointAxesMask, JointAxis, MassProperties, MotorModel, MultibodyJointHandle,
+    MultibodyJointSet, NarrowPhase, PhysicsPipeline, Pose, RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Rotation,
+    SoftBodySet, Vector,
+};
+
+use super::kinematics::{Arm, JOINTS, Joints};
+use super::urdf::{Link, Shape};
+use button::PhysicalButton;
+use hand::{Hand, HandPlace, double, single};
+
+/// The fixed step of the physics, in seconds, and how many make a cycle of the controller.
+pub const STEP_S: f64 = 0.002;
+pub const STEPS_A_CYCLE: usize = 4;
+/// A cycle of the controller, in seconds: the real one's 125 Hz.
+pub const CYCLE_S: f64 = STEP_S * STEPS_A_CYCLE as f64;
+/// Iterations of the solver in a step, which is short.
+const ITERATIONS: usize = 2;
+const GRAVITY_M_S2: f32 = -9.81;
+/// Where the angle stands among a joint's coordinates.
+const ANGLE: usize = 3;
+/// Cycles that a new arm settles for.
+const SETTLES: usize = 125;
+/// How a joint follows: acceleration a radian and a radian a second off, critically damped.
+const STIFFNESS: f32 = 10_000.0;
+const DAMPING: f32 = 200.0;
+
+/// The commanded angles are corrected by this share of what a joint stays behind in every cycle, and never by more than
+/// so much, in radians: the weight of the arm is held up.
+const CORRECTED: f64 = 0.1;
+const MOST_CORRECTED_RAD: f64 = 0.05;
+/// While human and arm are further apart than this, in metres, they do not meet within a cycle.
+const APART_M: f64 = 0.05;
+
+/// What a drive's rotor adds to the inertia of its joint through the gear (rotor times ratio squared), in kg m²: an estimate
+/// for the large and the small drives, as the maker does not say.
+const ARMATURE_KG_M2: [f32; JOINTS] = [1.0, 1.0, 1.0, 0.2, 0.2, 0.2];
+
+/// What was felt in a cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Felt {
+    /// The greatest force between arm and human, in newtons.
+    pub human_n: f64,
+    /// The button under the stick closed.
+    pub clicked: bool,
+}
+
+impl Arm {
+    /// How far a hand is from the arm at these joint angles, in metres.
+    pub fn distance(&self, joints: &Joints, hand: &HandPlace) -> f64 {
+        let human = hand.capsules();
+        let arm = self.capsules(joints);
+        let pairs = arm.iter().flat_map(|(_, link)| human.iter().map(move |part| link.nearest(part).distance_m));
+        pairs.fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// The bodies.
+pub struct World {
+    arm: Arm,
+    parameters: IntegrationParameters,
+    islands: IslandManager,
+    broad_phase: BroadPhaseBvh,
+    narrow_phase: NarrowPhase,
+    bodies: RigidBodySet,
+    colliders: ColliderSet,
+    impulse_joints: ImpulseJointSet,
+    multibodies: MultibodyJointSet,
+    ccd: CCDSolver,
+    pipeline: PhysicsPipeline,
+    /// Of the joints that turn.
+    joints: Vec<MultibodyJointHandle>,
+    /// By link of the arm; what is fixed to a link is part of it.
+    links: Vec<RigidBodyHandle>,
+    buttons: Vec<PhysicalButton>,
+    /// The button that the stick may meet; the others are at rest.
+    active: Option<usize>,
+    hand: Option<Hand>,
+    table_m: f64,
+    /// The last command, and what it was corrected by.
+    commanded: Joints,
+    correction: Joints,
+}
+
+impl Clone for World {
+    fn clone(&self) -> World {
+        World {
+            arm: self.arm.clone(),
+            parameters: self.parameters,
+            islands: self.islands.clone(),
+            broad_phase: self.broad_phase.clone(),
+            narrow_phase: self.narrow_phase.clone(),
+            bodies: self.bodies.clone(),
+            colliders: self.colliders.clone(),
+            impulse_joints: self.impulse_joints.clone(),
+            multibodies: self.multibodies.clone(),
+            ccd: self.ccd.clone(),
+            // Room to work in, and no state.
+            pipeline: PhysicsPipeline::new(),
+            joints: self.joints.clone(),
+            links: self.links.clone(),
+            buttons: self.buttons.clone(),
+            active: self.active,
+            hand: self.hand,
+            table_m: self.table_m,
+            commanded: self.commanded,
+            correction: self.correction,
+        }
+    }
+}
+
+impl std::fmt::Debug for World {
+    fn fmt(&self, into: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        into.debug_struct("World").field("joints", &self.joints().0).finish_non_exhaustive()
+    }
+}
+
+impl World {
+    /// An arm that stands so, above buttons at these places of a table of this height.
+    pub fn new(arm: &Arm, joints: &Joints, buttons: &[[f64; 2]], table_m: f64) -> World {
+        let mut world = World {
+            arm: arm.clone(),
+            parameters: IntegrationParameters {
+                dt: STEP_S as f32,
+                num_solver_iterations: ITERATIONS,
+                max_ccd_substeps: 0,
+                ..IntegrationParameters::default()
+            },
+            islands: IslandManager::new(),
+            broad_phase: BroadPhaseBvh::new(),
+            narrow_phase: NarrowPhase::new(),
+            bodies: RigidBodySet::new(),
+            colliders: ColliderSet::new(),
+            impulse_joints: ImpulseJointSet::new(),
+            multibodies: MultibodyJointSet::new(),
+            ccd: CCDSolver::new(),
+            pipeline: PhysicsPipeline::new(),
+            joints: Vec::new(),
+            links: Vec::new(),
+            buttons: Vec::new(),
+            active: None,
+            hand: None,
+            table_m,
+            commanded: *joints,
+            correction: [0.0; JOINTS],
+        };
+        world.build(joints);
+        for &at_m in buttons {
+            let (bodies, colliders) = (&mut world.bodies, &mut world.colliders);
+            world.buttons.push(PhysicalButton::new(at_m, table_m, bodies, colliders, &mut world.impulse_joints));
+        }
+        // The motors take the arm's weight.
+        for _ in 0..SETTLES {
+            world.cycle(joints, None);
+        }
+        world
+    }
+
+    fn build(&mut self, joints: &Joints) {
+        let mut carried_from = Isometry3::identity();
+        for link in self.arm.links.clone() {
+            let Some(parent) = self.links.last().copied() else {
+                self.links.push(self.bodies.insert(RigidBodyBuilder::fixed()));
+                continue;
+            };
+            let parent_from_link = carried_from * link.parent_from_joint;
+            let Some(turn) = &link.turns else {
+                self.links.push(parent);
+                carried_from = parent_from_link;
+                self.add_stick(parent, &link, &carried_from);
+                continue;
+            };
+            let body = self
+                .bodies
+                .insert(RigidBodyBuilder::dynamic().can_sleep(false).additional_mass_properties(mass(&link)));
+            // A joint of the physics turns about x.
+            let x_onto_axis = nalgebra::UnitQuaternion::rotation_between(&Vector3::x(), &turn.axis)
+                .unwrap_or_else(nalgebra::UnitQuaternion::identity);
+            let frame = Isometry3::from_parts(Default::default(), x_onto_axis);
+            let joint = GenericJointBuilder::new(JointAxesMask::LOCKED_REVOLUTE_AXES)
+                .local_frame1(pose(&(parent_from_link * frame)))
+                .local_frame2(pose(&frame))
+                .motor_model(JointAxis::AngX, MotorModel::AccelerationBased)
+                .motor_max_force(JointAxis::AngX, turn.torque_nm as f32)
+                .build();
+            self.joints.extend(self.multibodies.insert(parent, body, joint, true));
+            self.links.push(body);
+            carried_from = Isometry3::identity();
+        }
+        let Some((multibody, _)) = self.joints.first().and_then(|joint| self.multibodies.get_mut(*joint)) else {
+            return;
+        };
+        // Before that it does not know that its root is fixed.
+        multibody.forward_kinematics(&self.bodies, true);
+        multibody.damping_mut().fill(0.0);
+        multibody.armature_mut().copy_from_slice(&ARMATURE_KG_M2);
+        multibody.apply_displacements(&joints.map(|angle| angle as f32));
+        multibody.forward_kinematics(&self.bodies, false);
+        multibody.update_rigid_bodies(&mut self.bodies, true);
+    }
+
+    /// The stick's shape, with which the arm presses.
+    fn add_stick(&mut self, parent: RigidBodyHandle, link: &Link, parent_from_link: &Isometry3<f64>) {
+        for solid in &link.solids {
+            let Shape::Cylinder { radius_m, length_m } = solid.shape else { continue };
+            let half_m = (length_m / 2.0 - radius_m) as f32;
+            let collider = ColliderBuilder::capsule_z(half_m, radius_m as f32)
+                .position(pose(&(parent_from_link * solid.link_from_solid)))
+                .density(0.0)
+                .collision_groups(button::STICK);
+            self.colliders.insert_with_parent(collider, parent, &mut self.bodies);
+        }
+    }
+
+    /// Joint angles in radians, and their speeds in radians a second.
+    pub fn joints(&self) -> (Joints, Joints) {
+        let Some((multibody, _)) = self.joints.first().and_then(|joint| self.multibodies.get(*joint)) else {
+            return (self.commanded, [0.0; JOINTS]);
+        };
+        let mut angles = self.commanded;
+        for (angle, handle) in angles.iter_mut().zip(&self.joints) {
+            let link = self.multibodies.get(*handle).and_then(|(multibody, link)| multibody.link(link));
+            *angle = link.map_or(*angle, |link| f64::from(link.joint().coords()[ANGLE]));
+        }
+        let speeds = multibody.generalized_velocity();
+        (angles, std::array::from_fn(|joint| f64::from(speeds[joint])))
+    }
+
+    /// Where the human's hand is, if there is one.
+    pub fn hand(&self) -> Option<HandPlace> {
+        self.hand.as_ref().map(|hand| hand.place(&self.bodies))
+    }
+
+    /// The button that the stick is about to meet; none: it is above them all.
+    pub fn aim_at(&mut self, button: Option<usize>) {
+        if let Some(before) = self.active.filter(|_| self.active != button) {
+            self.buttons[before].set_active(&mut self.bodies, false);
+        }
+        if let Some(now) = button.filter(|_| self.active != button) {
+            self.buttons[now].set_active(&mut self.bodies, true);
+        }
+        self.active = button;
+    }
+
+    /// From now on the motor of this joint gives nothing, or all do again.
+    pub fn fail(&mut self, joint: Option<usize>) {
+        for (index, (handle, turn)) in self.joints.iter().zip(self.arm.turns()).enumerate() {
+            let Some((multibody, link)) = self.multibodies.get_mut(*handle) else { continue };
+            let torque_nm = if joint == Some(index) { 0.0 } else { turn.torque_nm as f32 };
+            if let Some(link) = multibody.link_mut(link) {
+                link.joint.data.set_motor_max_force(JointAxis::AngX, torque_nm);
+            }
+        }
+    }
+
+    /// A cycle of the controller: the joints go on to `command` (radians), the hand to where the person wants it.
+    pub fn cycle(&mut self, command: &Joints, hand: Option<HandPlace>) -> Felt {
+        let before = self.commanded;
+        self.set_hand(hand);
+        let near = self.hand().is_some_and(|hand| self.distance(&hand) < APART_M);
+        let mut felt = Felt::default();
+        for step in 1..=STEPS_A_CYCLE {
+            let share = step as f64 / STEPS_A_CYCLE as f64;
+            self.drive(
+                &std::array::from_fn(|joint| before[joint] + (command[joint] - before[joint]) * share),
+                &before,
+                command,
+            );
+            felt.human_n = felt.human_n.max(self.touch(near));
+            self.step();
+            if let Some(active) = self.active {
+                felt.clicked |= self.buttons[active].clicks(&self.bodies);
+            }
+        }
+        let (angles, _) = self.joints();
+        for joint in 0..JOINTS {
+            let behind = command[joint] - angles[joint];
+            let most = MOST_CORRECTED_RAD;
+            self.correction[joint] = (self.correction[joint] + CORRECTED * behind).clamp(-most, most);
+        }
+        self.commanded = *command;
+        felt
+    }
+
+    fn set_hand(&mut self, hand: Option<HandPlace>) {
+        match (&mut self.hand, hand) {
+            (Some(one), Some(wanted)) => one.wanted = wanted,
+            (None, Some(wanted)) => self.hand = Some(Hand::new(&mut self.bodies, wanted, self.table_m)),
+            (Some(_), None) => {
+                if let Some(one) = self.hand.take() {
+                    let (islands, colliders) = (&mut self.islands, &mut self.colliders);
+                    let joints = (&mut self.impulse_joints, &mut self.multibodies);
+                    self.bodies.remove(
+                        one.body(),
+                        islands,
+                        colliders,
+                        joints.0,
+                        joints.1,
+                        &mut SoftBodySet::new(),
+                        true,
+                    );
+                }
+            }
+            (None, None) => {}
+        }
+    }
+
+    /// How far a hand is from the arm, in metres.
+    pub fn distance(&self, hand: &HandPlace) -> f64 {
+        self.arm.distance(&self.joints().0, hand)
+    }
+
+    /// From now on this button does not move: a fault to be tried.
+    pub fn jam(&mut self, button: usize) {
+        self.buttons[button].jam(&mut self.bodies);
+    }
+
+    /// The brakes hold every joint where it is, whatever its motor does.
+    pub fn brake(&mut self) {
+        self.fail(None);
+        self.commanded = self.joints().0;
+    }
+
+    fn drive(&mut self, target: &Joints, before: &Joints, after: &Joints) {
+        for (joint, handle) in self.joints.iter().enumerate() {
+            let Some((multibody, link)) = self.multibodies.get_mut(*handle) else { continue };
+            let Some(link) = multibody.link_mut(link) else { continue };
+            let position = (target[joint] + self.correction[joint]) as f32;
+            let speed = ((after[joint] - before[joint]) / CYCLE_S) as f32;
+            link.joint.data.set_motor(JointAxis::AngX, position, speed, STIFFNESS, DAMPING);
+        }
+    }
+
+    /// Lets arm and human push each other, where they are in each other deepest; the force in newtons.
+    fn touch(&mut self, near: bool) -> f64 {
+        let Some(hand) = self.hand else { return 0.0 };
+        let deepest = if near { self.deepest(&hand) } else { None };
+        let (link, onto_human_n, at) = deepest.unwrap_or((0, Vector3::zeros(), Point3::origin()));
+        hand.push(&mut self.bodies, onto_human_n);
+        for body in self.links.iter().skip(1) {
+            if let Some(body) = self.bodies.get_mut(*body) {
+                body.reset_forces(false);
+                body.reset_torques(false);
+            }
+        }
+        if let Some(body) = self.links.get(link).and_then(|body| self.bodies.get_mut(*body)) {
+            body.add_force_at_point(single(-onto_human_n), single(at.coords), true);
+        }
+        onto_human_n.norm()
+    }
+
+    /// The link that is deepest in the human, the force on the human in newtons, and where.
+    fn deepest(&self, hand: &Hand) -> Option<(usize, Vector3<f64>, Point3<f64>)> {
+        let human = hand.place(&self.bodies).capsules();
+        let arm = self.arm.capsules(&self.joints().0);
+        let pairs = arm.iter().flat_map(|(link, shape)| human.iter().map(move |part| (*link, shape.nearest(part))));
+        let (link, nearest) = pairs.min_by(|one, two| one.1.distance_m.total_cmp(&two.1.distance_m))?;
+        let depth_m = -nearest.distance_m;
+        let [on_arm, on_human] = nearest.at_m;
+        let away = (on_human - on_arm).try_normalize(1e-6).unwrap_or_else(Vector3::z);
+        let at = on_human - away * (depth_m / 2.0);
+        let of_link = self.bodies.get(*self.links.get(link)?)?.velocity_at_point(single(at.coords));
+        let closing_m_s = (double(of_link) - hand.velocity_m_s(&self.bodies)).dot(&away);
+        let force_n = depth_m * hand::STIFFNESS_N_M + closing_m_s * hand::FLESH_NS_M;
+        (depth_m > 0.0 && force_n > 0.0).then(|| (link, away * force_n, at))
+    }
+
+    fn step(&mut self) {
+        self.pipeline.step(
+            Vector::new(0.0, 0.0, GRAVITY_M_S2),
+            &self.parameters,
+            &mut self.islands,
+            &mut self.broad_phase,
+            &mut self.narrow_phase,
+            &mut self.bodies,
+            &mut self.colliders,
+            &mut self.impulse_joints,
+            &mut self.multibodies,
+            &mut SoftBodySet::new(),
+            &mut self.ccd,
+            &(),
+            &(),
+        );
+    }
+}
+
+/// A pose in single precision.
+fn pose(isometry: &Isometry3<f64>) -> Pose {
+    let turn = isometry.rotation.coords;
+    let rotation = Rotation::from_xyzw(turn.x as f32, turn.y as f32, turn.z as f32, turn.w as f32);
+    Pose::from_parts(single(isometry.translation.vector), rotation.normalize())
+}
+
+fn mass(link: &Link) -> MassProperties {
+    let Some(weight) = &link.weight else { return MassProperties::default() };
+    MassProperties::new(single(weight.centre_m.coords), weight.mass_kg as f32, single(weight.inertia_kg_m2))
+}

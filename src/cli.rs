@@ -1,6 +1,7 @@
 //! The command line. A command is listed when it works.
 
 mod args;
+mod choices;
 mod data;
 mod estimates;
 mod review;
@@ -19,6 +20,7 @@ use miette::MietteHandlerOpts;
 use serde::Serialize;
 
 use self::args::*;
+use self::choices::SimulatedCondition;
 use crate::communication::concept::ConceptName;
 use crate::communication::settings::Shadow;
 use crate::console;
@@ -36,7 +38,7 @@ use crate::run::review::{self as console_over, ReviewError};
 use crate::run::series::{self, Sitting};
 use crate::run::standing::{self, Standing};
 use crate::run::{kitchen, simulate, sweep, tell, timing, verify};
-use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
+use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, SettingError};
 
 /// Exit code: something failed.
 const FAILED: u8 = 1;
@@ -176,25 +178,11 @@ fn operate(args: &OperateArgs) -> Result<(), Failure> {
 fn new_session(session: Option<&Path>, flags: &OperateFlags, compare: Option<Request>) -> Result<Sitting, Failure> {
     let mut files = options::session_or_default(session)?;
     let overrides = Overrides {
-        participant: flags.participant.map(|participant| match participant {
-            Participant::Simulated => ParticipantKind::Simulated,
-            Participant::Keyboard => ParticipantKind::Keyboard,
-            Participant::Display => ParticipantKind::Display,
-        }),
-        gaze: flags.gaze.map(|gaze| match gaze {
-            Gaze::Simulated => GazeSource::Simulated,
-            Gaze::Mouse => GazeSource::Mouse,
-            Gaze::Pupil => GazeSource::Pupil,
-            Gaze::File => GazeSource::File,
-            Gaze::Json => GazeSource::Json,
-            Gaze::None => GazeSource::None,
-        }),
+        participant: flags.participant.map(ParticipantKind::from),
+        arm: flags.arm.map(ArmKind::from),
+        gaze: flags.gaze.map(GazeSource::from),
         gaze_file: flags.gaze_file.clone(),
-        condition: flags.condition.map(|condition| match condition {
-            ConditionArg::None => Condition::None,
-            ConditionArg::Wizard => Condition::Wizard,
-            ConditionArg::Assistant => Condition::Assistant,
-        }),
+        condition: flags.condition.map(Condition::from),
         concept: flags.concept.map(ConceptName::from),
         seed: flags.seed,
         listen: flags.listen,
@@ -312,15 +300,14 @@ fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     // With a plan it says the conditions.
     files.spec.trial.condition = match args.condition {
         SimulatedCondition::None if !args.sweep.is_empty() => Condition::Assistant,
-        SimulatedCondition::None => Condition::None,
-        SimulatedCondition::Wizard => Condition::Wizard,
-        SimulatedCondition::Assistant => Condition::Assistant,
+        condition => Condition::from(condition),
     };
     if files.spec.unattended(files.spec.trial.condition) != files.spec.trial.condition {
         let found = "--condition wizard, with a wizard who is a person".to_string();
         return Err(wrong_argument(&args.session, found, "[wizard] with kind = \"scripted\" in the session file"));
     }
     files.spec.assistant.concept = args.concept.map_or(files.spec.assistant.concept, ConceptName::from);
+    files.spec.robot.arm = args.arm.map_or(files.spec.robot.arm, ArmKind::from);
     files.spec.assistant.shadow = if args.shadow { Shadow::On } else { Shadow::Off };
     let simulation = simulate::Simulation { files, trials, shard: args.shard, out: args.out.clone() };
     if !args.sweep.is_empty() {

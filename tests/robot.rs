@@ -43,7 +43,7 @@ fn check(orders: &[&str], contents: &[(&str, &str)], expected: &[&str]) {
     let mut seen: Vec<String> = Vec::new();
     for index in 0..50 {
         let mut random = stream(1, "robot policy", index);
-        let decision = match decide(&kitchen, &mut cost, state, None, &mut random) {
+        let decision = match decide(&kitchen, &mut cost, state, &[], &mut random) {
             Decision::Press(button) => kitchen.button(Agent::Robot, button).name.clone(),
             Decision::Idle(IdleReason::NoOrder) => "no order".to_string(),
             Decision::Idle(IdleReason::HumanTurn) => "human's turn".to_string(),

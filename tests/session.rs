@@ -13,18 +13,19 @@ use tomcom::kitchen::{Agent, Kitchen, OrderContent, State};
 use tomcom::measures::errors::{Judge, Verdict};
 use tomcom::run::engine::{Engine, Outcome};
 use tomcom::session::event::{EndReason, SignalEnd};
-use tomcom::session::settings::{Condition, GazeSource, ParticipantKind, SessionSpec};
+use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec, SessionSpec};
 use tomcom::session::{Event, Phase};
 
 fn kitchen() -> Arc<Kitchen> {
     Arc::new(read_session(Path::new("sessions/default.toml")).expect("the default session").kitchen.kitchen)
 }
 
-/// An engine of the default session with a person at the keyboard, and `change`d settings.
+/// An engine of the default session with a person at the keyboard and a timed arm, and `change`d settings.
 fn engine(change: impl Fn(&mut SessionSpec)) -> Engine {
     let mut spec = read_session(Path::new("sessions/default.toml")).expect("the default session").spec;
     spec.participant.kind = ParticipantKind::Keyboard;
     spec.participant.gaze = GazeSource::None;
+    spec.robot.arm = ArmKind::Timed;
     change(&mut spec);
     let kitchen = kitchen();
     Engine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen))
@@ -49,12 +50,14 @@ fn the_default_session_spells_out_every_default() {
     let path = Path::new("sessions/default.toml");
     let only_layout: SessionSpec = parse(path, "layout = \"../layouts/sushi.toml\"").expect("a session file");
     let spec = read_session(path).expect("the default session").spec;
-    // But for what is fitted to its simulated participant: the human model, and where people look in rollouts.
+    // But for the arm, which is timed where nothing is said, as in recordings of before there was another; and for what is
+    // fitted to its simulated participant: the human model, and where people look in rollouts.
+    let robot = RobotSpec { arm: ArmKind::Timed, ..spec.robot };
     assert_ne!(spec.human, only_layout.human);
     assert_ne!(spec.assistant.rollout, only_layout.assistant.rollout);
     let rollout = only_layout.assistant.rollout.clone();
     let assistant = AssistantSpec { rollout, ..spec.assistant };
-    assert_eq!(SessionSpec { human: only_layout.human.clone(), assistant, ..spec }, only_layout);
+    assert_eq!(SessionSpec { human: only_layout.human.clone(), assistant, robot, ..spec }, only_layout);
 }
 
 fn at(seconds: f64) -> SessionTime {

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::choices::{ArmArg, ConceptArg, ConditionArg, Gaze, Participant, SimulatedCondition};
 use super::data::{CodesArgs, ForgetArgs};
 use super::review::ReviewArgs;
 use super::study::StudyArgs;
 use super::wizard::{CompareArgs, TrainArgs};
-use crate::communication::concept::ConceptName;
 use crate::mind::fitting::Parameter;
 use crate::run::simulate::Shard;
 use crate::run::sweep::Axis;
@@ -67,7 +67,7 @@ pub(super) struct OperateArgs {
     /// The session file; by default sessions/default.toml, or the one that the program carries.
     pub(super) session: Option<PathBuf>,
     /// Take up this recording, which was cut, in a new part beside it; its session is the same, a running trial is paused.
-    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "gaze_file", "listen", "condition", "concept", "seed", "rerun_listen", "out"])]
+    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "gaze_file", "arm", "listen", "condition", "concept", "seed", "rerun_listen", "out"])]
     pub(super) recording: Option<PathBuf>,
     #[command(flatten)]
     pub(super) flags: OperateFlags,
@@ -87,6 +87,9 @@ pub(super) struct OperateFlags {
     /// Replay gaze from this file: Pupil Player's gaze_positions_on_surface_NAME.csv, or the folder of a recording.
     #[arg(long, value_name = "PATH")]
     pub(super) gaze_file: Option<PathBuf>,
+    /// How the robot's presses come about, instead of the session file's arm.
+    #[arg(long, value_enum)]
+    pub(super) arm: Option<ArmArg>,
     /// Who sends signals, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) condition: Option<ConditionArg>,
@@ -106,77 +109,6 @@ pub(super) struct OperateFlags {
     /// Where the recording's folder is made. Not with --continue: a further part goes beside the recording.
     #[arg(long, default_value = "sessions")]
     pub(super) out: PathBuf,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum Participant {
-    /// A simulated person.
-    Simulated,
-    /// Somebody at this keyboard: tab switches between the wizard's and the participant's keys.
-    Keyboard,
-    /// Somebody at the wall display: a page in a browser, with keys, gamepad or touch.
-    Display,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum Gaze {
-    /// The simulated person's.
-    Simulated,
-    /// The mouse pointer over the kitchen, at the console or on the wall display.
-    Mouse,
-    /// Pupil Core, through Pupil Capture.
-    Pupil,
-    /// What was recorded before: see --gaze-file.
-    File,
-    /// Lines of JSON over TCP or UDP on localhost.
-    Json,
-    /// No gaze at all.
-    None,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum ConditionArg {
-    /// Nobody.
-    None,
-    /// The wizard.
-    Wizard,
-    /// The assistant, by itself.
-    Assistant,
-}
-
-/// By what an assistant decides what to say.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum ConceptArg {
-    /// What saves more presses than a signal costs.
-    TomCom,
-    /// What is believed wrong surely enough.
-    Tom,
-    /// After an error, the next good presses; they are advice, since no signal says them.
-    Dev,
-    /// Nothing is said.
-    None,
-}
-
-impl From<ConceptArg> for ConceptName {
-    fn from(concept: ConceptArg) -> ConceptName {
-        match concept {
-            ConceptArg::TomCom => ConceptName::TomCom,
-            ConceptArg::Tom => ConceptName::Tom,
-            ConceptArg::Dev => ConceptName::Dev,
-            ConceptArg::None => ConceptName::None,
-        }
-    }
-}
-
-/// Who sends signals in simulated trials.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum SimulatedCondition {
-    /// Nobody.
-    None,
-    /// The wizard, where the session scripts one.
-    Wizard,
-    /// The assistant, by itself.
-    Assistant,
 }
 
 /// Opens the console over a recording. Through a pipe: what happened, line by line. Or checks that it comes out the same.
@@ -234,7 +166,7 @@ pub(super) struct PlanArgs {
 /// does, or a scripted wizard.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples: tomcom simulate sessions/default.toml --trials 20 --seed 7 --out recordings\n          \
+    after_help = "Examples: tomcom simulate sessions/default.toml --trials 20 --seed 7 --arm timed --out recordings\n          \
                   tomcom simulate sessions/default.toml --trials 100 --sweep cost=0.5,1.5,2.4 --sweep gaze=on,off --out grid"
 )]
 pub(super) struct SimulateArgs {
@@ -257,6 +189,9 @@ pub(super) struct SimulateArgs {
     /// By what the assistant decides, instead of the session file's concept.
     #[arg(long, value_enum)]
     pub(super) concept: Option<ConceptArg>,
+    /// How the robot's presses come about, instead of the session file's arm; "timed" is quicker to simulate.
+    #[arg(long, value_enum)]
+    pub(super) arm: Option<ArmArg>,
     /// Simulate the trials for every value of a setting, and without signals, and print what matters how much: cost=0.5,1.5,
     /// threshold (of tom), horizon, rollouts, tau, radius, gaze=on,off. Several make a grid. The assistant sends the
     /// signals, unless --condition says otherwise; of a session with a plan its settings count, and each trial is of

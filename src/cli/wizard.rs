@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::{ConceptArg, Format, OperateFlags};
+use super::args::{Format, OperateFlags};
+use super::choices::ConceptArg;
 use super::{Failure, new_session, print, progress};
 use crate::communication::concept::ConceptName;
 use crate::console::playback::SPEEDS;
@@ -137,6 +138,7 @@ fn check_flags(args: &CompareArgs, is_session: bool) -> Result<(), Failure> {
         ("--code", flags.code.is_some()),
         ("--participant", flags.participant.is_some()),
         ("--gaze", flags.gaze.is_some()),
+        ("--arm", flags.arm.is_some()),
         ("--condition", flags.condition.is_some()),
         ("--concept", flags.concept.is_some()),
         ("--seed", flags.seed.is_some()),

@@ -5,6 +5,8 @@ use crate::base::words::count;
 use crate::communication::{Sender, Signal};
 use crate::gaze::quality::DropCounts;
 use crate::kitchen::{Action, Agent, Kitchen, LocationId, OrderContent};
+use crate::robot::arm::ArmPhase;
+use crate::robot::safety::SafetyMode;
 use crate::session::calibration::CalibrationEvent;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::plan::PhaseSpec;
@@ -113,6 +115,8 @@ pub fn happening(kitchen: &Kitchen, what: &Happening) -> (&'static str, String) 
         Happening::OrderShown { order } => ("", format!("{} is new", kitchen.location(*order).label())),
         Happening::Marker(note) => ("note", note.clone()),
         Happening::RobotStopped => ("wizard", "stopped the robot".to_string()),
+        Happening::ArmStopped { mode, force_n, joint } => ("robot", arm_stopped(*mode, *force_n, *joint)),
+        Happening::ArmTouched { force_n } => ("robot", format!("was touched, with {force_n:.0} N")),
         Happening::RobotResumed => ("wizard", "let the robot go on".to_string()),
         Happening::RobotHeld => ("wizard", "held the robot".to_string()),
         Happening::RobotReleased => ("wizard", "released the robot".to_string()),
@@ -124,6 +128,27 @@ pub fn happening(kitchen: &Kitchen, what: &Happening) -> (&'static str, String) 
         Happening::Focus(false) => ("console", "lost the keyboard".to_string()),
         Happening::Focus(true) => ("console", "has the keyboard again".to_string()),
         Happening::Trial(phase) => ("trial", trial(*phase).to_string()),
+    }
+}
+
+/// How the arm stopped by itself.
+pub fn arm_stopped(mode: SafetyMode, force_n: Option<f64>, joint: Option<u8>) -> String {
+    let mode = mode.name().to_lowercase();
+    match (force_n, joint) {
+        (Some(force_n), _) => format!("{mode}: felt somebody, with {force_n:.0} N"),
+        (None, Some(joint)) => format!("{mode}: joint {joint} does not follow"),
+        (None, None) => mode,
+    }
+}
+
+/// What the arm does, in a few words.
+pub fn arm_phase(phase: ArmPhase) -> &'static str {
+    match phase {
+        ArmPhase::Rests => "at rest",
+        ArmPhase::Retracts => "goes up",
+        ArmPhase::Travels => "on its way",
+        ArmPhase::Hovers => "above",
+        ArmPhase::Presses => "presses",
     }
 }
 

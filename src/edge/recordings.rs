@@ -133,7 +133,7 @@ impl Part {
             ended: false,
         };
         while next(&mut line)? {
-            if !is_gaze(&line)
+            if !is_sample(&line)
                 && let Ok(stamped) = serde_json::from_slice::<Stamped>(&line)
             {
                 part.follow(&stamped.event);
@@ -200,8 +200,9 @@ impl Part {
     }
 }
 
-/// Most lines are gaze samples, and say nothing here.
-fn is_gaze(line: &[u8]) -> bool {
-    const GAZE: &[u8] = br#""kind":"gaze""#;
-    line[..line.len().min(80)].windows(GAZE.len()).any(|part| part == GAZE)
+/// Most lines are samples of gaze and arm, and say nothing here.
+fn is_sample(line: &[u8]) -> bool {
+    let head = &line[..line.len().min(80)];
+    let is = |kind: &[u8]| head.windows(kind.len()).any(|part| part == kind);
+    is(br#""kind":"gaze""#) || is(br#""kind":"robot_moves""#)
 }

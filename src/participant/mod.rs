@@ -144,6 +144,12 @@ impl SimulatedParticipant {
         self.is_started.then(|| self.press_at.min(self.eyes.due()))
     }
 
+    /// The press that it means to make next, and when, as far as that is decided.
+    pub fn next_press(&self) -> Option<(ButtonId, SessionTime)> {
+        let button = self.intent.plan.front().filter(|_| self.is_started)?;
+        Some((*button, self.press_at))
+    }
+
     /// The trial starts: the kitchen is seen to be empty.
     pub fn on_trial_start(&mut self, now: SessionTime, state: State) {
         self.is_started = true;

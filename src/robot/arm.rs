@@ -5,12 +5,15 @@
 
 use std::collections::VecDeque;
 
+use serde::{Deserialize, Serialize};
+
 use super::clearance::Surroundings;
 use super::kinematics::{Arm, JOINTS, Joints};
 use super::physics::hand::HandPlace;
 use super::physics::{CYCLE_S, Felt, World};
 use super::reach::{AtButton, BENT, Unreachable};
 use super::safety::{self, SafetyMode};
+use super::touch::Touch;
 use super::trajectory::{Leg, LegKind, way_to, way_up};
 use crate::kitchen::{Agent, ButtonId, Kitchen};
 
@@ -30,10 +33,15 @@ const CLICKS_WITHIN_S: f64 = 0.1;
 /// Below this speed of every joint it stands still, in radians a second.
 pub const STILL_RAD_S: f64 = 0.02;
 
+/// A hand further away than this matters to nothing, in metres.
+const FAR_M: f64 = safety::SLOWS_M + safety::MARGIN_M + 0.02;
+
 /// What the arm does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum ArmPhase {
     /// Nothing: it stands above the buttons.
+    #[default]
     Rests,
     /// Comes up from a button.
     Retracts,
@@ -45,11 +53,9 @@ pub enum ArmPhase {
     Presses,
 }
 
-/// What came of a cycle.
+/// Why it did not press.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Report {
-    /// The button that it set out for clicked.
-    Clicked(ButtonId),
     /// It gave up the press: a hand was in the way for too long.
     Blocked(ButtonId),
     /// It was down on the button, which did not click.
@@ -58,6 +64,18 @@ pub enum Report {
     Contact(f64),
     /// This joint, 0 the first, did not follow; the brakes hold, the press is given up.
     Fault(usize),
+}
+
+/// A cycle, and what came of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cycle {
+    /// This button clicked: it is pressed, also where the arm was about to give that up.
+    pub clicked: Option<ButtonId>,
+    pub report: Option<Report>,
+    pub felt: Felt,
+    /// Somebody touched it a moment ago, with this force in newtons at most so far. Every contact is told so, once; one of
+    /// more force than [`SafetyMode::threshold_n`] has stopped it by then ([`Report::Contact`]).
+    pub touched_n: Option<f64>,
 }
 
 /// The arm.
@@ -84,6 +102,7 @@ pub struct PhysicalArm {
     /// How long it waits for a hand in its way, or for a button to click.
     waited_s: f64,
     astray: u32,
+    touch: Touch,
 }
 
 impl PhysicalArm {
@@ -114,6 +133,7 @@ impl PhysicalArm {
             watches_hands,
             waited_s,
             astray,
+            touch: Touch::default(),
         }
     }
 
@@ -122,12 +142,24 @@ impl PhysicalArm {
     /// # Errors
     /// Why it cannot.
     pub fn set_out(&mut self, button: ButtonId) -> Result<f64, Unreachable> {
-        let at = (*self.buttons.get(button.index()).unwrap_or(&Err(Unreachable::TooFar)))?;
-        self.way = way_to(&self.arm, &self.here, &at, &self.around)?.into();
+        self.way = self.way_to(button)?.into();
         self.goal = Some(button);
         (self.since_s, self.rate, self.waited_s, self.may_press) = (0.0, 0.0, 0.0, false);
         self.halts = false;
         Ok(self.way.iter().map(|leg| leg.takes_s).sum::<f64>())
+    }
+
+    /// How long it would take to a button from where it is, in seconds.
+    ///
+    /// # Errors
+    /// Why it could not.
+    pub fn takes_s(&self, button: ButtonId) -> Result<f64, Unreachable> {
+        Ok(self.way_to(button)?.iter().map(|leg| leg.takes_s).sum())
+    }
+
+    fn way_to(&self, button: ButtonId) -> Result<Vec<Leg>, Unreachable> {
+        let at = (*self.buttons.get(button.index()).unwrap_or(&Err(Unreachable::TooFar)))?;
+        way_to(&self.arm, &self.here, &at, &self.around)
     }
 
     /// Puts something in its surroundings that it plans its ways around.
@@ -197,7 +229,7 @@ impl PhysicalArm {
     /// Whether its next cycle changes anything: it has a way to go and may, or it is not at rest yet.
     pub fn is_busy(&self) -> bool {
         let goes_on = !self.way.is_empty() && !self.mode.is_stopped() && self.phase() != ArmPhase::Hovers;
-        goes_on || self.rate > 0.0 || self.moves()
+        goes_on || self.rate > 0.0 || self.moves() || self.touch.is_to_be_told()
     }
 
     /// Whether any joint moves.
@@ -210,14 +242,19 @@ impl PhysicalArm {
         self.world.joints().0
     }
 
-    /// One cycle, with the human's hand where the person holds it, if there is one.
-    pub fn cycle(&mut self, hand: Option<HandPlace>) -> Option<Report> {
-        self.cycle_felt(hand).0
+    /// How far a hand is from it, in metres.
+    pub fn distance(&self, hand: &HandPlace) -> f64 {
+        self.world.distance(hand)
     }
 
-    /// One cycle, with what was felt in it.
-    pub fn cycle_felt(&mut self, hand: Option<HandPlace>) -> (Option<Report>, Felt) {
+    /// One cycle, with the human's hand where the person holds it, if there is one. With nothing to do and nobody near
+    /// nothing is computed.
+    pub fn cycle(&mut self, hand: Option<HandPlace>) -> Cycle {
+        let hand = hand.filter(|hand| self.distance(hand) < FAR_M);
         let share = self.share_allowed(hand);
+        if hand.is_none() && !self.is_busy() && self.world.hand().is_none() {
+            return Cycle::default();
+        }
         let slope = match (share < self.rate, self.mode.is_stopped()) {
             (true, true) => STOPS,
             (true, false) => SLOWS,
@@ -227,7 +264,13 @@ impl PhysicalArm {
         self.go_on();
         self.aim();
         let felt = self.world.cycle(&self.here, hand);
-        (self.judge(&felt), felt)
+        let touched_n = self.touch.feel(felt.human_n);
+        let clicked = self.world.aimed_at().filter(|_| felt.clicked).map(|button| ButtonId(button as u8));
+        let report = self.judge(&felt);
+        if clicked.is_some() && !self.mode.is_stopped() {
+            self.give_up();
+        }
+        Cycle { clicked, report, felt, touched_n }
     }
 
     /// The share of the planned speed that it may go now.
@@ -236,7 +279,8 @@ impl PhysicalArm {
             return 0.0;
         }
         let waits = self.phase() == ArmPhase::Hovers || self.halts;
-        let Some(hand) = self.world.hand().or(hand).filter(|_| self.watches_hands) else {
+        let hand = hand.map(|wanted| self.world.hand().unwrap_or(wanted));
+        let Some(hand) = hand.filter(|_| self.watches_hands) else {
             self.mode = SafetyMode::Normal;
             return if waits { 0.0 } else { 1.0 };
         };
@@ -313,11 +357,7 @@ impl PhysicalArm {
             self.world.brake();
             return Some(Report::Fault(joint));
         }
-        let button = self.goal?;
-        if felt.clicked && self.phase() == ArmPhase::Presses {
-            self.give_up();
-            return Some(Report::Clicked(button));
-        }
+        let button = self.goal.filter(|_| !felt.clicked)?;
         if self.waited_s > BLOCKED_S {
             self.give_up();
             return Some(Report::Blocked(button));

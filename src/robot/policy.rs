@@ -75,12 +75,12 @@ pub fn chosen(
 }
 
 /// Decides for the state as it truly is: of several best presses one at random, idle if none brings the goal nearer.
-/// `skipped` is left out.
+/// Those of `skipped` are left out.
 pub fn decide(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
     state: State,
-    skipped: Option<ButtonId>,
+    skipped: &[ButtonId],
     random: &mut Stream,
 ) -> Decision {
     if kitchen.wanted(state).next().is_none() {
@@ -88,7 +88,7 @@ pub fn decide(
     }
     let recipes = kitchen.true_recipes();
     let all = best_presses(kitchen, cost, Care::Exact, state, &recipes);
-    let best: Vec<ButtonId> = all.iter().copied().filter(|&button| Some(button) != skipped).collect();
+    let best: Vec<ButtonId> = all.iter().copied().filter(|button| !skipped.contains(button)).collect();
     if best.len() < all.len() && best.is_empty() {
         return Decision::Idle(IdleReason::Skipped);
     }

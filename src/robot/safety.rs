@@ -14,7 +14,7 @@ const SLOWED_M_S: f64 = 0.8;
 /// Away from a hand it may always move so fast.
 const LEAVES_M_S: f64 = 0.1;
 /// A hand is away again a little further out, so that the mode does not flicker, in metres.
-const MARGIN_M: f64 = 0.03;
+pub const MARGIN_M: f64 = 0.03;
 
 /// The controller's safety modes, as the maker names and numbers them; those that the program has a use for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -44,6 +44,18 @@ impl SafetyMode {
             SafetyMode::Safeguard => 5,
             SafetyMode::EmergencyStop => 7,
             SafetyMode::Fault => 9,
+        }
+    }
+
+    /// In words, as the maker writes it.
+    pub fn name(self) -> &'static str {
+        match self {
+            SafetyMode::Normal => "NORMAL",
+            SafetyMode::Reduced => "REDUCED",
+            SafetyMode::ProtectiveStop => "PROTECTIVE STOP",
+            SafetyMode::Safeguard => "SAFEGUARD",
+            SafetyMode::EmergencyStop => "EMERGENCY STOP",
+            SafetyMode::Fault => "FAULT",
         }
     }
 

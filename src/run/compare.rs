@@ -142,7 +142,7 @@ impl Watcher {
             self.sent.push(spoken);
         }
         match &stamped.event {
-            Event::Gaze(_) => return Ok(()),
+            event if event.is_sample() => return Ok(()),
             Event::Screen(screen) => self.screen = Some(screen.clone()),
             Event::TrialStarted => self.voices.iter_mut().for_each(|voice| voice.repeats = Repeats::default()),
             _ => {}
@@ -288,6 +288,9 @@ pub(super) fn follows_at_once(stamped: &Stamped, time: SessionTime) -> bool {
     let is_new = matches!(
         stamped.event,
         Event::Gaze(_)
+            | Event::RobotMoves(_)
+            | Event::RobotSafety { .. }
+            | Event::RobotTouched { .. }
             | Event::ParticipantBelieves(_)
             | Event::Advised(_)
             | Event::SignalShown { .. }

@@ -5,21 +5,23 @@
 //! go through the same code.
 
 mod informing;
+mod robot;
 
 use std::sync::Arc;
 
 use self::informing::participant_of;
+use self::robot::robot_of;
 use super::advisor::{Advisor, Question};
 use super::follower::Follower;
 use crate::base::time::SessionTime;
 use crate::communication::Sender;
 use crate::communication::recommendation::Recommendation;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, ButtonId, Kitchen};
+use crate::kitchen::{Agent, Kitchen};
 use crate::measures::JudgedPress;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::participant::{Deed, SimulatedParticipant};
-use crate::robot::timed::{RobotDeed, TimedRobot};
+use crate::robot::worker::Robot;
 use crate::session::admit::{admit, hygiene};
 use crate::session::apply::ApplyError;
 use crate::session::event::{EndReason, SignalEnd};
@@ -36,7 +38,7 @@ pub struct Engine {
     follower: Follower,
     timers: TimerQueue,
     orders: OrderList,
-    robot: TimedRobot,
+    robot: Robot,
     participant: Option<SimulatedParticipant>,
     /// Who sends signals by a script.
     wizard: Option<ScriptedWizard>,
@@ -73,7 +75,7 @@ impl Engine {
     /// never changes what it answers.
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64, cost: CostToGo) -> Engine {
         let orders = OrderList::new(kitchen.dishes.len(), &spec, trial);
-        let robot = TimedRobot::new(spec.robot.press_s, spec.robot.press_spread, spec.seed, trial);
+        let robot = robot_of(&kitchen, &spec, trial);
         let participant = (spec.participant.kind == ParticipantKind::Simulated)
             .then(|| participant_of(kitchen.clone(), &spec, trial));
         let wizard = spec.scripts_wizard().then(|| {
@@ -167,13 +169,7 @@ impl Engine {
         let Some((now, source)) = self.next_source() else { return };
         match source {
             Source::Timer => self.fire_timer(now),
-            Source::Robot => {
-                let kitchen = self.session().kitchen.clone();
-                let state = self.session().state;
-                if let Some(deed) = self.robot.touch(&kitchen, &mut self.follower.cost, state) {
-                    self.record_deed(now, deed);
-                }
-            }
+            Source::Robot => self.let_robot_act(now),
             Source::Participant => self.let_participant_act(now),
             Source::Wizard => self.let_wizard_act(now),
         }
@@ -201,6 +197,7 @@ impl Engine {
                 self.record_own(now, Event::Press { agent: Agent::Human, button, at_ns: None });
             }
         }
+        self.let_hand_follow(now);
     }
 
     fn let_wizard_act(&mut self, now: SessionTime) {
@@ -255,18 +252,6 @@ impl Engine {
         }
     }
 
-    fn record_deed(&mut self, now: SessionTime, deed: RobotDeed) {
-        let kitchen = self.session().kitchen.clone();
-        let name = |button: ButtonId| kitchen.button(Agent::Robot, button).name.clone();
-        let event = match deed {
-            RobotDeed::Intend { button, until } => Event::RobotIntends { button: name(button), until_ns: until },
-            RobotDeed::Press(button) => Event::Press { agent: Agent::Robot, button: name(button), at_ns: None },
-            RobotDeed::Abort(button, reason) => Event::RobotAborts { button: name(button), reason },
-            RobotDeed::Idle(reason) => Event::RobotIdles { reason },
-        };
-        self.record_own(now, event);
-    }
-
     /// Records an event that the engine itself raised.
     fn record_own(&mut self, now: SessionTime, event: Event) {
         self.record(now, event).expect("an engine's own events fit its session");
@@ -285,7 +270,7 @@ impl Engine {
         effects.into_iter().for_each(|effect| self.perform(effect));
         self.tell_participant(&stamped, before);
         self.tell_wizard(&stamped, before);
-        let given_up = self.tell_robot(&stamped);
+        let robots = self.tell_robot(&stamped);
         if self.session().is_running() && self.session().spec.asks_assistant() && changes_task(&stamped.event) {
             self.to_ask = Some((stamped.seq, now));
         }
@@ -302,7 +287,7 @@ impl Engine {
         if let Some(estimate) = estimate {
             self.record_own(now, Event::BeliefEstimated(estimate));
         }
-        if let Some(deed) = given_up {
+        for deed in robots {
             self.record_deed(now, deed);
         }
         self.check_criterion(now);

@@ -71,7 +71,7 @@ impl Film {
         let before = self.events.len();
         while let Some(line) = self.replay.step()? {
             let (session, belief) = (self.replay.session(), self.replay.follower.filter.belief());
-            let by_gaze = is_gaze(&line.stamped);
+            let by_gaze = line.stamped.event.is_sample();
             self.beliefs.note(Moment::new(&session.kitchen, session.state, belief, line.stamped.time, by_gaze));
             self.events.push(line.stamped);
         }
@@ -129,12 +129,12 @@ impl Film {
     /// The place after the next event that is no gaze sample.
     pub fn next_step(&self) -> usize {
         let rest = self.events[self.position..].iter();
-        self.position + rest.take_while(|stamped| is_gaze(stamped)).count() + 1
+        self.position + rest.take_while(|stamped| stamped.event.is_sample()).count() + 1
     }
 
     /// The place after the last event but one that is no gaze sample.
     pub fn last_step(&self) -> usize {
-        let steps = |end: usize| self.events[..end].iter().rposition(|stamped| !is_gaze(stamped));
+        let steps = |end: usize| self.events[..end].iter().rposition(|stamped| !stamped.event.is_sample());
         let last = steps(self.position).unwrap_or(0);
         steps(last).map_or(0, |index| index + 1)
     }
@@ -165,8 +165,4 @@ impl Film {
     pub fn time(&self) -> SessionTime {
         self.session.time
     }
-}
-
-fn is_gaze(stamped: &Stamped) -> bool {
-    matches!(stamped.event, Event::Gaze(_))
 }

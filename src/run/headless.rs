@@ -5,6 +5,10 @@ use crate::base::time::SessionTime;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::{Event, Phase, Stamped};
 
+/// Nobody is at the console, so the run stands in for who would be there: so long after the arm stopped by itself it
+/// lets it go on, in seconds.
+const LOOKS_S: f64 = 3.0;
+
 /// Runs a whole session of one trial, from its start to its end, and gives every event to `record`.
 ///
 /// # Errors
@@ -16,6 +20,7 @@ pub fn run<E>(engine: &mut Engine, mut record: impl FnMut(&Stamped) -> Result<()
         engine.input(SessionTime::ZERO, event).events.iter().try_for_each(&mut record)?;
     }
     engine.input(SessionTime::ZERO, Event::TrialStarted).events.iter().try_for_each(&mut record)?;
+    let mut stopped: Option<SessionTime> = None;
     // The trial's time is always pending while it runs, so there is a next event until it is over.
     while engine.session().phase == Phase::Running {
         for question in engine.take_questions() {
@@ -24,7 +29,12 @@ pub fn run<E>(engine: &mut Engine, mut record: impl FnMut(&Stamped) -> Result<()
                 engine.input(engine.session().time, advice).events.iter().try_for_each(&mut record)?;
             }
         }
+        let now = engine.next_due().unwrap_or(engine.session().time);
         engine.fire().iter().try_for_each(&mut record)?;
+        stopped = engine.session().robot.stopped.then(|| stopped.unwrap_or(now));
+        if stopped.is_some_and(|since| now.secs_since(since) >= LOOKS_S) {
+            engine.input(now, Event::RobotResumed).events.iter().try_for_each(&mut record)?;
+        }
     }
     let end = engine.session().time;
     engine.input(end, Event::SessionEnded).events.iter().try_for_each(&mut record)

@@ -10,7 +10,7 @@ use crate::edge::files::{self, FileResult, SessionFiles};
 use crate::kitchen::Kitchen;
 use crate::session::Header;
 use crate::session::plan::PlanSpec;
-use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
+use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, SettingError};
 
 /// What `tomcom operate` is asked for.
 #[derive(Clone, Debug)]
@@ -40,6 +40,7 @@ pub struct Series {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Overrides {
     pub participant: Option<ParticipantKind>,
+    pub arm: Option<ArmKind>,
     pub gaze: Option<GazeSource>,
     /// Where the display is served.
     pub listen: Option<IpAddr>,
@@ -67,6 +68,7 @@ impl Overrides {
             return Err(SettingError::new(key, found, remedy));
         }
         spec.seed = self.seed.unwrap_or(spec.seed);
+        spec.robot.arm = self.arm.unwrap_or(spec.robot.arm);
         spec.trial.condition = self.condition.unwrap_or(spec.trial.condition);
         spec.assistant.concept = self.concept.unwrap_or(spec.assistant.concept);
         spec.display.listen = self.listen.unwrap_or(spec.display.listen);

@@ -16,7 +16,8 @@ use crate::measures::attribution::Cause;
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::BeliefWitness;
 use crate::mind::witness::{AspectEstimate, EstimateWitness};
-use crate::robot::{AbortReason, IdleReason};
+use crate::robot::IdleReason;
+use crate::robot::safety::SafetyMode;
 use crate::session::display::DisplayEvent;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::preflight::{Check, Verdict};
@@ -102,10 +103,10 @@ impl RecordingFigures {
 /// What stands above the lines.
 pub const HEADING: &str = " trial time  what happened";
 
-/// The line for an event that was just applied, at the time of the trial's clock; none for gaze samples.
+/// The line for an event that was just applied, at the time of the trial's clock; none for gaze samples and the arm's motion.
 pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
     let words = match &stamped.event {
-        Event::Gaze(_) | Event::SignalDrawn { .. } => return None,
+        Event::Gaze(_) | Event::SignalDrawn { .. } | Event::RobotMoves(_) => return None,
         // An estimate is worth a line where it says that something is believed wrong.
         Event::BeliefEstimated(estimate) => estimated(estimate)?,
         Event::TrialStarted => "trial started".to_string(),
@@ -134,21 +135,16 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::OrderShown { order, dish } => format!("{} wants {dish}", said(order)),
         Event::OrderCleared { order } => format!("{} is cleared", said(order)),
         Event::RobotIntends { button, .. } => format!("robot sets out for {}", said(button)),
-        Event::RobotAborts { button, reason: AbortReason::NoLongerUseful } => {
-            format!("robot gives up {}: no longer useful", said(button))
-        }
-        Event::RobotAborts { button, reason: AbortReason::Stopped } => {
-            format!("robot gives up {}: stopped", said(button))
-        }
+        Event::RobotAborts { button, reason } => format!("robot gives up {}: {}", said(button), reason.words()),
         Event::RobotIdles { reason: IdleReason::NoOrder } => "robot idles: no order".to_string(),
         Event::RobotIdles { reason: IdleReason::HumanTurn } => "robot idles: only the human can go on".to_string(),
-        Event::RobotAborts { button, reason: AbortReason::Skipped } => {
-            format!("robot gives up {}: skipped", said(button))
-        }
-        Event::RobotAborts { button, reason: AbortReason::Driven } => {
-            format!("robot gives up {}: the wizard chose another press", said(button))
-        }
         Event::RobotIdles { reason: IdleReason::Skipped } => "robot idles: its only press was skipped".to_string(),
+        // That it slows near a hand and speeds up again is no news.
+        Event::RobotSafety { mode: SafetyMode::Normal | SafetyMode::Reduced, .. } => return None,
+        Event::RobotSafety { mode, force_n, joint } => {
+            format!("robot's arm: {}", words::arm_stopped(*mode, *force_n, *joint))
+        }
+        Event::RobotTouched { force_n } => format!("robot's arm was touched, with {force_n:.0} N"),
         Event::RobotHeld { .. } => "robot held by the wizard before its next press".to_string(),
         Event::RobotReleased { .. } => "robot released by the wizard".to_string(),
         Event::RobotSkipped { .. } => "the wizard skips the robot's press".to_string(),

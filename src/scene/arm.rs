@@ -1,16 +1,20 @@
 //! Arm, table and buttons in space.
 
-use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
 use super::colours;
-use super::shown::{Point, Row, Shown};
+use super::shown::{Point, Row, Series, Shown};
 use crate::base::time::SessionTime;
 use crate::console::words;
 use crate::kitchen::{Agent, Button, ButtonId, Kitchen};
+use crate::robot::body::ArmMoment;
 use crate::robot::kinematics::{Arm, Joints};
 use crate::robot::motion::ArmMotion;
+use crate::robot::physics::hand::HandPlace;
 use crate::robot::reach::BUTTON_M;
+use crate::robot::safety::SafetyMode;
 use crate::robot::urdf::{Shape, Solid};
+use crate::session::settings::ArmKind;
 use crate::session::{Event, Session, Stamped};
 
 /// So often the arm is shown while it moves.
@@ -22,22 +26,42 @@ const THICK_M: f64 = 0.03;
 const BUTTON_RADIUS_M: f64 = 0.02;
 const MARK_M: f64 = 0.022;
 
+/// A hand that presses is so high above the table, in metres.
+const ABOVE_TABLE_M: f64 = 0.05;
+/// Below this force nothing is shown at the tip, in newtons, and its mark is so large, in metres.
+const SHOWN_N: f64 = 0.5;
+const FELT_M: f64 = 0.015;
+/// Of the mark where the arm was touched.
+const CONTACT_M: f64 = 0.05;
+/// What the arm in the physics feels, how far the hand is, and how safe it is.
+const FORCE: &str = "robot/force";
+const AWAY: &str = "robot/hand_away";
+const SAFETY: &str = "robot/safety/mode";
+const FELT: &str = "robot/felt";
+const CONTACT: &str = "robot/contact";
+const HAND: &str = "human/hand/shape";
+
 /// The arm as it is shown.
 #[derive(Clone, Debug)]
 pub struct ArmScene {
     arm: Arm,
-    motion: ArmMotion,
+    /// How the timed arm moves; none: the session says how the arm in the physics stands.
+    motion: Option<ArmMotion>,
     /// Until when it is shown, and how it stood then.
     until: SessionTime,
     joints: Joints,
+    /// A force is shown at the tip.
+    feels: bool,
 }
 
 impl ArmScene {
-    pub fn new(kitchen: &Kitchen, now: SessionTime) -> ArmScene {
+    pub fn new(session: &Session) -> ArmScene {
         let arm = Arm::ur5();
-        let motion = ArmMotion::new(kitchen, &arm);
-        let joints = motion.at(now);
-        ArmScene { arm, motion, until: now, joints }
+        let motion = ArmMotion::new(&session.kitchen, &arm);
+        let told = session.robot.arm.last.map(|(_, moment)| moment.joints);
+        let joints = told.unwrap_or_else(|| motion.at(session.time));
+        let motion = (session.spec.robot.arm == ArmKind::Timed).then_some(motion);
+        ArmScene { arm, motion, until: session.time, joints, feels: false }
     }
 
     /// Table, buttons, and the shapes of the links.
@@ -50,27 +74,34 @@ impl ArmScene {
             let colour = if index % 2 == 0 { colours::JOINT } else { colours::STEEL };
             rows.push(Row::new(entity(&link.name), Shown::Solids(link.solids.clone(), colour)));
         }
+        if self.motion.is_none() {
+            rows.extend(hand_shapes());
+            for (entity, name, colour) in
+                [(FORCE, "force on the arm (N)", colours::ROBOT), (AWAY, "hand away (cm)", colours::HUMAN)]
+            {
+                rows.push(Row::new(entity, Shown::Line(Series { name: name.to_string(), colour })));
+            }
+        }
         rows
     }
 
     /// How it stands.
     pub fn opening(&self) -> Vec<Row> {
-        let places = self.arm.forward(&self.joints);
-        let links = self.arm.links.iter().zip(places).skip(1);
-        links.map(|(link, place)| Row::new(entity(&link.name), Shown::Place(place))).collect()
+        places(&self.arm, &self.joints)
     }
 
     /// How it moved since it was shown last, until this time.
     pub fn until(&mut self, time: SessionTime) -> Vec<(SessionTime, Vec<Row>)> {
         let mut moments = Vec::new();
+        let Some(motion) = &self.motion else { return moments };
         // Where it rests it is not shown again: time goes by at once.
-        let end = time.min(self.motion.rests_at() + SessionTime(EVERY_NS));
+        let end = time.min(motion.rests_at() + SessionTime(EVERY_NS));
         let mut at = SessionTime((self.until.0 / EVERY_NS + 1) * EVERY_NS);
         while at <= end {
-            let joints = self.motion.at(at);
+            let joints = motion.at(at);
             if joints != self.joints {
                 self.joints = joints;
-                moments.push((at, self.opening()));
+                moments.push((at, places(&self.arm, &joints)));
             }
             at = at + SessionTime(EVERY_NS);
         }
@@ -85,12 +116,26 @@ impl ArmScene {
         match &stamped.event {
             Event::RobotIntends { .. } | Event::TrialResumed => {
                 let Some((button, _, until)) = session.robot.intention else { return Vec::new() };
-                self.motion.set_out(now, button, until);
+                if let Some(motion) = &mut self.motion {
+                    motion.set_out(now, button, until);
+                }
                 vec![Row::new("robot/goal", Shown::Points(vec![mark(kitchen, Agent::Robot, button)]))]
             }
             Event::TrialPaused => {
-                self.motion.stand(now);
+                if let Some(motion) = &mut self.motion {
+                    motion.stand(now);
+                }
                 Vec::new()
+            }
+            Event::RobotMoves(moment) => self.moves(moment),
+            Event::RobotTouched { force_n } => vec![touched(session, format!("{force_n:.0} N"))],
+            Event::RobotSafety { mode, .. } => {
+                let state = if *mode == SafetyMode::Normal { String::new() } else { mode.name().to_lowercase() };
+                let mut rows = vec![Row::new(SAFETY, Shown::State(state))];
+                if !mode.is_stopped() {
+                    rows.push(Row::new(CONTACT, Shown::Points(Vec::new())));
+                }
+                rows
             }
             Event::Press { agent: Agent::Human, button, .. } => {
                 let button = kitchen.button_named(Agent::Human, button);
@@ -103,10 +148,59 @@ impl ArmScene {
         }
     }
 
+    /// How the arm in the physics stands, what it feels, and where the hand is.
+    fn moves(&mut self, moment: &ArmMoment) -> Vec<Row> {
+        self.joints = moment.joints;
+        let mut rows = places(&self.arm, &self.joints);
+        let [x, y, z] = moment.hand_m;
+        rows.push(Row::new(HAND, Shown::Place(at(x, y, z))));
+        let felt = (moment.force_n >= SHOWN_N).then(|| Point {
+            at_m: self.arm.tip(&self.joints).translation.vector.into(),
+            radius_m: FELT_M,
+            words: format!("{:.0} N", moment.force_n),
+            colour: colours::SIGNAL,
+        });
+        if felt.is_some() || self.feels {
+            rows.push(Row::new(FELT, Shown::Points(felt.iter().cloned().collect())));
+        }
+        self.feels = felt.is_some();
+        rows.push(Row::new(FORCE, Shown::Value(moment.force_n)));
+        rows.push(Row::new(AWAY, Shown::Value(moment.hand_away_m * 100.0)));
+        rows
+    }
+
     fn goes_up(&mut self, now: SessionTime) -> Vec<Row> {
-        self.motion.go_up(now);
+        if let Some(motion) = &mut self.motion {
+            motion.go_up(now);
+        }
         vec![Row::new("robot/goal", Shown::Points(Vec::new()))]
     }
+}
+
+/// Where the links are.
+fn places(arm: &Arm, joints: &Joints) -> Vec<Row> {
+    let links = arm.links.iter().zip(arm.forward(joints)).skip(1);
+    links.map(|(link, place)| Row::new(entity(&link.name), Shown::Place(place))).collect()
+}
+
+/// Hand and forearm as they are in the physics: the forearm leads away from the robot, and up a little.
+fn hand_shapes() -> Vec<Row> {
+    let place = HandPlace::reaching(Point3::origin(), -ABOVE_TABLE_M);
+    let [hand, forearm] = place.capsules();
+    let ball = Solid { shape: Shape::Sphere { radius_m: hand.radius_m }, link_from_solid: Isometry3::identity() };
+    let [from, to] = forearm.ends_m;
+    let along = UnitQuaternion::rotation_between(&Vector3::z(), &(to - from)).unwrap_or_else(UnitQuaternion::identity);
+    let middle = Translation3::from(nalgebra::center(&from, &to).coords);
+    let length_m = (to - from).norm() + 2.0 * forearm.radius_m;
+    let shape = Shape::Cylinder { radius_m: forearm.radius_m, length_m };
+    let forearm = Solid { shape, link_from_solid: Isometry3::from_parts(middle, along) };
+    vec![Row::new(HAND, Shown::Solids(vec![ball, forearm], colours::HUMAN))]
+}
+
+/// A mark where the hand is, with these words.
+fn touched(session: &Session, words: String) -> Row {
+    let at_m = session.robot.arm.last.map_or([0.0; 3], |(_, moment)| moment.hand_m);
+    Row::new(CONTACT, Shown::Points(vec![Point { at_m, radius_m: CONTACT_M, words, colour: colours::ERROR }]))
 }
 
 fn entity(link: &str) -> String {

@@ -75,6 +75,8 @@ pub fn entry(session: &Session, entry: &Entry, error: Option<&JudgedPress>) -> R
             say("assistant/signals", Level::Info, text, colours::ASSISTANT)
         }
         Happening::SignalEnded(SignalEnd::TakenBack) => say("wizard/signals", Level::Warning, text, colours::WIZARD),
+        Happening::ArmStopped { .. } => say("robot/events", Level::Error, text, colours::ERROR),
+        Happening::ArmTouched { .. } => say("robot/events", Level::Warning, text, colours::ROBOT),
         _ if who == "wizard" || who == "note" => say("wizard/hands", Level::Info, text, colours::WIZARD),
         _ => say("trial/events", Level::Info, text, colours::QUIET),
     }

@@ -20,7 +20,7 @@ use belief::BeliefScene;
 pub use shown::{Row, Shown};
 
 /// What is shown, and where, changes with this number: a stream of another one is made anew from the log.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// What entities show from a time on.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,7 +59,7 @@ impl Scene {
     pub fn new(session: &Session, next: u64) -> Scene {
         Scene {
             session: session.clone(),
-            arm: ArmScene::new(&session.kitchen, session.time),
+            arm: ArmScene::new(session),
             belief: BeliefScene::default(),
             next,
             told: session.timeline.len(),

@@ -3,7 +3,7 @@
 
 use super::event::{EndReason, Event, SignalEnd};
 use super::protocol::{self, ProtocolEvent};
-use super::settings::{Condition, ParticipantKind};
+use super::settings::{ArmKind, Condition, ParticipantKind};
 use super::{Phase, Session, calibration, hands, tracker};
 use crate::base::time::SessionTime;
 use crate::communication::{self, Sender, Signal};
@@ -39,6 +39,9 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         }
         Event::Tracker(event) => tracker::admit(event),
         Event::Calibration(event) => calibration::admit(session, event),
+        Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => {
+            refuse_if(session.spec.robot.arm == ArmKind::Timed, "the robot's arm is timed in this session")
+        }
         Event::RobotStopped => refuse_if(session.robot.stopped, "the robot is stopped already"),
         Event::RobotResumed => refuse_if(!session.robot.stopped, "the robot is not stopped"),
         Event::SignalShown { by, signal, .. } => admit_signal(session, *by, signal),
@@ -132,6 +135,9 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::RobotIntends { .. }
         | Event::RobotAborts { .. }
         | Event::RobotIdles { .. }
+        | Event::RobotMoves(_)
+        | Event::RobotSafety { .. }
+        | Event::RobotTouched { .. }
         | Event::ParticipantBelieves(_)
         | Event::BeliefEstimated(_) => false,
     }

@@ -2,13 +2,12 @@
 
 use super::admit::admit;
 use super::event::{EndReason, Event, SignalEnd, Stamped};
-use super::{Entry, Happening, Phase, RobotStatus, Served, Session, ShownSignal};
-use super::{calibration, protocol};
+use super::{Entry, Happening, Phase, Served, Session, ShownSignal};
+use super::{calibration, protocol, robot};
 use crate::base::time::SessionTime;
 use crate::communication::{Sender, Signal};
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 use crate::kitchen::{Action, Agent, ButtonId, ContentId, DishId, LocationId, OrderContent, State};
-use crate::robot::AbortReason;
 
 /// After so many seconds without a gaze sample its rate is measured anew.
 const GAP_S: f64 = 0.5;
@@ -106,20 +105,20 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
         }
         Event::RobotIntends { button, until_ns } => {
             let button = named.button(Agent::Robot, button)?;
-            session.robot.intention = Some((button, now, *until_ns));
-            session.robot.idle = None;
+            session.robot.sets_out(button, now, *until_ns);
         }
         Event::RobotAborts { button, reason } => {
             named.button(Agent::Robot, button)?;
-            session.robot.intention = None;
-            // What the wizard drives it to is still to come.
-            session.robot.driven &= *reason == AbortReason::Driven;
+            session.robot.gives_up(*reason);
         }
         Event::RobotIdles { reason } => session.robot.idle = Some(*reason),
-        Event::RobotStopped => stop_robot(session, now, true),
-        Event::RobotResumed => stop_robot(session, now, false),
-        Event::RobotHeld { .. } => hold_robot(session, now, true),
-        Event::RobotReleased { .. } => hold_robot(session, now, false),
+        Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => {
+            robot::arm(session, now, &stamped.event);
+        }
+        Event::RobotStopped => robot::stop(session, now, true),
+        Event::RobotResumed => robot::stop(session, now, false),
+        Event::RobotHeld { .. } => robot::hold(session, now, true),
+        Event::RobotReleased { .. } => robot::hold(session, now, false),
         Event::RobotSkipped { .. } => {
             if let Some((button, ..)) = session.robot.intention {
                 note(session, now, Happening::RobotSkipped(button));
@@ -211,7 +210,7 @@ impl Named<'_> {
     }
 }
 
-fn note(session: &mut Session, time: SessionTime, what: Happening) {
+pub(super) fn note(session: &mut Session, time: SessionTime, what: Happening) {
     session.timeline.push(Entry { time, what });
 }
 
@@ -278,7 +277,7 @@ fn resume(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
 fn end_trial(session: &mut Session, now: SessionTime, reason: EndReason, effects: &mut Vec<Effect>) {
     stop_clock(session, now);
     session.phase = Phase::Over(reason);
-    session.robot = RobotStatus { stopped: session.robot.stopped, held: session.robot.held, ..RobotStatus::default() };
+    session.robot.rests();
     session.shown = None;
     session.advice = None;
     effects.push(Effect::CancelAll);
@@ -293,18 +292,6 @@ fn close(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
     session.advice = None;
     effects.push(Effect::CancelAll);
     effects.push(Effect::Close);
-}
-
-fn stop_robot(session: &mut Session, now: SessionTime, stopped: bool) {
-    session.robot.stopped = stopped;
-    session.robot.idle = None;
-    note(session, now, if stopped { Happening::RobotStopped } else { Happening::RobotResumed });
-}
-
-fn hold_robot(session: &mut Session, now: SessionTime, held: bool) {
-    session.robot.held = held;
-    session.robot.idle = None;
-    note(session, now, if held { Happening::RobotHeld } else { Happening::RobotReleased });
 }
 
 fn show(session: &mut Session, now: SessionTime, by: Sender, signal: &Signal, effects: &mut Vec<Effect>) {

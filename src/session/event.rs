@@ -19,6 +19,8 @@ use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
 use crate::mind::BeliefWitness;
 use crate::mind::witness::EstimateWitness;
+use crate::robot::body::ArmMoment;
+use crate::robot::safety::SafetyMode;
 use crate::robot::{AbortReason, IdleReason};
 
 /// An event with its place in the log.
@@ -98,6 +100,24 @@ pub enum Event {
     RobotIdles {
         reason: IdleReason,
     },
+    /// Witness: how the arm in the physics stands, some twelve times a second while it moves.
+    RobotMoves(ArmMoment),
+    /// The arm in the physics is safe in another way. After a protective stop or a fault it stays where it is until the
+    /// wizard resumes it.
+    RobotSafety {
+        mode: SafetyMode,
+        /// What it felt in newtons, where that is why.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        force_n: Option<f64>,
+        /// The joint at fault, 1 the first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        joint: Option<u8>,
+    },
+    /// Witness: somebody touched the arm in the physics, with so much force in newtons; told once for each contact, also of
+    /// one that stopped the arm.
+    RobotTouched {
+        force_n: f64,
+    },
     /// The wizard stopped the robot; it stays so until it is resumed.
     RobotStopped,
     RobotResumed,
@@ -171,6 +191,11 @@ pub enum Event {
 }
 
 impl Event {
+    /// Whether it is one of many samples, of the gaze or of how the arm stands.
+    pub fn is_sample(&self) -> bool {
+        matches!(self, Event::Gaze(_) | Event::RobotMoves(_))
+    }
+
     /// The word that stands for it in the log.
     pub fn kind(&self) -> &'static str {
         match self {
@@ -191,6 +216,9 @@ impl Event {
             Event::RobotIntends { .. } => "robot_intends",
             Event::RobotAborts { .. } => "robot_aborts",
             Event::RobotIdles { .. } => "robot_idles",
+            Event::RobotMoves(_) => "robot_moves",
+            Event::RobotSafety { .. } => "robot_safety",
+            Event::RobotTouched { .. } => "robot_touched",
             Event::RobotStopped => "robot_stopped",
             Event::RobotResumed => "robot_resumed",
             Event::RobotHeld { .. } => "robot_held",

@@ -12,6 +12,7 @@ pub mod orders;
 pub mod plan;
 pub mod preflight;
 pub mod protocol;
+pub mod robot;
 pub mod screen;
 pub mod settings;
 pub mod stream;
@@ -27,9 +28,11 @@ use crate::gaze::GazeSample;
 use crate::gaze::quality::{GazeFault, Judge};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
+use crate::robot::safety::SafetyMode;
 pub use apply::{Effect, Timer, apply};
 pub use event::{Event, Stamped};
 pub use header::Header;
+pub use robot::RobotStatus;
 pub use settings::SessionSpec;
 
 /// After so many seconds without a sample there is no gaze.
@@ -107,21 +110,6 @@ pub struct Served {
     pub presses: u32,
 }
 
-/// What the robot does.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct RobotStatus {
-    /// The press that the arm is busy with, since when, and when it will touch the button.
-    pub intention: Option<(ButtonId, SessionTime, SessionTime)>,
-    /// Stopped by the wizard.
-    pub stopped: bool,
-    /// Held by the wizard before its next press.
-    pub held: bool,
-    /// The wizard chose the press that it is on its way to.
-    pub driven: bool,
-    /// Why it does nothing, if it does nothing.
-    pub idle: Option<crate::robot::IdleReason>,
-}
-
 /// A signal on the display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownSignal {
@@ -180,6 +168,15 @@ pub enum Happening {
     },
     Marker(String),
     RobotStopped,
+    /// It stopped by itself; with the force that it felt, in newtons, or the joint at fault.
+    ArmStopped {
+        mode: SafetyMode,
+        force_n: Option<f64>,
+        joint: Option<u8>,
+    },
+    ArmTouched {
+        force_n: f64,
+    },
     RobotResumed,
     RobotHeld,
     RobotReleased,

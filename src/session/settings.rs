@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::display::DisplaySpec;
 use super::plan::{PlanSpec, StepSpec};
+pub use super::robot::{ArmKind, RobotSpec};
 use super::stream::RerunSpec;
 use super::tracker::TrackerSpec;
 use crate::communication::settings::{AssistantSpec, Shadow};
@@ -281,22 +282,6 @@ pub enum GazeSource {
     Json,
     /// No gaze at all.
     None,
-}
-
-/// The robot's timed presses.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct RobotSpec {
-    /// Median duration of a press in seconds.
-    pub press_s: f64,
-    /// Spread: the standard deviation of the logarithm of the duration.
-    pub press_spread: f64,
-}
-
-impl Default for RobotSpec {
-    fn default() -> Self {
-        RobotSpec { press_s: 2.4, press_spread: 0.15 }
-    }
 }
 
 /// The communication signals.

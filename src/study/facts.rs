@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::session::settings::{Condition, GazeSource, ParticipantKind, Visibility};
+use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec, Visibility};
 use crate::session::{Header, Session};
 
 /// What is known of a kind, from one recording or several: every value that occurred.
@@ -25,7 +25,7 @@ impl Facts {
         is("presses", spec.trial.presses.to_string());
         is("seconds", spec.trial.seconds.to_string());
         is("seed", spec.seed.to_string());
-        is("robot", format!("{} s in the median (spread {})", spec.robot.press_s, spec.robot.press_spread));
+        is("robot", presses_of(&spec.robot));
         is("shown", format!("{} s", spec.signals.shown_s));
         is("cost", spec.assistant.cost_of_communication.to_string());
         is("tau", spec.human.decision.tau.to_string());
@@ -69,6 +69,14 @@ impl Facts {
     /// Whether there is something of a kind.
     pub fn has(&self, key: &str) -> bool {
         self.found.contains_key(key)
+    }
+}
+
+/// How long the robot's presses take.
+fn presses_of(robot: &RobotSpec) -> String {
+    match robot.arm {
+        ArmKind::Timed => format!("{} s in the median (spread {})", robot.press_s, robot.press_spread),
+        ArmKind::Physics => "as long as its simulated arm takes".to_string(),
     }
 }
 

@@ -72,6 +72,8 @@ def expected(log):
                 add(f"{event['by']}/signals")
             case "advised":
                 add("assistant/benefit/cost_line")
+            case "robot_moves":
+                add("robot/force")
             case "belief_estimated":
                 for aspect in event["aspects"]:
                     add("human/belief/estimated/" + aspect["aspect"].replace(" ", "_"))

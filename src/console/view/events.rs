@@ -28,7 +28,8 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
             Happening::Press { agent: Agent::Human, .. } => Role::Human,
             Happening::Press { agent: Agent::Robot, .. } => Role::Robot,
             Happening::Signal { .. } | Happening::SignalEnded(_) => Role::Signal,
-            Happening::RobotStopped => Role::Alarm,
+            Happening::RobotStopped | Happening::ArmStopped { .. } => Role::Alarm,
+            Happening::ArmTouched { .. } => Role::Robot,
             _ => Role::Strong,
         };
         let quiet = brush.style(Role::Quiet);

@@ -5,6 +5,7 @@ use super::regions::{ROOMY_COLUMNS, Regions, Room};
 use super::theme::Role;
 use crate::console::model::{Model, Recording, Viewers};
 use crate::console::words;
+use crate::robot::safety::SafetyMode;
 use crate::session::settings::{Condition, GazeSource};
 use crate::session::tracker::Link;
 use crate::session::{Phase, Session};
@@ -141,7 +142,7 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
         healths.push((format!("RERUN {dropped} DROPPED"), Role::Alarm));
     }
     let robot = match (session.robot.stopped, session.robot.held) {
-        (true, _) => ("ROBOT STOPPED", Role::Alarm),
+        (true, _) => (stopped(session), Role::Alarm),
         (false, true) => ("ROBOT HELD", Role::Strong),
         (false, false) => ("robot ok", Role::Text),
     };
@@ -149,6 +150,15 @@ fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> 
         healths.push((robot.0.to_string(), robot.1));
     }
     healths
+}
+
+/// How the robot is stopped: by the wizard, or by its arm itself.
+fn stopped(session: &Session) -> &'static str {
+    match session.robot.arm.mode {
+        SafetyMode::ProtectiveStop => "PROTECTIVE STOP",
+        SafetyMode::Fault => "ARM FAULT",
+        _ => "ROBOT STOPPED",
+    }
 }
 
 /// Where Rerun's viewers connect, as long as they and the stream's file get everything.

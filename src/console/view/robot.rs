@@ -1,4 +1,6 @@
-//! The robot: what it is about to press, how far the arm is, and why it does nothing.
+//! The robot: what it is about to press, how far the arm is, and why it does nothing; and how its arm stands.
+
+use std::f64::consts::TAU;
 
 use super::paint::Brush;
 use super::regions::{Regions, Room};
@@ -10,6 +12,9 @@ use crate::console::model::Model;
 use crate::console::words;
 use crate::kitchen::Agent;
 use crate::robot::IdleReason;
+use crate::robot::body::ArmMoment;
+use crate::robot::safety::SafetyMode;
+use crate::session::settings::ArmKind;
 use crate::session::{Phase, Session};
 
 /// Draws the robot panel.
@@ -29,26 +34,88 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         (false, false, None) => "space stops it".to_string(),
         (false, false, Some(_)) => String::new(),
     };
-    let inside = brush.panel(area, "Robot", &remark);
+    let title = if session.spec.robot.arm == ArmKind::Physics { "UR5" } else { "Robot" };
+    let inside = brush.panel(area, title, &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
+    // Where there is little room, how the arm stands matters more than what the kitchen shows, too.
+    match session.robot.arm.last {
+        Some((_, moment)) if inside.height < 4 => arm(brush, x, inside.y + 1, columns, session, &moment),
+        Some((_, moment)) => {
+            holds(brush, x, inside.y + 1, columns, session);
+            arm(brush, x, inside.y + 2, columns, session, &moment);
+            joints(brush, x, inside.y + 3, columns, &moment);
+        }
+        None => holds(brush, x, inside.y + 1, columns, session),
+    }
+}
+
+/// What the robot holds, and how often it has pressed.
+fn holds(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session) {
     let held = session.kitchen.content_label(session.state, session.kitchen.hands[Agent::Robot.index()]);
     let presses = count(u64::from(session.presses[Agent::Robot.index()]), "press", "presses");
-    brush.parts(x, inside.y + 1, columns, &[("holds ", Role::Quiet), (held, Role::Text)]);
+    brush.parts(x, y, columns, &[("holds ", Role::Quiet), (held, Role::Text)]);
     let quiet = brush.style(Role::Quiet);
-    brush.text_right(x + columns, inside.y + 1, columns / 2, &presses, quiet);
+    brush.text_right(x + columns, y, columns / 2, &presses, quiet);
+}
+
+/// How the arm stands: what it does, its joints, what it feels, where the hand is, and how safe it is.
+fn arm(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, moment: &ArmMoment) {
+    let mode = session.robot.arm.mode;
+    let role = match mode {
+        SafetyMode::Normal => Role::Quiet,
+        SafetyMode::Reduced => Role::Text,
+        SafetyMode::Safeguard => Role::Strong,
+        _ => Role::Alarm,
+    };
+    let style = brush.style(role);
+    brush.text_right(x + columns, y, columns, mode.name(), style);
+    let room = columns.saturating_sub(mode.name().len() as u16 + 1);
+    let levels = brush.theme.signs().levels;
+    let bar = |angle: &f64| levels[((angle / TAU + 0.5) * 8.0).clamp(0.0, 7.0) as usize];
+    let bars: String = moment.joints.iter().map(bar).collect();
+    let phase = format!("{:<9} ", words::arm_phase(moment.phase));
+    let hand = format!("  hand {:>4.2} m", moment.hand_away_m);
+    let force = if moment.force_n >= 0.5 {
+        format!("{:>4.0} N", moment.force_n)
+    } else {
+        format!("{:>6}", brush.theme.signs().dash)
+    };
+    let parts = [(phase.as_str(), Role::Text), (&bars, Role::Robot), (&hand, Role::Quiet), (&force, Role::Text)];
+    brush.parts(x, y, room, &parts);
+}
+
+/// The joint angles in degrees.
+fn joints(brush: &mut Brush, x: u16, y: u16, columns: u16, moment: &ArmMoment) {
+    let angles: String = moment.joints.iter().map(|angle| format!("{:>6.0}", angle.to_degrees())).collect();
+    brush.parts(x, y, columns, &[("joints", Role::Quiet), (&angles, Role::Text), (" deg", Role::Quiet)]);
+}
+
+/// That the robot is stopped, why, and the key that lets it go on.
+fn stopped(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
+    let arm = &session.robot.arm;
+    let label = match arm.mode {
+        mode @ (SafetyMode::ProtectiveStop | SafetyMode::Fault) => format!(" {} ", mode.name()),
+        _ => " STOPPED ".to_string(),
+    };
+    let key = model.keys.of(&Action::ResumeRobot).filter(|_| session.phase != Phase::Closed);
+    let resume = key.map(|key| format!(": {key} lets it go on")).unwrap_or_default();
+    let force = arm.stopped_by_n.map(|force_n| format!(" {force_n:.0} N")).unwrap_or_default();
+    let badge = brush.theme.badge(Role::Alarm);
+    let end = brush.text(x, y, columns, &label, badge);
+    brush.parts(end, y, (x + columns).saturating_sub(end), &[(&force, Role::Alarm), (&resume, Role::Text)]);
 }
 
 fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
     if session.robot.stopped {
-        let key = model.keys.of(&Action::ResumeRobot).filter(|_| session.phase != Phase::Closed);
-        let resume = key.map(|key| format!(": {key} lets it go on")).unwrap_or_default();
-        let badge = brush.theme.badge(Role::Alarm);
-        let x = brush.text(x, y, columns, " STOPPED ", badge);
-        brush.parts(x, y, columns.saturating_sub(9), &[(&resume, Role::Text)]);
+        stopped(brush, x, y, columns, session, model);
         return;
     }
     let (x, columns) = if session.robot.held { held(brush, x, y, columns, model) } else { (x, columns) };
+    let (x, columns) = match session.robot.arm.mode {
+        SafetyMode::Safeguard => badge(brush, x, y, columns, " WAITS ", " for the hand "),
+        _ => (x, columns),
+    };
     let Some((button, since, until)) = session.robot.intention else {
         let why = match session.robot.idle {
             _ if session.robot.held => "",
@@ -78,10 +145,14 @@ fn release(model: &Model) -> String {
 
 /// Says that the robot is held; where the line goes on, and how much room is left.
 fn held(brush: &mut Brush, x: u16, y: u16, columns: u16, model: &Model) -> (u16, u16) {
+    badge(brush, x, y, columns, " HELD ", &format!(" {} ", release(model)))
+}
+
+/// A badge, with more words where there is room for them; where the line goes on, and how much room is left.
+fn badge(brush: &mut Brush, x: u16, y: u16, columns: u16, label: &str, words: &str) -> (u16, u16) {
     let badge = brush.theme.badge(Role::Strong);
-    let end = brush.text(x, y, columns, " HELD ", badge);
+    let end = brush.text(x, y, columns, label, badge);
     let left = (x + columns).saturating_sub(end);
-    let how = if left > 50 { format!(" {} ", release(model)) } else { " ".to_string() };
-    let end = brush.parts(end, y, left, &[(&how, Role::Quiet)]);
+    let end = brush.parts(end, y, left, &[(if left > 50 { words } else { " " }, Role::Quiet)]);
     (end, (x + columns).saturating_sub(end))
 }

@@ -162,7 +162,8 @@ fn mark(brush: &Brush, session: &Session, model: &Model, entry: &Entry) -> Optio
                 (false, true) => (row, signs.press.to_string(), role),
             }
         }
-        Happening::RobotStopped => (2, signs.stopped.to_string(), Role::Alarm),
+        Happening::ArmTouched { .. } => (2, "!".to_string(), Role::Robot),
+        Happening::RobotStopped | Happening::ArmStopped { .. } => (2, signs.stopped.to_string(), Role::Alarm),
         Happening::RobotResumed | Happening::RobotReleased => (2, signs.to.to_string(), Role::Robot),
         Happening::RobotHeld => (2, signs.pause.to_string(), Role::Robot),
         Happening::RobotSkipped(_) => (2, signs.taken_back.to_string(), Role::Robot),

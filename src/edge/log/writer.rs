@@ -96,7 +96,7 @@ impl LogWriter {
     /// Adds an event.
     pub fn append(&mut self, stamped: &Stamped) -> Result<(), WriteError> {
         write_line(&mut self.out, stamped).map_err(|reason| WriteError::unwritable(&self.path, reason))?;
-        let waits = matches!(stamped.event, Event::Gaze(_)) && stamped.time - self.flushed_at < FLUSH_AFTER;
+        let waits = stamped.event.is_sample() && stamped.time - self.flushed_at < FLUSH_AFTER;
         if self.prompt && !waits {
             self.flushed_at = stamped.time;
             self.flush()?;

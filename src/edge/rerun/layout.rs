@@ -103,7 +103,12 @@ fn alone(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
     let truly = beliefs(lane, "P(truth), simulated participant", "human/belief/true/**", properties);
     let beliefs = beliefs(lane, "P(truth), estimate", "human/belief/estimated/**", properties);
     let beliefs = Tabs::new([beliefs, truly, wrong.into()]);
-    let below = Horizontal::new([beliefs.into(), benefit(lane, properties)]);
+    let safety = StateTimelineView::new("How safe the arm is")
+        .with_origin(path(lane, "robot/safety"))
+        .with_contents([path(lane, "robot/safety/**")]);
+    let forces = series(lane, "Arm: force (N), hand (cm)", &["robot/force", "robot/hand_away"], properties);
+    let worth = Tabs::new([benefit(lane, properties), forces, safety.into()]);
+    let below = Horizontal::new([beliefs.into(), worth.into()]);
     let side = Vertical::new([believed(lane), happened(lane, properties)]).with_row_shares([2.0, 3.0]);
     let left = Vertical::new([above.into(), below.into()]).with_row_shares([5.0, 3.0]);
     Horizontal::new([left.into(), side.into()]).with_column_shares([5.0, 2.0]).into()
@@ -146,7 +151,7 @@ fn kitchen(lane: &Lane) -> ContainerLike {
 }
 
 fn arm(lane: &Lane) -> ContainerLike {
-    let contents = ["robot/**", "human/hand"].map(|entities| path(lane, entities));
+    let contents = ["robot/**", "human/hand/**"].map(|entities| path(lane, entities));
     Spatial3DView::new(titled(lane, "Arm")).with_origin(path(lane, "robot")).with_contents(contents).into()
 }
 

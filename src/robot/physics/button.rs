@@ -1,8 +1,8 @@
 //! A button: a cap that slides down on a spring, clicks on its way, and ends at a stop.
 
 use rapier3d::prelude::{
-    ColliderBuilder, ColliderSet, Group, ImpulseJointSet, InteractionGroups, InteractionTestMode, MotorModel, Pose,
-    PrismaticJointBuilder, RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Rotation, Vector,
+    ColliderBuilder, ColliderHandle, ColliderSet, Group, ImpulseJointSet, InteractionGroups, InteractionTestMode,
+    MotorModel, Pose, PrismaticJointBuilder, RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Rotation, Vector,
 };
 
 use crate::robot::reach::BUTTON_M;
@@ -22,6 +22,7 @@ const RADIUS_M: f32 = 0.02;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PhysicalButton {
     body: RigidBodyHandle,
+    collider: ColliderHandle,
     up_m: f32,
     closed: bool,
 }
@@ -48,13 +49,17 @@ impl PhysicalButton {
             .density(0.0)
             .collision_groups(CAP)
             .friction(0.4);
-        colliders.insert_with_parent(collider, body, bodies);
+        let collider = colliders.insert_with_parent(collider, body, bodies);
         let slides = PrismaticJointBuilder::new(Vector::Z)
             .limits([-TRAVEL_M, 0.0])
             .motor_model(MotorModel::ForceBased)
             .motor_position(PRELOAD_M, SPRING_N_M, DAMPING_NS_M);
         joints.insert(ground, body, slides, true);
-        PhysicalButton { body, up_m: middle.z, closed: false }
+        PhysicalButton { body, collider, up_m: middle.z, closed: false }
+    }
+
+    pub fn collider(&self) -> ColliderHandle {
+        self.collider
     }
 
     /// Takes part in the simulation, or is put back up and out of it.

@@ -27,7 +27,16 @@ pub struct HandPlace {
     pub elbow_m: Point3<f64>,
 }
 
+/// From hand to elbow along the table, and the elbow's height above it, in metres.
+const REACHES_M: f64 = 0.27;
+const ELBOW_M: f64 = 0.12;
+
 impl HandPlace {
+    /// A hand over a table of this height, reached out from the human's side: the elbow is further from the arm's base.
+    pub fn reaching(at_m: Point3<f64>, table_m: f64) -> HandPlace {
+        HandPlace { at_m, elbow_m: Point3::new(at_m.x + REACHES_M, at_m.y, table_m + ELBOW_M) }
+    }
+
     /// Hand and forearm.
     pub fn capsules(&self) -> [Capsule; 2] {
         let along = (self.elbow_m - self.at_m).try_normalize(1e-6).unwrap_or_else(Vector3::x);

@@ -5,19 +5,18 @@
 //! that the person's arm is; what it and the robot's arm do to each other is a spring, too, as stiff as a hand (ISO/TS
 //! 15066), because the peak of a rigid contact follows from the step and means nothing.
 
+mod build;
 mod button;
 pub mod hand;
 
-use nalgebra::{Isometry3, Point3, Vector3};
+use nalgebra::{Point3, Vector3};
 use rapier3d::prelude::{
-    BroadPhaseBvh, CCDSolver, ColliderBuilder, ColliderSet, GenericJointBuilder, ImpulseJointSet,
-    IntegrationParameters, IslandManager, JointAxesMask, JointAxis, MassProperties, MotorModel, MultibodyJointHandle,
-    MultibodyJointSet, NarrowPhase, PhysicsPipeline, Pose, RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Rotation,
+    BroadPhaseBvh, CCDSolver, ColliderHandle, ColliderSet, ImpulseJointSet, IntegrationParameters, IslandManager,
+    JointAxis, MultibodyJointHandle, MultibodyJointSet, NarrowPhase, PhysicsPipeline, RigidBodyHandle, RigidBodySet,
     SoftBodySet, Vector,
 };
 
 use super::kinematics::{Arm, JOINTS, Joints};
-use super::urdf::{Link, Shape};
 use button::PhysicalButton;
 use hand::{Hand, HandPlace, double, single};
 
@@ -44,15 +43,13 @@ const MOST_CORRECTED_RAD: f64 = 0.05;
 /// While human and arm are further apart than this, in metres, they do not meet within a cycle.
 const APART_M: f64 = 0.05;
 
-/// What a drive's rotor adds to the inertia of its joint through the gear (rotor times ratio squared), in kg m²: an estimate
-/// for the large and the small drives, as the maker does not say.
-const ARMATURE_KG_M2: [f32; JOINTS] = [1.0, 1.0, 1.0, 0.2, 0.2, 0.2];
-
 /// What was felt in a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Felt {
     /// The greatest force between arm and human, in newtons.
     pub human_n: f64,
+    /// The greatest force of the stick on the button, in newtons.
+    pub button_n: f64,
     /// The button under the stick closed.
     pub clicked: bool,
 }
@@ -84,6 +81,7 @@ pub struct World {
     joints: Vec<MultibodyJointHandle>,
     /// By link of the arm; what is fixed to a link is part of it.
     links: Vec<RigidBodyHandle>,
+    stick: Option<ColliderHandle>,
     buttons: Vec<PhysicalButton>,
     /// The button that the stick may meet; the others are at rest.
     active: Option<usize>,
@@ -111,6 +109,7 @@ impl Clone for World {
             pipeline: PhysicsPipeline::new(),
             joints: self.joints.clone(),
             links: self.links.clone(),
+            stick: self.stick,
             buttons: self.buttons.clone(),
             active: self.active,
             hand: self.hand,
@@ -149,6 +148,7 @@ impl World {
             pipeline: PhysicsPipeline::new(),
             joints: Vec::new(),
             links: Vec::new(),
+            stick: None,
             buttons: Vec::new(),
             active: None,
             hand: None,
@@ -166,62 +166,6 @@ impl World {
             world.cycle(joints, None);
         }
         world
-    }
-
-    fn build(&mut self, joints: &Joints) {
-        let mut carried_from = Isometry3::identity();
-        for link in self.arm.links.clone() {
-            let Some(parent) = self.links.last().copied() else {
-                self.links.push(self.bodies.insert(RigidBodyBuilder::fixed()));
-                continue;
-            };
-            let parent_from_link = carried_from * link.parent_from_joint;
-            let Some(turn) = &link.turns else {
-                self.links.push(parent);
-                carried_from = parent_from_link;
-                self.add_stick(parent, &link, &carried_from);
-                continue;
-            };
-            let body = self
-                .bodies
-                .insert(RigidBodyBuilder::dynamic().can_sleep(false).additional_mass_properties(mass(&link)));
-            // A joint of the physics turns about x.
-            let x_onto_axis = nalgebra::UnitQuaternion::rotation_between(&Vector3::x(), &turn.axis)
-                .unwrap_or_else(nalgebra::UnitQuaternion::identity);
-            let frame = Isometry3::from_parts(Default::default(), x_onto_axis);
-            let joint = GenericJointBuilder::new(JointAxesMask::LOCKED_REVOLUTE_AXES)
-                .local_frame1(pose(&(parent_from_link * frame)))
-                .local_frame2(pose(&frame))
-                .motor_model(JointAxis::AngX, MotorModel::AccelerationBased)
-                .motor_max_force(JointAxis::AngX, turn.torque_nm as f32)
-                .build();
-            self.joints.extend(self.multibodies.insert(parent, body, joint, true));
-            self.links.push(body);
-            carried_from = Isometry3::identity();
-        }
-        let Some((multibody, _)) = self.joints.first().and_then(|joint| self.multibodies.get_mut(*joint)) else {
-            return;
-        };
-        // Before that it does not know that its root is fixed.
-        multibody.forward_kinematics(&self.bodies, true);
-        multibody.damping_mut().fill(0.0);
-        multibody.armature_mut().copy_from_slice(&ARMATURE_KG_M2);
-        multibody.apply_displacements(&joints.map(|angle| angle as f32));
-        multibody.forward_kinematics(&self.bodies, false);
-        multibody.update_rigid_bodies(&mut self.bodies, true);
-    }
-
-    /// The stick's shape, with which the arm presses.
-    fn add_stick(&mut self, parent: RigidBodyHandle, link: &Link, parent_from_link: &Isometry3<f64>) {
-        for solid in &link.solids {
-            let Shape::Cylinder { radius_m, length_m } = solid.shape else { continue };
-            let half_m = (length_m / 2.0 - radius_m) as f32;
-            let collider = ColliderBuilder::capsule_z(half_m, radius_m as f32)
-                .position(pose(&(parent_from_link * solid.link_from_solid)))
-                .density(0.0)
-                .collision_groups(button::STICK);
-            self.colliders.insert_with_parent(collider, parent, &mut self.bodies);
-        }
     }
 
     /// Joint angles in radians, and their speeds in radians a second.
@@ -254,6 +198,11 @@ impl World {
         self.active = button;
     }
 
+    /// The button that the stick may meet.
+    pub fn aimed_at(&self) -> Option<usize> {
+        self.active
+    }
+
     /// From now on the motor of this joint gives nothing, or all do again.
     pub fn fail(&mut self, joint: Option<usize>) {
         for (index, (handle, turn)) in self.joints.iter().zip(self.arm.turns()).enumerate() {
@@ -282,6 +231,7 @@ impl World {
             self.step();
             if let Some(active) = self.active {
                 felt.clicked |= self.buttons[active].clicks(&self.bodies);
+                felt.button_n = felt.button_n.max(self.force_on(active));
             }
         }
         let (angles, _) = self.joints();
@@ -292,6 +242,13 @@ impl World {
         }
         self.commanded = *command;
         felt
+    }
+
+    /// The force of the stick on a button in the last step, in newtons.
+    fn force_on(&self, button: usize) -> f64 {
+        let Some(stick) = self.stick else { return 0.0 };
+        let pair = self.narrow_phase.contact_pair(stick, self.buttons[button].collider());
+        pair.map_or(0.0, |pair| f64::from(pair.total_impulse_magnitude()) / STEP_S)
     }
 
     fn set_hand(&mut self, hand: Option<HandPlace>) {
@@ -394,16 +351,4 @@ impl World {
             &(),
         );
     }
-}
-
-/// A pose in single precision.
-fn pose(isometry: &Isometry3<f64>) -> Pose {
-    let turn = isometry.rotation.coords;
-    let rotation = Rotation::from_xyzw(turn.x as f32, turn.y as f32, turn.z as f32, turn.w as f32);
-    Pose::from_parts(single(isometry.translation.vector), rotation.normalize())
-}
-
-fn mass(link: &Link) -> MassProperties {
-    let Some(weight) = &link.weight else { return MassProperties::default() };
-    MassProperties::new(single(weight.centre_m.coords), weight.mass_kg as f32, single(weight.inertia_kg_m2))
 }

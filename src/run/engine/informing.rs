@@ -1,4 +1,4 @@
-//! What those around a running session are told of its events: robot, simulated participant, scripted wizard.
+//! What those around a running session are told of its events: simulated participant, scripted wizard.
 
 use std::sync::Arc;
 
@@ -6,7 +6,6 @@ use super::Engine;
 use crate::kitchen::{Agent, Kitchen, State};
 use crate::participant::SimulatedParticipant;
 use crate::participant::population::Experience;
-use crate::robot::timed::RobotDeed;
 use crate::session::calibration::Check;
 use crate::session::{Event, SessionSpec, Stamped};
 
@@ -22,27 +21,6 @@ pub(super) fn participant_of(kitchen: Arc<Kitchen>, spec: &SessionSpec, trial: u
 }
 
 impl Engine {
-    /// What the wizard does to the robot by an event that was just applied; the press that it gives up because of it.
-    pub(super) fn tell_robot(&mut self, stamped: &Stamped) -> Option<RobotDeed> {
-        let kitchen = self.session().kitchen.clone();
-        match &stamped.event {
-            Event::RobotStopped => return self.robot.stop(),
-            Event::RobotResumed => self.robot.resume(),
-            Event::RobotHeld { .. } => self.robot.hold(true),
-            Event::RobotReleased { .. } => self.robot.hold(false),
-            Event::RobotSkipped { .. } => return self.robot.skip(stamped.time),
-            Event::RobotDriven { button, .. } => {
-                return kitchen.button_named(Agent::Robot, button).and_then(|button| self.robot.drive(button));
-            }
-            Event::KitchenCorrected { .. } => {
-                let state = self.session().state;
-                return self.robot.reconsider(&kitchen, &mut self.follower.cost, state);
-            }
-            _ => {}
-        }
-        None
-    }
-
     /// What the participant may notice of an event that was just applied; `before` is the state that it met.
     pub(super) fn tell_participant(&mut self, stamped: &Stamped, before: State) {
         let Some(participant) = &mut self.participant else { return };

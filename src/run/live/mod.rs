@@ -211,8 +211,11 @@ impl Live {
                     None => break,
                 },
                 () = sleep_until(due.unwrap_or_else(Instant::now)), if due.is_some() => {
+                    // Most cycles of the arm tell nothing.
                     let events = self.engine.fire();
-                    self.record(&events);
+                    if !events.is_empty() {
+                        self.record(&events);
+                    }
                 }
                 () = sleep_until(target.unwrap_or_else(Instant::now)), if target.is_some() => self.show_target(),
                 Some(input) = desk.wall.next() => self.hear(input),

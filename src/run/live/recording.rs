@@ -3,8 +3,10 @@
 use super::Live;
 use crate::console::belief::{self, Moment};
 use crate::console::model::{Level, Recording};
+use crate::console::words;
 use crate::edge::doctor::free_bytes;
 use crate::edge::log::WriteError;
+use crate::robot::safety::SafetyMode;
 use crate::session::{Event, Phase, Stamped};
 
 impl Live {
@@ -15,6 +17,11 @@ impl Live {
             match stamped.event {
                 Event::Gaze(sample) => self.model.see(stamped.time, self.engine.session().corrected(sample)),
                 Event::SignalShown { .. } => self.undrawn = Some(stamped.seq),
+                Event::RobotSafety { mode, force_n, joint }
+                    if mode.is_stopped() && mode != SafetyMode::EmergencyStop =>
+                {
+                    self.model.say(Level::Alarm, words::arm_stopped(mode, force_n, joint));
+                }
                 _ => {}
             }
             self.tell_tracker(stamped);
@@ -29,7 +36,7 @@ impl Live {
         }
         self.show_participant();
         if let Some(last) = events.last() {
-            let by_gaze = events.iter().all(|stamped| matches!(stamped.event, Event::Gaze(_)));
+            let by_gaze = events.iter().all(|stamped| stamped.event.is_sample());
             let session = self.engine.session();
             let moment = Moment::new(&session.kitchen, session.state, self.engine.belief(), last.time, by_gaze);
             self.model.belief.note(moment);

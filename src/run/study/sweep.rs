@@ -78,7 +78,7 @@ impl Sweeper {
             self.ask();
         }
         self.follower.apply(stamped)?;
-        if matches!(stamped.event, Event::Gaze(_)) {
+        if stamped.event.is_sample() {
             return Ok(());
         }
         let session = &self.follower.session;

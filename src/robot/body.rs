@@ -1,0 +1,186 @@
+//! The arm in the physics and the human's hand beside it, in time; and what is told of them.
+
+use serde::{Deserialize, Serialize};
+
+use super::arm::{ArmPhase, Cycle, PhysicalArm, Report};
+use super::kinematics::Joints;
+use super::physics::CYCLE_S;
+use super::reach::Unreachable;
+use super::reaching::ReachingHand;
+use super::safety::SafetyMode;
+use super::worker::RobotDeed;
+use crate::base::time::SessionTime;
+use crate::kitchen::{ButtonId, Kitchen, State};
+
+/// So often it is told where a moving arm is: some twelve times a second.
+const TOLD_EVERY: SessionTime = SessionTime(80_000_000);
+
+/// How the arm stands, as it is recorded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ArmMoment {
+    pub phase: ArmPhase,
+    /// Joint angles in radians, from the base on, to a ten thousandth.
+    pub joints: Joints,
+    /// The greatest force that it felt since it was told last, from a button or from somebody, in newtons.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub force_n: f64,
+    /// The middle of the human's hand, in the frame of the arm's base, in metres, and how far it is from the arm.
+    pub hand_m: [f64; 3],
+    pub hand_away_m: f64,
+}
+
+fn is_nothing(force_n: &f64) -> bool {
+    *force_n == 0.0
+}
+
+fn rounded(value: f64, parts: f64) -> f64 {
+    // Not -0, which is written otherwise than 0.
+    (value * parts).round() / parts + 0.0
+}
+
+/// What was told last.
+#[derive(Clone, Copy, Debug, Default)]
+struct Told {
+    at: SessionTime,
+    phase: ArmPhase,
+    mode: SafetyMode,
+    moving: bool,
+    /// Felt since then, in newtons.
+    force_n: f64,
+}
+
+/// The arm, and when it was there.
+#[derive(Clone, Debug)]
+pub(super) struct Body {
+    pub arm: PhysicalArm,
+    pub hand: ReachingHand,
+    /// The time of its last cycle.
+    at: SessionTime,
+    /// Where it goes when it stands still.
+    next: Option<ButtonId>,
+    told: Told,
+    /// The state in which the press that it makes was last found useful.
+    found_useful: Option<State>,
+    /// The stick is on its button.
+    on_button: bool,
+}
+
+impl Body {
+    pub fn new(kitchen: &Kitchen, hand: ReachingHand) -> Body {
+        let arm = PhysicalArm::new(kitchen);
+        Body {
+            arm,
+            hand,
+            at: SessionTime::ZERO,
+            next: None,
+            told: Told::default(),
+            found_useful: None,
+            on_button: false,
+        }
+    }
+
+    /// When its next cycle is due; none: all is at rest. `may_press`: nobody holds it above its button.
+    pub fn next_due(&self, may_press: bool) -> Option<SessionTime> {
+        let goes_down = self.arm.phase() == ArmPhase::Hovers && may_press && !self.arm.mode.is_stopped();
+        let next = (goes_down || self.arm.is_busy()).then(|| self.at + SessionTime::from_secs_f64(CYCLE_S));
+        next.into_iter().chain(self.hand.next_move(self.at)).min()
+    }
+
+    /// Sets out for a button, at once or when it stands still; how long that takes if nothing comes between, in seconds.
+    pub fn set_out(&mut self, now: SessionTime, button: ButtonId) -> Result<f64, Unreachable> {
+        self.found_useful = None;
+        if self.arm.halts() {
+            self.next = Some(button);
+            return self.arm.takes_s(button);
+        }
+        // While it was at rest nothing happened to it.
+        self.at = self.at.max(now);
+        self.arm.set_out(button)
+    }
+
+    /// Gives up what it set out for, or was about to.
+    pub fn give_up(&mut self) {
+        self.next = None;
+        self.arm.give_up();
+    }
+
+    /// Whether it has to be decided now if the press is still useful: above the button, and whenever the state has become
+    /// another one before the stick touches it.
+    pub fn asks(&self, may_press: bool, state: State) -> bool {
+        match self.arm.phase() {
+            _ if self.next.is_some() => false,
+            ArmPhase::Hovers => may_press && !self.arm.mode.is_stopped(),
+            ArmPhase::Presses => !self.on_button && self.found_useful != Some(state),
+            ArmPhase::Rests | ArmPhase::Retracts | ArmPhase::Travels => false,
+        }
+    }
+
+    /// The press is useful in this state: it is made.
+    pub fn press(&mut self, state: State) {
+        self.found_useful = Some(state);
+        self.arm.press();
+    }
+
+    /// Sets out for where it was about to go, if it stands still by now; the button that it cannot reach from there, and why.
+    pub fn go_on(&mut self) -> Option<(ButtonId, Unreachable)> {
+        let halts = self.arm.halts() || self.arm.mode.is_stopped();
+        let button = self.next.take_if(|_| !halts)?;
+        self.arm.set_out(button).err().map(|why| (button, why))
+    }
+
+    /// A cycle that ends now: what came of it, and what is to be told.
+    pub fn cycle(&mut self, now: SessionTime) -> (Cycle, Vec<RobotDeed>) {
+        self.at = now;
+        self.hand.cycle(now, |hand| self.arm.distance(hand));
+        let cycle = self.arm.cycle(Some(self.hand.place()));
+        self.on_button = cycle.felt.button_n > 0.0;
+        (cycle, self.news(now, &cycle))
+    }
+
+    fn news(&mut self, now: SessionTime, cycle: &Cycle) -> Vec<RobotDeed> {
+        self.told.force_n = self.told.force_n.max(cycle.felt.human_n).max(cycle.felt.button_n);
+        let (force_n, joint) = match cycle.report {
+            Some(Report::Contact(force_n)) => (Some(rounded(force_n, 10.0)), None),
+            Some(Report::Fault(joint)) => (None, Some(joint as u8 + 1)),
+            _ => (None, None),
+        };
+        let mut news: Vec<RobotDeed> = self.safety(force_n, joint).into_iter().collect();
+        let told = &mut self.told;
+        let (phase, moving) = (self.arm.phase(), self.arm.moves());
+        let comes_to_rest = told.moving && !moving;
+        let is_old = moving && now >= told.at + TOLD_EVERY;
+        if !news.is_empty() || phase != told.phase || comes_to_rest || is_old {
+            let place = self.hand.place();
+            news.push(RobotDeed::Move(ArmMoment {
+                phase,
+                joints: self.arm.joints().map(|angle| rounded(angle, 1e4)),
+                force_n: rounded(told.force_n, 10.0),
+                hand_m: [place.at_m.x, place.at_m.y, place.at_m.z].map(|length| rounded(length, 1e3)),
+                hand_away_m: rounded(self.arm.distance(&place), 1e3),
+            }));
+            (told.at, told.phase, told.moving, told.force_n) = (now, phase, moving, 0.0);
+        }
+        news.extend(cycle.touched_n.map(|force_n| RobotDeed::Touched { force_n: rounded(force_n, 10.0) }));
+        news
+    }
+
+    /// That it is safe in another way than was told, if it is.
+    pub fn safety(&mut self, force_n: Option<f64>, joint: Option<u8>) -> Option<RobotDeed> {
+        let mode = self.arm.mode;
+        let changed = std::mem::replace(&mut self.told.mode, mode) != mode;
+        changed.then_some(RobotDeed::Safety { mode, force_n, joint })
+    }
+
+    /// The wizard lets it go on.
+    pub fn resume(&mut self, now: SessionTime) {
+        self.at = self.at.max(now);
+        self.arm.resume();
+    }
+
+    /// A pause of this length is over.
+    pub fn postpone(&mut self, by: SessionTime) {
+        self.at = self.at + by;
+        self.told.at = self.told.at + by;
+        self.hand.postpone(by);
+    }
+}

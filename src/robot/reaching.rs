@@ -1,0 +1,206 @@
+//! The human's hand between its place at the edge of the table and the buttons: a smooth reach, a press, and back.
+//!
+//! A reach is a minimum-jerk movement (Flash and Hogan 1985). Presses are what they are without it: a hand that is late, or
+//! that keeps off the arm, delays none. It is there for the arm to meet.
+
+use nalgebra::Point3;
+use rand::RngExt;
+
+use super::physics::CYCLE_S;
+use super::physics::hand::HandPlace;
+use crate::base::rng::Stream;
+use crate::base::time::SessionTime;
+use crate::kitchen::{Agent, Kitchen};
+
+/// A reach takes so long, and so much longer a metre, in seconds.
+const REACH_S: f64 = 0.3;
+const REACH_S_M: f64 = 0.8;
+/// In the middle of its way it is so much higher, in metres.
+const LIFTED_M: f64 = 0.04;
+/// The middle of the hand, which is a ball without fingers, is so far behind the button that it presses, and so high above
+/// the table while it does, in metres.
+const FINGER_M: f64 = 0.02;
+const PRESSES_M: f64 = 0.05;
+/// At rest it is so far beyond the last of its buttons, and so high above the table, in metres.
+const BEYOND_M: f64 = 0.16;
+const RESTS_M: f64 = 0.08;
+/// Who sees the arm keeps so far off it, in metres, and gives a reach up that it holds up for so long, in seconds.
+const KEEPS_OFF_M: f64 = 0.06;
+const GIVES_UP_S: f64 = 1.5;
+
+/// How a person moves the hand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reaching {
+    /// After a press the hand stays for so long, in seconds.
+    pub lingers_s: f64,
+    /// Share of reaches without an eye on the arm.
+    pub heedless: f64,
+}
+
+impl Reaching {
+    /// Of simulated participants; how often they do not mind the arm is an estimate.
+    pub const SIMULATED: Reaching = Reaching { lingers_s: 0.3, heedless: 0.02 };
+    /// Of people, whose hands nobody sees: it is taken to be for a while where the last press was, and never to go into an
+    /// arm that is not there.
+    pub const UNSEEN: Reaching = Reaching { lingers_s: 1.5, heedless: 0.0 };
+}
+
+/// A movement that is under way.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    from_m: Point3<f64>,
+    to_m: Point3<f64>,
+    done_s: f64,
+    takes_s: f64,
+    held_up_s: f64,
+    /// Afterwards the hand goes back.
+    presses: bool,
+}
+
+/// A reach that is still to come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Planned {
+    to_m: Point3<f64>,
+    begins: SessionTime,
+}
+
+/// The hand.
+#[derive(Clone, Debug)]
+pub struct ReachingHand {
+    how: Reaching,
+    random: Stream,
+    table_m: f64,
+    rests_m: Point3<f64>,
+    at_m: Point3<f64>,
+    way: Option<Way>,
+    planned: Option<Planned>,
+    /// What it reaches for, or last did.
+    goal_m: Option<Point3<f64>>,
+    /// When it goes back after a press.
+    leaves: Option<SessionTime>,
+    heedless: bool,
+}
+
+impl ReachingHand {
+    /// A hand at rest before the human's buttons.
+    pub fn new(kitchen: &Kitchen, how: Reaching, random: Stream) -> ReachingHand {
+        let table_m = kitchen.table_height_m;
+        let buttons = &kitchen.buttons[Agent::Human.index()];
+        let furthest_m = buttons.iter().map(|button| button.at_m[0]).fold(0.0, f64::max);
+        let rests_m = Point3::new(furthest_m + BEYOND_M, 0.0, table_m + RESTS_M);
+        ReachingHand {
+            how,
+            random,
+            table_m,
+            rests_m,
+            at_m: rests_m,
+            way: None,
+            planned: None,
+            goal_m: None,
+            leaves: None,
+            heedless: false,
+        }
+    }
+
+    /// The middle of a hand whose finger is on a button.
+    fn on(&self, [x, y]: [f64; 2]) -> Point3<f64> {
+        Point3::new(x + FINGER_M, y, self.table_m + PRESSES_M)
+    }
+
+    fn takes_s(&self, to_m: &Point3<f64>) -> f64 {
+        REACH_S + REACH_S_M * (to_m - self.at_m).norm()
+    }
+
+    /// The person means to press the button at this place of the table at `at`, as far as is known now.
+    pub fn means(&mut self, now: SessionTime, button_m: [f64; 2], at: SessionTime) {
+        let to_m = self.on(button_m);
+        let is_on_its_way = self.way.is_some_and(|way| way.presses && way.to_m == to_m);
+        if is_on_its_way || (self.way.is_none() && self.at_m == to_m && self.leaves.is_none()) {
+            return;
+        }
+        let begins = (at - SessionTime::from_secs_f64(self.takes_s(&to_m))).max(now);
+        self.planned = Some(Planned { to_m, begins });
+    }
+
+    /// The person has pressed the button at this place of the table.
+    pub fn pressed(&mut self, now: SessionTime, button_m: [f64; 2]) {
+        let to_m = self.on(button_m);
+        self.planned = None;
+        let lingers = SessionTime::from_secs_f64(self.how.lingers_s);
+        match self.way.filter(|way| way.presses && way.to_m == to_m) {
+            // It is late, and goes back when it was there.
+            Some(_) => {}
+            None if self.at_m == to_m => self.leaves = Some(now + lingers),
+            None => self.reach(to_m),
+        }
+    }
+
+    fn reach(&mut self, to_m: Point3<f64>) {
+        if self.goal_m != Some(to_m) {
+            self.heedless = self.random.random::<f64>() < self.how.heedless;
+        }
+        self.goal_m = Some(to_m);
+        self.leaves = None;
+        self.set_out(to_m, true);
+    }
+
+    fn set_out(&mut self, to_m: Point3<f64>, presses: bool) {
+        let takes_s = self.takes_s(&to_m);
+        self.way = Some(Way { from_m: self.at_m, to_m, done_s: 0.0, takes_s, held_up_s: 0.0, presses });
+    }
+
+    /// Where it is.
+    pub fn place(&self) -> HandPlace {
+        self.at(self.at_m)
+    }
+
+    fn at(&self, at_m: Point3<f64>) -> HandPlace {
+        HandPlace::reaching(at_m, self.table_m)
+    }
+
+    /// When it moves next, if it was looked at until `since`.
+    pub fn next_move(&self, since: SessionTime) -> Option<SessionTime> {
+        let cycle = since + SessionTime::from_secs_f64(CYCLE_S);
+        if self.way.is_some() {
+            return Some(cycle);
+        }
+        let begins = self.planned.map(|planned| planned.begins);
+        begins.into_iter().chain(self.leaves).min().map(|time| time.max(cycle))
+    }
+
+    /// Moves on for a cycle that ends now; `distance_m`: how far a hand somewhere would be from the arm.
+    pub fn cycle(&mut self, now: SessionTime, distance_m: impl Fn(&HandPlace) -> f64) {
+        if let Some(planned) = self.planned.take_if(|planned| planned.begins <= now) {
+            self.reach(planned.to_m);
+        }
+        if self.leaves.take_if(|leaves| *leaves <= now).is_some() {
+            self.set_out(self.rests_m, false);
+        }
+        let Some(mut way) = self.way else { return };
+        let share = ((way.done_s + CYCLE_S) / way.takes_s).min(1.0);
+        let eased = share.powi(3) * (10.0 - 15.0 * share + 6.0 * share * share);
+        let mut next_m = way.from_m + (way.to_m - way.from_m) * eased;
+        next_m.z += LIFTED_M * 4.0 * eased * (1.0 - eased);
+        let off_m = distance_m(&self.at(next_m));
+        let keeps_off = !self.heedless && off_m < KEEPS_OFF_M && off_m < distance_m(&self.place());
+        if keeps_off {
+            way.held_up_s += CYCLE_S;
+        } else {
+            way.done_s += CYCLE_S;
+            self.at_m = if share < 1.0 { next_m } else { way.to_m };
+        }
+        let is_over = share >= 1.0 && !keeps_off || way.held_up_s > GIVES_UP_S;
+        self.way = Some(way).filter(|_| !is_over);
+        if is_over && way.presses {
+            self.leaves = Some(now + SessionTime::from_secs_f64(self.how.lingers_s));
+        }
+    }
+
+    /// A pause of this length is over.
+    pub fn postpone(&mut self, by: SessionTime) {
+        if let Some(planned) = &mut self.planned {
+            planned.begins = planned.begins + by;
+        }
+        self.leaves = self.leaves.map(|leaves| leaves + by);
+    }
+}

@@ -1,0 +1,97 @@
+//! The robot in a running session: its deeds become events, and it is told what concerns it.
+
+use super::Engine;
+use crate::base::time::SessionTime;
+use crate::kitchen::{Agent, ButtonId, Kitchen};
+use crate::participant::SimulatedParticipant;
+use crate::robot::reaching::Reaching;
+use crate::robot::worker::{Robot, RobotDeed};
+use crate::session::settings::{ArmKind, ParticipantKind};
+use crate::session::{Event, SessionSpec, Stamped};
+
+/// The robot of a trial.
+pub(super) fn robot_of(kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> Robot {
+    let robot = Robot::new(spec.robot.press_s, spec.robot.press_spread, spec.seed, trial);
+    let hand = match spec.participant.kind {
+        ParticipantKind::Simulated => Reaching::SIMULATED,
+        ParticipantKind::Keyboard | ParticipantKind::Display => Reaching::UNSEEN,
+    };
+    match spec.robot.arm {
+        ArmKind::Timed => robot,
+        ArmKind::Physics => robot.with_arm(kitchen, hand, spec.seed, trial),
+    }
+}
+
+impl Engine {
+    /// The robot, for experiments with its arm.
+    pub fn robot(&mut self) -> &mut Robot {
+        &mut self.robot
+    }
+
+    pub(super) fn let_robot_act(&mut self, now: SessionTime) {
+        let kitchen = self.session().kitchen.clone();
+        let state = self.session().state;
+        for deed in self.robot.act(&kitchen, &mut self.follower.cost, now, state) {
+            self.record_deed(now, deed);
+        }
+    }
+
+    pub(super) fn record_deed(&mut self, now: SessionTime, deed: RobotDeed) {
+        let kitchen = self.session().kitchen.clone();
+        let name = |button: ButtonId| kitchen.button(Agent::Robot, button).name.clone();
+        let event = match deed {
+            RobotDeed::Intend { button, until } => Event::RobotIntends { button: name(button), until_ns: until },
+            RobotDeed::Press(button) => Event::Press { agent: Agent::Robot, button: name(button), at_ns: None },
+            RobotDeed::Abort(button, reason) => Event::RobotAborts { button: name(button), reason },
+            RobotDeed::Idle(reason) => Event::RobotIdles { reason },
+            RobotDeed::Move(moment) => Event::RobotMoves(moment),
+            RobotDeed::Safety { mode, force_n, joint } => Event::RobotSafety { mode, force_n, joint },
+            RobotDeed::Touched { force_n } => Event::RobotTouched { force_n },
+        };
+        self.record_own(now, event);
+    }
+
+    /// What the robot is told of an event that was just applied: what the wizard does to it, and where the human presses;
+    /// what it does because of it.
+    pub(super) fn tell_robot(&mut self, stamped: &Stamped) -> Vec<RobotDeed> {
+        let kitchen = self.session().kitchen.clone();
+        let now = stamped.time;
+        let deed = match &stamped.event {
+            Event::RobotStopped => return self.robot.stop(),
+            Event::RobotResumed => self.robot.resume(now),
+            Event::RobotHeld { .. } => {
+                self.robot.hold(true);
+                None
+            }
+            Event::RobotReleased { .. } => {
+                self.robot.hold(false);
+                None
+            }
+            Event::RobotSkipped { .. } => self.robot.skip(now),
+            Event::RobotDriven { button, .. } => {
+                let button = kitchen.button_named(Agent::Robot, button);
+                button.and_then(|button| self.robot.drive(button))
+            }
+            Event::KitchenCorrected { .. } => {
+                let state = self.session().state;
+                self.robot.reconsider(&kitchen, &mut self.follower.cost, state)
+            }
+            Event::Press { agent: Agent::Human, button, .. } if self.session().is_running() => {
+                if let Some(button) = kitchen.button_named(Agent::Human, button) {
+                    self.robot.human_pressed(now, kitchen.button(Agent::Human, button).at_m);
+                }
+                None
+            }
+            _ => None,
+        };
+        deed.into_iter().collect()
+    }
+
+    /// The hand of a simulated participant sets out in time for the press that it means to make.
+    pub(super) fn let_hand_follow(&mut self, now: SessionTime) {
+        if let Some((button, at)) = self.participant.as_ref().and_then(SimulatedParticipant::next_press) {
+            let button_m = self.session().kitchen.button(Agent::Human, button).at_m;
+            self.robot.human_means(now, button_m, at);
+        }
+    }
+}

@@ -13,7 +13,7 @@ use crate::console::words;
 use crate::kitchen::Agent;
 use crate::robot::IdleReason;
 use crate::robot::body::ArmMoment;
-use crate::robot::safety::SafetyMode;
+use crate::robot::safety::{SLOWS_M, SafetyMode};
 use crate::session::settings::ArmKind;
 use crate::session::{Phase, Session};
 
@@ -28,22 +28,29 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
         return;
     }
+    let is_arm = session.spec.robot.arm == ArmKind::Physics;
     let remark = match (session.robot.stopped, session.robot.held, &model.playback) {
         (true, ..) => "STOPPED".to_string(),
         (false, true, _) => release(model),
         (false, false, None) => "space stops it".to_string(),
         (false, false, Some(_)) => String::new(),
     };
-    let title = if session.spec.robot.arm == ArmKind::Physics { "UR5" } else { "Robot" };
+    let mode = session.robot.arm.mode;
+    let remark = match (is_arm && !mode.is_stopped(), remark.is_empty()) {
+        (true, true) => mode.name().to_string(),
+        (true, false) => format!("{}  {remark}", mode.name()),
+        (false, _) => remark,
+    };
+    let title = if is_arm { "UR5" } else { "Robot" };
     let inside = brush.panel(area, title, &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
     // Where there is little room, how the arm stands matters more than what the kitchen shows, too.
     match session.robot.arm.last {
-        Some((_, moment)) if inside.height < 4 => arm(brush, x, inside.y + 1, columns, session, &moment),
+        Some((_, moment)) if inside.height < 4 => arm(brush, x, inside.y + 1, columns, &moment),
         Some((_, moment)) => {
             holds(brush, x, inside.y + 1, columns, session);
-            arm(brush, x, inside.y + 2, columns, session, &moment);
+            arm(brush, x, inside.y + 2, columns, &moment);
             joints(brush, x, inside.y + 3, columns, &moment);
         }
         None => holds(brush, x, inside.y + 1, columns, session),
@@ -59,30 +66,20 @@ fn holds(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session) {
     brush.text_right(x + columns, y, columns / 2, &presses, quiet);
 }
 
-/// How the arm stands: what it does, its joints, what it feels, where the hand is, and how safe it is.
-fn arm(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, moment: &ArmMoment) {
-    let mode = session.robot.arm.mode;
-    let role = match mode {
-        SafetyMode::Normal => Role::Quiet,
-        SafetyMode::Reduced => Role::Text,
-        SafetyMode::Safeguard => Role::Strong,
-        _ => Role::Alarm,
-    };
-    let style = brush.style(role);
-    brush.text_right(x + columns, y, columns, mode.name(), style);
-    let room = columns.saturating_sub(mode.name().len() as u16 + 1);
-    let levels = brush.theme.signs().levels;
-    let bar = |angle: &f64| levels[((angle / TAU + 0.5) * 8.0).clamp(0.0, 7.0) as usize];
+/// How the arm stands: what it does, its joints, how far the hand is, and what it feels.
+fn arm(brush: &mut Brush, x: u16, y: u16, columns: u16, moment: &ArmMoment) {
+    let signs = brush.theme.signs();
+    let bar = |angle: &f64| signs.levels[((angle / TAU + 0.5) * 8.0).clamp(0.0, 7.0) as usize];
     let bars: String = moment.joints.iter().map(bar).collect();
-    let phase = format!("{:<9} ", words::arm_phase(moment.phase));
-    let hand = format!("  hand {:>4.2} m", moment.hand_away_m);
-    let force = if moment.force_n >= 0.5 {
-        format!("{:>4.0} N", moment.force_n)
-    } else {
-        format!("{:>6}", brush.theme.signs().dash)
+    let phase = format!("{:<10} ", words::arm_phase(moment.phase));
+    let hand = format!(" hand {:>4.2} m", moment.hand_away_m);
+    let force = match moment.force_n {
+        force_n if force_n >= 0.5 => format!(" {force_n:>3.0} N"),
+        _ => format!(" {:>3}  ", signs.dash),
     };
-    let parts = [(phase.as_str(), Role::Text), (&bars, Role::Robot), (&hand, Role::Quiet), (&force, Role::Text)];
-    brush.parts(x, y, room, &parts);
+    let hand_role = if moment.hand_away_m < SLOWS_M { Role::Human } else { Role::Quiet };
+    let parts = [(phase.as_str(), Role::Text), (&bars, Role::Robot), (&hand, hand_role), (&force, Role::Text)];
+    brush.parts(x, y, columns, &parts);
 }
 
 /// The joint angles in degrees.

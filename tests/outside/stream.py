@@ -160,4 +160,5 @@ def main():
     print("  two recordings side by side, by the clocks of their trials")
 
 
-main()
+if __name__ == "__main__":
+    main()

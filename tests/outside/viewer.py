@@ -1,0 +1,84 @@
+"""A viewer of Rerun beside a session with gaze at 200 Hz: connected, stopped (SIGSTOP), gone. The session has to be as quick
+as without one, and what was recorded whole.
+
+    tests/outside/viewer.py TOMCOM FOLDER [--signals 25]
+"""
+
+import argparse
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from console import Console, Log, percentile, session_file
+from latency import LIMIT_S, PORT, SENDER, SIGNALS, send
+from stream import RERUN, compare, run
+
+HZ = 200
+ADDRESS = "127.0.0.1:50292"
+
+
+def measure(console, log, signals, how):
+    # Neither the signal that is still shown nor in step with frames and ticks.
+    chance, last, logged, drawn = random.Random(how), None, [], []
+    console.key("\x7f")
+    cpu_s, began = console.cpu_s(), time.monotonic()
+    for _ in range(signals):
+        last = chance.choice([key for key in SIGNALS if key != last])
+        time.sleep(0.6 * chance.uniform(0.8, 1.2))
+        to_log, to_screen = send(console, log, last, SIGNALS[last])
+        logged.append(to_log)
+        drawn.append(to_screen)
+    share = (console.cpu_s() - cpu_s) / (time.monotonic() - began)
+    print(f"{signals} signals by key, {how}: log p50 {1000 * percentile(logged, 0.5):.1f} ms, p99 "
+          f"{1000 * percentile(logged, 0.99):.1f} ms; screen p99 {1000 * percentile(drawn, 0.99):.1f} ms; "
+          f"{100 * share:.1f} % of a core", flush=True)
+    assert percentile(logged, 0.9) <= LIMIT_S, "signals take too long"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tomcom")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--signals", type=int, default=25, help="in each state of the viewer")
+    arguments = parser.parse_args()
+    folder = arguments.folder
+    run(RERUN, "analytics", "disable")
+    session = session_file(folder, gaze="json", gaze_port=PORT + HZ)
+    console = Console(arguments.tomcom, [session, "--out", folder / "recordings", "--rerun-listen", ADDRESS])
+    with console:
+        console.wait_for("READY")
+        (recording,) = (folder / "recordings").iterdir()
+        log = Log(recording)
+        sender = subprocess.Popen([sys.executable, "-c", SENDER, str(PORT + HZ), str(HZ)])
+        viewer = None
+        try:
+            console.wait_for(r"conf\w* 0.9")
+            console.key(".")
+            console.wait_for("RUNNING")
+            time.sleep(2)
+            measure(console, log, arguments.signals, "nobody looks on")
+            viewer = subprocess.Popen([RERUN, f"rerun+http://{ADDRESS}/proxy", "--headless"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(5)
+            assert viewer.poll() is None, "the viewer ended by itself"
+            measure(console, log, arguments.signals, "a viewer looks on")
+            viewer.send_signal(signal.SIGSTOP)
+            measure(console, log, arguments.signals, "the viewer is stopped")
+            viewer.kill()
+            measure(console, log, arguments.signals, "the viewer is gone")
+        finally:
+            sender.kill()
+            sender.wait()
+            if viewer:
+                viewer.kill()
+                viewer.wait()
+        console.quit()
+    subprocess.run([arguments.tomcom, "replay", recording, "--verify"], check=True, stdout=subprocess.DEVNULL)
+    run(RERUN, "rrd", "verify", recording / "recording.rrd")
+    compare(recording / "recording.rrd", recording / "events.jsonl")
+
+
+if __name__ == "__main__":
+    main()

@@ -70,6 +70,8 @@ def expected(log):
                 shown[event["order"]] = None
             case "signal_shown":
                 add(f"{event['by']}/signals")
+            case "signal_ended" if event["reason"] == "taken_back":
+                add("wizard/signals")
             case "advised":
                 add("assistant/benefit/cost_line")
             case "robot_moves":

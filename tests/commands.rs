@@ -62,7 +62,8 @@ fn kitchen_prints_the_state_space_and_the_plans() {
 fn simulate_records_what_replay_verifies() {
     let out = folder("simulate");
     let out = out.to_str().expect("a path in UTF-8");
-    let simulate = ["simulate", "sessions/default.toml", "--trials", "2", "--seed", "7", "--out", out];
+    let simulate =
+        ["simulate", "sessions/default.toml", "--trials", "2", "--seed", "7", "--arm", "timed", "--out", out];
     let found = figures(&[&simulate[..], &["--format", "json"]].concat(), 0);
     for key in ["trials", "human_actions", "robot_actions", "errors", "signals", "orders_served", "presses_per_order"] {
         assert!(found[key].is_number(), "{key} in {found}");
@@ -106,7 +107,7 @@ fn a_simulation_replaces_itself_and_no_other_recording() {
     let out = folder("replaced");
     let out = out.to_str().expect("a path in UTF-8");
     let log = Path::new(out).join("seed7-S001/events.jsonl");
-    let simulate = |session: &'static str| ["simulate", session, "--seed", "7", "--out", out];
+    let simulate = |session: &'static str| ["simulate", session, "--seed", "7", "--arm", "timed", "--out", out];
     check(&simulate("sessions/default.toml"), 0);
     let before = fs::read(&log).expect("a log");
     check(&simulate("sessions/default.toml"), 0);
@@ -153,6 +154,7 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     assert!(complaint(&["kitchen", "sessions/default.toml"]).contains("found a session file"));
     assert!(complaint(&["simulate", "layouts/sushi.toml"]).contains("found a layout file"));
     complaint(&["simulate", "sessions/default.toml", "--trials", "0"]);
+    complaint(&["simulate", "sessions/default.toml", "--arm", "both"]);
     complaint(&["dance"]);
 }
 

@@ -18,7 +18,7 @@ use tomcom::run::verify::verify;
 use tomcom::session::display::{Answering, DisplayEvent, DisplaySpec};
 use tomcom::session::event::EndReason;
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
-use tomcom::session::settings::{Condition, GazeSource, ParticipantKind};
+use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 use tomcom::session::{Event, Header, Session};
 
 const SESSIONS: [&str; 2] = ["sessions/default.toml", "sessions/burger.toml"];
@@ -169,6 +169,8 @@ fn the_page_is_told_what_may_be_seen_and_nothing_else() {
         for condition in [Condition::Assistant, Condition::Wizard] {
             let mut files = files(path);
             files.spec.trial.condition = condition;
+            // With both arms: nothing of them is to be seen.
+            files.spec.robot.arm = if condition == Condition::Wizard { ArmKind::Timed } else { ArmKind::Physics };
             let mut engine = engine(files);
             let signals = signals(&engine.session().kitchen.clone(), false);
             let contents = engine.session().kitchen.contents.len();

@@ -452,7 +452,18 @@ fn simulated_participants_have_both_trials_of_the_plan() {
     let out = folder("simulated");
     let out_name = out.to_str().expect("UTF-8");
     let simulate = |trials: &str, out: &str| {
-        json(&["simulate", "sessions/study.toml", "--trials", trials, "--out", out, "--format", "json"])
+        json(&[
+            "simulate",
+            "sessions/study.toml",
+            "--trials",
+            trials,
+            "--arm",
+            "timed",
+            "--out",
+            out,
+            "--format",
+            "json",
+        ])
     };
     let figures = simulate("3", out_name);
     let recordings: Vec<&str> =

@@ -26,7 +26,7 @@ use tomcom::run::verify::verify;
 use tomcom::scene::{Derived, Moment, Row, Scene, Shown};
 use tomcom::session::event::{EndReason, SignalEnd};
 use tomcom::session::header::VERSION;
-use tomcom::session::settings::{Condition, GazeSource, ParticipantKind};
+use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 use tomcom::session::{Event, Header, Phase, Stamped};
 
 /// One session for each kitchen.
@@ -49,8 +49,9 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-fn simulated(name: &str, out: &str, trials: u64, seed: u64) -> PathBuf {
+fn simulated(name: &str, arm: ArmKind, out: &str, trials: u64, seed: u64) -> PathBuf {
     let mut files = session(name);
+    files.spec.robot.arm = arm;
     files.spec.seed = seed;
     files.spec.trial.seconds = 120.0;
     let out = folder(out);
@@ -101,8 +102,9 @@ fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
 }
 
 /// A session as somebody at keyboard and mouse might have it, recorded; with its log and the engine at its end.
-fn by_hand(name: &str, out: &str, seed: u64) -> (PathBuf, Engine) {
+fn by_hand(name: &str, arm: ArmKind, out: &str, seed: u64) -> (PathBuf, Engine) {
     let mut files = session(name);
+    files.spec.robot.arm = arm;
     files.spec.participant.kind = ParticipantKind::Keyboard;
     files.spec.participant.gaze = GazeSource::Mouse;
     files.spec.seed = seed;
@@ -145,7 +147,7 @@ fn refused(log: &Path, line: usize, says: &[&str], change: impl Fn(&str) -> Stri
 #[test]
 fn the_same_seed_gives_the_same_recording_and_it_verifies() {
     for name in SESSIONS {
-        let [a, b] = ["same-a", "same-b"].map(|out| simulated(name, out, 2, 7));
+        let [a, b] = ["same-a", "same-b"].map(|out| simulated(name, ArmKind::Physics, out, 2, 7));
         for trial in ["seed7-S001", "seed7-S002"] {
             same(&a.join(trial).join(LOG_NAME), &b.join(trial).join(LOG_NAME));
             let found = verify(&a.join(trial)).expect("a recording");
@@ -156,8 +158,8 @@ fn the_same_seed_gives_the_same_recording_and_it_verifies() {
 
 #[test]
 fn a_trial_does_not_depend_on_how_many_there_are() {
-    let two = simulated("default.toml", "two", 2, 3);
-    let five = simulated("default.toml", "five", 5, 3);
+    let two = simulated("default.toml", ArmKind::Timed, "two", 2, 3);
+    let five = simulated("default.toml", ArmKind::Timed, "five", 5, 3);
     for trial in ["seed3-S001", "seed3-S002"] {
         same(&two.join(trial).join(LOG_NAME), &five.join(trial).join(LOG_NAME));
     }
@@ -166,7 +168,8 @@ fn a_trial_does_not_depend_on_how_many_there_are() {
 #[test]
 fn whatever_hands_do_the_recording_verifies_and_replays_to_the_same_session() {
     for (name, seed) in SESSIONS.into_iter().zip(0..).flat_map(|(name, first)| [(name, first), (name, first + 2)]) {
-        let (log, engine) = by_hand(name, &format!("hand-{seed}"), seed);
+        let arm = if seed < 2 { ArmKind::Physics } else { ArmKind::Timed };
+        let (log, engine) = by_hand(name, arm, &format!("hand-{seed}"), seed);
         let found = verify(&log).expect("a recording");
         assert!(found.verified && !found.cut, "seed {seed}: {found:?}");
         let mut replay = Replay::open(&log).expect("a recording");
@@ -180,7 +183,7 @@ fn whatever_hands_do_the_recording_verifies_and_replays_to_the_same_session() {
 
 #[test]
 fn a_cut_recording_opens_says_so_and_verifies_up_to_its_cut() {
-    let (log, _) = by_hand("default.toml", "cut", 5);
+    let (log, _) = by_hand("default.toml", ArmKind::Physics, "cut", 5);
     let text = fs::read(&log).expect("a recording");
     for cut in [text.len() - 1, text.len() - 30, text.len() / 2, text.len() * 3 / 4] {
         let path = log.with_file_name("cut.jsonl");
@@ -192,7 +195,7 @@ fn a_cut_recording_opens_says_so_and_verifies_up_to_its_cut() {
 
 #[test]
 fn a_session_that_is_still_recorded_can_be_followed() {
-    let (log, engine) = by_hand("default.toml", "followed", 9);
+    let (log, engine) = by_hand("default.toml", ArmKind::Timed, "followed", 9);
     let text = fs::read(&log).expect("a recording");
     let growing = log.with_file_name("growing.jsonl");
     fs::write(&growing, &text[..text.len() / 2]).expect("the folder can be written");
@@ -226,7 +229,7 @@ fn what_is_appended_to_a_live_recording_is_there_at_once_and_nothing_is_lost_sil
 
 #[test]
 fn a_changed_recording_does_not_verify_and_the_first_difference_is_named() {
-    let (log, _) = by_hand("default.toml", "changed", 6);
+    let (log, _) = by_hand("default.toml", ArmKind::Timed, "changed", 6);
     let text = fs::read_to_string(&log).expect("a recording");
     let (number, line) =
         text.lines().enumerate().find(|(_, line)| line.contains("robot_intends")).expect("the robot does something");
@@ -240,7 +243,7 @@ fn a_changed_recording_does_not_verify_and_the_first_difference_is_named() {
 
 #[test]
 fn no_broken_byte_makes_the_reader_panic() {
-    let (log, _) = by_hand("burger.toml", "bytes", 11);
+    let (log, _) = by_hand("burger.toml", ArmKind::Timed, "bytes", 11);
     let text = fs::read(&log).expect("a recording");
     let path = log.with_file_name("bytes.jsonl");
     let mut random = stream(11, "bytes", 0);
@@ -258,7 +261,7 @@ fn no_broken_byte_makes_the_reader_panic() {
 
 #[test]
 fn what_is_broken_is_named_with_its_line_and_what_would_be_right() {
-    let (log, _) = by_hand("default.toml", "broken", 8);
+    let (log, _) = by_hand("default.toml", ArmKind::Timed, "broken", 8);
     let line = |number: usize, from: &'static str, to: &'static str| {
         move |text: &str| {
             let lines = text.lines().enumerate();
@@ -313,7 +316,7 @@ fn recordings_of_every_format_replay_to_what_they_replayed_to() {
 #[test]
 fn a_recording_can_be_wound_forward_and_back() {
     for name in SESSIONS {
-        let out = simulated(name, &format!("film-{name}"), 1, 3);
+        let out = simulated(name, ArmKind::Physics, &format!("film-{name}"), 1, 3);
         let recording = fs::read_dir(&out).expect("the folder").next().expect("a recording").expect("readable").path();
         let mut film = Film::open(&recording).expect("it opens");
         let (length, events) = film.length();
@@ -351,6 +354,7 @@ fn a_recording_can_be_wound_forward_and_back() {
 /// Two trials in which the assistant acts by this concept, quickly and for little reason.
 fn assisted(name: &str, out: &str, by: ConceptName) -> PathBuf {
     let mut files = session(name);
+    files.spec.robot.arm = ArmKind::Timed;
     files.spec.trial.condition = Condition::Assistant;
     files.spec.assistant.concept = by;
     files.spec.trial.seconds = 45.0;
@@ -602,7 +606,7 @@ fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
 
 #[test]
 fn a_scene_tells_a_belief_before_the_press_as_the_log_does() {
-    let out = simulated("default.toml", "scene", 1, 3);
+    let out = simulated("default.toml", ArmKind::Physics, "scene", 1, 3);
     let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
     let (moments, events) = shown(&recording);
     let witnesses = events.iter().filter_map(|stamped| match &stamped.event {
@@ -626,7 +630,7 @@ fn a_scene_tells_a_belief_before_the_press_as_the_log_does() {
 
 #[test]
 fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
-    let out = simulated("default.toml", "landmarks", 1, 3);
+    let out = simulated("default.toml", ArmKind::Timed, "landmarks", 1, 3);
     let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
     let mut film = Film::open(&recording).expect("a recording");
     let mut errors = film.errors.clone();

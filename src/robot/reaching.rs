@@ -81,13 +81,17 @@ pub struct ReachingHand {
     heedless: bool,
 }
 
+/// Where the hand is when it has nothing to press, in the frame of the arm's base: before the human's buttons.
+pub fn resting_place(kitchen: &Kitchen) -> Point3<f64> {
+    let buttons = &kitchen.buttons[Agent::Human.index()];
+    let furthest_m = buttons.iter().map(|button| button.at_m[0]).fold(0.0, f64::max);
+    Point3::new(furthest_m + BEYOND_M, 0.0, kitchen.table_height_m + RESTS_M)
+}
+
 impl ReachingHand {
     /// A hand at rest before the human's buttons.
     pub fn new(kitchen: &Kitchen, how: Reaching, random: Stream) -> ReachingHand {
-        let table_m = kitchen.table_height_m;
-        let buttons = &kitchen.buttons[Agent::Human.index()];
-        let furthest_m = buttons.iter().map(|button| button.at_m[0]).fold(0.0, f64::max);
-        let rests_m = Point3::new(furthest_m + BEYOND_M, 0.0, table_m + RESTS_M);
+        let (table_m, rests_m) = (kitchen.table_height_m, resting_place(kitchen));
         ReachingHand {
             how,
             random,

@@ -12,6 +12,7 @@ use crate::robot::kinematics::{Arm, Joints};
 use crate::robot::motion::ArmMotion;
 use crate::robot::physics::hand::HandPlace;
 use crate::robot::reach::BUTTON_M;
+use crate::robot::reaching::resting_place;
 use crate::robot::safety::SafetyMode;
 use crate::robot::urdf::{Shape, Solid};
 use crate::session::settings::ArmKind;
@@ -85,9 +86,15 @@ impl ArmScene {
         rows
     }
 
-    /// How it stands.
-    pub fn opening(&self) -> Vec<Row> {
-        places(&self.arm, &self.joints)
+    /// How it stands, and where the hand is.
+    pub fn opening(&self, session: &Session) -> Vec<Row> {
+        let mut rows = places(&self.arm, &self.joints);
+        if self.motion.is_none() {
+            let rests = resting_place(&session.kitchen).coords.into();
+            let [x, y, z] = session.robot.arm.last.map_or(rests, |(_, moment)| moment.hand_m);
+            rows.push(Row::new(HAND, Shown::Place(at(x, y, z))));
+        }
+        rows
     }
 
     /// How it moved since it was shown last, until this time.

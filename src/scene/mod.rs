@@ -81,7 +81,7 @@ impl Scene {
         let (kitchen, state) = (self.session.kitchen.clone(), self.session.state);
         let mut rows: Vec<Row> = places::contents(&kitchen, None, state).collect();
         rows.extend(places::shown_signal(&self.session));
-        rows.extend(self.arm.opening());
+        rows.extend(self.arm.opening(&self.session));
         let time = self.session.time;
         Moment { time, trial: self.session.trial_clock(time), step: self.step(), rows }
     }

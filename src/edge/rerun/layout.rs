@@ -103,10 +103,10 @@ fn alone(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
     let truly = beliefs(lane, "P(truth), simulated participant", "human/belief/true/**", properties);
     let beliefs = beliefs(lane, "P(truth), estimate", "human/belief/estimated/**", properties);
     let beliefs = Tabs::new([beliefs, truly, wrong.into()]);
-    let safety = StateTimelineView::new("How safe the arm is")
+    let safety = StateTimelineView::new("Safety")
         .with_origin(path(lane, "robot/safety"))
         .with_contents([path(lane, "robot/safety/**")]);
-    let forces = series(lane, "Arm: force (N), hand (cm)", &["robot/force", "robot/hand_away"], properties);
+    let forces = series(lane, "Force (N), hand (cm)", &["robot/force", "robot/hand_away"], properties);
     let worth = Tabs::new([benefit(lane, properties), forces, safety.into()]);
     let below = Horizontal::new([beliefs.into(), worth.into()]);
     let side = Vertical::new([believed(lane), happened(lane, properties)]).with_row_shares([2.0, 3.0]);

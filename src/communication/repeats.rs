@@ -3,7 +3,7 @@
 use super::recommendation::aspects_told;
 use super::{Signal, signals};
 use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{AspectId, Kitchen, State};
+use crate::kitchen::{AspectId, Kitchen, LocationId, State};
 use crate::mind::dirichlet::DirichletBelief;
 
 /// What was told is known when the truth has this expected probability.
@@ -31,6 +31,11 @@ impl Repeats {
         if let Some(location) = kitchen.location_named(signal.target()) {
             self.told[location.index()] = Some(Told { code: state.code(location), was_known: false });
         }
+    }
+
+    /// It was not shown after all.
+    pub fn not_shown(&mut self, location: LocationId) {
+        self.told[location.index()] = None;
     }
 
     /// The estimate or the truth may have changed.

@@ -121,6 +121,14 @@ impl Times {
         let n = times.len() as u64;
         median(times).map(|median| Times { n, median, max })
     }
+
+    /// Those of several trials: the median of their medians.
+    fn together(trials: impl Iterator<Item = Times>) -> Option<Times> {
+        let trials: Vec<Times> = trials.collect();
+        let medians = Times::of(trials.iter().map(|times| times.median).collect())?;
+        let max = trials.iter().map(|times| times.max).fold(medians.max, f64::max);
+        Some(Times { n: trials.iter().map(|times| times.n).sum(), max, ..medians })
+    }
 }
 
 /// A wizard in a trial. What takes knowing what was believed is null where nobody knows.
@@ -179,23 +187,25 @@ impl WizardMeasures {
 }
 
 impl WizardMeasures {
-    /// The counts of several trials together, null where one is; times are left out.
+    /// The counts of several trials together, null where one is; of times the median of the trials' medians.
     pub fn sum<'a>(trials: impl IntoIterator<Item = &'a WizardMeasures>) -> WizardMeasures {
         let add = |a: Option<u64>, b: Option<u64>| Some(a? + b?);
-        let zero = WizardMeasures::of(&[], Some(&[]));
+        let trials: Vec<&WizardMeasures> = trials.into_iter().collect();
+        let times = |of: fn(&WizardMeasures) -> Option<Times>| Times::together(trials.iter().filter_map(|one| of(one)));
+        let (key_to_display_ms, latency_s) = (times(|one| one.key_to_display_ms), times(|one| one.latency_s));
+        let zero = WizardMeasures { key_to_display_ms, latency_s, ..WizardMeasures::of(&[], Some(&[])) };
         trials.into_iter().fold(zero, |sum, one| WizardMeasures {
             signals: sum.signals + one.signals,
             taken_back: sum.taken_back + one.taken_back,
-            key_to_display_ms: None,
             episodes: add(sum.episodes, one.episodes),
             hits: add(sum.hits, one.hits),
             omissions: add(sum.omissions, one.omissions),
-            latency_s: None,
             repeated: add(sum.repeated, one.repeated),
             late: add(sum.late, one.late),
             wrong_targets: add(sum.wrong_targets, one.wrong_targets),
             needless: add(sum.needless, one.needless),
             harmless: add(sum.harmless, one.harmless),
+            ..sum
         })
     }
 }

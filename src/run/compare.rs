@@ -2,8 +2,9 @@
 //! keeps what they would have said.
 //!
 //! An assistant is asked about an estimate that leaves out every signal that was sent within the window; else a wizard who is
-//! quick and right would silence it, and count as unmatched. What a concept has said it does not say again, as if it had been
-//! shown, although it was not.
+//! quick and right would silence it, and count as unmatched. What a concept has said it does not say again within the window, as
+//! if it had been shown; later it may, for it was not, and the participant goes on in the same false belief. What was sent
+//! before the window is not said again before it may have been forgotten, as in a session.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -14,13 +15,14 @@ use super::advisor::{Advisor, Question};
 use super::engine::changes_task;
 use super::follower::Follower;
 use crate::base::time::SessionTime;
+use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::repeats::Repeats;
 use crate::console::belief::Moment;
 use crate::console::comparison::{Comparison, Known, Lane, Spoken, What};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Kitchen};
+use crate::kitchen::{Agent, Kitchen, LocationId, State};
 use crate::measures::matching::Said;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::BeliefFilter;
@@ -60,7 +62,8 @@ impl Request {
 struct Voice {
     name: ConceptName,
     advisor: Advisor,
-    /// What it has said.
+    /// What it has said within the window: the presses of the human before it, and where.
+    said: Vec<(u32, LocationId)>,
     repeats: Repeats,
     /// The error that it has proposed presses for.
     proposed: Option<u64>,
@@ -72,6 +75,9 @@ struct Voice {
 struct Without {
     /// Presses of the human before the signal.
     press: u32,
+    signal: Signal,
+    /// What lay where.
+    state: State,
     filter: BeliefFilter,
 }
 
@@ -83,6 +89,8 @@ pub struct Watcher {
     voices: Vec<Voice>,
     /// Of the signals that were sent within the window, the oldest first.
     without: VecDeque<Without>,
+    /// Those before.
+    shown: Repeats,
     sent: Vec<Spoken>,
     /// The newest event after which is asked, when all that follows at once has happened.
     to_ask: Option<(u64, SessionTime)>,
@@ -99,6 +107,7 @@ impl Watcher {
         let voice = |name: ConceptName| Voice {
             name,
             advisor: Advisor::by(name, kitchen.clone(), spec, cost.clone()),
+            said: Vec::new(),
             repeats: Repeats::default(),
             proposed: None,
             spoken: Vec::new(),
@@ -109,6 +118,7 @@ impl Watcher {
             window: request.window,
             voices,
             without: VecDeque::new(),
+            shown: Repeats::default(),
             sent: Vec::new(),
             to_ask: None,
             known: None,
@@ -136,15 +146,18 @@ impl Watcher {
         self.follower.apply(stamped)?;
         self.estimate_without(stamped, before);
         if let (Some(filter), Event::SignalShown { signal, .. }) = (filter, &stamped.event) {
-            let press = self.presses();
-            self.without.push_back(Without { press, filter });
+            let (press, state) = (self.presses(), self.follower.session.state);
+            self.without.push_back(Without { press, signal: signal.clone(), state, filter });
             let spoken = self.spoken(What::Signal(signal.clone()), stamped.time);
             self.sent.push(spoken);
         }
         match &stamped.event {
             event if event.is_sample() => return Ok(()),
             Event::Screen(screen) => self.screen = Some(screen.clone()),
-            Event::TrialStarted => self.voices.iter_mut().for_each(|voice| voice.repeats = Repeats::default()),
+            Event::TrialStarted => {
+                self.shown = Repeats::default();
+                self.voices.iter_mut().for_each(|voice| voice.repeats = Repeats::default());
+            }
             _ => {}
         }
         self.forget_what_was_said();
@@ -170,10 +183,10 @@ impl Watcher {
     }
 
     /// Moves the estimates on that leave signals out. They learn all but signals.
-    fn estimate_without(&mut self, stamped: &Stamped, (before, counts): (crate::kitchen::State, bool)) {
-        let press = self.presses();
-        while self.without.front().is_some_and(|oldest| press > oldest.press + self.window) {
-            self.without.pop_front();
+    fn estimate_without(&mut self, stamped: &Stamped, (before, counts): (State, bool)) {
+        let (press, window) = (self.presses(), self.window);
+        while let Some(oldest) = self.without.pop_front_if(|oldest| press > oldest.press + window) {
+            self.shown.shown(&self.follower.session.kitchen, oldest.state, &oldest.signal);
         }
         if self.without.is_empty() {
             return;
@@ -190,8 +203,22 @@ impl Watcher {
 
     fn forget_what_was_said(&mut self) {
         let session = &self.follower.session;
+        let press = session.presses[Agent::Human.index()];
         let belief = estimate(&self.follower, &self.without);
+        self.shown.update(&session.kitchen, session.state, belief);
         for voice in &mut self.voices {
+            // What was sent as well is not asked for once more.
+            let is_sent = |location: &LocationId| {
+                let is_it = |one: &Without| session.kitchen.location_named(one.signal.target()) == Some(*location);
+                self.without.iter().any(is_it)
+            };
+            voice.said.retain(|(said, location)| {
+                let is_kept = press <= said + self.window || is_sent(location);
+                if !is_kept {
+                    voice.repeats.not_shown(*location);
+                }
+                is_kept
+            });
             voice.repeats.update(&session.kitchen, session.state, belief);
         }
     }
@@ -211,8 +238,11 @@ impl Watcher {
         let (kitchen, own_hand) = (session.kitchen.clone(), session.spec.signals.own_hand);
         let question = Question::of(&self.follower, seq, time);
         let belief = estimate(&self.follower, &self.without);
+        let shown = &self.shown;
         let answer = |voice: &mut Voice| {
-            let signals = voice.repeats.allowed(&kitchen, own_hand);
+            let mut signals = shown.allowed(&kitchen, own_hand);
+            let unsaid = voice.repeats.allowed(&kitchen, own_hand);
+            signals.retain(|signal| unsaid.contains(signal));
             voice.advisor.answer(&question.about(belief, signals))
         };
         let advice: Vec<Recommendation> = self.voices.iter_mut().map(answer).collect();
@@ -233,6 +263,8 @@ impl Watcher {
         let voice = &mut self.voices[index];
         if let Some(signal) = &advice.best {
             voice.repeats.shown(&session.kitchen, session.state, signal);
+            let location = session.kitchen.location_named(signal.target());
+            voice.said.extend(location.map(|location| (session.presses[Agent::Human.index()], location)));
             return Some(What::Signal(signal.clone()));
         }
         // One proposal for an error, however long it stands.

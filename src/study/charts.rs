@@ -3,7 +3,7 @@
 use super::effect::{Measure, Pair, pairs};
 use super::figures::{ConditionFigures, StudyFigures};
 use super::roc::{Point, Roc};
-use super::svg::{Axis, Chart};
+use super::svg::{Axis, Chart, minus};
 use super::trial::{Trial, mean};
 use crate::communication::concept::ConceptName;
 use crate::session::settings::Condition;
@@ -53,7 +53,7 @@ pub fn improvements(trials: &[Trial]) -> Option<String> {
         if let Some(mean) = mean(of_group.iter().map(|pair| percent(pair.improvement()))) {
             chart.line("mean", &[(x - 0.25, mean), (x + 0.25, mean)]);
             // No sign before what rounds to nothing.
-            let words = if mean.abs() < 0.05 { "0.0".to_string() } else { format!("{mean:+.1}") };
+            let words = if mean.abs() < 0.05 { "0.0".to_string() } else { minus(&format!("{mean:+.1}")) };
             chart.words("strong", x + 0.25, mean, true, &words);
         }
     }

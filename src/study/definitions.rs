@@ -30,7 +30,8 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
     (
         "Similarity of wizard and assistant",
         "One-to-one matching in time within 3 human presses; strict: same signal and target, lenient: same kind of signal. \
-         Against the assistant's counterfactual estimate that leaves the wizard's signal out for as many presses. Recall is \
+         Against the assistant's counterfactual estimate that leaves the wizard's signal out for as many presses. What the \
+         assistant would have said it does not say again within that window; later it may, for nobody has shown it. Recall is \
          of the wizard's signals, precision of the assistant's; kappa is per human press over {none, each signal and target}; \
          the chance level is the recall that circular shifts leave. An assistant that communicates more often is flattered by \
          recall alone.",

@@ -81,6 +81,14 @@ impl Measure {
         }
     }
 
+    /// So many digits behind the point say as much as is known.
+    pub fn digits(self) -> usize {
+        match self {
+            Measure::ErrorRateHuman | Measure::ErrorRate => 3,
+            _ => 2,
+        }
+    }
+
     /// In words.
     pub fn title(self) -> &'static str {
         match self {

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec, Visibility};
 use crate::session::{Header, Session};
+use crate::wizard::settings::{WizardKind, WizardSpec};
 
 /// What is known of a kind, from one recording or several: every value that occurred.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,7 +39,10 @@ impl Facts {
             is("plan", format!("{} ({})", step.plan, step.digest));
         }
         if spec.trial.condition == Condition::Wizard {
-            is("wizard saw", visibility(spec.console.visibility).to_string());
+            match spec.wizard.kind {
+                WizardKind::Person => is("wizard saw", visibility(spec.console.visibility).to_string()),
+                WizardKind::Scripted => is("scripted wizard", script(&spec.wizard)),
+            }
             if session.unblinded {
                 is("unblinded", String::new());
             }
@@ -78,6 +82,17 @@ fn presses_of(robot: &RobotSpec) -> String {
         ArmKind::Timed => format!("{} s in the median (spread {})", robot.press_s, robot.press_spread),
         ArmKind::Physics => "as long as its simulated arm takes".to_string(),
     }
+}
+
+fn script(wizard: &WizardSpec) -> String {
+    format!(
+        "it takes {} s in the median from seeing to the key, sees {:.0} % of the errors and {:.0} % of the overlooked changes, and \
+         takes something else for the cause in {:.0} %",
+        wizard.reaction_s,
+        100.0 * wizard.sees_errors,
+        100.0 * wizard.sees_overlooked,
+        100.0 * wizard.guesses_wrong
+    )
 }
 
 fn gaze_source(source: GazeSource) -> &'static str {

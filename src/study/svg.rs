@@ -31,7 +31,7 @@ impl Axis {
         let step = round_step((high - low) / 5.0);
         let (first, last) = ((low / step).floor() as i64, (high / step - 1e-9).ceil() as i64);
         let digits = (-step.log10().floor()).max(0.0) as usize;
-        let tick = |number: i64| (number as f64 * step, format!("{:.digits$}", number as f64 * step));
+        let tick = |number: i64| (number as f64 * step, minus(&format!("{:.digits$}", number as f64 * step)));
         Axis { label, from: first as f64 * step, to: last as f64 * step, ticks: (first..=last).map(tick).collect() }
     }
 
@@ -170,6 +170,11 @@ impl Chart {
             self.body
         )
     }
+}
+
+/// Numbers with a real minus sign.
+pub fn minus(text: &str) -> String {
+    text.replace('-', "\u{2212}")
 }
 
 /// A text as it may stand in HTML.

@@ -1,15 +1,17 @@
 //! A scripted wizard: sends signals in simulated studies as a person at the console would, who sees kitchen, presses and
 //! gaze and knows the recipes, but does not see into the participant's head.
 //!
-//! It keeps in mind what the participant has seen of each place. When a press was an error, it may see that, and asks itself
-//! which single false belief would make the press a good one: a place that is held for what it was when it was last seen,
-//! or else a recipe. When somebody else changed a place, and that goes unseen, it may see that the participant is about to
-//! err. It thinks of one thing at a time, takes its time, errs about the cause now and then, and gives up what has mended
-//! itself meanwhile. So it is late, misses, and is wrong, as people are.
+//! It keeps in mind what the participant has seen of each place, and the last presses. When a press was an error, it may see
+//! that, and asks itself which single false belief would make the press a good one: a place that is held for what it was when
+//! it was last seen, or a recipe; of several the one that explains most of the last presses. When somebody else changed a
+//! place, and that goes unseen, it may see that the participant is about to err. It thinks of one thing at a time, takes its
+//! time, errs about the cause now and then, and gives up what would mislead nobody any more. So it is late, misses, and is
+//! wrong, as people are.
 
 mod seen;
 pub mod settings;
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use rand::RngExt;
@@ -19,18 +21,21 @@ use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::communication::{self, Signal};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
-use seen::{Seen, explain, misleads};
+use crate::kitchen::{ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent, State};
+use seen::{Pressed, Seen, explain, misleads};
 use settings::WizardSpec;
 
-/// What the wizard wants to say.
+/// So many presses are kept in mind.
+const KEPT: usize = 6;
+
+/// What the wizard takes for believed wrong, and wants to say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Thought {
     /// What is at a place.
     Place(LocationId),
-    /// The recipe of the dish that an order wants.
-    Recipe(LocationId, DishId),
-    /// Something about this place, for no reason that holds.
+    /// The recipe of the dish that an order wants, which is held for this one.
+    Recipe(LocationId, DishId, ContentId),
+    /// Something about this place, which is not the cause but might have been.
     Guess(LocationId),
 }
 
@@ -42,6 +47,8 @@ pub struct ScriptedWizard {
     own_hand: bool,
     random: Stream,
     seen: Seen,
+    /// The participant's last presses, the newest last.
+    presses: VecDeque<Pressed>,
     /// What it is about to say, and when its finger is on the key.
     about_to: Option<(SessionTime, Thought)>,
     /// Changes by others that it will look after, and when.
@@ -55,7 +62,8 @@ impl ScriptedWizard {
         let seen = Seen::new(kitchen.empty_state());
         let random = stream(seed, "wizard", trial);
         let (about_to, watched, signalled_at) = (None, Vec::new(), None);
-        ScriptedWizard { kitchen, spec, own_hand, random, seen, about_to, watched, signalled_at }
+        let presses = VecDeque::with_capacity(KEPT);
+        ScriptedWizard { kitchen, spec, own_hand, random, seen, presses, about_to, watched, signalled_at }
     }
 
     /// When it does something next, or looks after something.
@@ -69,6 +77,7 @@ impl ScriptedWizard {
         self.seen = Seen::new(state);
         (self.about_to, self.signalled_at) = (None, None);
         self.watched.clear();
+        self.presses.clear();
     }
 
     /// The participant's gaze is on this place, or on none.
@@ -86,9 +95,14 @@ impl ScriptedWizard {
         is_error: bool,
         cost: &mut CostToGo,
     ) {
+        if self.presses.len() == KEPT {
+            self.presses.pop_front();
+        }
+        self.presses.push_back(Pressed { truth: before, seen: self.seen.state, button });
         if is_error && self.about_to.is_none() && self.chance(self.spec.sees_errors) {
-            let cause = explain(&self.kitchen, cost, &self.seen, before, button);
-            if let Some(cause) = cause {
+            let causes = explain(&self.kitchen, cost, self.presses.make_contiguous());
+            if !causes.is_empty() {
+                let cause = causes[self.random.random_range(0..causes.len())];
                 self.think_of(now, cause, after);
             }
         }
@@ -124,14 +138,14 @@ impl ScriptedWizard {
     /// Does what is due now: sends a signal, or looks after a change.
     pub fn act(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<Signal> {
         if let Some((_, thought)) = self.about_to.take_if(|(time, _)| *time <= now) {
-            return self.say(now, thought, state);
+            return self.say(now, thought, state, cost);
         }
         let index = self.watched.iter().position(|(time, _)| *time <= now)?;
         let (_, location) = self.watched.swap_remove(index);
         let is_overlooked = !self.seen.knows(location, state);
         if is_overlooked
             && self.about_to.is_none()
-            && misleads(&self.kitchen, cost, &self.seen, state, location)
+            && misleads(&self.kitchen, cost, &self.seen, state, Thought::Place(location))
             && self.chance(self.spec.sees_overlooked)
         {
             self.think_of(now, Thought::Place(location), state);
@@ -150,13 +164,19 @@ impl ScriptedWizard {
         self.about_to = Some((now + SessionTime::from_secs_f64(reaction_s), thought));
     }
 
-    /// Something else that could be told.
+    /// Something else that the participant could be wrong about: another recipe that is wanted, or a place that was not looked
+    /// at since it changed.
     fn another(&mut self, cause: Thought, state: State) -> Option<Thought> {
         let told = cause.location();
+        let could_be = |at: LocationId| match state.order(at) {
+            OrderContent::Dish(_) if self.kitchen.orders.contains(&at) => true,
+            _ => !self.seen.knows(at, state),
+        };
         let others: Vec<LocationId> = communication::signals(&self.kitchen, self.own_hand)
             .into_iter()
             .filter(|(at, signal)| *at != told && communication::unavailable(&self.kitchen, state, signal).is_none())
             .map(|(location, _)| location)
+            .filter(|&location| could_be(location))
             .collect();
         match others.is_empty() {
             true => None,
@@ -164,14 +184,18 @@ impl ScriptedWizard {
         }
     }
 
-    /// Presses the key, unless what was to be told is known or gone by now.
-    fn say(&mut self, now: SessionTime, thought: Thought, state: State) -> Option<Signal> {
+    /// Presses the key, unless what was to be told is known or gone by now, or misleads nobody any more.
+    fn say(&mut self, now: SessionTime, thought: Thought, state: State, cost: &mut CostToGo) -> Option<Signal> {
         let holds = match thought {
             Thought::Place(location) => !self.seen.knows(location, state),
-            Thought::Recipe(order, dish) => state.order(order) == OrderContent::Dish(dish),
+            Thought::Recipe(order, dish, _) => state.order(order) == OrderContent::Dish(dish),
             Thought::Guess(_) => true,
         };
-        if !holds {
+        let matters = |cost: &mut CostToGo| match thought {
+            Thought::Place(_) | Thought::Recipe(..) => misleads(&self.kitchen, cost, &self.seen, state, thought),
+            Thought::Guess(_) => true,
+        };
+        if !holds || !matters(cost) {
             return None;
         }
         let rested = self.signalled_at.map(|last| last + SessionTime::from_secs_f64(self.spec.rest_s));
@@ -193,7 +217,7 @@ impl Thought {
     /// The place that the signal is about.
     fn location(self) -> LocationId {
         match self {
-            Thought::Place(location) | Thought::Recipe(location, _) | Thought::Guess(location) => location,
+            Thought::Place(location) | Thought::Recipe(location, ..) | Thought::Guess(location) => location,
         }
     }
 }

@@ -4,7 +4,7 @@
 use super::{Kitchen, Thought};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, ButtonId, DishId, LocationId, Recipes, State};
+use crate::kitchen::{Agent, ButtonId, LocationId, Recipes, State};
 
 /// The kitchen as the participant last saw it, place by place.
 #[derive(Clone, Debug)]
@@ -48,41 +48,63 @@ impl Seen {
     }
 }
 
-/// Which single false belief would make this press a good one: a place that is held for what it was when it was last
-/// seen, or else another version of a wanted recipe. Nothing, if the press would help nobody who believes any of that.
-pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, seen: &Seen, truth: State, button: ButtonId) -> Option<Thought> {
-    let recipes = kitchen.true_recipes();
-    for location in kitchen.changed(seen.state, truth) {
-        let mut believed = truth;
-        believed.set_code(location, seen.state.code(location));
-        if helps(kitchen, cost, believed, &recipes, button) {
-            return Some(Thought::Place(location));
-        }
-    }
-    let wanted: Vec<(LocationId, DishId)> = kitchen.wanted(truth).collect();
-    for (order, dish) in wanted {
-        for &variant in &kitchen.dish(dish).variants[1..] {
-            let mut recalled = recipes;
-            recalled.set(dish, variant);
-            if helps(kitchen, cost, truth, &recalled, button) {
-                return Some(Thought::Recipe(order, dish));
-            }
-        }
-    }
-    // Several places together: the first of them is a beginning.
-    let several = helps(kitchen, cost, seen.state, &recipes, button);
-    several.then(|| kitchen.changed(seen.state, truth).next()).flatten().map(Thought::Place)
+/// A press of the participant, with what was true then, and what had been seen of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Pressed {
+    pub truth: State,
+    pub seen: State,
+    pub button: ButtonId,
 }
 
-/// Whether somebody who knows everything but this place would now press what does not help.
-pub fn misleads(kitchen: &Kitchen, cost: &mut CostToGo, seen: &Seen, truth: State, location: LocationId) -> bool {
+/// Which single false beliefs would make the last of these presses a good one: a place that is held for what it was when it was
+/// last seen, or another version of a wanted recipe; of these, those that explain most of the presses. Nothing, if the press
+/// would help nobody who believes any of that.
+pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[Pressed]) -> Vec<Thought> {
+    let Some(last) = presses.last() else { return Vec::new() };
+    let places = kitchen.changed(last.seen, last.truth).map(Thought::Place);
+    let recipes = kitchen.wanted(last.truth).flat_map(|(order, dish)| {
+        kitchen.dish(dish).variants[1..].iter().map(move |&variant| Thought::Recipe(order, dish, variant))
+    });
+    let mut explains = |thought: Thought, press: &Pressed| {
+        let (state, recipes) = believed(kitchen, thought, press.truth, press.seen);
+        helps(kitchen, cost, state, &recipes, press.button)
+    };
+    let mut causes: Vec<(usize, Thought)> = Vec::new();
+    for thought in places.chain(recipes) {
+        if explains(thought, last) {
+            causes.push((presses.iter().filter(|press| explains(thought, press)).count(), thought));
+        }
+    }
+    let most = causes.iter().map(|(explained, _)| *explained).max();
+    let mut best: Vec<Thought> =
+        causes.into_iter().filter(|(explained, _)| Some(*explained) == most).map(|(_, thought)| thought).collect();
+    // Several versions of a recipe are told by the same signal.
+    best.dedup_by_key(|thought| thought.location());
+    // Several places together: the first of them is a beginning.
+    if best.is_empty() && helps(kitchen, cost, last.seen, &kitchen.true_recipes(), last.button) {
+        best.extend(kitchen.changed(last.seen, last.truth).next().map(Thought::Place));
+    }
+    best
+}
+
+/// Whether somebody who knows everything but this would now press what does not help.
+pub fn misleads(kitchen: &Kitchen, cost: &mut CostToGo, seen: &Seen, truth: State, thought: Thought) -> bool {
+    let (state, recalled) = believed(kitchen, thought, truth, seen.state);
     let recipes = kitchen.true_recipes();
-    let mut believed = truth;
-    believed.set_code(location, seen.state.code(location));
     let mut presses = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
-    presses.any(|button| {
-        helps(kitchen, cost, believed, &recipes, button) && !helps(kitchen, cost, truth, &recipes, button)
-    })
+    presses
+        .any(|button| helps(kitchen, cost, state, &recalled, button) && !helps(kitchen, cost, truth, &recipes, button))
+}
+
+/// What somebody believes who is wrong about this alone.
+fn believed(kitchen: &Kitchen, thought: Thought, truth: State, seen: State) -> (State, Recipes) {
+    let (mut state, mut recipes) = (truth, kitchen.true_recipes());
+    match thought {
+        Thought::Place(location) => state.set_code(location, seen.code(location)),
+        Thought::Recipe(_, dish, variant) => recipes.set(dish, variant),
+        Thought::Guess(_) => {}
+    }
+    (state, recipes)
 }
 
 /// Whether a press of the human brings the end nearer, if everything is as `state` and `recipes` say.

@@ -18,7 +18,7 @@ pub struct WizardSpec {
     pub overlooked_after_s: f64,
     /// Gaze that rests on a place for so long has read it, as far as the wizard can tell, in seconds.
     pub look_s: f64,
-    /// Chance to take something else for the cause.
+    /// Chance to take something else for the cause that could be it as well.
     pub guesses_wrong: f64,
     /// From one signal to the next at least, in seconds.
     pub rest_s: f64,

@@ -5,7 +5,7 @@ mod sections;
 
 use super::facts::Facts;
 use super::figures::StudyFigures;
-use super::svg::escaped;
+use super::svg::{escaped, minus};
 use super::trial::Trial;
 
 /// How the page looks.
@@ -68,7 +68,7 @@ fn keys(keys: &[(&str, &str)]) -> String {
 
 /// A number with so many digits behind the point; a dash for nothing.
 fn number(value: Option<f64>, digits: usize) -> String {
-    value.filter(|value| value.is_finite()).map_or("\u{2013}".to_string(), |value| minus(format!("{value:.digits$}")))
+    value.filter(|value| value.is_finite()).map_or("\u{2013}".to_string(), |value| minus(&format!("{value:.digits$}")))
 }
 
 fn percent(value: Option<f64>) -> String {
@@ -93,16 +93,11 @@ fn range(low: Option<f64>, high: Option<f64>, digits: usize) -> String {
             let end = |value: f64| match value {
                 f64::INFINITY => "\u{221e}".to_string(),
                 f64::NEG_INFINITY => "\u{2212}\u{221e}".to_string(),
-                value => minus(format!("{value:.digits$}")),
+                value => minus(&format!("{value:.digits$}")),
             };
             format!("{} to {}", end(low), end(high))
         }
     }
-}
-
-/// With a real minus sign.
-fn minus(text: String) -> String {
-    text.replace('-', "\u{2212}")
 }
 
 fn count(value: Option<u64>) -> String {

@@ -1,6 +1,7 @@
 //! The results, each with what the paper found.
 
 use super::{count, figure, keys, number, p_value, percent, range, section, table};
+use crate::measures::wizard::WizardMeasures;
 use crate::study::charts;
 use crate::study::effect::Effect;
 use crate::study::figures::StudyFigures;
@@ -139,7 +140,7 @@ fn in_words(effect: &Effect) -> String {
     };
     format!(
         "<p>Assistance takes {} errors away from 100 presses of the human (Hodges-Lehmann{interval}). Interaction of period and \
-         starting group: F({:.0}, {:.0}) = {}, p = {}.</p>\n",
+         starting group: F({:.0}, {:.0})\u{a0}=\u{a0}{}, p\u{a0}=\u{a0}{}.</p>\n",
         number(Some(estimate), 1),
         test.df[0],
         test.df[1],
@@ -150,9 +151,10 @@ fn in_words(effect: &Effect) -> String {
 
 fn effect_row(effect: &Effect) -> Vec<String> {
     let test = effect.assistance();
-    let reduction = effect.reduction;
+    let (reduction, digits) = (effect.reduction, effect.measure.digits());
     let interval = reduction.map_or("\u{2013}".to_string(), |found| {
-        format!("{}<small>{}</small>", number(Some(found.estimate), 3), range(Some(found.low), Some(found.high), 3))
+        let ends = range(Some(found.low), Some(found.high), digits);
+        format!("{}<small>{ends}</small>", number(Some(found.estimate), digits))
     });
     vec![
         effect.measure.title().to_string(),
@@ -278,6 +280,7 @@ pub(super) fn similarity(figures: &StudyFigures) -> String {
             number(found.kappa, 2),
             number(found.median_lead_s, 1)
         );
+        text += &figures.wizard.as_ref().map_or(String::new(), |wizard| limits(figures, wizard));
     }
     if let Some(wizard) = &figures.wizard {
         let row = |what: &str, value: Option<u64>| vec![what.to_string(), count(value)];
@@ -292,10 +295,29 @@ pub(super) fn similarity(figures: &StudyFigures) -> String {
             row("about the wrong thing", wizard.wrong_targets),
             row("while nothing was believed wrong", wizard.needless),
             row("about a wrong belief that led to no error", wizard.harmless),
+            vec![
+                "seconds from the beginning of a false belief to its signal, in the median".to_string(),
+                number(wizard.latency_s.map(|times| times.median), 1),
+            ],
         ];
         text += &format!("<h3>The wizard</h3>\n{}", table(&["", "over all trials"], &rows));
     }
     section("Wizard and assistant", &text)
+}
+
+/// What keeps the wizard's signals from having a match; of participants who tell what they believed.
+fn limits(figures: &StudyFigures, wizard: &WizardMeasures) -> String {
+    let (Some(late), Some(wrong), Some(needless)) = (wizard.late, wizard.wrong_targets, wizard.needless) else {
+        return String::new();
+    };
+    let who = if figures.simulated_participants { "scripted wizard" } else { "wizard" };
+    format!(
+        "<p>What limits the match: {} of {} signals of the {who} were about something that was believed right, then or already, and \
+         ToM-Com has no reason for them. It keeps silent, too, where the error is likely to end by itself before it costs more \
+         presses than a signal does. What it said more than 3 presses earlier is no match either.</p>\n",
+        late + wrong + needless,
+        wizard.signals
+    )
 }
 
 /// What participants said.

@@ -95,7 +95,7 @@ pub(super) fn trials(figures: &StudyFigures, trials: &[Trial]) -> String {
         "orders",
         "s a press",
     ];
-    let mut text = format!("<div class=\"scroll\">{}</div>\n", table(&heads, &rows));
+    let mut text = format!("<div class=\"scroll long\">{}</div>\n", table(&heads, &rows));
     if counting.len() > MOST_TRIALS {
         text += &format!(
             "<p class=\"note\">The first {MOST_TRIALS} of {}; all of them are in <code>trials.csv</code>.</p>\n",
@@ -142,7 +142,7 @@ pub(super) fn methods(figures: &StudyFigures, facts: &Facts) -> String {
     let orders = facts.all("orders").map_or(String::new(), |orders| format!(" or {} served orders", escaped(&orders)));
     let mut text = format!(
         "<p>{} took part{planned}; {} recorded, {} left out of the analysis. Participants: {}. The task was that of the kitchen \
-         \u{201c}{}\u{201d}. A trial ended after {} presses of both agents, {} s{orders}. A press of the robot took {}. Gaze came \
+         \u{201c}{}\u{201d}. A trial ended after {} presses of both agents or {} s{orders}. A press of the robot took {}. Gaze came \
          from {}{}. A signal was shown for {}.",
         words::count(figures.participants, "participant", "participants"),
         words::count(figures.trials + figures.left_out.len() as u64, "trial was", "trials were"),
@@ -156,6 +156,12 @@ pub(super) fn methods(figures: &StudyFigures, facts: &Facts) -> String {
         facts.all("accuracy").map_or(String::new(), |deg| format!(" (accuracy in checks: {deg}\u{b0})")),
         all("shown"),
     );
+    if facts.has("scripted wizard") {
+        text += &format!(
+            " The wizard was a script that sees kitchen, presses and gaze, and no estimate: {}.",
+            all("scripted wizard")
+        );
+    }
     if facts.has("wizard saw") {
         text += &format!(" The wizard saw {}", all("wizard saw"));
         text += if facts.has("unblinded") { ", and in some trials what assistants would say." } else { "." };

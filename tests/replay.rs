@@ -17,7 +17,7 @@ use tomcom::edge::log::{LOG_NAME, LogReader, LogWriter};
 use tomcom::gaze::GazeSample;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen, LocationId};
-use tomcom::measures::matching::{Content, Kind};
+use tomcom::measures::matching::Content;
 use tomcom::run::compare::{Request, Watcher};
 use tomcom::run::engine::Engine;
 use tomcom::run::film::Film;
@@ -532,16 +532,18 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
     assert!(compared > 50, "{compared} options");
     here.finish();
     let found = here.comparison(true);
-    let mut last: Vec<(Content, u32)> = Vec::new();
+    // With what lay there: who tells of something else says nothing again.
+    let mut last: Vec<((Content, u8), u32)> = Vec::new();
     let mut again = 0;
-    // What an order wants stays the same; what lies at a place may be something else by now.
-    for said in found.lanes[1].said().into_iter().filter(|said| said.content.kind == Kind::Recipe) {
-        match last.iter_mut().find(|(content, _)| *content == said.content) {
+    for spoken in &found.lanes[1].spoken {
+        let (said, state) = (spoken.said, spoken.known.as_ref().expect("an answer").state);
+        let what = (said.content, state.code(said.content.target.expect("a signal is about a place")));
+        match last.iter_mut().find(|(other, _)| *other == what) {
             Some((_, press)) => {
                 assert!(said.press > *press + request.window, "{said:?} after press {press}");
                 (*press, again) = (said.press, again + 1);
             }
-            None => last.push((said.content, said.press)),
+            None => last.push((what, said.press)),
         }
     }
     assert!(again > 0, "what nobody shows stays to be said");

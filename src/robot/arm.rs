@@ -25,6 +25,8 @@ const SPEEDS_UP: f64 = 3.0;
 const AHEAD_S: f64 = 0.08;
 /// A hand in the way for so long makes it give its press up, in seconds.
 const BLOCKED_S: f64 = 4.0;
+/// And for so long out of it before that counts as over.
+const FREE_S: f64 = 0.25;
 /// A joint so far from where it was told to be, in radians, for so many cycles, is at fault.
 const ASTRAY_RAD: f64 = 0.05;
 const ASTRAY_CYCLES: u32 = 3;
@@ -101,6 +103,8 @@ pub struct PhysicalArm {
     pub watches_hands: bool,
     /// How long it waits for a hand in its way, or for a button to click.
     waited_s: f64,
+    /// How long no hand is in its way.
+    free_s: f64,
     astray: u32,
     touch: Touch,
 }
@@ -132,6 +136,7 @@ impl PhysicalArm {
             mode,
             watches_hands,
             waited_s,
+            free_s: 0.0,
             astray,
             touch: Touch::default(),
         }
@@ -287,7 +292,10 @@ impl PhysicalArm {
         let distance_m = self.world.distance(&hand);
         let share = self.share_near(&hand, distance_m);
         let blocked = share == 0.0 && !self.way.is_empty();
-        self.mode = safety::mode_near(self.mode, distance_m, blocked);
+        self.free_s = if blocked { 0.0 } else { self.free_s + CYCLE_S };
+        // A hand that moves at its edge does not make the mode flicker.
+        let waited = self.mode == SafetyMode::Safeguard && self.free_s < FREE_S;
+        self.mode = safety::mode_near(self.mode, distance_m, blocked || waited);
         self.waited_s = match blocked && self.goal.is_some() {
             true => self.waited_s + CYCLE_S,
             false if self.phase() == ArmPhase::Presses => self.waited_s,

@@ -134,6 +134,9 @@ impl Body {
         self.hand.cycle(now, |hand| self.arm.distance(hand));
         let cycle = self.arm.cycle(Some(self.hand.place()));
         self.on_button = cycle.felt.button_n > 0.0;
+        if cycle.felt.human_n > 0.0 {
+            self.hand.feels_the_arm();
+        }
         (cycle, self.news(now, &cycle))
     }
 

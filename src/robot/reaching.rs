@@ -39,7 +39,7 @@ pub struct Reaching {
 
 impl Reaching {
     /// Of simulated participants; how often they do not mind the arm is an estimate.
-    pub const SIMULATED: Reaching = Reaching { lingers_s: 0.3, heedless: 0.02 };
+    pub const SIMULATED: Reaching = Reaching { lingers_s: 0.3, heedless: 0.005 };
     /// Of people, whose hands nobody sees: it is taken to be for a while where the last press was, and never to go into an
     /// arm that is not there.
     pub const UNSEEN: Reaching = Reaching { lingers_s: 1.5, heedless: 0.0 };
@@ -136,6 +136,15 @@ impl ReachingHand {
             Some(_) => {}
             None if self.at_m == to_m => self.leaves = Some(now + lingers),
             None => self.reach(to_m),
+        }
+    }
+
+    /// The person feels the arm, draws back, and minds it from now on.
+    pub fn feels_the_arm(&mut self) {
+        self.heedless = false;
+        if self.way.is_none_or(|way| way.presses) {
+            (self.planned, self.leaves) = (None, None);
+            self.set_out(self.rests_m, false);
         }
     }
 

@@ -72,7 +72,7 @@ fn arm(brush: &mut Brush, x: u16, y: u16, columns: u16, moment: &ArmMoment) {
     let bar = |angle: &f64| signs.levels[((angle / TAU + 0.5) * 8.0).clamp(0.0, 7.0) as usize];
     let bars: String = moment.joints.iter().map(bar).collect();
     let phase = format!("{:<10} ", words::arm_phase(moment.phase));
-    let hand = format!(" hand {:>4.2} m", moment.hand_away_m);
+    let hand = format!(" hand {:>4.2} m", moment.hand_away_m.max(0.0));
     let force = match moment.force_n {
         force_n if force_n >= 0.5 => format!(" {force_n:>3.0} N"),
         _ => format!(" {:>3}  ", signs.dash),
@@ -91,12 +91,12 @@ fn joints(brush: &mut Brush, x: u16, y: u16, columns: u16, moment: &ArmMoment) {
 /// That the robot is stopped, why, and the key that lets it go on.
 fn stopped(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
     let arm = &session.robot.arm;
-    let label = match arm.mode {
-        mode @ (SafetyMode::ProtectiveStop | SafetyMode::Fault) => format!(" {} ", mode.name()),
-        _ => " STOPPED ".to_string(),
+    let (label, goes_on) = match arm.mode {
+        mode @ (SafetyMode::ProtectiveStop | SafetyMode::Fault) => (format!(" {} ", mode.name()), "resumes"),
+        _ => (" STOPPED ".to_string(), "lets it go on"),
     };
     let key = model.keys.of(&Action::ResumeRobot).filter(|_| session.phase != Phase::Closed);
-    let resume = key.map(|key| format!(": {key} lets it go on")).unwrap_or_default();
+    let resume = key.map(|key| format!(": {key} {goes_on}")).unwrap_or_default();
     let force = arm.stopped_by_n.map(|force_n| format!(" {force_n:.0} N")).unwrap_or_default();
     let badge = brush.theme.badge(Role::Alarm);
     let end = brush.text(x, y, columns, &label, badge);

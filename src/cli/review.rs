@@ -86,7 +86,7 @@ pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
         Reviewed::Served { url, because, _serving } => {
             writeln!(out, "{because}: it is served here, for a browser on this machine, until ctrl+c\n{url}")?;
             if let Some(at) = args.at {
-                writeln!(out, "it plays from {at} on")?;
+                writeln!(out, "what comes from {at} on is marked in its time line: a click there goes to it")?;
             }
             out.flush()?;
             until_asked_to_end()?;

@@ -159,7 +159,10 @@ fn buttons(session: &Session) -> Vec<Choice> {
         let remark = if does { "" } else { "no effect now" }.to_string();
         Choice { answer: Answer::Button(id), label: words::button(kitchen, Agent::Robot, id), remark }
     };
-    ids.map(choice).collect()
+    let mut choices: Vec<Choice> = ids.map(choice).collect();
+    // What does something comes first.
+    choices.sort_by_key(|choice| !choice.remark.is_empty());
+    choices
 }
 
 fn reasons(session: &Session) -> Vec<Choice> {

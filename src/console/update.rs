@@ -202,7 +202,7 @@ fn may_follow_at_once(action: &Action) -> bool {
 
 /// The space bar: works in every view, and does nothing twice.
 fn stop_robot(model: &mut Model, session: &Session) -> Option<Command> {
-    if session.robot.stopped {
+    if session.robot.is_stopped_by_wizard() {
         return None;
     }
     send(model, session, Event::RobotStopped, Level::Alarm, "the robot is stopped")
@@ -289,7 +289,10 @@ pub(super) fn act(model: &mut Model, session: &Session, action: Action) -> Optio
             send(model, session, Event::Marker { note }, Level::Done, &words)
         }
         Action::Advance => advance(model, session),
-        Action::ResumeRobot => send(model, session, Event::RobotResumed, Level::Done, "the robot goes on"),
+        Action::ResumeRobot => {
+            let words = if session.robot.held { "no longer stopped, still held" } else { "the robot goes on" };
+            send(model, session, Event::RobotResumed, Level::Done, words)
+        }
         Action::EndTrial => match session.phase {
             Phase::Running | Phase::Paused => {
                 model.dialog = Some(Dialog::EndTrial);

@@ -201,7 +201,7 @@ fn hand_shapes() -> Vec<Row> {
     let length_m = (to - from).norm() + 2.0 * forearm.radius_m;
     let shape = Shape::Cylinder { radius_m: forearm.radius_m, length_m };
     let forearm = Solid { shape, link_from_solid: Isometry3::from_parts(middle, along) };
-    vec![Row::new(HAND, Shown::Solids(vec![ball, forearm], colours::HUMAN))]
+    vec![Row::new(HAND, Shown::Solids(vec![ball, forearm], colours::SKIN))]
 }
 
 /// A mark where the hand is, with these words.

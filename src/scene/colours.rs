@@ -9,6 +9,8 @@ pub const FRAME: Colour = [104, 110, 122, 255];
 pub const EMPTY: Colour = [124, 130, 142, 255];
 pub const FULL: Colour = [0, 172, 160, 255];
 pub const HUMAN: Colour = [52, 152, 235, 255];
+/// Of the human's hand and forearm.
+pub const SKIN: Colour = [222, 170, 136, 255];
 pub const ROBOT: Colour = [236, 136, 32, 255];
 pub const SIGNAL: Colour = [236, 184, 0, 255];
 pub const WIZARD: Colour = [180, 100, 230, 255];

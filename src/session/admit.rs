@@ -42,7 +42,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => {
             refuse_if(session.spec.robot.arm == ArmKind::Timed, "the robot's arm is timed in this session")
         }
-        Event::RobotStopped => refuse_if(session.robot.stopped, "the robot is stopped already"),
+        Event::RobotStopped => refuse_if(session.robot.is_stopped_by_wizard(), "the robot is stopped already"),
         Event::RobotResumed => refuse_if(!session.robot.stopped, "the robot is not stopped"),
         Event::SignalShown { by, signal, .. } => admit_signal(session, *by, signal),
         Event::Advised(_) => {

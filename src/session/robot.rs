@@ -76,6 +76,11 @@ pub struct ArmStatus {
 }
 
 impl RobotStatus {
+    /// Whether the wizard has stopped it. An arm that stopped by itself can still be stopped by the wizard.
+    pub fn is_stopped_by_wizard(&self) -> bool {
+        self.stopped && !matches!(self.arm.mode, SafetyMode::ProtectiveStop | SafetyMode::Fault)
+    }
+
     /// It is on its way to a button, and will touch it at `until` if nothing comes between.
     pub(super) fn sets_out(&mut self, button: ButtonId, now: SessionTime, until: SessionTime) {
         self.intention = Some((button, now, until));

@@ -174,6 +174,8 @@ fn legend(signs: &Signs) -> Vec<Line<'static>> {
         (signs.taken_back, "taken back; robot's press skipped"),
         (signs.by_hand, "by the experimenter's hand"),
         (signs.stopped, "robot stopped"),
+        (signs.touched, "somebody touched the arm"),
+        (signs.levels[3], "a joint of the arm, from its base on"),
         (signs.pause, "trial paused; robot held"),
         ("*", "note in words"),
         ("!", "the keyboard was elsewhere"),

@@ -110,14 +110,22 @@ impl Brush<'_> {
 
     /// Draws the title line of a panel, with a remark at the right; returns what is below it.
     pub fn panel(&mut self, area: Rect, title: &str, remark: &str) -> Rect {
-        let (line, quiet, strong) = (self.style(Role::Frame), self.style(Role::Quiet), self.style(Role::Strong));
+        self.panel_with(area, title, &[(remark, Role::Quiet)])
+    }
+
+    /// The same with a remark in parts.
+    pub fn panel_with(&mut self, area: Rect, title: &str, remark: &[(&str, Role)]) -> Rect {
+        let (line, strong) = (self.style(Role::Frame), self.style(Role::Strong));
         let room = area.width.saturating_sub(2);
         let rule = self.theme.signs().frame[4].repeat(usize::from(room));
         self.text(area.x + 1, area.y, room, &rule, line);
         let end = self.text(area.x + 1, area.y, room, title, strong);
         self.text(end, area.y, 1, " ", line);
-        if !remark.is_empty() && width(title) + width(remark) + 4 < room {
-            self.text_right(area.right() - 1, area.y, room, &format!(" {remark}"), quiet);
+        let columns: u16 = remark.iter().map(|(text, _)| width(text)).sum();
+        if columns > 0 && width(title) + columns + 4 < room {
+            let begins = area.right() - 2 - columns;
+            self.text(begins, area.y, 1, " ", line);
+            self.parts(begins + 1, area.y, columns, remark);
         }
         below_title(area)
     }

@@ -25,7 +25,13 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     }
     if regions.room == Room::Small {
         brush.parts(area.x, area.y, area.width, &[(" robot    ", Role::Quiet)]);
-        line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
+        let (mut columns, mode) = (area.width.saturating_sub(11), session.robot.arm.mode);
+        if mode != SafetyMode::Normal && !session.robot.stopped {
+            let name = format!(" {}", mode.name());
+            columns = columns.saturating_sub(name.len() as u16);
+            brush.parts(area.x + 10 + columns, area.y, name.len() as u16, &[(&name, mode_role(mode))]);
+        }
+        line(brush, area.x + 10, area.y, columns, session, model);
         return;
     }
     let is_arm = session.spec.robot.arm == ArmKind::Physics;
@@ -36,21 +42,19 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         (false, false, Some(_)) => String::new(),
     };
     let mode = session.robot.arm.mode;
-    let remark = match (is_arm && !mode.is_stopped(), remark.is_empty()) {
-        (true, true) => mode.name().to_string(),
-        (true, false) => format!("{}  {remark}", mode.name()),
-        (false, _) => remark,
-    };
+    let name = if is_arm && !mode.is_stopped() { mode.name() } else { "" };
+    let between = if name.is_empty() || remark.is_empty() { "" } else { "  " };
     let title = if is_arm { "UR5" } else { "Robot" };
-    let inside = brush.panel(area, title, &remark);
+    let parts = [(name, mode_role(mode)), (between, Role::Quiet), (&remark, Role::Quiet)];
+    let inside = brush.panel_with(area, title, &parts);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
     // Where there is little room, how the arm stands matters more than what the kitchen shows, too.
     match session.robot.arm.last {
-        Some((_, moment)) if inside.height < 4 => arm(brush, x, inside.y + 1, columns, &moment),
+        Some((_, moment)) if inside.height < 4 => arm(brush, x, inside.y + 1, columns, session, &moment),
         Some((_, moment)) => {
             holds(brush, x, inside.y + 1, columns, session);
-            arm(brush, x, inside.y + 2, columns, &moment);
+            arm(brush, x, inside.y + 2, columns, session, &moment);
             joints(brush, x, inside.y + 3, columns, &moment);
         }
         None => holds(brush, x, inside.y + 1, columns, session),
@@ -67,12 +71,16 @@ fn holds(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session) {
 }
 
 /// How the arm stands: what it does, its joints, how far the hand is, and what it feels.
-fn arm(brush: &mut Brush, x: u16, y: u16, columns: u16, moment: &ArmMoment) {
+fn arm(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, moment: &ArmMoment) {
     let signs = brush.theme.signs();
     let bar = |angle: &f64| signs.levels[((angle / TAU + 0.5) * 8.0).clamp(0.0, 7.0) as usize];
     let bars: String = moment.joints.iter().map(bar).collect();
-    let phase = format!("{:<10} ", words::arm_phase(moment.phase));
-    let hand = format!(" hand {:>4.2} m", moment.hand_away_m.max(0.0));
+    let phase = if session.robot.stopped { "stands" } else { words::arm_phase(moment.phase) };
+    let phase = format!("{phase:<10} ");
+    let hand = match moment.hand_away_m {
+        away_m if away_m < 0.005 => " hand at arm".to_string(),
+        away_m => format!(" hand {away_m:>4.2} m"),
+    };
     let force = match moment.force_n {
         force_n if force_n >= 0.5 => format!(" {force_n:>3.0} N"),
         _ => format!(" {:>3}  ", signs.dash),
@@ -96,11 +104,20 @@ fn stopped(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, m
         _ => (" STOPPED ".to_string(), "lets it go on"),
     };
     let key = model.keys.of(&Action::ResumeRobot).filter(|_| session.phase != Phase::Closed);
-    let resume = key.map(|key| format!(": {key} {goes_on}")).unwrap_or_default();
+    let resume = key.map(|key| format!(" {key} {goes_on}")).unwrap_or_default();
     let force = arm.stopped_by_n.map(|force_n| format!(" {force_n:.0} N")).unwrap_or_default();
     let badge = brush.theme.badge(Role::Alarm);
     let end = brush.text(x, y, columns, &label, badge);
     brush.parts(end, y, (x + columns).saturating_sub(end), &[(&force, Role::Alarm), (&resume, Role::Text)]);
+}
+
+/// How much a safety mode is to be seen.
+fn mode_role(mode: SafetyMode) -> Role {
+    match mode {
+        SafetyMode::Normal => Role::Quiet,
+        SafetyMode::Reduced => Role::Strong,
+        _ => Role::Alarm,
+    }
 }
 
 fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
@@ -119,7 +136,7 @@ fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, mode
             Some(IdleReason::NoOrder) => "waits: there is no order",
             Some(IdleReason::HumanTurn) => "waits: only the human can go on",
             Some(IdleReason::Skipped) => "waits: its only press was skipped",
-            None => "at rest",
+            None => "has nothing to press",
         };
         brush.parts(x, y, columns, &[(why, Role::Quiet)]);
         return;
@@ -129,7 +146,7 @@ fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, mode
     let left_s = until.secs_since(now);
     let label = format!("{} {}", brush.theme.signs().to, words::button(&session.kitchen, Agent::Robot, button));
     let bar = 8.min(columns / 4);
-    let by = if session.robot.driven { " by hand" } else { "" };
+    let by = if session.robot.driven { " driven" } else { "" };
     brush.parts(x, y, columns.saturating_sub(bar + 7), &[(&label, Role::Robot), (by, Role::Signal)]);
     let at = brush.bar(x + columns - bar - 6, y, bar, 1.0 - left_s / whole_s, Role::Robot);
     brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), Role::Text)]);

@@ -57,6 +57,8 @@ pub struct Signs {
     pub served: &'static str,
     pub taken_back: &'static str,
     pub stopped: &'static str,
+    /// Somebody touched the arm.
+    pub touched: &'static str,
     /// Done by the experimenter's hand.
     pub by_hand: &'static str,
     pub to: &'static str,
@@ -82,6 +84,7 @@ const UNICODE: Signs = Signs {
     served: "✓",
     taken_back: "↶",
     stopped: "■",
+    touched: "×",
     by_hand: "◆",
     to: "▸",
     changed: "◂",
@@ -105,6 +108,7 @@ const ASCII: Signs = Signs {
     served: "v",
     taken_back: "<",
     stopped: "#",
+    touched: "x",
     by_hand: "%",
     to: ">",
     changed: "<",

@@ -162,7 +162,7 @@ fn mark(brush: &Brush, session: &Session, model: &Model, entry: &Entry) -> Optio
                 (false, true) => (row, signs.press.to_string(), role),
             }
         }
-        Happening::ArmTouched { .. } => (2, "!".to_string(), Role::Robot),
+        Happening::ArmTouched { .. } => (2, signs.touched.to_string(), Role::Alarm),
         Happening::RobotStopped | Happening::ArmStopped { .. } => (2, signs.stopped.to_string(), Role::Alarm),
         Happening::RobotResumed | Happening::RobotReleased => (2, signs.to.to_string(), Role::Robot),
         Happening::RobotHeld => (2, signs.pause.to_string(), Role::Robot),

@@ -10,12 +10,15 @@ use rerun::blueprint::{
     StateTimelineView, Tabs, TextDocumentView, TextLogView, TimePanel, TimeSeriesView, Vertical,
 };
 use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, TimeInt};
-use rerun::external::re_sdk_types::blueprint::archetypes::{PlotLegend, ScalarAxis, TextLogColumns};
+use rerun::external::re_sdk_types::blueprint::archetypes::{EyeControls3D, PlotLegend, ScalarAxis, TextLogColumns};
 use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
 
 use super::{APPLICATION, Lane, TRIAL_TIME};
 use crate::base::time::SessionTime;
 
+/// From where the arm is looked at, and what at, in metres from its base: the whole table, from the human's side.
+const EYE_M: [f32; 3] = [1.5, -1.2, 1.15];
+const LOOKED_AT_M: [f32; 3] = [0.3, 0.0, 0.2];
 /// The axis of probabilities, with room for curves at its ends.
 const PROBABILITY: [f64; 2] = [-0.03, 1.03];
 
@@ -96,7 +99,7 @@ impl Layout {
 
 /// One recording.
 fn alone(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
-    let above = Horizontal::new([kitchen(lane), arm(lane)]).with_column_shares([3.0, 2.0]);
+    let above = Horizontal::new([kitchen(lane), arm(lane, properties)]).with_column_shares([3.0, 2.0]);
     let wrong = StateTimelineView::new("Believed wrong")
         .with_origin(path(lane, "human/belief/wrong"))
         .with_contents([path(lane, "human/belief/wrong/**")]);
@@ -150,9 +153,11 @@ fn kitchen(lane: &Lane) -> ContainerLike {
     Spatial2DView::new(titled(lane, "Kitchen")).with_origin(path(lane, "kitchen")).with_contents(contents).into()
 }
 
-fn arm(lane: &Lane) -> ContainerLike {
+fn arm(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
     let contents = ["robot/**", "human/hand/**"].map(|entities| path(lane, entities));
-    Spatial3DView::new(titled(lane, "Arm")).with_origin(path(lane, "robot")).with_contents(contents).into()
+    let view = Spatial3DView::new(titled(lane, "Arm")).with_origin(path(lane, "robot")).with_contents(contents);
+    let eye = EyeControls3D::new().with_position(EYE_M).with_look_target(LOOKED_AT_M).with_eye_up([0.0, 0.0, 1.0]);
+    with(view, "EyeControls3D", &eye, properties)
 }
 
 /// Curves. A legend would cover them: their colours are those of the names in the kitchen, and a viewer names the one that

@@ -504,6 +504,16 @@ fn a_session_stops_its_arm_at_the_wizards_key_and_where_a_joint_is_at_fault() {
     check_stop(&mut engine, &seen, SafetyMode::Fault, AbortReason::Fault);
 }
 
+#[test]
+fn the_wizards_key_counts_where_the_arm_has_stopped_by_itself_too() {
+    let mut engine = on_its_way();
+    engine.robot().arm().expect("an arm in the physics").world().fail(Some(1));
+    until(&mut engine, 2.0, |event| matches!(event, Event::RobotAborts { .. }));
+    assert_eq!(modes(&input(&mut engine, Event::RobotStopped)), [SafetyMode::EmergencyStop]);
+    let again = engine.input(engine.session().time, Event::RobotStopped);
+    assert!(again.refused.is_some(), "it is stopped by the wizard already");
+}
+
 /// In a session whose kitchen or arm is changed so, every press is given up for this reason, and tried again later.
 fn check_given_up(change: impl Fn(&mut Kitchen), meddle: impl Fn(&mut PhysicalArm), reason: AbortReason) {
     let mut kitchen = SUSHI.clone();

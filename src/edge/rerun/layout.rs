@@ -17,7 +17,7 @@ use super::{APPLICATION, Lane, TRIAL_TIME};
 use crate::base::time::SessionTime;
 
 /// From where the arm is looked at, and what at, in metres from its base: the whole table, from the human's side.
-const EYE_M: [f32; 3] = [1.5, -1.2, 1.15];
+const EYE_M: [f32; 3] = [1.3, -1.0, 0.98];
 const LOOKED_AT_M: [f32; 3] = [0.3, 0.0, 0.2];
 /// The axis of probabilities, with room for curves at its ends.
 const PROBABILITY: [f64; 2] = [-0.03, 1.03];

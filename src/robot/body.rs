@@ -105,20 +105,23 @@ impl Body {
     }
 
     /// Whether it has to be decided now if the press is still useful: above the button, and whenever the state has become
-    /// another one before the stick touches it.
+    /// another one before the stick touches it, or while a hand is in the way.
     pub fn asks(&self, may_press: bool, state: State) -> bool {
         match self.arm.phase() {
             _ if self.next.is_some() => false,
+            _ if self.arm.mode == SafetyMode::Safeguard && !self.on_button => self.found_useful != Some(state),
             ArmPhase::Hovers => may_press && !self.arm.mode.is_stopped(),
             ArmPhase::Presses => !self.on_button && self.found_useful != Some(state),
             ArmPhase::Rests | ArmPhase::Retracts | ArmPhase::Travels => false,
         }
     }
 
-    /// The press is useful in this state: it is made.
-    pub fn press(&mut self, state: State) {
+    /// The press is useful in this state: above the button it is made.
+    pub fn go_for_it(&mut self, may_press: bool, state: State) {
         self.found_useful = Some(state);
-        self.arm.press();
+        if self.arm.phase() == ArmPhase::Hovers && may_press {
+            self.arm.press();
+        }
     }
 
     /// Sets out for where it was about to go, if it stands still by now; the button that it cannot reach from there, and why.

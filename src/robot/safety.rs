@@ -11,6 +11,8 @@ pub const SLOWS_M: f64 = 0.25;
 pub const WAITS_M: f64 = 0.03;
 /// At the first of these distances the tip may be so fast, in metres a second; in between less, in proportion.
 const SLOWED_M_S: f64 = 0.8;
+/// Slower than this it does not come nearer, but waits: in metres a second.
+const CREEPS_M_S: f64 = 0.02;
 /// Away from a hand it may always move so fast.
 const LEAVES_M_S: f64 = 0.1;
 /// A hand is away again a little further out, so that the mode does not flicker, in metres.
@@ -79,7 +81,11 @@ pub fn speed_limit(distance_m: f64, comes_nearer: bool) -> f64 {
         far if far >= SLOWS_M => f64::INFINITY,
         near => SLOWED_M_S * (near - WAITS_M).max(0.0) / (SLOWS_M - WAITS_M),
     };
-    if comes_nearer { by_distance } else { by_distance.max(LEAVES_M_S) }
+    match comes_nearer {
+        true if by_distance < CREEPS_M_S => 0.0,
+        true => by_distance,
+        false => by_distance.max(LEAVES_M_S),
+    }
 }
 
 /// The mode with a hand at this distance, for an arm that is not stopped; it waits if it may not move at all.

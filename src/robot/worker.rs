@@ -179,7 +179,7 @@ impl Robot {
         }
         if let Some(errand) = self.busy.filter(|_| body.asks(may_press, state)) {
             match is_useful(kitchen, cost, state, errand) {
-                true => body.press(state),
+                true => body.go_for_it(may_press, state),
                 false => {
                     body.give_up();
                     self.busy = None;

@@ -11,10 +11,10 @@ use super::clearance::Surroundings;
 use super::kinematics::{Arm, JOINTS, Joints};
 use super::physics::hand::HandPlace;
 use super::physics::{CYCLE_S, Felt, World};
-use super::reach::{AtButton, BENT, Unreachable};
+use super::reach::{AtButton, Unreachable, resting_pose};
 use super::safety::{self, SafetyMode};
 use super::touch::Touch;
-use super::trajectory::{Leg, LegKind, way_to, way_up};
+use super::trajectory::{Leg, LegKind, way_over, way_to, way_up};
 use crate::kitchen::{Agent, ButtonId, Kitchen};
 
 /// How fast it slows and speeds up again: changes of its share of the speed planned for, a second; the second for stops.
@@ -86,6 +86,8 @@ pub struct PhysicalArm {
     arm: Arm,
     world: World,
     around: Surroundings,
+    /// Where it stands while there is nothing to do.
+    home: Joints,
     buttons: Vec<Result<AtButton, Unreachable>>,
     way: VecDeque<Leg>,
     /// How far it is on the first leg, in seconds of that leg.
@@ -116,7 +118,11 @@ impl PhysicalArm {
         let around = Surroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
         let places: Vec<[f64; 2]> = kitchen.buttons[Agent::Robot.index()].iter().map(|button| button.at_m).collect();
         let buttons: Vec<_> = places.iter().map(|&place| arm.at_button(place, &around)).collect();
-        let here = resting_pose(&buttons);
+        // Over those that are its alone it is out of the human's way.
+        let is_shared = |place: &[f64; 2]| kitchen.buttons[Agent::Human.index()].iter().any(|it| it.at_m == *place);
+        let own =
+            places.iter().zip(&buttons).filter(|(place, _)| !is_shared(place)).filter_map(|(_, at)| at.as_ref().ok());
+        let here = resting_pose(&own.collect::<Vec<_>>());
         let world = World::new(&arm, &here, &places, around.table_m);
         let mode = SafetyMode::default();
         let (way, since_s, rate) = (VecDeque::new(), 0.0, 0.0);
@@ -125,6 +131,7 @@ impl PhysicalArm {
             arm,
             world,
             around,
+            home: here,
             buttons,
             way,
             since_s,
@@ -190,6 +197,25 @@ impl PhysicalArm {
         if self.rate == 0.0 {
             self.go_up();
         }
+    }
+
+    /// Whether it stands elsewhere than where it waits, with nothing to do.
+    pub fn is_out(&self) -> bool {
+        let is_away = (0..JOINTS).any(|joint| (self.here[joint] - self.home[joint]).abs() > 1e-3);
+        self.way.is_empty() && !self.mode.is_stopped() && is_away
+    }
+
+    /// Goes where it waits; where it cannot, it waits where it is.
+    pub fn go_home(&mut self) {
+        match way_over(&self.arm, &self.here, &self.home, &self.around) {
+            Ok(way) => (self.way, self.since_s, self.rate) = (way.into(), 0.0, 0.0),
+            Err(_) => self.home = self.here,
+        }
+    }
+
+    /// Whether it moves without a button to press.
+    pub fn withdraws(&self) -> bool {
+        self.goal.is_none() && self.rate > 0.0
     }
 
     /// Whether it still slows down, before it can set out for something else.
@@ -389,11 +415,4 @@ impl PhysicalArm {
         self.astray = if off(&worst) > ASTRAY_RAD { self.astray + 1 } else { 0 };
         (self.astray >= ASTRAY_CYCLES).then_some(worst)
     }
-}
-
-/// The middle of the poses above the buttons.
-fn resting_pose(buttons: &[Result<AtButton, Unreachable>]) -> Joints {
-    let above: Vec<&Joints> = buttons.iter().flatten().map(|poses| &poses.above).collect();
-    let mean = |joint: usize| above.iter().map(|pose| pose[joint]).sum::<f64>() / above.len() as f64;
-    if above.is_empty() { BENT } else { std::array::from_fn(mean) }
 }

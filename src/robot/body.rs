@@ -58,6 +58,8 @@ pub(super) struct Body {
     at: SessionTime,
     /// Where it goes when it stands still.
     next: Option<ButtonId>,
+    /// There is nothing to do.
+    pub idle: bool,
     told: Told,
     /// The state in which the press that it makes was last found useful.
     found_useful: Option<State>,
@@ -73,6 +75,7 @@ impl Body {
             hand,
             at: SessionTime::ZERO,
             next: None,
+            idle: false,
             told: Told::default(),
             found_useful: None,
             on_button: false,
@@ -82,13 +85,18 @@ impl Body {
     /// When its next cycle is due; none: all is at rest. `may_press`: nobody holds it above its button.
     pub fn next_due(&self, may_press: bool) -> Option<SessionTime> {
         let goes_down = self.arm.phase() == ArmPhase::Hovers && may_press && !self.arm.mode.is_stopped();
-        let next = (goes_down || self.arm.is_busy()).then(|| self.at + SessionTime::from_secs_f64(CYCLE_S));
+        let goes_home = self.idle && self.arm.is_out();
+        let next =
+            (goes_down || goes_home || self.arm.is_busy()).then(|| self.at + SessionTime::from_secs_f64(CYCLE_S));
         next.into_iter().chain(self.hand.next_move(self.at)).min()
     }
 
     /// Sets out for a button, at once or when it stands still; how long that takes if nothing comes between, in seconds.
     pub fn set_out(&mut self, now: SessionTime, button: ButtonId) -> Result<f64, Unreachable> {
-        self.found_useful = None;
+        (self.found_useful, self.idle) = (None, false);
+        if self.arm.withdraws() {
+            self.arm.give_up();
+        }
         if self.arm.halts() {
             self.next = Some(button);
             return self.arm.takes_s(button);
@@ -134,6 +142,9 @@ impl Body {
     /// A cycle that ends now: what came of it, and what is to be told.
     pub fn cycle(&mut self, now: SessionTime) -> (Cycle, Vec<RobotDeed>) {
         self.at = now;
+        if self.idle && self.arm.is_out() {
+            self.arm.go_home();
+        }
         self.hand.cycle(now, |hand| self.arm.distance(hand));
         let cycle = self.arm.cycle(Some(self.hand.place()));
         self.on_button = cycle.felt.button_n > 0.0;

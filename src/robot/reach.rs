@@ -58,6 +58,13 @@ pub fn stick_down(at_m: [f64; 3]) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(at_m), UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI))
 }
 
+/// The middle of the poses above the buttons.
+pub(super) fn resting_pose(buttons: &[&AtButton]) -> Joints {
+    let above: Vec<&Joints> = buttons.iter().map(|poses| &poses.above).collect();
+    let mean = |joint: usize| above.iter().map(|pose| pose[joint]).sum::<f64>() / above.len() as f64;
+    if above.is_empty() { BENT } else { std::array::from_fn(mean) }
+}
+
 impl Arm {
     /// How it stands with the stick down at a place in the frame of the base (metres): of all ways that near to `like`,
     /// with the last joint, about which the stick only spins, as it is there.

@@ -145,6 +145,9 @@ impl Robot {
         match policy::decide(kitchen, cost, state, &skipped, &mut self.random) {
             Decision::Press(button) => Some(self.set_out(now, button, false)),
             Decision::Idle(reason) => {
+                if let Some(body) = &mut self.body {
+                    body.idle = true;
+                }
                 let said = self.idle.replace((reason, state)).map(|(said, _)| said);
                 (said != Some(reason)).then_some(RobotDeed::Idle(reason))
             }

@@ -506,6 +506,7 @@ fn what_the_wizard_said_is_left_out_of_the_estimate_for_the_window_and_no_longer
 #[test]
 fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
     let mut files = session("default.toml");
+    files.spec.robot.arm = ArmKind::Timed;
     files.spec.trial.condition = Condition::None;
     files.spec.trial.seconds = 45.0;
     files.spec.assistant.concept = ConceptName::Tom;

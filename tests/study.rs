@@ -6,25 +6,31 @@ use std::path::Path;
 use csv::Writer;
 use serde::Serialize;
 use tomcom::base::time::SessionTime;
+use tomcom::communication::Sender;
 use tomcom::communication::concept::ConceptName;
 use tomcom::edge::log::codes;
 use tomcom::kitchen::AspectId;
 use tomcom::measures::coding::{Code, Codes};
+use tomcom::robot::AbortReason;
+use tomcom::robot::safety::SafetyMode;
 use tomcom::run::codes::Coded;
 use tomcom::run::study::reading::{self, Extent};
-use tomcom::session::settings::{Condition, ParticipantKind};
+use tomcom::session::Event;
+use tomcom::session::event::EndReason;
+use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
 use tomcom::study::effect::{Measure, effect, pairs};
 use tomcom::study::facts::Facts;
 use tomcom::study::figures::StudyFigures;
 use tomcom::study::prevention::{Count, PressTruth, Sent, SequenceTruth, SpellTruth, Truth};
 use tomcom::study::report;
+use tomcom::study::robot::{ArmFigures, RobotFigures, RobotTally};
 use tomcom::study::roc::{Swept, compare};
 use tomcom::study::statistics::{hodges_lehmann, mixed_anova, permutation_p};
 use tomcom::study::tables::{
     ActionRow, AnswerRow, BeliefRow, CommunicationRow, ConceptRow, DictionaryRow, GazeRow, ParticipantRow, Table,
-    TrialRow,
 };
 use tomcom::study::trial::{Answered, Basis, Beliefs, Trial, arrange};
+use tomcom::study::trial_row::{self, TrialRow};
 
 fn near(found: f64, wanted: f64) {
     assert!((found - wanted).abs() < 1e-9 * wanted.abs().max(1.0), "{found} instead of {wanted}");
@@ -49,6 +55,9 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         is_planned: true,
         condition,
         left_out: None,
+        ended: Some(EndReason::Presses),
+        arm: ArmKind::Timed,
+        robot: RobotFigures::default(),
         human_presses: 200,
         robot_presses: 100,
         errors,
@@ -274,7 +283,7 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
     let figures = StudyFigures::of(&trials, &Facts::default(), 0);
     let accepted = figures.acceptance.clone().expect("answers");
     assert_eq!((accepted.high, accepted.medium, accepted.undecided, accepted.not_reported), (1, 1, 0, 1));
-    let page = report::page(&figures, &trials, &Facts::default());
+    let page = report::page(&figures, &trials, &Facts::default(), &Table::ALL);
     assert!(page.contains("<title>No kitchen: a study of simulated participants</title>"));
     assert!(page.contains("excluded: &lt;b&gt; &amp; &quot;quoted&quot;"), "reasons are told, and no markup");
     for outside in ["<script", "http:", "https:", "url(", "<link", "<img"] {
@@ -283,8 +292,78 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
     assert!(!page.contains("NaN") && !page.contains("inf "));
     let people: Vec<Trial> =
         trials.into_iter().map(|trial| Trial { kind: ParticipantKind::Display, ..trial }).collect();
-    let page = report::page(&StudyFigures::of(&people, &Facts::default(), 0), &people, &Facts::default());
+    let page = report::page(&StudyFigures::of(&people, &Facts::default(), 0), &people, &Facts::default(), &Table::ALL);
     assert!(!page.contains("simulated participants</title>"));
+}
+
+/// Of an arm in the physics: slowed from 2 to 5 s, touched twice, stopped by the second contact, resumed, stopped by hand.
+#[test]
+fn what_the_robot_did_is_counted_while_the_trial_is_on() {
+    let safety = |mode, force_n| Event::RobotSafety { mode, force_n, joint: None };
+    let aborts = |reason| Event::RobotAborts { button: "rice".to_string(), reason };
+    let (wizard, assistant) = (Sender::Wizard, Sender::Assistant);
+    let events = [
+        (0.0, Event::RobotStopped, false),
+        (0.0, Event::RobotTouched { force_n: 90.0 }, false),
+        (2.0, safety(SafetyMode::Reduced, None), true),
+        (4.0, Event::RobotTouched { force_n: 12.0 }, true),
+        (5.0, safety(SafetyMode::Safeguard, None), true),
+        (6.5, safety(SafetyMode::ProtectiveStop, Some(31.0)), true),
+        (6.5, Event::RobotTouched { force_n: 31.0 }, true),
+        (6.5, aborts(AbortReason::Contact), true),
+        (9.0, safety(SafetyMode::Normal, None), true),
+        (9.0, Event::RobotHeld { by: wizard }, true),
+        (9.5, Event::RobotSkipped { by: wizard }, true),
+        (9.5, Event::RobotSkipped { by: assistant }, true),
+        (9.5, aborts(AbortReason::Skipped), true),
+        (10.0, Event::RobotStopped, true),
+        (11.0, Event::TrialEnded { reason: EndReason::Wizard }, true),
+        (11.0, Event::RobotStopped, false),
+    ];
+    let figures_of = |arm| {
+        let mut tally = RobotTally::new(arm);
+        events.iter().for_each(|(clock, event, was_on)| tally.note(event, at(*clock), *was_on));
+        assert_eq!(tally.ended, Some(EndReason::Wizard));
+        tally.into_figures()
+    };
+    let found = figures_of(ArmKind::Physics);
+    let arm = found.arm.clone().expect("an arm that feels");
+    assert_eq!((arm.protective_stops, arm.faults, arm.contacts, arm.peak_force_n), (1, 0, 2, Some(31.0)));
+    near(arm.reduced_s, 3.0);
+    near(arm.safeguard_s, 1.5);
+    assert_eq!((found.emergency_stops, found.held, found.skipped, found.driven, found.corrected), (1, 1, 1, 0, 0));
+    let given_up = [AbortReason::Contact, AbortReason::Skipped, AbortReason::NoClick].map(|why| found.given_up(why));
+    assert_eq!(given_up, [Some(1), Some(1), Some(0)]);
+    // A timed arm feels nothing: that is unknown, and not nought.
+    let row = trial_row::row(&Trial { robot: figures_of(ArmKind::Timed), ..trial("A0", 1, Condition::None, 4) });
+    assert_eq!((row.contacts, row.peak_force_n, row.reduced_s, row.given_up_no_click), (None, None, None, None));
+    assert_eq!((row.ended, row.arm, row.given_up_skipped), (Some("presses"), "timed", Some(1)));
+}
+
+#[test]
+fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
+    let mut trials = trials(&[[24, 12], [30, 16]], &[[20, 18]]);
+    let report = |trials: &[Trial], tables: &[Table]| {
+        report::page(&StudyFigures::of(trials, &Facts::default(), 0), trials, &Facts::default(), tables)
+    };
+    let page = report(&trials, &[Table::Trials]);
+    assert!(page.contains("6 with the presses.") && page.contains("arm was timed."));
+    assert!(
+        !page.contains("what each concept would have") && page.contains("Beside this page: <code>trials.csv</code>.")
+    );
+    trials[1].ended = Some(EndReason::Wizard);
+    trials[2].ended = Some(EndReason::Time);
+    trials[2].arm = ArmKind::Physics;
+    trials[2].robot.arm = Some(ArmFigures { contacts: 3, peak_force_n: Some(17.25), ..ArmFigures::default() });
+    let count = Count { presses: 100, signals: 4, related: 10, prevented: 5, outside: 50, ..Count::default() };
+    trials[0].swept = vec![Swept { concept: ConceptName::TomCom, parameter: 1.0, count }];
+    let page = report(&trials, &Table::ALL);
+    assert!(page.contains("4 with the presses, 1 as the time was over, 1 as the wizard ended it before."));
+    assert!(page.contains("timed in 5 trials and simulated in the physics in 1 trial; the figures pool them."));
+    assert!(page.contains("what each concept would have said were computed anew"));
+    assert!(
+        page.contains("<td>contacts with somebody</td><td>\u{2013}</td><td>3</td>") && page.contains("<td>17.2</td>")
+    );
 }
 
 /// Of people it is estimated what they believed, until two raters have coded every error.

@@ -96,28 +96,33 @@ impl Export {
         Ok(())
     }
 
-    /// Writes a table of these rows.
+    /// Writes a table of these rows, and says whether there are any.
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn table(&self, table: Table, rows: &[u8]) -> Result<(), ExportError> {
-        self.write_table(table, |out| out.write_all(rows))
+    pub fn table(&self, table: Table, rows: &[u8]) -> Result<bool, ExportError> {
+        self.write_table(table, |out| out.write_all(rows).map(|()| !rows.is_empty()))
     }
 
-    /// Writes the tables of what was kept of the recordings with these numbers, in this order, and removes that.
+    /// Writes the tables of what was kept of the recordings with these numbers, in this order, and removes that. Those
+    /// that have rows are returned.
     ///
     /// # Errors
     /// They cannot be written.
-    pub fn tables_of_events(&self, recordings: &[usize]) -> Result<(), ExportError> {
+    pub fn tables_of_events(&self, recordings: &[usize]) -> Result<Vec<Table>, ExportError> {
+        let mut filled = Vec::new();
         for table in Table::OF_EVENTS {
-            self.write_table(table, |out| {
+            let has_rows = self.write_table(table, |out| {
+                let mut bytes = 0;
                 for &index in recordings {
-                    io::copy(&mut File::open(self.part(index, table))?, out)?;
+                    bytes += io::copy(&mut File::open(self.part(index, table))?, out)?;
                 }
-                Ok(())
+                Ok(bytes > 0)
             })?;
+            filled.extend(has_rows.then_some(table));
         }
-        fs::remove_dir_all(self.parts()).map_err(|reason| ExportError { path: self.parts(), reason })
+        fs::remove_dir_all(self.parts()).map_err(|reason| ExportError { path: self.parts(), reason })?;
+        Ok(filled)
     }
 
     /// Writes the page, and says where it is.
@@ -135,15 +140,15 @@ impl Export {
     fn write_table(
         &self,
         table: Table,
-        rows: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
-    ) -> Result<(), ExportError> {
+        rows: impl FnOnce(&mut BufWriter<File>) -> io::Result<bool>,
+    ) -> Result<bool, ExportError> {
         let path = self.folder.join(format!("{}.csv", table.name()));
         let write = || {
             let mut out = BufWriter::new(File::create(&path)?);
             let columns: Vec<&str> = table.columns().collect();
             writeln!(out, "{}", columns.join(","))?;
-            rows(&mut out)?;
-            out.flush()
+            let has_rows = rows(&mut out)?;
+            out.flush().map(|()| has_rows)
         };
         write().map_err(|reason| ExportError { path: path.clone(), reason })
     }

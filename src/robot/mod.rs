@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use reach::Unreachable;
 
 /// Why the robot gave up a press.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AbortReason {
     /// When the arm was about to touch the button, pressing it was no longer useful.
@@ -59,6 +59,26 @@ impl From<Unreachable> for AbortReason {
 }
 
 impl AbortReason {
+    pub const ALL: [AbortReason; 11] = [
+        AbortReason::NoLongerUseful,
+        AbortReason::Stopped,
+        AbortReason::Skipped,
+        AbortReason::Driven,
+        AbortReason::OutOfReach,
+        AbortReason::Singular,
+        AbortReason::Obstructed,
+        AbortReason::HandInTheWay,
+        AbortReason::NoClick,
+        AbortReason::Contact,
+        AbortReason::Fault,
+    ];
+
+    /// Whether only an arm in the physics can have it.
+    pub fn is_of_physics(self) -> bool {
+        use AbortReason::{Driven, NoLongerUseful, Skipped, Stopped};
+        !matches!(self, NoLongerUseful | Stopped | Skipped | Driven)
+    }
+
     /// In words, after "gives up the press:".
     pub fn words(self) -> &'static str {
         match self {

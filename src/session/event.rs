@@ -246,7 +246,7 @@ impl Event {
 }
 
 /// Why a trial ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndReason {
     /// The set number of presses of both agents was reached.
@@ -259,6 +259,19 @@ pub enum EndReason {
     Wizard,
     /// The wizard aborted it: `trial_aborted` says why, and `trial_ended` never says this.
     Aborted,
+}
+
+impl EndReason {
+    /// As it stands in logs.
+    pub fn name(self) -> &'static str {
+        match self {
+            EndReason::Presses => "presses",
+            EndReason::Time => "time",
+            EndReason::Orders => "orders",
+            EndReason::Wizard => "wizard",
+            EndReason::Aborted => "aborted",
+        }
+    }
 }
 
 /// How a signal ended.

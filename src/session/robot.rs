@@ -22,6 +22,14 @@ pub enum ArmKind {
 }
 
 impl ArmKind {
+    /// As it stands in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            ArmKind::Timed => "timed",
+            ArmKind::Physics => "physics",
+        }
+    }
+
     fn is_timed(&self) -> bool {
         *self == ArmKind::Timed
     }

@@ -6,12 +6,14 @@ use serde::Serialize;
 
 use super::effect::{Effect, Measure, effect, pairs};
 use super::facts::Facts;
+use super::robot::{ArmGroup, by_arm};
 use super::roc::{Comparison, Roc, Swept, compare};
 use super::statistics::{Correlation, FTest, Interval, share_interval};
 use super::trial::{Basis, Beliefs, Trial, mean, mean_length};
 use crate::measures::coding::{Agreement, AgreementTable, Codes};
 use crate::measures::matching::{Similarity, Tally};
 use crate::measures::wizard::WizardMeasures;
+use crate::session::event::EndReason;
 use crate::session::settings::{Condition, ParticipantKind};
 
 /// The seed of what is drawn: permutations where they are too many, and the bootstrap. The same recordings give the same
@@ -29,6 +31,10 @@ pub struct StudyFigures {
     pub participants: u64,
     #[serde(flatten)]
     pub totals: Totals,
+    /// How many trials ended how.
+    pub ended: BTreeMap<EndReason, u64>,
+    /// The robot, by kind of arm.
+    pub robot: Vec<ArmGroup>,
     pub conditions: Vec<ConditionFigures>,
     /// The effect of assistance on errors per press of the human: the interaction of period and starting group.
     pub anova: Option<FTest>,
@@ -169,6 +175,11 @@ impl StudyFigures {
             trials: counting.len() as u64,
             participants: participants.len() as u64,
             totals: Totals::of(&counting),
+            ended: counting.iter().filter_map(|trial| trial.ended).fold(BTreeMap::new(), |mut ended, reason| {
+                *ended.entry(reason).or_default() += 1;
+                ended
+            }),
+            robot: by_arm(&counting),
             conditions: conditions(&counting),
             anova: effects[0].assistance(),
             pearson: effects[0].pearson,

@@ -93,40 +93,6 @@ pub struct ParticipantRow {
     pub press_s_2: Option<f64>,
 }
 
-/// A trial.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct TrialRow {
-    pub recording: String,
-    pub participant: String,
-    pub kind: String,
-    pub seed: u64,
-    pub group: Option<String>,
-    pub period: Option<u32>,
-    pub condition: String,
-    pub assisted: bool,
-    pub counts: bool,
-    pub left_out: Option<String>,
-    pub human_presses: u64,
-    pub robot_presses: u64,
-    pub errors: u64,
-    pub races: u64,
-    pub error_rate_human: Option<f64>,
-    pub error_rate: Option<f64>,
-    pub beliefs_from: Option<String>,
-    pub belief_related_errors: Option<u64>,
-    pub sequences: Option<u64>,
-    pub sequence_length: Option<f64>,
-    pub sequences_by_aspect: Option<u64>,
-    pub sequence_length_by_aspect: Option<f64>,
-    pub recovery_s: Option<f64>,
-    pub orders: u64,
-    pub order_s: Option<f64>,
-    pub presses_per_order: Option<f64>,
-    pub press_s: Option<f64>,
-    pub signals: u64,
-    pub duration_s: f64,
-}
-
 /// A press.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ActionRow {
@@ -274,42 +240,6 @@ pub fn participants(trials: &[Trial]) -> Vec<ParticipantRow> {
         }
     };
     trials.chunk_by(|a, b| a.participant == b.participant).map(row).collect()
-}
-
-/// The row of a trial in [`Table::Trials`].
-pub fn trial(trial: &Trial) -> TrialRow {
-    let beliefs = trial.beliefs.as_ref();
-    TrialRow {
-        recording: trial.recording.clone(),
-        participant: trial.participant.clone(),
-        kind: kind_name(trial.kind).to_string(),
-        seed: trial.seed,
-        group: trial.group.clone(),
-        period: trial.period,
-        condition: trial.condition.name().to_string(),
-        assisted: trial.is_assisted(),
-        counts: trial.counts(),
-        left_out: trial.left_out.clone(),
-        human_presses: trial.human_presses,
-        robot_presses: trial.robot_presses,
-        errors: trial.errors,
-        races: trial.races,
-        error_rate_human: trial.error_rate_human(),
-        error_rate: trial.error_rate(),
-        beliefs_from: beliefs.map(|beliefs| beliefs.basis.name().to_string()),
-        belief_related_errors: beliefs.map(|beliefs| beliefs.errors),
-        sequences: beliefs.map(|beliefs| beliefs.lengths.len() as u64),
-        sequence_length: trial.sequence_length(),
-        sequences_by_aspect: beliefs.map(|beliefs| beliefs.lengths_by_aspect.len() as u64),
-        sequence_length_by_aspect: beliefs.and_then(|beliefs| super::trial::mean_length(&beliefs.lengths_by_aspect)),
-        recovery_s: trial.recovery_s(),
-        orders: trial.orders,
-        order_s: trial.order_s,
-        presses_per_order: trial.presses_per_order,
-        press_s: trial.press_s,
-        signals: trial.signals,
-        duration_s: trial.seconds,
-    }
 }
 
 /// The rows of a trial in [`Table::Questionnaires`].

@@ -2,11 +2,13 @@
 
 use serde::Serialize;
 
+use super::robot::RobotFigures;
 use super::roc::Swept;
 use crate::measures::coding::Codes;
 use crate::measures::matching::Said;
 use crate::measures::wizard::WizardMeasures;
-use crate::session::settings::{Condition, ParticipantKind};
+use crate::session::event::EndReason;
+use crate::session::settings::{ArmKind, Condition, ParticipantKind};
 
 /// One trial as the analysis sees it.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +29,10 @@ pub struct Trial {
     pub condition: Condition,
     /// Why it is left out, if it is.
     pub left_out: Option<String>,
+    /// How it ended; none of one that was cut.
+    pub ended: Option<EndReason>,
+    pub arm: ArmKind,
+    pub robot: RobotFigures,
     pub human_presses: u64,
     pub robot_presses: u64,
     /// Errors of the human, races left out.

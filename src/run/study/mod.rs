@@ -23,6 +23,7 @@ use crate::study::figures::StudyFigures;
 use crate::study::report;
 use crate::study::tables::{self, Table};
 use crate::study::trial::{Trial, arrange};
+use crate::study::trial_row;
 
 /// Why a study could not be analysed.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -129,14 +130,19 @@ pub fn study(
     if !analysis.extent.events {
         kept.clear();
     }
-    export.tables_of_events(&kept)?;
-    export.table(Table::Participants, &Rows::of(tables::participants(&trials)))?;
-    export.table(Table::Trials, &Rows::of(trials.iter().map(tables::trial)))?;
-    export.table(Table::Questionnaires, &Rows::of(trials.iter().flat_map(tables::answers)))?;
+    let mut filled = export.tables_of_events(&kept)?;
     let counting = || trials.iter().filter(|trial| trial.counts());
-    export.table(Table::Concepts, &Rows::of(counting().flat_map(tables::concepts)))?;
-    export.table(Table::Dictionary, &Rows::of(DICTIONARY))?;
-    let path = export.report(&report::page(&figures, &trials, &facts))?;
+    for (table, rows) in [
+        (Table::Participants, Rows::of(tables::participants(&trials))),
+        (Table::Trials, Rows::of(trials.iter().map(trial_row::row))),
+        (Table::Questionnaires, Rows::of(trials.iter().flat_map(tables::answers))),
+        (Table::Concepts, Rows::of(counting().flat_map(tables::concepts))),
+        (Table::Dictionary, Rows::of(DICTIONARY)),
+    ] {
+        filled.extend(export.table(table, &rows)?.then_some(table));
+    }
+    filled.sort_unstable();
+    let path = export.report(&report::page(&figures, &trials, &facts, &filled))?;
     Ok((figures, path))
 }
 

@@ -29,6 +29,7 @@ use crate::session::protocol::{Answer, ProtocolEvent};
 use crate::session::settings::{Condition, ParticipantKind};
 use crate::session::{Event, Happening, Header, Phase, Session, Stamped};
 use crate::study::facts::Facts;
+use crate::study::robot::{RobotFigures, RobotTally};
 use crate::study::trial::{Answered, Basis, Beliefs, Trial};
 
 /// What a recording gives.
@@ -144,6 +145,7 @@ pub fn read(recording: &Path, name: &str, extent: Extent) -> FileResult<Option<(
     let mut pass = Pass::new(kitchen.clone(), &header, extent);
     let mut rows = RowGatherer::new(name);
     let mut hands = WizardLog::default();
+    let mut robot = RobotTally::new(header.session.robot.arm);
     let mut answers = Vec::new();
     let is_simulated = header.session.participant.kind == ParticipantKind::Simulated;
     let mut by_estimate = (!is_simulated).then(|| ByEstimate {
@@ -154,10 +156,12 @@ pub fn read(recording: &Path, name: &str, extent: Extent) -> FileResult<Option<(
     while let Some(line) = log.next_line()? {
         let session = &pass.follower().session;
         let (before, was_running) = (session.state, session.is_running());
+        let was_on = was_running || session.phase == Phase::Paused;
         pass.apply(&line.stamped)
             .map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
         let follower = pass.follower();
         hands.note(&line.stamped, &follower.session);
+        robot.note(&line.stamped.event, follower.session.trial_clock(line.stamped.time), was_on);
         if let Some(by_estimate) = &mut by_estimate {
             by_estimate.note(&line.stamped, follower);
         }
@@ -175,6 +179,8 @@ pub fn read(recording: &Path, name: &str, extent: Extent) -> FileResult<Option<(
     let by_estimate = by_estimate.map(|found| found.causes);
     let (judged, basis) = judged(follower, by_estimate.as_deref(), raters.as_ref());
     let mut trial = trial(name, &header, follower, standing);
+    trial.ended = robot.ended;
+    trial.robot = robot.into_figures();
     trial.beliefs = basis.map(|basis| beliefs(follower, &judged, basis));
     trial.answers = answers;
     trial.wizard = (header.session.trial.condition == Condition::Wizard).then(|| hands.figures(follower).measures);
@@ -341,6 +347,9 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: Standing) -
         is_planned: step.is_some(),
         condition: spec.trial.condition,
         left_out,
+        ended: None,
+        arm: spec.robot.arm,
+        robot: RobotFigures::default(),
         human_presses: u64::from(session.presses[Agent::Human.index()]),
         robot_presses: u64::from(session.presses[Agent::Robot.index()]),
         errors: follower.errors() as u64,

@@ -1,6 +1,7 @@
 //! The figures of a study in words, for the terminal.
 
 use crate::base::words::count;
+use crate::session::event::EndReason;
 use crate::study::effect::Effect;
 use crate::study::figures::StudyFigures;
 use crate::study::roc::EQUAL_SIGNALS;
@@ -46,6 +47,15 @@ pub fn describe(figures: &StudyFigures) -> String {
             found.beliefs,
             number(found.kappa_aspect)
         );
+    }
+    if figures.ended.keys().any(|reason| *reason != EndReason::Presses) {
+        let ended: Vec<String> =
+            figures.ended.iter().map(|(reason, count)| format!("{count} {}", reason.name())).collect();
+        text += &format!("trials ended by: {}\n", ended.join(", "));
+    }
+    if let [_, _, ..] = &figures.robot[..] {
+        let arms: Vec<String> = figures.robot.iter().map(|one| format!("{} {}", one.trials, one.kind.name())).collect();
+        text += &format!("trials by the robot's arm: {}\n", arms.join(", "));
     }
     for one in &figures.conditions {
         text += &format!(

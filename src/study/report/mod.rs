@@ -1,29 +1,32 @@
 //! The report: one page that needs nothing beside it, for screen and paper.
 
 mod results;
+mod robot;
 mod sections;
 
 use super::facts::Facts;
 use super::figures::StudyFigures;
 use super::svg::{escaped, minus};
+use super::tables::Table;
 use super::trial::Trial;
 
 /// How the page looks.
 const STYLE: &str = include_str!("style.css");
 
-/// The page, as HTML.
-pub fn page(figures: &StudyFigures, trials: &[Trial], facts: &Facts) -> String {
+/// The page, as HTML. Beside it are files of these tables.
+pub fn page(figures: &StudyFigures, trials: &[Trial], facts: &Facts, tables: &[Table]) -> String {
     let body = [
         sections::summary(figures),
         results::beside_the_paper(figures),
         results::assistance(figures, trials),
         results::concepts(figures),
         results::similarity(figures),
+        robot::robot(figures),
         results::people(figures),
         sections::trials(figures, trials),
         sections::methods(figures, facts),
         sections::definitions(),
-        sections::files(),
+        sections::files(tables),
     ];
     let title = escaped(&figures.title);
     format!(

@@ -2,10 +2,12 @@
 
 use super::{count, number, p_value, percent, section, table};
 use crate::base::words;
+use crate::session::event::EndReason;
 use crate::session::settings::Condition;
 use crate::study::definitions::DEFINITIONS;
 use crate::study::facts::Facts;
 use crate::study::figures::StudyFigures;
+use crate::study::robot::ArmGroup;
 use crate::study::svg::escaped;
 use crate::study::tables::Table;
 use crate::study::trial::{Basis, Trial};
@@ -67,6 +69,7 @@ pub(super) fn trials(figures: &StudyFigures, trials: &[Trial]) -> String {
             trial.group.as_deref().map_or("\u{2013}".to_string(), escaped),
             trial.period.map_or("\u{2013}".to_string(), |period| period.to_string()),
             condition(trial.condition).to_string(),
+            trial.ended.map_or("\u{2013}", EndReason::name).to_string(),
             trial.human_presses.to_string(),
             trial.robot_presses.to_string(),
             trial.errors.to_string(),
@@ -85,6 +88,7 @@ pub(super) fn trials(figures: &StudyFigures, trials: &[Trial]) -> String {
         "group",
         "trial",
         "condition",
+        "ended by",
         "presses, human",
         "robot",
         "errors",
@@ -142,8 +146,8 @@ pub(super) fn methods(figures: &StudyFigures, facts: &Facts) -> String {
     let orders = facts.all("orders").map_or(String::new(), |orders| format!(" or {} served orders", escaped(&orders)));
     let mut text = format!(
         "<p>{} took part{planned}; {} recorded, {} left out of the analysis. Participants: {}. The task was that of the kitchen \
-         \u{201c}{}\u{201d}. A trial ended after {} presses of both agents or {} s{orders}. A press of the robot took {}. Gaze came \
-         from {}{}. A signal was shown for {}.",
+         \u{201c}{}\u{201d}. A trial was to end after {} presses of both agents or {} s{orders}, whatever came first.{}{} A press \
+         of the robot took {}. Gaze came from {}{}. A signal was shown for {}.",
         words::count(figures.participants, "participant", "participants"),
         words::count(figures.trials + figures.left_out.len() as u64, "trial was", "trials were"),
         figures.left_out.len(),
@@ -151,6 +155,8 @@ pub(super) fn methods(figures: &StudyFigures, facts: &Facts) -> String {
         all("kitchen"),
         all("presses"),
         all("seconds"),
+        endings(figures),
+        arms(figures),
         all("robot"),
         all("gaze"),
         facts.all("accuracy").map_or(String::new(), |deg| format!(" (accuracy in checks: {deg}\u{b0})")),
@@ -177,8 +183,13 @@ pub(super) fn methods(figures: &StudyFigures, facts: &Facts) -> String {
         env!("CARGO_PKG_VERSION"),
     );
     text += &format!(
-        "<p>Every recording was replayed event by event; errors, their causes, the estimate of beliefs and what each concept would \
-         have said were computed anew from the recorded events. {}</p>\n",
+        "<p>Every recording was replayed event by event; errors, their causes{} were computed anew from the recorded events. \
+         {}</p>\n",
+        // Where nothing was asked of the concepts, nothing is known of what they would have said.
+        match figures.similarity.is_some() || figures.roc.iter().any(|roc| !roc.points.is_empty()) {
+            true => ", the estimate of beliefs and what each concept would have said",
+            false => " and the estimate of beliefs",
+        },
         match figures.totals.beliefs_from {
             Some(Basis::Recorded) =>
                 "Why presses were errors was judged by what the simulated participants recorded of their beliefs.",
@@ -190,15 +201,53 @@ pub(super) fn methods(figures: &StudyFigures, facts: &Facts) -> String {
     section("Methods", &text)
 }
 
+/// How many trials ended how, in a sentence.
+fn endings(figures: &StudyFigures) -> String {
+    let one = |(reason, &count): (&EndReason, &u64)| {
+        let how = match reason {
+            EndReason::Presses => "with the presses",
+            EndReason::Time => "as the time was over",
+            EndReason::Orders => "as the orders were served",
+            EndReason::Wizard => "as the wizard ended it before",
+            EndReason::Aborted => "aborted",
+        };
+        format!("{count} {how}")
+    };
+    let ended: Vec<String> = figures.ended.iter().map(one).collect();
+    let shorter = match figures.ended.keys().all(|reason| *reason == EndReason::Presses) {
+        true => "",
+        false => " Each counts as one trial, however long it was.",
+    };
+    match ended.is_empty() {
+        true => String::new(),
+        false => format!(" Of the trials that count ended {}.{shorter}", ended.join(", ")),
+    }
+}
+
+/// With which arms, in a sentence.
+fn arms(figures: &StudyFigures) -> String {
+    let trials = |group: &ArmGroup| {
+        format!("{} in {}", super::robot::arm(group.kind), words::count(group.trials, "trial", "trials"))
+    };
+    match &figures.robot[..] {
+        [] => String::new(),
+        [one] => format!(" The robot\u{2019}s arm was {}.", super::robot::arm(one.kind)),
+        both => {
+            let both: Vec<String> = both.iter().map(trials).collect();
+            format!(" The robot\u{2019}s arm was {}; the figures pool them.", both.join(" and "))
+        }
+    }
+}
+
 /// What every term means.
 pub(super) fn definitions() -> String {
     let one = |(term, text): &(&str, &str)| format!("<dt>{}</dt>\n<dd>{}</dd>\n", escaped(term), escaped(text));
     section("Definitions", &format!("<dl>\n{}</dl>\n", DEFINITIONS.iter().map(one).collect::<String>()))
 }
 
-/// The files beside the report.
-pub(super) fn files() -> String {
-    let names: Vec<String> = Table::ALL.iter().map(|table| format!("<code>{}.csv</code>", table.name())).collect();
+/// The files beside the report that have something in them.
+pub(super) fn files(tables: &[Table]) -> String {
+    let names: Vec<String> = tables.iter().map(|table| format!("<code>{}.csv</code>", table.name())).collect();
     let text = format!(
         "<p>Beside this page: {}. The last one says what every column of the others means. Empty cells are unknown values; a \
          recording's name joins the tables.</p>\n",

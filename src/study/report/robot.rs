@@ -1,0 +1,60 @@
+//! What the robot did beside its presses, and what the wizard did with it.
+
+use super::{count, number, section, table};
+use crate::robot::AbortReason;
+use crate::session::settings::ArmKind;
+use crate::study::figures::StudyFigures;
+use crate::study::robot::{ArmFigures, ArmGroup};
+
+/// An arm in words.
+pub(super) fn arm(kind: ArmKind) -> &'static str {
+    match kind {
+        ArmKind::Timed => "timed",
+        ArmKind::Physics => "simulated in the physics",
+    }
+}
+
+/// A table with a column for each kind of arm.
+pub(super) fn robot(figures: &StudyFigures) -> String {
+    let groups = &figures.robot;
+    if groups.is_empty() {
+        return String::new();
+    }
+    let row = |what: &str, of: &dyn Fn(&ArmGroup) -> String| {
+        std::iter::once(what.to_string()).chain(groups.iter().map(of)).collect::<Vec<String>>()
+    };
+    let felt = |what: &str, of: fn(&ArmFigures) -> u64| row(what, &|group| count(group.robot.arm.as_ref().map(of)));
+    let seconds = |what: &str, of: fn(&ArmFigures) -> Option<f64>| {
+        row(what, &|group| number(group.robot.arm.as_ref().and_then(of), 1))
+    };
+    let did = |what: &str, of: fn(&ArmGroup) -> u64| row(what, &|group| of(group).to_string());
+    let mut rows = vec![
+        felt("protective stops: it felt somebody", |arm| arm.protective_stops),
+        felt("stops because a joint did not follow", |arm| arm.faults),
+        felt("contacts with somebody", |arm| arm.contacts),
+        seconds("largest force of these in N", |arm| arm.peak_force_n),
+        seconds("seconds slowed by a hand near it (reduced)", |arm| Some(arm.reduced_s)),
+        seconds("seconds waiting for a hand (safeguard)", |arm| Some(arm.safeguard_s)),
+        did("emergency stops by the wizard", |group| group.robot.emergency_stops),
+    ];
+    let occurs = |reason: &AbortReason| groups.iter().any(|group| group.robot.given_up.contains_key(reason));
+    rows.extend(AbortReason::ALL.into_iter().filter(occurs).map(|reason| {
+        let what = format!("presses given up: {}", reason.words());
+        row(&what, &|group| count(group.robot.given_up(reason)))
+    }));
+    rows.extend([
+        did("held by the wizard", |group| group.robot.held),
+        did("skipped by the wizard", |group| group.robot.skipped),
+        did("driven by the wizard", |group| group.robot.driven),
+        did("places put right by the wizard", |group| group.robot.corrected),
+    ]);
+    let head = |group: &ArmGroup| {
+        let trials = crate::base::words::count(group.trials, "trial", "trials");
+        format!("{}, {trials}", arm(group.kind))
+    };
+    let heads: Vec<String> = groups.iter().map(head).collect();
+    let heads: Vec<&str> = ["arm"].into_iter().chain(heads.iter().map(String::as_str)).collect();
+    let note = "<p class=\"note\">Sums over trials, pauses included. A timed arm has nothing to feel with. Each trial\u{2019}s are in \
+                <code>trials.csv</code>.</p>\n";
+    section("The robot", &(table(&heads, &rows) + note))
+}

@@ -253,6 +253,7 @@ fn a_rater_codes_errors_by_keys_and_sees_no_estimate() {
     let place = kitchen.locations.iter().find(|location| location.name == "cooking_pot").expect("a pot");
     let letter = place.signal_key.expect("a key").to_string();
     for (key, seen) in [
+        ("9", "\"9\" has no meaning"),
         ("1", "no error yet"),
         ("Enter", "R1, error 1 of"),
         ("1", "slip (1 coded)"),
@@ -260,7 +261,7 @@ fn a_rater_codes_errors_by_keys_and_sees_no_estimate() {
         (&letter, "wrong about cooking pot (2 coded)"),
         ("Enter", "R1, error 3 of"),
         ("3", "other (3 coded)"),
-        ("DC", "not coded (2 coded)"),
+        ("DC", " effect: not coded (2 coded)"),
         ("BSpace", "R1, error 2 of"),
     ] {
         terminal.key(key);

@@ -3,9 +3,10 @@
 use super::message::Command;
 use super::model::{Level, Model};
 use super::playback::Move;
+use super::words;
 use crate::kitchen::{Kitchen, LocationId};
 use crate::measures::coding::{Code, Codes, Kind};
-use crate::session::Session;
+use crate::session::{Happening, Session};
 
 /// What a key asks of a rater's console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,8 +37,8 @@ impl Coding {
         self.errors.partition_point(|&press| press < events as u64).checked_sub(1)
     }
 
-    /// Where the rater stands, in words.
-    pub fn describe(&self, kitchen: &Kitchen, events: usize) -> String {
+    /// Where the rater stands, in words; `press` is the last error until then, in words too.
+    pub fn describe(&self, kitchen: &Kitchen, events: usize, press: &str) -> String {
         let (all, coded) = (self.errors.len(), self.codes.0.len());
         let here = match self.at(events) {
             None => format!("before the first of {all} errors"),
@@ -46,11 +47,18 @@ impl Coding {
                     None => "not coded".to_string(),
                     Some(code) => describe(kitchen, code),
                 };
-                format!("error {} of {all}: {said}", index + 1)
+                format!("error {} of {all}, {press}: {said}", index + 1)
             }
         };
         format!("{}, {here} ({coded} coded)", self.rater)
     }
+}
+
+/// A press in words: its button, and whether it did anything.
+pub fn press(kitchen: &Kitchen, what: &Happening) -> String {
+    let Happening::Press { agent, button, effective } = what else { return String::new() };
+    let effect = if *effective { "with" } else { "without" };
+    format!("\"{}\" {effect} effect", words::button(kitchen, *agent, *button))
 }
 
 fn describe(kitchen: &Kitchen, code: &Code) -> String {

@@ -221,6 +221,11 @@ impl Keys {
         self.bindings.iter().find(is_it).and_then(|line| line.chords.first().copied())
     }
 
+    /// The key with which a rater says that something was believed wrong about a location.
+    pub fn of_belief(&self, location: LocationId) -> Option<Chord> {
+        self.of(&Action::Rate(Rate::Belief(location)))
+    }
+
     /// How the signal about a location is written in the timeline, also in a replay, where no key sends it.
     pub fn mark(&self, location: LocationId) -> Option<Chord> {
         self.marks.get(location.index()).copied().flatten()

@@ -392,7 +392,7 @@ fn unknown(model: &mut Model, session: &Session, code: KeyCode) {
     if model.keys.find(other, chord).is_some() {
         let whose = if other == Layer::Wizard { "wizard" } else { "participant" };
         model.say(Level::Refused, format!("\"{key}\" is a key of the {whose}: switch with tab"));
-    } else if model.playback.is_none() && session.phase != Phase::Closed {
+    } else if (model.playback.is_none() || model.coding.is_some()) && session.phase != Phase::Closed {
         model.say(Level::Refused, format!("\"{key}\" has no meaning: ? shows the keys"));
     }
 }

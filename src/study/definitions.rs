@@ -45,7 +45,7 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
          presses counts as k signals and spares the errors of the next k presses. Swept: cost 0.5 to 2.4, threshold 0.4 to \
          0.99, k 1 to 5; cost and threshold also beyond that, so that all concepts can be compared where they say equally much. Compared at equal signals per 100 presses of the human (straight lines between swept points and \
          silence), and as partial area over the false positive rates that all concepts reach, divided by that range; \
-         intervals of 95 % by bootstrap over participants.",
+         intervals of 95 % by bootstrap over participants, the area with the range that those who are drawn reach.",
     ),
     (
         "Assistance effect",

@@ -182,7 +182,8 @@ pub fn compare(participants: &[Vec<Swept>], trials: u64, seed: u64) -> Compariso
             let [fpr, tpr, signals_per_100_actions] = one.count.point()?;
             Some(Point { parameter: one.parameter, fpr, tpr, signals_per_100_actions, count: one.count })
         };
-        let area = banded(&curves, &resampled, |curves| curves.area(index, common?));
+        // Of those who are drawn over the range that they reach: none of theirs is as wide as that of all, in half of the draws.
+        let area = banded(&curves, &resampled, |curves| curves.area(index, curves.common()?));
         let at = |signals: f64| move |curves: &Curves| height(&curves.of[index][1], signals);
         let behind = |signals: f64| {
             move |curves: &Curves| Some(height(&curves.of[0][1], signals)? - height(&curves.of[index][1], signals)?)

@@ -32,6 +32,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     }
     if regions.room > Room::Small {
         let remark = match model.layer {
+            Layer::Wizard if model.coding.is_some() => "[key]: wrong about this",
             Layer::Wizard if model.playback.is_some() => "",
             Layer::Wizard if session.spec.trial.condition == Condition::None => "unassisted: no signals",
             Layer::Wizard => "[key] tells the participant",
@@ -202,6 +203,7 @@ impl<'a> Place<'a> {
             Layer::Wizard => {
                 let sends = self.session.spec.trial.condition == Condition::Wizard || self.model.playback.is_some();
                 let key = self.model.keys.of_signal(self.id).filter(|_| sends);
+                let key = key.or_else(|| self.model.keys.of_belief(self.id));
                 key.map(|chord| (chord.to_string(), Role::Signal))
             }
             Layer::Participant => {

@@ -7,6 +7,7 @@ use super::regions::{Regions, Room};
 use super::theme::Role;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
+use crate::console::coding::press;
 use crate::console::model::Model;
 use crate::kitchen::Agent;
 use crate::session::event::SignalEnd;
@@ -65,7 +66,9 @@ fn title(session: &Session, model: &Model) -> String {
 /// Where a rater stands, where errors are coded.
 fn coding(session: &Session, model: &Model) -> Option<String> {
     let (coding, playback) = (model.coding.as_ref()?, model.playback.as_ref()?);
-    Some(coding.describe(&session.kitchen, playback.event))
+    let error = session.timeline.iter().rev().find(|entry| model.is_error(entry));
+    let press = error.map_or(String::new(), |entry| press(&session.kitchen, &entry.what));
+    Some(coding.describe(&session.kitchen, playback.event, &press))
 }
 
 /// What stands at the right edge: now; in a pause the last that happened, since that is when one looks back.

@@ -33,8 +33,15 @@ pub fn page(figures: &StudyFigures, trials: &[Trial], facts: &Facts, tables: &[T
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
          <main>\n<h1>{title}</h1>\n{}</main>\n</body>\n</html>\n",
-        body.concat()
+        numbered(&numbered(&body.concat(), "<figcaption>", "Figure"), "<caption>", "Table")
     )
+}
+
+/// Gives what follows each of these tags a number. Texts from outside are escaped, and hold none.
+fn numbered(page: &str, tag: &str, name: &str) -> String {
+    let mut parts = page.split(tag);
+    let first = parts.next().unwrap_or_default().to_string();
+    parts.enumerate().fold(first, |page, (index, part)| format!("{page}{tag}<b>{name}\u{a0}{}.</b> {part}", index + 1))
 }
 
 /// A section with a heading; nothing without content.
@@ -52,15 +59,20 @@ fn figure(picture: Option<String>, class: &str, caption: &str) -> String {
     })
 }
 
-/// A table; the first column is text, all others are figures.
-fn table(heads: &[&str], rows: &[Vec<String>]) -> String {
+/// A table with what it shows; the first column is text, all others are figures. What is to be said of it stands in its
+/// caption, which no page parts from it.
+fn table(caption: &str, heads: &[&str], rows: &[Vec<String>]) -> String {
     let head: Vec<String> = heads.iter().map(|head| format!("<th>{head}</th>")).collect();
     let row = |row: &Vec<String>| {
         let cells: Vec<String> = row.iter().map(|cell| format!("<td>{cell}</td>")).collect();
         format!("<tr>{}</tr>\n", cells.concat())
     };
     let rows: Vec<String> = rows.iter().map(row).collect();
-    format!("<table>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody>\n</table>\n", head.concat(), rows.concat())
+    format!(
+        "<table>\n<caption>{caption}</caption>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody>\n</table>\n",
+        head.concat(),
+        rows.concat()
+    )
 }
 
 /// What colours mean: classes with words.
@@ -84,6 +96,14 @@ fn p_value(p: Option<f64>) -> String {
         None => "\u{2013}".to_string(),
         Some(p) if p < 0.001 => "&lt; 0.001".to_string(),
         Some(p) => format!("{p:.3}"),
+    }
+}
+
+/// The same in a sentence, with its sign; no line breaks in it.
+fn p_sentence(p: Option<f64>) -> String {
+    match p {
+        Some(p) if p < 0.001 => "p\u{a0}&lt;\u{a0}0.001".to_string(),
+        p => format!("p\u{a0}=\u{a0}{}", p_value(p)),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The results, each with what the paper found.
 
-use super::{count, figure, keys, number, p_value, percent, range, section, table};
+use super::{count, figure, keys, number, p_sentence, p_value, percent, range, section, table};
 use crate::measures::wizard::WizardMeasures;
 use crate::study::charts;
 use crate::study::effect::Effect;
@@ -38,9 +38,9 @@ pub(super) fn beside_the_paper(figures: &StudyFigures) -> String {
             "74 %",
         ),
     ];
-    let text = table(&["", "here", "paper"], &rows)
-        + "<p class=\"note\">Paper: Buehler, Adamy and Weisswange (2021). Its 6.9 % is per press of both agents.</p>\n";
-    section("Beside the paper", &text)
+    let caption =
+        "All trials together. Paper: Buehler, Adamy and Weisswange (2021); its 6.9 % is per press of both agents.";
+    section("Beside the paper", &table(caption, &["", "here", "paper"], &rows))
 }
 
 /// The effect of assistance.
@@ -50,7 +50,10 @@ pub(super) fn assistance(figures: &StudyFigures, trials: &[Trial]) -> String {
     let pictures = figure(
         charts::errors_by_condition(trials),
         "",
-        &format!("Errors by condition; a line is a participant, black the mean.{key}"),
+        &format!(
+            "Errors by condition; a line is a participant with both trials, black the mean of their rates, in which each \
+             counts the same. The table\u{2019}s share is that of all presses together.{key}"
+        ),
     ) + &figure(
         charts::improvements(trials),
         "",
@@ -82,11 +85,9 @@ pub(super) fn assistance(figures: &StudyFigures, trials: &[Trial]) -> String {
         "less by",
         "Hedges\u{2019} g",
     ];
-    text += &format!(
-        "<h3>Tests</h3>\n<div class=\"scroll\">{}</div>\n<p class=\"note\">Participants: assisted in the second trial + in the \
-         first. What assistance takes away is the Hodges-Lehmann estimate with its interval (at least 95 %).</p>\n",
-        table(&heads, &rows)
-    );
+    let caption = "Tests of what assistance takes away. Participants: assisted in the second trial + in the first. Less by: the \
+                   Hodges-Lehmann estimate with its interval (at least 95 %).";
+    text += &format!("<h3>Tests</h3>\n<div class=\"scroll\">{}</div>\n", table(caption, &heads, &rows));
     if let Some(first) = figures.effects.first() {
         text += &anova(first);
     }
@@ -127,7 +128,9 @@ fn conditions(figures: &StudyFigures) -> String {
         "s a press",
         "signals",
     ];
-    format!("<div class=\"scroll\">{}</div>\n", table(&heads, &rows))
+    let caption = "By condition. Shares are of all presses, or errors, of a condition together, so that long trials weigh more; \
+                   errors a trial, seconds for an order and seconds a press are means over trials.";
+    format!("<div class=\"scroll\">{}</div>\n", table(caption, &heads, &rows))
 }
 
 /// What the first effect says, in a sentence.
@@ -140,12 +143,12 @@ fn in_words(effect: &Effect) -> String {
     };
     format!(
         "<p>Assistance takes {} errors away from 100 presses of the human (Hodges-Lehmann{interval}). Interaction of period and \
-         starting group: F({:.0}, {:.0})\u{a0}=\u{a0}{}, p\u{a0}=\u{a0}{}.</p>\n",
+         starting group: F({:.0},\u{a0}{:.0})\u{a0}=\u{a0}{}, {}.</p>\n",
         number(Some(estimate), 1),
         test.df[0],
         test.df[1],
         number(Some(test.f), 2),
-        p_value(Some(test.p))
+        p_sentence(Some(test.p))
     )
 }
 
@@ -193,7 +196,11 @@ fn anova(effect: &Effect) -> String {
     format!(
         "<h3>Mixed ANOVA of {}</h3>\n{}",
         effect.measure.title(),
-        table(&["", "F", "degrees of freedom", "p", "partial \u{3b7}\u{b2}"], &rows)
+        table(
+            "Mixed ANOVA, in the coding of a crossover and in the paper\u{2019}s.",
+            &["", "F", "degrees of freedom", "p", "partial \u{3b7}\u{b2}"],
+            &rows
+        )
     )
 }
 
@@ -207,7 +214,11 @@ pub(super) fn concepts(figures: &StudyFigures) -> String {
     ) + &figure(
         charts::equal_signals(figures),
         "",
-        &format!("The same, over how often the concepts interrupt.{key}"),
+        &format!(
+            "The same, over how often the concepts interrupt. A curve may fall: each point is the concept with another \
+             value of its parameter, and one that speaks earlier may tell something before it is believed wrong, which prevents \
+             nothing and is not said again for a while.{key}"
+        ),
     );
     if pictures.is_empty() {
         return String::new();
@@ -236,16 +247,19 @@ pub(super) fn concepts(figures: &StudyFigures) -> String {
     let heads: Vec<String> = EQUAL_SIGNALS.iter().map(|signals| format!("at {signals:.0} signals")).collect();
     let heads: Vec<&str> =
         ["prevented"].into_iter().chain(heads.iter().map(String::as_str)).chain(["partial area"]).collect();
-    let text = format!(
-        "<div class=\"figures\">\n{pictures}</div>\n<h3>At equal signals per 100 presses of the human</h3>\n\
-         <div class=\"scroll\">{}</div>\n\
-         <p class=\"note\">Shares of the belief related errors, with intervals of 95 % by bootstrap over participants ({} in {} \
-         unassisted trials). The partial area is over false positive rates from 0 to {}, divided by that range. The paper prints \
-         no figures here; its ToM-Com lies clearly above ToM and DEV.</p>\n",
-        table(&heads, &[rows, behind].concat()),
+    let caption = format!(
+        "Shares of the belief related errors prevented at equal signals per 100 presses of the human, with intervals of 95 % by \
+         bootstrap over participants ({} in {} unassisted trials). The partial area is over false positive rates from 0 to {}, which \
+         all concepts reach, divided by that range; its interval has the range of those who are drawn. The paper prints no figures \
+         here; its ToM-Com lies clearly above ToM and DEV.",
         figures.roc_participants,
         figures.roc_trials,
         number(figures.roc_common_fpr, 3),
+    );
+    let text = format!(
+        "<div class=\"figures\">\n{pictures}</div>\n<h3>At equal signals per 100 presses of the human</h3>\n\
+         <div class=\"scroll\">{}</div>\n",
+        table(&caption, &heads, &[rows, behind].concat()),
     );
     section("Which concept prevents more?", &text)
 }
@@ -270,7 +284,8 @@ pub(super) fn similarity(figures: &StudyFigures) -> String {
             share("same kind of signal", &found.lenient, None),
             share("anything, at about the same time", &found.timing, None),
         ];
-        text += &table(&["within 3 presses of the human", "recall", "by chance", "precision", "F1"], &rows);
+        let caption = "How far the wizard\u{2019}s signals and those that ToM-Com would have sent match.";
+        text += &table(caption, &["within 3 presses of the human", "recall", "by chance", "precision", "F1"], &rows);
         text += &format!(
             "<p>The wizard sent {} signals, ToM-Com would have sent {}; {} match. Kappa {} per press; ToM-Com is earlier by {} s in \
              the median (negative: later). <span class=\"note\">Paper: 74 % of the wizard\u{2019}s communications matched.</span></p>\n",
@@ -300,7 +315,7 @@ pub(super) fn similarity(figures: &StudyFigures) -> String {
                 number(wizard.latency_s.map(|times| times.median), 1),
             ],
         ];
-        text += &format!("<h3>The wizard</h3>\n{}", table(&["", "over all trials"], &rows));
+        text += &format!("<h3>The wizard</h3>\n{}", table("What the wizard did.", &["", "over all trials"], &rows));
     }
     section("Wizard and assistant", &text)
 }
@@ -353,7 +368,11 @@ pub(super) fn people(figures: &StudyFigures) -> String {
             .collect();
         text += &format!(
             "<div class=\"scroll\">{}</div>\n",
-            table(&["item", "after", "answers", "left out", "mean", "how often 1, 2, \u{2026}"], &rows)
+            table(
+                "Answers by item and condition.",
+                &["item", "after", "answers", "left out", "mean", "how often 1, 2, \u{2026}"],
+                &rows
+            )
         );
     }
     section("What participants said", &text)

@@ -54,7 +54,7 @@ pub(super) fn robot(figures: &StudyFigures) -> String {
     };
     let heads: Vec<String> = groups.iter().map(head).collect();
     let heads: Vec<&str> = ["arm"].into_iter().chain(heads.iter().map(String::as_str)).collect();
-    let note = "<p class=\"note\">Sums over trials, pauses included. A timed arm has nothing to feel with. Each trial\u{2019}s are in \
-                <code>trials.csv</code>.</p>\n";
-    section("The robot", &(table(&heads, &rows) + note))
+    let caption = "Sums over trials, pauses included, by arm. A timed arm has nothing to feel with. Each trial\u{2019}s are in \
+                   <code>trials.csv</code>.";
+    section("The robot", &table(caption, &heads, &rows))
 }

@@ -1,6 +1,6 @@
 //! What is around the results: summary, trials, methods, definitions, files.
 
-use super::{count, number, p_value, percent, section, table};
+use super::{count, number, p_sentence, percent, section, table};
 use crate::base::words;
 use crate::session::event::EndReason;
 use crate::session::settings::Condition;
@@ -49,8 +49,8 @@ pub(super) fn summary(figures: &StudyFigures) -> String {
     text += &card(number(totals.mean_sequence_length, 1), "errors in a sequence, in the mean");
     text += &match (figures.pearson, &figures.similarity) {
         (Some(pearson), _) => card(
-            format!("r = {}", number(Some(pearson.r), 2)),
-            &format!("of assistance and fewer errors (p = {})", p_value(Some(pearson.p))),
+            format!("r\u{a0}=\u{a0}{}", number(Some(pearson.r), 2)),
+            &format!("of assistance and fewer errors ({})", p_sentence(Some(pearson.p))),
         ),
         (None, Some(found)) => card(percent(found.strict.recall), "of the wizard's signals have a match"),
         (None, None) => card(words::count(totals.signals, "signal", "signals"), "shown to participants"),
@@ -99,13 +99,14 @@ pub(super) fn trials(figures: &StudyFigures, trials: &[Trial]) -> String {
         "orders",
         "s a press",
     ];
-    let mut text = format!("<div class=\"scroll long\">{}</div>\n", table(&heads, &rows));
-    if counting.len() > MOST_TRIALS {
-        text += &format!(
-            "<p class=\"note\">The first {MOST_TRIALS} of {}; all of them are in <code>trials.csv</code>.</p>\n",
+    let caption = match counting.len() > MOST_TRIALS {
+        true => format!(
+            "The first {MOST_TRIALS} of {} trials that count; all are in <code>trials.csv</code>.",
             counting.len()
-        );
-    }
+        ),
+        false => "Trials that count.".to_string(),
+    };
+    let mut text = format!("<div class=\"scroll long\">{}</div>\n", table(&caption, &heads, &rows));
     text += "<h3>Left out</h3>\n";
     text += &match figures.left_out.len() {
         0 => "<p>No trial is left out.</p>\n".to_string(),
@@ -115,7 +116,11 @@ pub(super) fn trials(figures: &StudyFigures, trials: &[Trial]) -> String {
                 .iter()
                 .map(|one| [&one.recording, &one.participant, &one.reason].map(|text| escaped(text)).to_vec())
                 .collect();
-            table(&["recording", "participant", "why"], &rows).replacen("<table>", "<table class=\"text\">", 1)
+            table("Trials that do not count.", &["recording", "participant", "why"], &rows).replacen(
+                "<table>",
+                "<table class=\"text\">",
+                1,
+            )
         }
     };
     if figures.practice > 0 {

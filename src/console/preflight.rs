@@ -17,7 +17,7 @@ pub const OVERRIDE: char = 'o';
 
 /// Looks at everything.
 pub fn checks(session: &Session, model: &Model) -> Vec<Check> {
-    let mut checks = participant(session, model.now, &key(model, Hand::Calibrate));
+    let mut checks = participant(session, model.now, &key(model, &Action::Hand(Hand::Calibrate)));
     checks.extend(model.display.as_ref().map(DisplayHealth::check));
     checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);
     checks.extend(model.viewers.as_ref().map(viewers));
@@ -29,19 +29,19 @@ pub fn all_ok(checks: &[Check]) -> bool {
     checks.iter().all(|check| check.verdict == Verdict::Ok)
 }
 
-/// The key of something that the hands do.
-fn key(model: &Model, hand: Hand) -> String {
-    model.keys.of(&Action::Hand(hand)).map(|key| key.to_string()).unwrap_or_default()
+/// The key of an action.
+fn key(model: &Model, action: &Action) -> String {
+    model.keys.of(action).map(|key| key.to_string()).unwrap_or_default()
 }
 
 fn robot(session: &Session, model: &Model) -> Check {
     match (session.robot.stopped, session.robot.held) {
         (true, _) => {
-            let resume = model.keys.of(&Action::ResumeRobot).map(|key| key.to_string()).unwrap_or_default();
+            let resume = key(model, &Action::ResumeRobot);
             Check::new("robot", Verdict::Failed, "stopped", format!("{resume} lets it go on"))
         }
         (false, true) => {
-            let release = key(model, Hand::HoldRobot);
+            let release = key(model, &Action::Hand(Hand::HoldRobot));
             Check::new("robot", Verdict::Warning, "held before its first press", format!("{release} releases it"))
         }
         (false, false) => Check::ok("robot", "ready"),

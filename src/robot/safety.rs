@@ -18,7 +18,7 @@ const LEAVES_M_S: f64 = 0.1;
 /// A hand is away again a little further out, so that the mode does not flicker, in metres.
 pub const MARGIN_M: f64 = 0.03;
 
-/// The controller's safety modes, as the maker names and numbers them; those that the program has a use for.
+/// The controller's safety modes, as the maker names them; those that the program has a use for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SafetyMode {
@@ -37,18 +37,6 @@ pub enum SafetyMode {
 }
 
 impl SafetyMode {
-    /// The maker's number.
-    pub fn number(self) -> u8 {
-        match self {
-            SafetyMode::Normal => 1,
-            SafetyMode::Reduced => 2,
-            SafetyMode::ProtectiveStop => 3,
-            SafetyMode::Safeguard => 5,
-            SafetyMode::EmergencyStop => 7,
-            SafetyMode::Fault => 9,
-        }
-    }
-
     /// In words, as the maker writes it.
     pub fn name(self) -> &'static str {
         match self {
@@ -63,7 +51,12 @@ impl SafetyMode {
 
     /// Whether it takes the wizard's key to go on.
     pub fn is_stopped(self) -> bool {
-        matches!(self, SafetyMode::ProtectiveStop | SafetyMode::EmergencyStop | SafetyMode::Fault)
+        self.has_stopped_itself() || self == SafetyMode::EmergencyStop
+    }
+
+    /// Whether the arm stopped without the wizard.
+    pub fn has_stopped_itself(self) -> bool {
+        matches!(self, SafetyMode::ProtectiveStop | SafetyMode::Fault)
     }
 
     /// With how much force the arm stops.

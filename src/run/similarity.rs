@@ -225,9 +225,7 @@ impl CompareFigures {
             training: None,
         }
     }
-}
 
-impl CompareFigures {
     /// The same without what is about other concepts than these. Differences keep their numbers.
     pub fn only(mut self, concepts: &[ConceptName]) -> CompareFigures {
         let hidden = ConceptName::ALL.into_iter().filter(|concept| !concepts.contains(concept));

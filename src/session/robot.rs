@@ -79,14 +79,12 @@ pub struct ArmStatus {
     pub mode: SafetyMode,
     /// Why it stopped by itself: the force that it felt, in newtons.
     pub stopped_by_n: Option<f64>,
-    /// The newest contact with somebody, and its force in newtons.
-    pub touched: Option<(SessionTime, f64)>,
 }
 
 impl RobotStatus {
     /// Whether the wizard has stopped it. An arm that stopped by itself can still be stopped by the wizard.
     pub fn is_stopped_by_wizard(&self) -> bool {
-        self.stopped && !matches!(self.arm.mode, SafetyMode::ProtectiveStop | SafetyMode::Fault)
+        self.stopped && !self.arm.mode.has_stopped_itself()
     }
 
     /// It is on its way to a button, and will touch it at `until` if nothing comes between.
@@ -113,10 +111,7 @@ impl RobotStatus {
 pub(super) fn arm(session: &mut Session, now: SessionTime, event: &Event) {
     match event {
         Event::RobotMoves(moment) => session.robot.arm.last = Some((now, *moment)),
-        Event::RobotTouched { force_n } => {
-            session.robot.arm.touched = Some((now, *force_n));
-            note(session, now, Happening::ArmTouched { force_n: *force_n });
-        }
+        Event::RobotTouched { force_n } => note(session, now, Happening::ArmTouched { force_n: *force_n }),
         Event::RobotSafety { mode, force_n, joint } => {
             let arm = &mut session.robot.arm;
             (arm.mode, arm.stopped_by_n) = (*mode, *force_n);

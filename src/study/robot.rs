@@ -43,6 +43,13 @@ pub struct ArmFigures {
     pub safeguard_s: f64,
 }
 
+impl ArmFigures {
+    /// Somebody was felt with this force in newtons, if it was told.
+    fn felt(&mut self, force_n: Option<f64>) {
+        self.peak_force_n = self.peak_force_n.into_iter().chain(force_n).reduce(f64::max);
+    }
+}
+
 impl RobotFigures {
     /// Presses given up for a reason; none where this arm cannot have it.
     pub fn given_up(&self, reason: AbortReason) -> Option<u64> {
@@ -64,7 +71,7 @@ impl RobotFigures {
             arm.protective_stops += other.protective_stops;
             arm.faults += other.faults;
             arm.contacts += other.contacts;
-            arm.peak_force_n = arm.peak_force_n.into_iter().chain(other.peak_force_n).reduce(f64::max);
+            arm.felt(other.peak_force_n);
             arm.reduced_s += other.reduced_s;
             arm.safeguard_s += other.safeguard_s;
         }
@@ -149,12 +156,12 @@ impl RobotTally {
                 let Some(arm) = &mut figures.arm else { return };
                 arm.protective_stops += u64::from(*mode == SafetyMode::ProtectiveStop);
                 arm.faults += u64::from(*mode == SafetyMode::Fault);
-                arm.peak_force_n = arm.peak_force_n.into_iter().chain(*force_n).reduce(f64::max);
+                arm.felt(*force_n);
             }
             Event::RobotTouched { force_n } => {
                 let Some(arm) = &mut figures.arm else { return };
                 arm.contacts += 1;
-                arm.peak_force_n = arm.peak_force_n.into_iter().chain([*force_n]).reduce(f64::max);
+                arm.felt(Some(*force_n));
             }
             _ => {}
         }

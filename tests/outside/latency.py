@@ -57,6 +57,24 @@ def send(console, log, key, name):
     return logged - pressed, console.drawn - pressed
 
 
+def send_many(console, log, signals, gap_s, chance, how):
+    """Sends signals, tells how long they took, and gives the seconds to the log."""
+    cpu_s, began = console.cpu_s(), time.monotonic()
+    logged, drawn, last = [], [], None
+    for _ in range(signals):
+        last = chance.choice([key for key in SIGNALS if key != last])
+        # Not in step with frames and ticks.
+        time.sleep(gap_s * chance.uniform(0.8, 1.2))
+        to_log, to_screen = send(console, log, last, SIGNALS[last])
+        logged.append(to_log)
+        drawn.append(to_screen)
+    share = (console.cpu_s() - cpu_s) / (time.monotonic() - began)
+    figures = [f"{name} p50 {1000 * percentile(values, 0.5):.1f} ms, p99 {1000 * percentile(values, 0.99):.1f} ms"
+               for name, values in [("log", logged), ("screen", drawn)]]
+    print(f"{signals} signals by key, {how}: {'; '.join(figures)}; {100 * share:.1f} % of a core", flush=True)
+    return logged
+
+
 def begin(tomcom, folder, hz):
     gaze = {"gaze": "json", "gaze_port": PORT + hz} if hz else {}
     console = Console(tomcom, [session_file(folder, **gaze), "--out", folder / "recordings"])
@@ -78,25 +96,13 @@ def measure(tomcom, folder, signals, gap_s, hz):
         console.key(".")
         console.wait_for("RUNNING")
         time.sleep(2)
-        cpu_s, began = console.cpu_s(), time.monotonic()
-        logged, drawn, last = [], [], None
-        for _ in range(signals):
-            last = chance.choice([key for key in SIGNALS if key != last])
-            # Not in step with frames and ticks.
-            time.sleep(gap_s * chance.uniform(0.8, 1.2))
-            to_log, to_screen = send(console, log, last, SIGNALS[last])
-            logged.append(to_log)
-            drawn.append(to_screen)
-        share = (console.cpu_s() - cpu_s) / (time.monotonic() - began)
+        source = f"JSON gaze at {hz} Hz" if hz else "simulated gaze"
+        logged = send_many(console, log, signals, gap_s, chance, source)
         if sender:
             assert sender.poll() is None, "the tracker was cut off"
             sender.kill()
             sender.wait()
         console.quit()
-    figures = [f"{name} p50 {1000 * percentile(values, 0.5):.1f} ms, p99 {1000 * percentile(values, 0.99):.1f} ms"
-               for name, values in [("log", logged), ("screen", drawn)]]
-    source = f"JSON gaze at {hz} Hz" if hz else "simulated gaze"
-    print(f"{signals} signals by key, {source}: {'; '.join(figures)}; {100 * share:.1f} % of a core", flush=True)
     assert percentile(logged, 0.99) <= LIMIT_S, "a signal took too long"
 
 

@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 from console import Console, Log, percentile, session_file
-from latency import LIMIT_S, PORT, SENDER, SIGNALS, send
+from latency import LIMIT_S, PORT, SENDER, send_many
 from stream import RERUN, compare, run
 
 HZ = 200
@@ -21,20 +21,9 @@ ADDRESS = "127.0.0.1:50292"
 
 
 def measure(console, log, signals, how):
-    # Neither the signal that is still shown nor in step with frames and ticks.
-    chance, last, logged, drawn = random.Random(how), None, [], []
+    # What is still shown would not be shown anew.
     console.key("\x7f")
-    cpu_s, began = console.cpu_s(), time.monotonic()
-    for _ in range(signals):
-        last = chance.choice([key for key in SIGNALS if key != last])
-        time.sleep(0.6 * chance.uniform(0.8, 1.2))
-        to_log, to_screen = send(console, log, last, SIGNALS[last])
-        logged.append(to_log)
-        drawn.append(to_screen)
-    share = (console.cpu_s() - cpu_s) / (time.monotonic() - began)
-    print(f"{signals} signals by key, {how}: log p50 {1000 * percentile(logged, 0.5):.1f} ms, p99 "
-          f"{1000 * percentile(logged, 0.99):.1f} ms; screen p99 {1000 * percentile(drawn, 0.99):.1f} ms; "
-          f"{100 * share:.1f} % of a core", flush=True)
+    logged = send_many(console, log, signals, 0.6, random.Random(how), how)
     assert percentile(logged, 0.9) <= LIMIT_S, "signals take too long"
 
 

@@ -100,7 +100,7 @@ fn joints(brush: &mut Brush, x: u16, y: u16, columns: u16, moment: &ArmMoment) {
 fn stopped(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
     let arm = &session.robot.arm;
     let (label, goes_on) = match arm.mode {
-        mode @ (SafetyMode::ProtectiveStop | SafetyMode::Fault) => (format!(" {} ", mode.name()), "resumes"),
+        mode if mode.has_stopped_itself() => (format!(" {} ", mode.name()), "resumes"),
         _ => (" STOPPED ".to_string(), "lets it go on"),
     };
     let key = model.keys.of(&Action::ResumeRobot).filter(|_| session.phase != Phase::Closed);

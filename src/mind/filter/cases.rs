@@ -67,7 +67,7 @@ impl Cases {
     pub fn rate(&mut self, cost: &mut CostToGo, draws: usize) {
         let care = |case: &Case| if f64::from(case.draws) >= COUNTS * draws as f64 { Care::Close } else { Care::Rough };
         for index in 0..self.known.len() {
-            if let Some(later) = self.known.get(index + AHEAD) {
+            if let Some(later) = self.known.get(index + AHEAD).filter(|later| later.after.is_none()) {
                 cost.announce(care(later), later.state, &later.recipes, Agent::Human);
             }
             let case = &mut self.known[index];

@@ -6,7 +6,6 @@ use crate::console::model::{Level, Recording};
 use crate::console::words;
 use crate::edge::doctor::free_bytes;
 use crate::edge::log::WriteError;
-use crate::robot::safety::SafetyMode;
 use crate::session::{Event, Phase, Stamped};
 
 impl Live {
@@ -17,9 +16,7 @@ impl Live {
             match stamped.event {
                 Event::Gaze(sample) => self.model.see(stamped.time, self.engine.session().corrected(sample)),
                 Event::SignalShown { .. } => self.undrawn = Some(stamped.seq),
-                Event::RobotSafety { mode, force_n, joint }
-                    if mode.is_stopped() && mode != SafetyMode::EmergencyStop =>
-                {
+                Event::RobotSafety { mode, force_n, joint } if mode.has_stopped_itself() => {
                     self.model.say(Level::Alarm, words::arm_stopped(mode, force_n, joint));
                 }
                 _ => {}

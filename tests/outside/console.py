@@ -77,6 +77,16 @@ class Console:
     def key(self, key):
         os.write(self.master, key.encode())
 
+    def start(self):
+        """Starts the trial, as soon as nothing that is looked at before it speaks against it."""
+        self.key(".")
+        self.wait_for("RUNNING|Before the trial")
+        if "RUNNING" not in self.text():
+            # Gaze that has only just begun to arrive is slow for a second.
+            self.wait_for("starts the trial +esc leaves")
+            self.key(".")
+            self.wait_for("RUNNING")
+
     def trial_s(self):
         """The trial's clock, as the head line shows it, in seconds."""
         clock = re.search(r"(\d+):(\d\d) / ", self.text())

@@ -20,8 +20,7 @@ def run(tomcom, folder, minutes, gap_s):
     keys = list(SIGNALS)
     rss, medians, sent = [], [], 0
     with console:
-        console.key(".")
-        console.wait_for("RUNNING")
+        console.start()
         began = time.monotonic()
         print("minute  RSS MB  key to log p50 ms  p99 ms  screen p50 ms  CPU %", flush=True)
         for minute in range(minutes):

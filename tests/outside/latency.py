@@ -92,9 +92,7 @@ def measure(tomcom, folder, signals, gap_s, hz):
             sender = subprocess.Popen([sys.executable, "-c", SENDER, str(PORT + hz), str(hz)])
             # Without gaze that arrives the trial would not start at once.
             console.wait_for(r"conf\w* 0.9")
-            time.sleep(0.5)
-        console.key(".")
-        console.wait_for("RUNNING")
+        console.start()
         time.sleep(2)
         source = f"JSON gaze at {hz} Hz" if hz else "simulated gaze"
         logged = send_many(console, log, signals, gap_s, chance, source)

@@ -72,8 +72,7 @@ if __name__ == "__main__":
     recordings = arguments.folder / f"picture-{os.getpid()}"
     with Console(arguments.tomcom, ["sessions/default.toml", "--out", recordings], size) as console:
         console.wait_for("READY")
-        console.key(".")
-        console.wait_for("RUNNING")
+        console.start()
         # Three signals on the way, so that the timeline has some; the last one is still shown in the picture.
         for key, share in [("w", 0.6), ("p", 0.8), ("q", 1.0)]:
             until = arguments.seconds * share

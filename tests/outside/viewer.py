@@ -45,8 +45,7 @@ def main():
         viewer = None
         try:
             console.wait_for(r"conf\w* 0.9")
-            console.key(".")
-            console.wait_for("RUNNING")
+            console.start()
             time.sleep(2)
             measure(console, log, arguments.signals, "nobody looks on")
             viewer = subprocess.Popen([RERUN, f"rerun+http://{ADDRESS}/proxy", "--headless"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -15,7 +15,7 @@ import tags
 from console import Console, percentile
 from page import Page, browser, plain
 
-PORT = 50331
+PORT = 20331
 # Sessions whose first order a person can serve alone: the seed, and the presses for each such dish.
 BASES = {
     "maki": ["take rice", "cooking_pot", "cook", "cooking_pot", "assembly_board", "take nori", "assembly_board"],

@@ -14,7 +14,8 @@ from pathlib import Path
 
 from console import Console, Log, percentile, session_file
 
-PORT = 50123
+# Below the ports that a system gives to connections by itself: those may be taken.
+PORT = 20123
 # Highlights of the sushi kitchen: the key, and what is said of it. Orders come and go, places are always there.
 SIGNALS = {
     "r": "robot hand", "a": "assembly board", "l": "plate", "n": "counter",

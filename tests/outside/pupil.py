@@ -16,7 +16,7 @@ from pathlib import Path
 from console import Console, percentile
 
 HERE = Path(__file__).parent
-PORT = 50620
+PORT = 20620
 # From sending to the update of the belief, in seconds: the median.
 LIMIT_S = 0.005
 # Keys, and what is said of them.

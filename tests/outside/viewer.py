@@ -17,7 +17,7 @@ from latency import LIMIT_S, PORT, SENDER, send_many
 from stream import RERUN, compare, run
 
 HZ = 200
-ADDRESS = "127.0.0.1:50292"
+ADDRESS = "127.0.0.1:20292"
 
 
 def measure(console, log, signals, how):

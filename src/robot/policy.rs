@@ -37,6 +37,9 @@ fn for_the_nearer_order(
     recipes: &Recipes,
     presses: Vec<ButtonId>,
 ) -> Vec<ButtonId> {
+    if presses.len() < 2 {
+        return presses;
+    }
     let mut orders: Vec<(u32, LocationId)> =
         kitchen.wanted(state).map(|(order, _)| (cost.order_with(care, state, recipes, order), order)).collect();
     orders.sort_unstable();

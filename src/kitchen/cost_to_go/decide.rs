@@ -7,6 +7,7 @@ use super::cache::{Decision, MAX_BUTTONS};
 use super::goal::MAX_TARGETS;
 use super::plan::BLOCKED;
 use super::rating::Rating;
+use super::search::{self, Search};
 use super::{CostToGo, Look, UNREACHABLE};
 use crate::kitchen::{Action, Agent, ButtonId, ContentId, LocationId, Recipes, State};
 
@@ -87,10 +88,8 @@ impl CostToGo {
         let mut nearer = 0;
         for button in 0..kitchen.buttons[agent.index()].len() {
             let Some(next) = kitchen.press(state, recipes, agent, ButtonId(button as u8)) else { continue };
-            // Most are settled by the bound.
-            let is_nearer =
-                self.value(Look::Bound, next, recipes) < here && self.value(Look::Exact, next, recipes) < here;
-            nearer |= u64::from(is_nearer) << button;
+            let kept = self.kept(next, recipes);
+            nearer |= u64::from(self.is_below(here, next, kept)) << button;
         }
         nearer
     }
@@ -213,11 +212,34 @@ impl CostToGo {
         if lower > most {
             return (lower, None);
         }
-        let upper = match rating.upper(&self.ground, &goal, &classes) {
+        let upper = match rating.upper(&self.ground, &goal, &classes, BLOCKED) {
             BLOCKED => self.solve(Look::Plan, slot, &goal, &classes),
             upper => upper,
         };
         (lower, Some(self.keep(Look::Plan, key, upper)))
+    }
+
+    /// Whether the value of a state is below `limit`, which is at most one press above it.
+    fn is_below(&mut self, limit: u32, state: State, kept: Kept) -> bool {
+        let (lower, upper) = match limit {
+            0 => return false,
+            limit => self.bracket(state, kept, limit - 1),
+        };
+        match (kept, upper) {
+            (_, None) => false,
+            (Kept::At(slot, _), Some(upper)) if upper >= limit => self.has_way(slot, state, lower, limit),
+            (_, Some(upper)) => upper < limit,
+        }
+    }
+
+    /// Whether a search finds a way of less than `limit` presses.
+    fn has_way(&mut self, slot: usize, state: State, lower: u32, limit: u32) -> bool {
+        let Some(goal) = self.goals[slot].clone() else { return false };
+        let classes = self.classes(&goal, state);
+        self.counts.searches += 1;
+        let mut finds = |reach| Search::finds(self, slot, &goal, &classes, limit, reach);
+        let far = limit >= lower + goal.targets.len() as u32;
+        finds(search::NEAR) || far && finds(search::FAR)
     }
 
     /// Whether one press of the agent leads back from where an action of it leads.

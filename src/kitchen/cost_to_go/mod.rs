@@ -224,7 +224,7 @@ impl CostToGo {
         if look == Look::Bound {
             return rating.lower;
         }
-        let upper = rating.upper(&self.ground, goal, state);
+        let upper = rating.upper(&self.ground, goal, state, BLOCKED);
         if upper <= rating.lower || look == Look::Plan && upper < BLOCKED {
             return upper;
         }

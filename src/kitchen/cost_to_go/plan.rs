@@ -32,17 +32,45 @@ impl<'a> Plan<'a> {
     pub fn carry_out(mut self, limit: u32) -> u32 {
         let mut steps = MAX_STEPS;
         let order = self.choice.order;
+        if self.choice.presses > limit {
+            return BLOCKED;
+        }
         for &target in &order[..self.goal.targets.len()] {
             while !self.serve(target) {
-                let lifts = self.bold && self.goal.targets.len() > 1;
-                let advanced = self.bring_part(target) || lifts && self.lift(target, 1 - target) || self.clear(target);
                 steps -= 1;
-                if !advanced || steps == 0 || self.presses > limit {
+                if steps == 0 {
+                    return BLOCKED;
+                }
+                // A part that is brought takes what was reckoned with; only what makes room takes more.
+                if self.bring_part(target) {
+                    continue;
+                }
+                let lifts = self.bold && self.goal.targets.len() > 1;
+                let advanced = lifts && self.lift(target, 1 - target) || self.clear(target);
+                if !advanced || self.presses + self.journeys() > limit {
                     return BLOCKED;
                 }
             }
         }
         self.presses
+    }
+
+    /// Presses of the open tasks if nothing were in the way.
+    fn journeys(&self) -> u32 {
+        let mut presses = 0;
+        for (target, &complete) in self.goal.complete.iter().enumerate().take(self.goal.targets.len()) {
+            let mut at = None;
+            for (_, task) in self.tasks().filter(|(_, task)| usize::from(task.target) == target) {
+                if task.bits == complete {
+                    at = Some(usize::from(task.at));
+                } else {
+                    at = at.or(Some(self.ground.board));
+                    presses += if self.is_ready(&task) { 0 } else { self.least(&task) };
+                }
+            }
+            presses += at.map_or(0, |at| self.ground.last_presses(at));
+        }
+        presses
     }
 
     /// Does what is certain to be right: serves a complete stack if the way is free, processes parts where they are, and

@@ -49,15 +49,20 @@ impl Rating {
         wanted
     }
 
-    /// The presses of the best plan, [`BLOCKED`] if there is none.
-    pub fn upper(&self, ground: &Ground, goal: &Goal, state: &Classes) -> u32 {
-        let mut upper = BLOCKED;
+    /// The presses of the best plan, [`BLOCKED`] if none comes to an end with at most `most`.
+    pub fn upper(&self, ground: &Ground, goal: &Goal, state: &Classes, most: u32) -> u32 {
+        let (mut upper, mut limit) = (BLOCKED, most);
         for bold in [false, true] {
             for choice in self.choices() {
-                upper = upper.min(Plan::new(ground, goal, state, choice, bold).carry_out(upper));
+                let presses = Plan::new(ground, goal, state, choice, bold).carry_out(limit);
+                if presses > limit {
+                    continue;
+                }
+                upper = presses;
                 if upper <= self.lower {
                     return upper;
                 }
+                limit = upper - 1;
             }
         }
         upper

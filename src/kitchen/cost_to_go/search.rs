@@ -6,11 +6,11 @@ use std::collections::BinaryHeap;
 
 use rustc_hash::FxHashMap;
 
-use super::CostToGo;
 use super::goal::{Classes, Goal};
 use super::ground::successors;
 use super::plan::{BLOCKED, Plan};
 use super::rating::Rating;
+use super::{CostToGo, Look};
 
 /// How far a search goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,6 +82,8 @@ pub struct Search<'a> {
     /// The least presses with which each state was met, by its key.
     seen: FxHashMap<u64, u32>,
     reach: Reach,
+    /// Whether any way below `best` will do.
+    any: bool,
 }
 
 impl<'a> Search<'a> {
@@ -96,8 +98,28 @@ impl<'a> Search<'a> {
         best: u32,
         reach: Reach,
     ) -> u32 {
-        let mut search =
-            Search { costs, slot, goal, best, open: BinaryHeap::new(), met: 0, seen: FxHashMap::default(), reach };
+        Search::new(costs, slot, goal, best, reach, false).best(start, lower)
+    }
+
+    /// Whether there is a way of less than `limit` presses from `start`.
+    pub fn finds(
+        costs: &'a mut CostToGo,
+        slot: usize,
+        goal: &'a Goal,
+        start: &Classes,
+        limit: u32,
+        reach: Reach,
+    ) -> bool {
+        Search::new(costs, slot, goal, limit, reach, true).best(start, limit - 1) < limit
+    }
+
+    fn new(costs: &'a mut CostToGo, slot: usize, goal: &'a Goal, best: u32, reach: Reach, any: bool) -> Search<'a> {
+        Search { costs, slot, goal, best, open: BinaryHeap::new(), met: 0, seen: FxHashMap::default(), reach, any }
+    }
+
+    fn best(self, start: &Classes, lower: u32) -> u32 {
+        let mut search = self;
+        let (goal, reach) = (search.goal, search.reach);
         let rating = Rating::new(&search.costs.ground, goal, start);
         search.look(start, rating, 0, lower);
         if search.open.is_empty() {
@@ -149,6 +171,10 @@ impl<'a> Search<'a> {
     /// Whether a state is worth a look: not if its value is known, nor if it was met with as few presses before.
     fn is_new(&mut self, state: &Classes, presses: u32) -> bool {
         let key = self.costs.key(self.slot, self.goal, state);
+        self.is_new_key(key, presses)
+    }
+
+    fn is_new_key(&mut self, key: u64, presses: u32) -> bool {
         if self.seen.get(&key).is_some_and(|&seen| seen <= presses) {
             return false;
         }
@@ -158,19 +184,27 @@ impl<'a> Search<'a> {
 
     /// A state met after `presses`.
     fn meet(&mut self, state: &Classes, presses: u32, bound: u32) {
-        if !self.is_new(state, presses) {
+        let key = self.costs.key(self.slot, self.goal, state);
+        if !self.is_new_key(key, presses) {
             return;
         }
-        let rating = Rating::new(&self.costs.ground, self.goal, state);
-        let lower = presses + rating.lower;
+        let (known, mut rating) = (self.costs.known(Look::Bound, key), None);
+        let lower = known.unwrap_or_else(|| {
+            let new = Rating::new(&self.costs.ground, self.goal, state);
+            let lower = new.lower;
+            rating = Some(new);
+            self.costs.keep(Look::Bound, key, lower)
+        });
+        let lower = presses + lower;
         if lower >= self.best {
             return;
         }
         // Such as are not on a best way may never be wanted; a closer look can wait.
-        match lower > bound {
-            true => self.keep(lower, UNSEEN, presses, state),
-            false => self.look(state, rating, presses, bound),
+        if lower > bound {
+            return self.keep(lower, UNSEEN, presses, state);
         }
+        let rating = rating.unwrap_or_else(|| Rating::new(&self.costs.ground, self.goal, state));
+        self.look(state, rating, presses, bound);
     }
 
     /// A closer look at a state: does what is certain to be right, and plans from there.
@@ -193,7 +227,8 @@ impl<'a> Search<'a> {
         if presses + rating.lower >= self.best {
             return;
         }
-        let upper = rating.upper(&self.costs.ground, goal, &settled);
+        let most = if self.any { self.best - presses - 1 } else { BLOCKED };
+        let upper = rating.upper(&self.costs.ground, goal, &settled, most);
         self.best = self.best.min(presses + upper);
         if upper <= rating.lower {
             let key = self.costs.key(self.slot, goal, &settled);

@@ -49,7 +49,7 @@ fn for_the_nearer_order(
     }
     let helps = |button: &ButtonId| {
         let next = kitchen.press(state, recipes, Agent::Robot, *button);
-        next.is_some_and(|next| cost.order_with(care, next, recipes, nearer) < presses_left)
+        next.is_some_and(|next| cost.order_is_below(care, next, recipes, nearer, presses_left))
     };
     let helping: Vec<ButtonId> = presses.iter().copied().filter(helps).collect();
     if helping.is_empty() { presses } else { helping }

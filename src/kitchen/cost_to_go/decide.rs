@@ -88,8 +88,8 @@ impl CostToGo {
         let mut nearer = 0;
         for button in 0..kitchen.buttons[agent.index()].len() {
             let Some(next) = kitchen.press(state, recipes, agent, ButtonId(button as u8)) else { continue };
-            let kept = self.kept(next, recipes);
-            nearer |= u64::from(self.is_below(here, next, kept)) << button;
+            let (mut targets, count) = self.targets(next, recipes);
+            nearer |= u64::from(self.is_below(here, next, &mut targets[..count])) << button;
         }
         nearer
     }
@@ -181,10 +181,15 @@ impl CostToGo {
     #[inline]
     fn kept(&mut self, state: State, recipes: &Recipes) -> Kept {
         let (mut targets, count) = self.targets(state, recipes);
-        if count == 0 {
+        self.kept_for(state, &mut targets[..count])
+    }
+
+    #[inline]
+    fn kept_for(&mut self, state: State, targets: &mut [ContentId]) -> Kept {
+        if targets.is_empty() {
             return Kept::Always(0);
         }
-        match self.key_of_state(state, &mut targets[..count]) {
+        match self.key_of_state(state, targets) {
             Some((slot, key)) => Kept::At(slot, key),
             None => Kept::Always(UNREACHABLE),
         }
@@ -220,15 +225,15 @@ impl CostToGo {
     }
 
     /// Whether the value of a state is below `limit`, which is at most one press above it.
-    fn is_below(&mut self, limit: u32, state: State, kept: Kept) -> bool {
-        let (lower, upper) = match limit {
-            0 => return false,
-            limit => self.bracket(state, kept, limit - 1),
-        };
-        match (kept, upper) {
-            (_, None) => false,
-            (Kept::At(slot, _), Some(upper)) if upper >= limit => self.has_way(slot, state, lower, limit),
-            (_, Some(upper)) => upper < limit,
+    pub(super) fn is_below(&mut self, limit: u32, state: State, targets: &mut [ContentId]) -> bool {
+        if limit == 0 {
+            return false;
+        }
+        let kept = self.kept_for(state, targets);
+        match (kept, self.bracket(state, kept, limit - 1)) {
+            (_, (_, None)) => false,
+            (Kept::At(slot, _), (lower, Some(upper))) if upper >= limit => self.has_way(slot, state, lower, limit),
+            (_, (_, Some(upper))) => upper < limit,
         }
     }
 

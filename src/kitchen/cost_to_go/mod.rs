@@ -128,6 +128,21 @@ impl CostToGo {
         }
     }
 
+    /// Whether the order's value is below `limit`, which is at most one press above it; cheaper than the value.
+    pub fn order_is_below(
+        &mut self,
+        care: Care,
+        state: State,
+        recipes: &Recipes,
+        order: LocationId,
+        limit: u32,
+    ) -> bool {
+        match state.order(order) {
+            OrderContent::Dish(dish) if care == Care::Exact => self.is_below(limit, state, &mut [recipes.get(dish)]),
+            _ => self.order_with(care, state, recipes, order) < limit,
+        }
+    }
+
     /// How much was looked up and how much computed since the start.
     pub fn counts(&self) -> Counts {
         self.counts

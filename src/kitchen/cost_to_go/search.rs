@@ -26,6 +26,9 @@ pub const NEAR: Reach = Reach { expansions: 48, takes: false };
 /// For what is left two presses or more above the bound.
 pub const FAR: Reach = Reach { expansions: 24, takes: true };
 
+/// Most searches meet fewer states than this.
+const ROOM: usize = 200;
+
 /// A state that was not looked at closely yet.
 const UNSEEN: u32 = u32::MAX;
 
@@ -114,7 +117,8 @@ impl<'a> Search<'a> {
     }
 
     fn new(costs: &'a mut CostToGo, slot: usize, goal: &'a Goal, best: u32, reach: Reach, any: bool) -> Search<'a> {
-        Search { costs, slot, goal, best, open: BinaryHeap::new(), met: 0, seen: FxHashMap::default(), reach, any }
+        let seen = FxHashMap::with_capacity_and_hasher(ROOM, Default::default());
+        Search { costs, slot, goal, best, open: BinaryHeap::new(), met: 0, seen, reach, any }
     }
 
     fn best(self, start: &Classes, lower: u32) -> u32 {

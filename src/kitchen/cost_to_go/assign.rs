@@ -134,11 +134,18 @@ impl Assignment {
         let of_first = self.tasks[..self.count].iter().take_while(|task| task.target == self.tasks[0].target).count();
         let stored = self.tasks[..of_first].iter().filter(|task| task.at == STORAGE);
         let wanted = stored.fold(0, |needs, task| needs | usize::from(Self::way(goal, state, task, STORAGE).1)) & 3;
+        // What lies somewhere can only be exchanged if both targets can use it.
+        let can = |task: &Task| {
+            let is_shared = || goal.is_shared[usize::from(state[usize::from(task.at)])];
+            task.bits.count_ones() == 1 && (task.at == STORAGE || is_shared())
+        };
         for first in 0..of_first {
+            if !can(&self.tasks[first]) {
+                continue;
+            }
             for second in of_first..self.count {
                 let (a, b) = (self.tasks[first], self.tasks[second]);
-                let parts = a.bits.count_ones() == 1 && b.bits.count_ones() == 1;
-                if !parts || a.at == b.at || !fits(&a, b.at) || !fits(&b, a.at) {
+                if !can(&b) || !can(&a) || a.at == b.at || !fits(&a, b.at) || !fits(&b, a.at) {
                     continue;
                 }
                 let presses = |task: &Task, at: u8| u32::from(Self::way(goal, state, task, at).0);

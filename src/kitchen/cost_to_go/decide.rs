@@ -8,8 +8,8 @@ use super::goal::MAX_TARGETS;
 use super::plan::BLOCKED;
 use super::rating::Rating;
 use super::search::{self, Search};
-use super::{CostToGo, Look, UNREACHABLE};
-use crate::kitchen::{Action, Agent, ButtonId, ContentId, LocationId, Recipes, State};
+use super::{CostToGo, Look, SLOT_BITS, UNREACHABLE};
+use crate::kitchen::{Action, Agent, ContentId, LocationId, Recipes, State};
 
 /// How much care is taken of a decision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub enum Care {
 
 /// Where the value of a state is kept.
 #[derive(Clone, Copy, Debug)]
-enum Kept {
+pub(super) enum Kept {
     /// Under its goal's slot and its key.
     At(usize, u64),
     /// Nowhere: without orders, or with one that cannot be made, it is always the same.
@@ -34,11 +34,14 @@ enum Kept {
 
 /// A state that a button leads to.
 #[derive(Clone, Copy, Debug)]
-struct Next {
+pub struct Next {
+    button: usize,
     state: State,
     kept: Kept,
     /// Whether one press leads back.
     can_be_undone: bool,
+    /// Its bound and, where that was wanted, what its best plan takes.
+    bracket: (u32, Option<u32>),
 }
 
 impl CostToGo {
@@ -83,14 +86,14 @@ impl CostToGo {
             let after = decision.after[..buttons].iter().enumerate();
             return after.map(|(button, &after)| u64::from(after < decision.here) << button).sum();
         }
-        let kitchen = self.kitchen.clone();
-        let here = self.value(Look::Exact, state, recipes);
+        let kept = self.kept(state, recipes);
+        let nexts = self.nexts(state, kept, recipes, agent);
+        let here = self.value_kept(Look::Exact, state, kept);
         let mut nearer = 0;
-        for button in 0..kitchen.buttons[agent.index()].len() {
-            let Some(next) = kitchen.press(state, recipes, agent, ButtonId(button as u8)) else { continue };
-            let (mut targets, count) = self.targets(next, recipes);
-            nearer |= u64::from(self.is_below(here, next, &mut targets[..count])) << button;
+        for next in &nexts {
+            nearer |= u64::from(self.is_below(here, next.state, next.kept)) << next.button;
         }
+        self.nexts = nexts;
         nearer
     }
 
@@ -125,57 +128,80 @@ impl CostToGo {
 
     /// The values one by one.
     fn each(&mut self, look: Look, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
-        let nexts = self.nexts(state, recipes, agent);
-        let here = self.value(look, state, recipes) as u8;
+        let kept = self.kept(state, recipes);
+        let nexts = self.nexts(state, kept, recipes, agent);
+        let here = self.value_kept(look, state, kept) as u8;
         let mut after = [here; MAX_BUTTONS];
-        for (after, next) in after.iter_mut().zip(nexts) {
-            let Some(Next { state, kept, .. }) = next else { continue };
-            *after = self.value_kept(look, state, kept) as u8;
+        for next in &nexts {
+            after[next.button] = self.value_kept(look, next.state, next.kept) as u8;
         }
+        self.nexts = nexts;
         (here, after)
     }
 
     /// What follows from bounds and plans.
     fn close(&mut self, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
-        let nexts = self.nexts(state, recipes, agent);
         let kept = self.kept(state, recipes);
+        let mut nexts = self.nexts(state, kept, recipes, agent);
         let most_here = self.bracket(state, kept, UNREACHABLE).1.unwrap_or(UNREACHABLE);
         let mut here = most_here;
-        let brackets = nexts.map(|next| {
-            let Next { state, kept, can_be_undone } = next?;
-            let (lower, upper) = self.bracket(state, kept, most_here);
+        for next in &mut nexts {
+            next.bracket = self.bracket(next.state, next.kept, most_here);
+            let (lower, upper) = next.bracket;
             here = here.min(upper.unwrap_or(lower) + 1);
-            Some((lower, upper, can_be_undone))
-        });
-        let after = brackets.map(|bracket| {
-            let value = match bracket {
-                None => here,
-                Some((_, None, true)) => here + 1,
-                Some((lower, None, false)) => lower,
-                Some((_, Some(upper), true)) => upper.min(here + 1),
-                Some((_, Some(upper), false)) => upper,
+        }
+        let mut after = [here.min(UNREACHABLE) as u8; MAX_BUTTONS];
+        for next in &nexts {
+            let value = match (next.bracket, next.can_be_undone) {
+                ((_, None), true) => here + 1,
+                ((lower, None), false) => lower,
+                ((_, Some(upper)), true) => upper.min(here + 1),
+                ((_, Some(upper)), false) => upper,
             };
-            value.min(UNREACHABLE) as u8
-        });
+            after[next.button] = value.min(UNREACHABLE) as u8;
+        }
+        self.nexts = nexts;
         (here as u8, after)
     }
 
-    /// The states that the agent's buttons lead to. What is kept of all of them is fetched at once, so that memory is waited
-    /// for once.
-    fn nexts(&mut self, state: State, recipes: &Recipes, agent: Agent) -> [Option<Next>; MAX_BUTTONS] {
+    /// The states that the agent's buttons lead to from a state and where it is kept; give the room back when it is done
+    /// with. What is kept of all of them is fetched at once, so that memory is waited for once.
+    fn nexts(&mut self, state: State, here: Kept, recipes: &Recipes, agent: Agent) -> Vec<Next> {
         let kitchen = self.kitchen.clone();
-        let mut nexts = [None; MAX_BUTTONS];
+        let mut nexts = std::mem::take(&mut self.nexts);
+        nexts.clear();
         let mut fetched = 0;
-        for (next, button) in nexts.iter_mut().zip(&kitchen.buttons[agent.index()]) {
+        for (index, button) in kitchen.buttons[agent.index()].iter().enumerate() {
             let Some(there) = kitchen.act(state, recipes, agent, button.action) else { continue };
-            let kept = self.kept(there, recipes);
+            let kept = match (button.action, here) {
+                (Action::Serve(_), _) => self.kept(there, recipes),
+                (_, Kept::At(slot, key)) => Kept::At(slot, self.moved(slot, key, state, there)),
+                (_, Kept::Always(value)) => Kept::Always(value),
+            };
             if let Kept::At(_, key) = kept {
                 fetched ^= self.cache.fetch(key);
             }
-            *next = Some(Next { state: there, kept, can_be_undone: self.can_be_undone(state, agent, button.action) });
+            let can_be_undone = self.can_be_undone(state, agent, button.action);
+            nexts.push(Next { button: index, state: there, kept, can_be_undone, bracket: (0, None) });
         }
         std::hint::black_box(fetched);
         nexts
+    }
+
+    /// The key of a state from that of another one with the same orders.
+    #[inline]
+    fn moved(&self, slot: usize, key: u64, from: State, to: State) -> u64 {
+        let Some(goal) = &self.goals[slot] else { return key };
+        let mut differs = from.bits() ^ to.bits();
+        let mut moved = key;
+        while differs != 0 {
+            let index = differs.trailing_zeros() / u8::BITS;
+            let location = LocationId(index as u8);
+            let [before, after] = [from, to].map(|state| goal.key_part(location, state.content(location)));
+            moved = moved.wrapping_add(after.wrapping_sub(before) << SLOT_BITS);
+            differs &= !(u128::from(u8::MAX) << (u8::BITS * index));
+        }
+        moved
     }
 
     #[inline]
@@ -185,7 +211,7 @@ impl CostToGo {
     }
 
     #[inline]
-    fn kept_for(&mut self, state: State, targets: &mut [ContentId]) -> Kept {
+    pub(super) fn kept_for(&mut self, state: State, targets: &mut [ContentId]) -> Kept {
         if targets.is_empty() {
             return Kept::Always(0);
         }
@@ -225,11 +251,10 @@ impl CostToGo {
     }
 
     /// Whether the value of a state is below `limit`, which is at most one press above it.
-    pub(super) fn is_below(&mut self, limit: u32, state: State, targets: &mut [ContentId]) -> bool {
+    pub(super) fn is_below(&mut self, limit: u32, state: State, kept: Kept) -> bool {
         if limit == 0 {
             return false;
         }
-        let kept = self.kept_for(state, targets);
         match (kept, self.bracket(state, kept, limit - 1)) {
             (_, (_, None)) => false,
             (Kept::At(slot, _), (lower, Some(upper))) if upper >= limit => self.has_way(slot, state, lower, limit),
@@ -260,11 +285,6 @@ impl CostToGo {
             }
             Action::Process(_) | Action::Serve(_) => false,
         }
-    }
-
-    fn value(&mut self, look: Look, state: State, recipes: &Recipes) -> u32 {
-        let kept = self.kept(state, recipes);
-        self.value_kept(look, state, kept)
     }
 
     fn value_kept(&mut self, look: Look, state: State, kept: Kept) -> u32 {

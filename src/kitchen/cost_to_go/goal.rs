@@ -221,6 +221,12 @@ impl Goal {
         rows.map(|(row, parts)| parts[state.content(LocationId((self.first + row) as u8)).index()]).sum()
     }
 
+    /// What a content at a physical location adds to it.
+    #[inline]
+    pub fn key_part(&self, location: LocationId, content: ContentId) -> u64 {
+        self.key_by_content[(location.index() - self.first) * self.class_of.len() + content.index()]
+    }
+
     /// The same for a state of classes.
     #[inline]
     pub fn key_of_classes(&self, state: &Classes) -> u64 {

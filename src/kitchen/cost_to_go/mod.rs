@@ -24,6 +24,7 @@ use std::sync::Arc;
 use self::cache::{Cache, Decisions};
 pub use self::cache::{Decision, MAX_BUTTONS};
 pub use self::decide::Care;
+use self::decide::Next;
 use self::goal::{Classes, Goal};
 use self::ground::Ground;
 use self::plan::BLOCKED;
@@ -52,6 +53,8 @@ pub struct CostToGo {
     goals: Vec<Option<Arc<Goal>>>,
     cache: Cache,
     decisions: Decisions,
+    /// Room for the states around a decision.
+    nexts: Vec<Next>,
     counts: Counts,
     /// `[agent][content]`: what an agent that has thrown it away can take again.
     takes: [Vec<bool>; 2],
@@ -101,6 +104,7 @@ impl CostToGo {
             goals,
             cache,
             decisions,
+            nexts: Vec::new(),
         }
     }
 
@@ -138,7 +142,10 @@ impl CostToGo {
         limit: u32,
     ) -> bool {
         match state.order(order) {
-            OrderContent::Dish(dish) if care == Care::Exact => self.is_below(limit, state, &mut [recipes.get(dish)]),
+            OrderContent::Dish(dish) if care == Care::Exact => {
+                let kept = self.kept_for(state, &mut [recipes.get(dish)]);
+                self.is_below(limit, state, kept)
+            }
             _ => self.order_with(care, state, recipes, order) < limit,
         }
     }

@@ -6,6 +6,8 @@
 //! subtracted and the prior's exact moments are added (a control variate), so that a press without information changes
 //! nothing.
 
+use std::ops::Range;
+
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, OrderContent, Recipes, State};
@@ -46,12 +48,24 @@ pub struct Sampler {
     priors: Vec<f64>,
     posteriors: Vec<f64>,
     cases: Cases,
-    /// `[belief * states + draw]`: indices of cases.
-    drawn_cases: Vec<u32>,
+    /// The different cases among the draws of all belief samples, one sample after another.
+    runs: Vec<Run>,
+    /// By belief sample, where its runs end.
+    run_ends: Vec<usize>,
+    /// The different draws of one belief sample: the values of its mixed aspects, a byte each, the first draw that is like
+    /// this, and how many are.
+    alike: Vec<(u128, usize, u32)>,
     /// By case, the weight of its draws after the press.
     case_weights: Vec<f64>,
     /// Aspects of which a belief sample has several values, one bit each, by belief sample.
     mixed: Vec<u32>,
+}
+
+/// Draws of one belief sample that are the same case.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    case: u32,
+    draws: u32,
 }
 
 /// What a press is judged by.
@@ -82,7 +96,8 @@ impl Sampler {
         }
         let mut wanted = judge.inference.beliefs;
         self.drawn.clear();
-        self.drawn_cases.clear();
+        self.runs.clear();
+        self.run_ends.clear();
         self.mixed.clear();
         self.priors.clear();
         self.posteriors.clear();
@@ -126,23 +141,29 @@ impl Sampler {
             });
             self.priors.push(count.product());
             self.mixed.push(mixed);
+            self.alike.clear();
+            if mixed == 0 {
+                self.alike.push((0, 0, states as u32));
+            }
+            for draw in 0..if mixed == 0 { 0 } else { states } {
+                let values =
+                    ones(mixed).fold(0, |values, aspect| values << 8 | u128::from(drawn[aspect * states + draw]));
+                match self.alike.iter_mut().find(|(other, ..)| *other == values) {
+                    Some((.., draws)) => *draws += 1,
+                    None => self.alike.push((values, draw, 1)),
+                }
+            }
             let (mut state, mut recipes) = (kitchen.empty_state(), truth);
             for aspect in 0..aspects {
                 set(kitchen, &mut state, &mut recipes, aspect, drawn[aspect * states]);
             }
-            // Where all draws are the same, they are one case.
-            let first = self.cases.count(state, recipes, if mixed == 0 { states as u32 } else { 1 });
-            self.drawn_cases.push(first);
-            for draw in 1..states {
-                if mixed == 0 {
-                    self.drawn_cases.push(first);
-                    continue;
-                }
+            for &(_, draw, draws) in &self.alike {
                 for aspect in ones(mixed) {
                     set(kitchen, &mut state, &mut recipes, aspect, drawn[aspect * states + draw]);
                 }
-                self.drawn_cases.push(self.cases.count(state, recipes, 1));
+                self.runs.push(Run { case: self.cases.count(state, recipes, draws), draws });
             }
+            self.run_ends.push(self.runs.len());
         }
         self.cases.rate(cost, wanted * states);
         self.press_chances(judge, button, old);
@@ -156,12 +177,11 @@ impl Sampler {
         let states = judge.inference.states;
         let buttons = judge.kitchen.buttons[Agent::Human.index()].len();
         self.posteriors.truncate(from);
-        let samples = self.drawn_cases.chunks(states).zip(&self.priors).zip(&self.mixed);
-        for ((of_sample, prior), mixed) in samples.skip(from) {
+        for (sample, prior) in self.priors.iter().enumerate().skip(from) {
             let mut sums = [0u32; MAX_BUTTONS];
-            let (of_sample, times) = if *mixed == 0 { (&of_sample[..1], states as u32) } else { (of_sample, 1) };
-            for &case in of_sample {
-                sums.iter_mut().zip(self.cases.after(case)).for_each(|(sum, &after)| *sum += times * u32::from(after));
+            for run in &self.runs[self.runs_of(sample)] {
+                let after = self.cases.after(run.case);
+                sums.iter_mut().zip(after).for_each(|(sum, &after)| *sum += run.draws * u32::from(after));
             }
             let sums = &sums[..buttons];
             let likelihood = judge.decision.press_chance(judge.slips, sums, states as f64, button);
@@ -169,12 +189,20 @@ impl Sampler {
         }
     }
 
+    /// The runs of one belief sample.
+    fn runs_of(&self, sample: usize) -> Range<usize> {
+        let start = sample.checked_sub(1).map_or(0, |before| self.run_ends[before]);
+        start..self.run_ends[sample]
+    }
+
     /// Takes more care of the cases that hardly counted before the press, and do now; whether there were any.
     fn rate_again(&mut self, cost: &mut CostToGo, states: usize) -> bool {
         self.case_weights.clear();
         self.case_weights.resize(self.cases.len(), 0.0);
-        for (of_sample, weight) in self.drawn_cases.chunks(states).zip(&self.posteriors) {
-            of_sample.iter().for_each(|&case| self.case_weights[case as usize] += weight);
+        for (sample, weight) in self.posteriors.iter().enumerate() {
+            for run in &self.runs[self.runs_of(sample)] {
+                self.case_weights[run.case as usize] += weight * f64::from(run.draws);
+            }
         }
         let sum = self.posteriors.iter().sum::<f64>() * states as f64;
         self.cases.rate_again(cost, &self.case_weights, sum)

@@ -101,6 +101,7 @@ impl Exchange {
         let mut shares = Shares::new(rows, columns);
         let mut drawn = [vec![0.0; rows], vec![0.0; columns]];
         let mut joint = vec![0.0; rows * columns];
+        let fits: Vec<bool> = self.by_kind.iter().map(|kind| (*kind != Outcome::Nothing) == effective).collect();
         for _ in 0..draws {
             for (parts, drawn) in sides.iter().zip(&mut drawn) {
                 gamma::draw(random, &parts.alphas, drawn);
@@ -109,10 +110,11 @@ impl Exchange {
                 }
             }
             let mut total = 0.0;
-            for (index, share) in joint.iter_mut().enumerate() {
-                let fits = (self.by_kind[index] != Outcome::Nothing) == effective;
-                *share = if fits { drawn[0][index / columns] * drawn[1][index % columns] } else { 0.0 };
-                total += *share;
+            for ((shares, fits), of_row) in joint.chunks_mut(columns).zip(fits.chunks(columns)).zip(&drawn[0]) {
+                for ((share, fits), of_column) in shares.iter_mut().zip(fits).zip(&drawn[1]) {
+                    *share = if *fits { of_row * of_column } else { 0.0 };
+                    total += *share;
+                }
             }
             if total > 0.0 {
                 joint.iter_mut().for_each(|share| *share /= total);
@@ -230,32 +232,40 @@ struct Shares {
     emptied: [[f64; 2]; 2],
     /// By side and kind: what is added to the moments from before the press.
     change: [Vec<[f64; 2]>; 2],
+    /// By side and kind, the share in one draw.
+    sums: [Vec<f64>; 2],
 }
 
 impl Shares {
     fn new(rows: usize, columns: usize) -> Shares {
         let change = [vec![[0.0; 2]; rows], vec![[0.0; 2]; columns]];
-        Shares { draws: 0.0, of_pairs: vec![[0.0; 2]; rows * columns], emptied: [[0.0; 2]; 2], change }
+        let sums = [vec![0.0; rows], vec![0.0; columns]];
+        Shares { draws: 0.0, of_pairs: vec![[0.0; 2]; rows * columns], emptied: [[0.0; 2]; 2], change, sums }
     }
 
     fn add(&mut self, joint: &[f64], drawn: &[Vec<f64>; 2], by_kind: &[Outcome]) {
         self.draws += 1.0;
         let columns = drawn[1].len();
-        let mut sums = [vec![0.0; drawn[0].len()], vec![0.0; columns]];
+        self.sums.iter_mut().for_each(|sums| sums.fill(0.0));
+        let [of_rows, of_columns] = &mut self.sums;
         let mut emptied = [0.0; 2];
-        for (index, &share) in joint.iter().enumerate() {
-            add(&mut self.of_pairs[index], share);
-            sums[0][index / columns] += share;
-            sums[1][index % columns] += share;
-            match by_kind[index] {
-                Outcome::Nothing => {}
-                Outcome::PickUp => emptied[1] += share,
-                Outcome::PutDown | Outcome::Stack(_) => emptied[0] += share,
+        let rows = joint.chunks(columns).zip(by_kind.chunks(columns)).zip(self.of_pairs.chunks_mut(columns));
+        for (((joint, by_kind), of_pairs), of_row) in rows.zip(of_rows) {
+            let cells = joint.iter().zip(by_kind).zip(of_pairs).zip(&mut *of_columns);
+            for (((&share, kind), of_pair), of_column) in cells {
+                add(of_pair, share);
+                *of_row += share;
+                *of_column += share;
+                match kind {
+                    Outcome::Nothing => {}
+                    Outcome::PickUp => emptied[1] += share,
+                    Outcome::PutDown | Outcome::Stack(_) => emptied[0] += share,
+                }
             }
         }
         for side in 0..2 {
             add(&mut self.emptied[side], emptied[side]);
-            for ((change, sum), before) in self.change[side].iter_mut().zip(&sums[side]).zip(&drawn[side]) {
+            for ((change, sum), before) in self.change[side].iter_mut().zip(&self.sums[side]).zip(&drawn[side]) {
                 change[0] += sum - before;
                 change[1] += sum * sum - before * before;
             }

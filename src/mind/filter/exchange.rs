@@ -4,7 +4,7 @@ use crate::base::rng::Stream;
 use crate::kitchen::{Action, Agent, AspectId, Kitchen, LocationId};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 
-use super::gamma;
+use super::gamma::Gammas;
 use super::own_press::DOUBT;
 
 /// What a press does with the values of hand and location.
@@ -101,10 +101,11 @@ impl Exchange {
         let mut shares = Shares::new(rows, columns);
         let mut drawn = [vec![0.0; rows], vec![0.0; columns]];
         let mut joint = vec![0.0; rows * columns];
+        let gammas = [0, 1].map(|side: usize| Gammas::new(&sides[side].alphas));
         let fits: Vec<bool> = self.by_kind.iter().map(|kind| (*kind != Outcome::Nothing) == effective).collect();
         for _ in 0..draws {
-            for (parts, drawn) in sides.iter().zip(&mut drawn) {
-                gamma::draw(random, &parts.alphas, drawn);
+            for ((parts, gammas), drawn) in sides.iter().zip(&gammas).zip(&mut drawn) {
+                gammas.draw(random, drawn);
                 for (p, mean) in drawn.iter_mut().zip(&parts.means) {
                     *p = (1.0 - DOUBT) * *p + DOUBT * mean;
                 }

@@ -8,7 +8,7 @@ use crate::base::rng::Stream;
 use crate::kitchen::{AspectId, DishId, Kitchen, LocationId, OrderContent};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 
-use super::gamma;
+use super::gamma::Gammas;
 use super::own_press::DOUBT;
 
 /// A dish that is ordered with a smaller expected probability is left out.
@@ -145,14 +145,22 @@ struct Draw {
     part_of: Vec<usize>,
     means: Vec<f64>,
     precision: f64,
+    gammas: Gammas,
     now: Vec<f64>,
+}
+
+/// Of a Dirichlet with these means; a part may be empty.
+fn gammas(means: &[f64], precision: f64) -> Gammas {
+    let alphas: Vec<f64> = means.iter().map(|mean| (precision * mean).max(f64::MIN_POSITIVE)).collect();
+    Gammas::new(&alphas)
 }
 
 impl Draw {
     fn of(dirichlet: &Dirichlet, aspect: AspectId) -> Draw {
         let means = dirichlet.mean().to_vec();
         let precision = dirichlet.precision();
-        Draw { aspect, part_of: (0..means.len()).collect(), now: means.clone(), means, precision }
+        let part_of = (0..means.len()).collect();
+        Draw { aspect, part_of, now: means.clone(), gammas: gammas(&means, precision), means, precision }
     }
 
     /// Puts all values together that are of no interest.
@@ -166,13 +174,12 @@ impl Draw {
             }
         }
         self.now.clone_from(&means);
+        self.gammas = gammas(&means, self.precision);
         self.means = means;
     }
 
     fn again(&mut self, random: &mut Stream) {
-        // A part may be empty.
-        let alphas: Vec<f64> = self.means.iter().map(|m| (self.precision * m).max(f64::MIN_POSITIVE)).collect();
-        gamma::draw(random, &alphas, &mut self.now);
+        self.gammas.draw(random, &mut self.now);
         for (p, mean) in self.now.iter_mut().zip(&self.means) {
             *p = (1.0 - DOUBT) * *p + DOUBT * mean;
         }

@@ -170,7 +170,6 @@ impl CostToGo {
         let kitchen = self.kitchen.clone();
         let mut nexts = std::mem::take(&mut self.nexts);
         nexts.clear();
-        let mut fetched = 0;
         for (index, button) in kitchen.buttons[agent.index()].iter().enumerate() {
             let Some(there) = kitchen.act(state, recipes, agent, button.action) else { continue };
             let kept = match (button.action, here) {
@@ -178,13 +177,14 @@ impl CostToGo {
                 (_, Kept::At(slot, key)) => Kept::At(slot, self.moved(slot, key, state, there)),
                 (_, Kept::Always(value)) => Kept::Always(value),
             };
-            if let Kept::At(_, key) = kept {
-                fetched ^= self.cache.fetch(key);
-            }
             let can_be_undone = self.can_be_undone(state, agent, button.action);
             nexts.push(Next { button: index, state: there, kept, can_be_undone, bracket: (0, None) });
         }
-        std::hint::black_box(fetched);
+        let keys = nexts.iter().filter_map(|next| match next.kept {
+            Kept::At(_, key) => Some(key),
+            Kept::Always(_) => None,
+        });
+        std::hint::black_box(keys.fold(0, |fetched, key| fetched ^ self.cache.fetch(key)));
         nexts
     }
 

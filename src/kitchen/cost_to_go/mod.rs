@@ -38,9 +38,9 @@ use super::state::{OrderContent, Recipes, State};
 
 /// The value of states from which the goal cannot be reached.
 pub const UNREACHABLE: u32 = 255;
-/// 2^20 values and 2^17 decisions: 8 MiB each.
-const CACHE_BITS: u32 = 20;
-const DECISION_BITS: u32 = 17;
+/// 2^18 values and 2^15 decisions, 2 MiB each: larger ones would be asked as rarely twice, and answer more slowly.
+const CACHE_BITS: u32 = 18;
+const DECISION_BITS: u32 = 15;
 /// Keys leave so many bits for the goal and the kind of value.
 const SLOT_BITS: u32 = 16 + cache::KIND_BITS;
 

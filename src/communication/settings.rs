@@ -80,7 +80,7 @@ impl Default for RolloutModel {
             looks_hz: 1.0,
             other_looks_hz: 0.0,
             capture: 0.0,
-            enough_error: 0.08,
+            enough_error: 0.11,
             least_rollouts: 32,
         }
     }

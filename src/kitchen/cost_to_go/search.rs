@@ -121,28 +121,27 @@ impl<'a> Search<'a> {
         Search { costs, slot, goal, best, open: BinaryHeap::new(), met: 0, seen, reach, any }
     }
 
-    fn best(self, start: &Classes, lower: u32) -> u32 {
-        let mut search = self;
-        let (goal, reach) = (search.goal, search.reach);
-        let rating = Rating::new(&search.costs.ground, goal, start);
-        search.look(start, rating, 0, lower);
-        if search.open.is_empty() {
-            search.keep(lower, 0, 0, start);
+    /// The presses of the best way that is found; none below `lower` is looked for.
+    fn best(mut self, start: &Classes, lower: u32) -> u32 {
+        let rating = Rating::new(&self.costs.ground, self.goal, start);
+        self.look(start, rating, 0, lower);
+        if self.open.is_empty() {
+            self.keep(lower, 0, 0, start);
         }
         let mut expansions = 0;
-        while let Some(next) = search.open.pop() {
-            if next.bound >= search.best || expansions >= reach.expansions && search.best < BLOCKED {
+        while let Some(next) = self.open.pop() {
+            if next.bound >= self.best || expansions >= self.reach.expansions && self.best < BLOCKED {
                 break;
             }
             if next.gap == UNSEEN {
-                let rating = Rating::new(&search.costs.ground, goal, &next.state);
-                search.look(&next.state, rating, next.presses, next.bound);
+                let rating = Rating::new(&self.costs.ground, self.goal, &next.state);
+                self.look(&next.state, rating, next.presses, next.bound);
                 continue;
             }
             expansions += 1;
-            search.expand(&next);
+            self.expand(&next);
         }
-        search.best
+        self.best
     }
 
     fn keep(&mut self, bound: u32, gap: u32, presses: u32, state: &Classes) {
@@ -172,13 +171,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether a state is worth a look: not if its value is known, nor if it was met with as few presses before.
-    fn is_new(&mut self, state: &Classes, presses: u32) -> bool {
-        let key = self.costs.key(self.slot, self.goal, state);
-        self.is_new_key(key, presses)
-    }
-
-    fn is_new_key(&mut self, key: u64, presses: u32) -> bool {
+    /// Whether the state of this key was not met with as few presses before.
+    fn is_new(&mut self, key: u64, presses: u32) -> bool {
         if self.seen.get(&key).is_some_and(|&seen| seen <= presses) {
             return false;
         }
@@ -189,7 +183,7 @@ impl<'a> Search<'a> {
     /// A state met after `presses`.
     fn meet(&mut self, state: &Classes, presses: u32, bound: u32) {
         let key = self.costs.key(self.slot, self.goal, state);
-        if !self.is_new_key(key, presses) {
+        if !self.is_new(key, presses) {
             return;
         }
         let (known, mut rating) = (self.costs.known(Look::Bound, key), None);
@@ -223,7 +217,8 @@ impl<'a> Search<'a> {
             return;
         }
         if settling > 0 {
-            if !self.is_new(&settled, presses) {
+            let key = self.costs.key(self.slot, goal, &settled);
+            if !self.is_new(key, presses) {
                 return;
             }
             rating = Rating::new(&self.costs.ground, goal, &settled);

@@ -52,9 +52,8 @@ pub struct Sampler {
     runs: Vec<Run>,
     /// By belief sample, where its runs end.
     run_ends: Vec<usize>,
-    /// The different draws of one belief sample: the values of its mixed aspects, a byte each, the first draw that is like
-    /// this, and how many are.
-    alike: Vec<(u128, usize, u32)>,
+    /// The different draws of one belief sample: the first that is like this, and how many are.
+    alike: Vec<(usize, u32)>,
     /// By case, the weight of its draws after the press.
     case_weights: Vec<f64>,
     /// Aspects of which a belief sample has several values, one bit each, by belief sample.
@@ -141,23 +140,13 @@ impl Sampler {
             });
             self.priors.push(count.product());
             self.mixed.push(mixed);
-            self.alike.clear();
-            if mixed == 0 {
-                self.alike.push((0, 0, states as u32));
-            }
-            for draw in 0..if mixed == 0 { 0 } else { states } {
-                let values =
-                    ones(mixed).fold(0, |values, aspect| values << 8 | u128::from(drawn[aspect * states + draw]));
-                match self.alike.iter_mut().find(|(other, ..)| *other == values) {
-                    Some((.., draws)) => *draws += 1,
-                    None => self.alike.push((values, draw, 1)),
-                }
-            }
+            self.tell_apart(sample, mixed, states);
+            let drawn = &self.drawn[sample * row..(sample + 1) * row];
             let (mut state, mut recipes) = (kitchen.empty_state(), truth);
             for aspect in 0..aspects {
                 set(kitchen, &mut state, &mut recipes, aspect, drawn[aspect * states]);
             }
-            for &(_, draw, draws) in &self.alike {
+            for &(draw, draws) in &self.alike {
                 for aspect in ones(mixed) {
                     set(kitchen, &mut state, &mut recipes, aspect, drawn[aspect * states + draw]);
                 }
@@ -169,6 +158,25 @@ impl Sampler {
         self.press_chances(judge, button, old);
         while self.rate_again(cost, states) {
             self.press_chances(judge, button, 0);
+        }
+    }
+
+    /// Finds the draws of a belief sample that differ.
+    fn tell_apart(&mut self, sample: usize, mixed: u32, states: usize) {
+        self.alike.clear();
+        if mixed == 0 {
+            return self.alike.push((0, states as u32));
+        }
+        let row = self.urns.len() * states;
+        let drawn = &self.drawn[sample * row..(sample + 1) * row];
+        for draw in 0..states {
+            let like = |other: usize| {
+                ones(mixed).all(|aspect| drawn[aspect * states + other] == drawn[aspect * states + draw])
+            };
+            match self.alike.iter_mut().find(|(other, _)| like(*other)) {
+                Some((_, draws)) => *draws += 1,
+                None => self.alike.push((draw, 1)),
+            }
         }
     }
 

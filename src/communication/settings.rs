@@ -64,7 +64,7 @@ pub struct RolloutModel {
     /// participants, beyond those looks: 0.3 at the robot's hand and at places, 0.4 at orders.
     pub capture: f64,
     /// No more rollouts of a signal are made when the standard error of its benefit is at most this, in presses, or at most
-    /// one and a half times this if the net benefit is below zero by three standard errors.
+    /// twice this where it is clear whether it pays: where the net benefit is off zero by three standard errors.
     pub enough_error: f64,
     /// At least so many are made.
     pub least_rollouts: usize,
@@ -80,7 +80,7 @@ impl Default for RolloutModel {
             looks_hz: 1.0,
             other_looks_hz: 0.0,
             capture: 0.0,
-            enough_error: 0.11,
+            enough_error: 0.08,
             least_rollouts: 32,
         }
     }

@@ -189,8 +189,8 @@ impl Planner {
         }
         for arm in arms.iter_mut() {
             let error = arm.tally.cautious_error();
-            let is_hopeless = arm.tally.mean() + 3.0 * error < self.spec.cost_of_communication;
-            arm.is_decided |= error <= model.enough_error || is_hopeless && error <= 1.5 * model.enough_error;
+            let is_clear = (arm.tally.mean() - self.spec.cost_of_communication).abs() > 3.0 * error;
+            arm.is_decided |= error <= model.enough_error || is_clear && error <= 2.0 * model.enough_error;
         }
         arms.iter().all(|arm| arm.is_decided)
     }

@@ -21,7 +21,7 @@ use crate::communication::Sender;
 use crate::kitchen::Agent;
 use crate::session::admit::{admit, hygiene};
 use crate::session::event::{EndReason, SignalEnd};
-use crate::session::settings::{ParticipantKind, Visibility};
+use crate::session::settings::{Condition, ParticipantKind, Visibility};
 use crate::session::{Event, Phase, Session};
 
 /// A key that the terminal reports again within this time is held down, not pressed again: terminals repeat a held key
@@ -259,8 +259,16 @@ fn report(model: &mut Model, code: KeyCode, action: Option<Action>) {
 
 /// Sends the signal that the assistant recommends, if the wizard sees it.
 fn accept(model: &mut Model, session: &Session) -> Option<Command> {
-    let seen = session.advice.as_ref().filter(|_| session.spec.console.visibility == Visibility::Recommendation);
-    let Some((advice, signal)) = seen.and_then(|advice| Some((advice, advice.best.clone()?))) else {
+    if session.spec.console.visibility != Visibility::Recommendation {
+        model.say(Level::Refused, "not accepted: recommendations are not shown in this session");
+        return None;
+    }
+    if session.spec.trial.condition == Condition::Assistant {
+        model.say(Level::Refused, "not accepted: the assistant sends the signals in this condition");
+        return None;
+    }
+    let best = session.advice.as_ref().and_then(|advice| Some((advice, advice.best.clone()?)));
+    let Some((advice, signal)) = best else {
         model.say(Level::Refused, "not accepted: nothing is recommended");
         return None;
     };

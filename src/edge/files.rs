@@ -96,7 +96,7 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     if let Some(file) = &spec.human_model {
         if spec.human != HumanModel::default() {
             let found = "human_model, beside parameters of the human model in the session file".to_string();
-            let remedy = "one of the two".to_string();
+            let remedy = "one of the two: that file, or the [human] tables in here, which then have to go".to_string();
             return Err(FileError::at(path, &text, place_of(&text, "human_model", 0), found, remedy));
         }
         let model = folder.join(file);

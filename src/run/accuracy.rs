@@ -277,11 +277,19 @@ pub fn describe(figures: &AccuracyFigures) -> String {
         );
     }
     let told = |value: Option<f64>, digits: usize| value.map_or("-".to_string(), |value| format!("{value:.digits$}"));
+    let of_reference = match figures.reference_pairs {
+        0 => "no signal was worth enough at them to compare benefits; take more (--reference-steps)".to_string(),
+        pairs => format!(
+            "benefits off by {} presses over {}, of which its own standard errors explain {}",
+            told(figures.reference_rmse, 3),
+            count(pairs, "pair", "pairs"),
+            told(figures.reference_error, 3),
+        ),
+    };
     format!(
         "{}: the same decision as with {CONVERGED} times the rollouts at {} of the {} clear ones, benefits off by {} presses \
-         (root mean square over {})\n\
-         plain reference on {}: {} times the time ({} ms a step, planner {} ms); the same decision at {}, benefits off by \
-         {} presses over {}, of which its own standard errors explain {}\n",
+         (root mean square over {} of step and signal, worth more than {MATTERS})\n\
+         plain reference on {}: {} times the time ({} ms a step, planner {} ms); the same decision at {}, {of_reference}\n",
         count(figures.steps, "step", "steps"),
         told(figures.same_decision, 3),
         figures.clear_steps,
@@ -292,8 +300,5 @@ pub fn describe(figures: &AccuracyFigures) -> String {
         told(figures.reference_ms, 1),
         told(figures.plan_ms, 2),
         told(figures.reference_same_decision, 3),
-        told(figures.reference_rmse, 3),
-        count(figures.reference_pairs, "pair", "pairs"),
-        told(figures.reference_error, 3),
     )
 }

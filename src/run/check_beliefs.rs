@@ -171,14 +171,17 @@ pub fn describe(check: &BeliefCheck) -> String {
     let thresholds = flags.thresholds.map_or(String::new(), |at| {
         format!(" (thresholds {:.3} for locations, {:.3} for recipes)", at.locations, at.recipes)
     });
-    let interval = likely.gain_interval.map_or(String::new(), |[from, to]| format!(" ({from:.3} to {to:.3})"));
+    // One recording has no spread.
+    let interval = likely.gain_interval.filter(|_| check.recordings > 1);
+    let interval = interval.map_or(String::new(), |[from, to]| format!(" ({from:.3} to {to:.3})"));
     let informed = match (likely.informed_tau, likely.informed_lapse) {
         (Some(tau), Some(lapse)) => format!(" (tau {tau:.2}, lapse {lapse:.3})"),
         _ => String::new(),
     };
     let mut text = format!(
         "{}, {} of the human\n\
-         what is believed wrong, area under the ROC: {} (locations {}, recipes {}; knowing only what changed unseen: {})\n\
+         what is believed wrong, area under the ROC: {} in the mean (locations {}, where knowing only what changed unseen \
+         gives {}; recipes {})\n\
          false belief episodes of two or more errors flagged before the third: {} of {}, {} false flags per 20 presses, \
          wrongly flagged {} of the time{thresholds}\n\
          expected calibration error between 0.05 and 0.95: {}\n\
@@ -188,8 +191,8 @@ pub fn describe(check: &BeliefCheck) -> String {
         count(check.human_actions, "press", "presses"),
         number(found.auc),
         number(found.auc_locations),
-        number(found.auc_recipes),
         number(found.auc_baseline),
+        number(found.auc_recipes),
         number(flags.flagged_before_third_error),
         flags.episodes.map_or("-".to_string(), |episodes| episodes.to_string()),
         number(flags.false_flags_per_20_actions),

@@ -280,13 +280,16 @@ pub fn describe(fit: &Fit) -> String {
 /// Which parameters the recordings do not tell, and what their values are then.
 fn untold(fit: &Fit) -> String {
     let untold: Vec<&str> = fit.parameters.iter().filter(|one| !one.identified).map(|one| one.name).collect();
-    match untold.is_empty() {
-        true => String::new(),
-        false => format!(
-            "\nnot told by these recordings: {}. Their values are where the search ended, and no findings; they would go \
-             into a file all the same. More recordings may tell them, or keep them as they are: leave them out of \
-             --parameters.\n",
-            untold.join(", ")
-        ),
+    if untold.is_empty() {
+        return String::new();
     }
+    let (why, remedy) = match fit.converged {
+        true => ("not told by these recordings", "More recordings may tell them"),
+        false => ("not known, since the search did not come to its end", "A larger --tries may tell them"),
+    };
+    format!(
+        "\n{why}: {}. Their values are where the search ended, and no findings; a file (--out) has them all the same. \
+         {remedy}, or keep them as they are: leave them out of --parameters.\n",
+        untold.join(", ")
+    )
 }

@@ -34,7 +34,7 @@ const SEEK: SessionTime = SessionTime(10_000_000_000);
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ReviewError {
     #[error("the console cannot be opened: {0}")]
-    #[diagnostic(help("run it in a terminal, or through a pipe for the recording in words"))]
+    #[diagnostic(help("run it in a terminal; `tomcom replay RECORDING` tells a recording in words through a pipe"))]
     Terminal(io::Error),
     #[error(transparent)]
     #[diagnostic(transparent)]

@@ -19,9 +19,9 @@ use super::view::regions::Regions;
 use super::words;
 use crate::communication::Sender;
 use crate::kitchen::Agent;
-use crate::session::admit::{admit, hygiene};
+use crate::session::admit::{admit, hygiene, may_send};
 use crate::session::event::{EndReason, SignalEnd};
-use crate::session::settings::{Condition, ParticipantKind, Visibility};
+use crate::session::settings::{ParticipantKind, Visibility};
 use crate::session::{Event, Phase, Session};
 
 /// A key that the terminal reports again within this time is held down, not pressed again: terminals repeat a held key
@@ -263,8 +263,8 @@ fn accept(model: &mut Model, session: &Session) -> Option<Command> {
         model.say(Level::Refused, "not accepted: recommendations are not shown in this session");
         return None;
     }
-    if session.spec.trial.condition == Condition::Assistant {
-        model.say(Level::Refused, "not accepted: the assistant sends the signals in this condition");
+    if let Err(reason) = may_send(session, Sender::Wizard) {
+        model.say(Level::Refused, format!("not accepted: {reason}"));
         return None;
     }
     let best = session.advice.as_ref().and_then(|advice| Some((advice, advice.best.clone()?)));

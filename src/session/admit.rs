@@ -55,16 +55,24 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
     }
 }
 
+/// Whether this sender's signals are shown in the trial's condition.
+///
+/// # Errors
+/// The reason why not, in words.
+pub fn may_send(session: &Session, by: Sender) -> Result<(), &'static str> {
+    match (session.spec.trial.condition, by) {
+        (Condition::None, _) => Err("nobody sends signals in the unassisted condition"),
+        (Condition::Wizard, Sender::Assistant) => Err("the wizard sends the signals in this condition"),
+        (Condition::Assistant, Sender::Wizard) => Err("the assistant sends the signals in this condition"),
+        _ => Ok(()),
+    }
+}
+
 fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'static str> {
     if session.phase != Phase::Running {
         return Err("signals are sent while the trial runs");
     }
-    match (session.spec.trial.condition, by) {
-        (Condition::None, _) => return Err("nobody sends signals in the unassisted condition"),
-        (Condition::Wizard, Sender::Assistant) => return Err("the wizard sends the signals in this condition"),
-        (Condition::Assistant, Sender::Wizard) => return Err("the assistant sends the signals in this condition"),
-        _ => {}
-    }
+    may_send(session, by)?;
     let target = session.kitchen.location_named(signal.target()).map(|id| session.kitchen.location(id).kind);
     if target == Some(LocationKind::Hand(Agent::Human)) && !session.spec.signals.own_hand {
         return Err("the session does not allow highlighting the human's own hand");

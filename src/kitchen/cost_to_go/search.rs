@@ -216,8 +216,8 @@ impl<'a> Search<'a> {
             self.best = self.best.min(presses + value);
             return;
         }
+        let key = self.costs.key(self.slot, goal, &settled);
         if settling > 0 {
-            let key = self.costs.key(self.slot, goal, &settled);
             if !self.is_new(key, presses) {
                 return;
             }
@@ -230,7 +230,6 @@ impl<'a> Search<'a> {
         let upper = rating.upper(&self.costs.ground, goal, &settled, most);
         self.best = self.best.min(presses + upper);
         if upper <= rating.lower {
-            let key = self.costs.key(self.slot, goal, &settled);
             self.costs.cache.insert(key, upper);
         } else {
             let bound = bound.max(presses + rating.lower);

@@ -1,8 +1,9 @@
 //! `tomcom replay RECORDING... --accuracy`: how far the planner's answers are from what it would answer with time enough, and
 //! how much longer its plain reference takes.
 //!
-//! On steps spread evenly over the recordings the planner answers as in a session, then with 64 times the rollouts and no
-//! early end: the converged answer. The plain reference answers on a few of these steps, at default fidelity.
+//! The planner answers after every press, as in a session; on steps spread evenly over the recordings it answers once more,
+//! with 64 times the rollouts and no early end: the converged answer. The plain reference answers on a few of these steps,
+//! at default fidelity.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -98,27 +99,31 @@ pub fn measure(recordings: &[PathBuf], extent: Extent, done: impl Fn() + Sync) -
     let kitchen = one_kitchen.kitchen()?;
     let mut steps = spread(&asked, extent.steps);
     let bench = Bench { kitchen: kitchen.clone(), asked };
-    // One after another, as in a session: what is remembered helps the next answer.
+    // As in a session: after every press, on one thread, what is remembered helps the next answer. The plain reference
+    // follows at once, so that the machine is as fast for both.
+    let every = steps.len().div_ceil(extent.reference_steps.max(1)).max(1);
     let mut worker = Worker::default();
-    for step in &mut steps {
-        let advisor = worker.advisor(&bench, step.recording, 1);
+    for (index, step) in steps.iter_mut().enumerate() {
+        let (advisor, answered) = worker.advisor(&bench, step.recording, 1);
+        for question in &bench.asked[step.recording].questions[*answered..step.question] {
+            benefits(advisor, question);
+        }
+        *answered = step.question + 1;
         let began = Instant::now();
         step.ours = benefits(advisor, bench.question(step));
         step.took_s = began.elapsed().as_secs_f64();
         done();
-    }
-    let every = steps.len().div_ceil(extent.reference_steps.max(1)).max(1);
-    let numbered: Vec<(usize, Step)> = steps.into_iter().enumerate().collect();
-    let answer = |worker: &mut Worker, (index, step): &(usize, Step)| {
-        let converged = benefits(worker.advisor(&bench, step.recording, CONVERGED), bench.question(step));
-        done();
-        let plain = (index % every == 0).then(|| bench.plain(step));
-        if plain.is_some() {
+        if index % every == 0 {
+            step.plain = Some(bench.plain(step));
             done();
         }
-        Step { converged, plain, ..step.clone() }
+    }
+    let answer = |worker: &mut Worker, step: &Step| {
+        let converged = benefits(worker.advisor(&bench, step.recording, CONVERGED).0, bench.question(step));
+        done();
+        Step { converged, ..step.clone() }
     };
-    let steps = parallel::each_with(&numbered, Worker::default, answer, || {});
+    let steps = parallel::each_with(&steps, Worker::default, answer, || {});
     let price = bench.asked.first().map_or(0.0, |asked| asked.spec.assistant.cost_of_communication);
     Ok(figures(&steps, price))
 }
@@ -173,12 +178,13 @@ impl Bench {
 /// The planner of the recording that a thread is at.
 #[derive(Default)]
 struct Worker {
-    advisor: Option<(usize, Advisor)>,
+    /// The recording, its planner, and how many of its questions were answered.
+    advisor: Option<(usize, Advisor, usize)>,
 }
 
 impl Worker {
-    /// The planner of a recording's session, with so many times the rollouts.
-    fn advisor(&mut self, bench: &Bench, recording: usize, times: usize) -> &mut Advisor {
+    /// The planner of a recording's session, with so many times the rollouts, and how many questions it has answered.
+    fn advisor(&mut self, bench: &Bench, recording: usize, times: usize) -> (&mut Advisor, &mut usize) {
         let made = || {
             let mut spec = bench.asked[recording].spec.clone();
             if times > 1 {
@@ -187,10 +193,11 @@ impl Worker {
                 rollout.least_rollouts = rollout.rollouts;
             }
             let cost = CostToGo::new(bench.kitchen.clone());
-            (recording, Advisor::by(ConceptName::TomCom, bench.kitchen.clone(), &spec, cost))
+            (recording, Advisor::by(ConceptName::TomCom, bench.kitchen.clone(), &spec, cost), 0)
         };
-        self.advisor = self.advisor.take().filter(|(of, _)| *of == recording);
-        &mut self.advisor.get_or_insert_with(made).1
+        self.advisor = self.advisor.take().filter(|(of, ..)| *of == recording);
+        let (_, advisor, answered) = self.advisor.get_or_insert_with(made);
+        (advisor, answered)
     }
 }
 

@@ -20,6 +20,8 @@ use tomcom::robot::policy;
 /// From one press to the next of each agent, and from one fixation to the next, in seconds.
 const PRESS_S: [f64; 2] = [1.2, 2.8];
 const FIXATION_S: [f64; 2] = [0.2, 0.6];
+/// The share of signals that show a recipe if there is an order.
+const RECIPES: f64 = 0.6;
 
 pub fn kitchen(path: &str) -> Arc<Kitchen> {
     match read_kitchen(Path::new(path)) {
@@ -51,6 +53,9 @@ pub struct World {
     fixation: (f64, [f64; 2]),
     /// When human and robot press next.
     press_at: [f64; 2],
+    /// From one signal to the next, in seconds (none: nobody sends any), and when the next one comes.
+    signal_s: Option<f64>,
+    signal_at: f64,
     /// Orders that change: when, which, to what.
     changes: Vec<(f64, LocationId, OrderContent)>,
 }
@@ -65,7 +70,26 @@ impl World {
         let changes = shows.collect();
         let state = kitchen.empty_state();
         let (fixation, press_at) = ((0.0, [0.5, 0.5]), [2.0, 3.0]);
-        World { kitchen, cost, chance, gaze_hz, state, number: 0, gaze_at: 0.05, fixation, press_at, changes }
+        let (number, gaze_at, signal_s, signal_at) = (0, 0.05, None, f64::INFINITY);
+        World {
+            kitchen,
+            cost,
+            chance,
+            gaze_hz,
+            state,
+            number,
+            gaze_at,
+            fixation,
+            press_at,
+            signal_s,
+            signal_at,
+            changes,
+        }
+    }
+
+    /// With somebody who sends a signal every so many seconds.
+    pub fn with_signals(self, every_s: f64) -> World {
+        World { signal_s: Some(every_s), signal_at: 1.0, ..self }
     }
 
     /// The beginning of a trial.
@@ -77,8 +101,9 @@ impl World {
     pub fn next(&mut self, choose: impl FnOnce(&mut CostToGo) -> ButtonId) -> Observation {
         let change = self.changes.iter().map(|(at, _, _)| *at).fold(f64::INFINITY, f64::min);
         let [human, robot] = self.press_at;
-        let now = change.min(human).min(robot).min(self.gaze_at);
+        let now = change.min(human).min(robot).min(self.gaze_at).min(self.signal_at);
         match now {
+            _ if now == self.signal_at => self.signal(now),
             _ if now == self.gaze_at => self.gaze(now),
             _ if now == change => self.change(now),
             _ if now == human => {
@@ -126,6 +151,19 @@ impl World {
         let [x, y] = self.fixation.1;
         let sample = GazeSample::new(x, y, 0.9);
         self.observation(now, Observed::Gaze { sample, taken: SessionTime::from_secs_f64(now) })
+    }
+
+    /// Shows a recipe, mostly, or highlights what a place holds.
+    fn signal(&mut self, now: f64) -> Observation {
+        self.signal_at = self.signal_s.map_or(f64::INFINITY, |every_s| now + every_s);
+        let wants = |order: &LocationId| matches!(self.state.order(*order), OrderContent::Dish(_));
+        let orders: Vec<LocationId> = self.kitchen.orders.iter().copied().filter(wants).collect();
+        let is_recipe = self.chance.random::<f64>() < RECIPES && !orders.is_empty();
+        let location = match is_recipe {
+            true => orders[self.chance.random_range(0..orders.len())],
+            false => LocationId(self.chance.random_range(0..self.kitchen.locations.len()) as u8),
+        };
+        self.observation(now, Observed::Told { location })
     }
 
     fn change(&mut self, now: f64) -> Observation {

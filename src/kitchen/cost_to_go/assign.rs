@@ -86,16 +86,16 @@ impl Assignment {
         }
         let classes = goal.content.len();
         let offer = |location: usize| goal.offers[target][location * classes + usize::from(state[location])];
-        let mut offered = [(Offer::default(), 0); 16];
+        let mut offered = [(Offer::default(), 0u8); 16];
         let mut count = 0;
         for location in ones(useful & !self.used) {
-            offered[count] = (offer(location), location);
+            offered[count] = (offer(location), location as u8);
             count += usize::from(offered[count].0.fills & !have != 0);
         }
         let offered = &offered[..count];
         while have != complete {
             // The first of the best.
-            let mut best: Option<(Offer, usize)> = None;
+            let mut best: Option<(Offer, u8)> = None;
             for &(offer, location) in offered.iter().filter(|(offer, _)| offer.fills & have == 0) {
                 if best.is_none_or(|(other, _)| offer.rank > other.rank) {
                     best = Some((offer, location));
@@ -103,7 +103,7 @@ impl Assignment {
             }
             match best {
                 Some((offer, location)) => {
-                    self.push(target, offer.fills, location as u8);
+                    self.push(target, offer.fills, location);
                     have |= offer.fills;
                 }
                 None => {

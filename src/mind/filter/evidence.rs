@@ -60,10 +60,11 @@ pub struct Sampler {
     mixed: Vec<u32>,
 }
 
-/// Draws of one belief sample that are the same case.
+/// Draws of one belief sample that are the same case: the first of them, and how many there are.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     case: u32,
+    first: u32,
     draws: u32,
 }
 
@@ -150,7 +151,8 @@ impl Sampler {
                 for aspect in ones(mixed) {
                     set(kitchen, &mut state, &mut recipes, aspect, drawn[aspect * states + draw]);
                 }
-                self.runs.push(Run { case: self.cases.count(state, recipes, draws), draws });
+                let case = self.cases.count(state, recipes, draws);
+                self.runs.push(Run { case, first: draw as u32, draws });
             }
             self.run_ends.push(self.runs.len());
         }
@@ -235,7 +237,14 @@ impl Sampler {
                 let start = sample * row + aspect * states;
                 match self.mixed[sample] >> aspect & 1 {
                     0 => of_value[usize::from(self.drawn[start])] += weight,
-                    _ => moments.add(&self.drawn[start..start + states], weight),
+                    _ => {
+                        let runs = self.runs[self.runs_of(sample)].iter();
+                        moments.add(
+                            runs.map(|run| (self.drawn[start + run.first as usize], run.draws)),
+                            states,
+                            weight,
+                        );
+                    }
                 }
             }
             for (value, &weight) in of_value.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
@@ -300,26 +309,31 @@ struct Moments<'a> {
     square: f64,
     /// How much of the prior's mean is to be added in the end.
     share: f64,
+    /// The values of one belief sample, and how often each was drawn.
+    counts: Vec<(u8, u32)>,
 }
 
 impl Moments<'_> {
     fn of(prior: &Dirichlet) -> Moments<'_> {
         let mean = prior.mean().to_vec();
         let square = mean.iter().map(|m| m * m).sum();
-        Moments { prior, mean, second: prior.second(), square, share: 0.0 }
+        Moments { prior, mean, second: prior.second(), square, share: 0.0, counts: Vec::new() }
     }
 
-    /// Adds Dir(alpha + counts of these draws) with this weight; all weights sum to 0.
-    fn add(&mut self, drawn: &[u8], weight: f64) {
-        let mut counts = [0u32; UNDRAWN as usize + 1];
-        drawn.iter().for_each(|&value| counts[usize::from(value)] += 1);
+    /// Adds Dir(alpha + counts of these values, `draws` in all) with this weight; all weights sum to 0.
+    fn add(&mut self, drawn: impl Iterator<Item = (u8, u32)>, draws: usize, weight: f64) {
+        self.counts.clear();
+        for (value, times) in drawn {
+            match self.counts.iter_mut().find(|(other, _)| *other == value) {
+                Some((_, count)) => *count += times,
+                None => self.counts.push((value, times)),
+            }
+        }
         let (precision, prior) = (self.prior.precision(), self.prior.mean());
-        let size = precision + drawn.len() as f64;
+        let size = precision + draws as f64;
         let (mut cross, mut squares) = (0.0, 0.0);
-        for &value in drawn {
-            // Each value once.
-            let value = usize::from(value);
-            let count = f64::from(std::mem::take(&mut counts[value]));
+        for &(value, count) in &self.counts {
+            let (value, count) = (usize::from(value), f64::from(count));
             self.mean[value] += weight * count / size;
             cross += prior[value] * count;
             squares += count * count;

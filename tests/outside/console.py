@@ -17,6 +17,9 @@ import pyte
 # What the program asks of a terminal, and what this one answers: a black background, and that it is a terminal.
 ANSWERS = {b"\x1b]11;?\x1b\\": b"\x1b]11;rgb:0000/0000/0000\x1b\\", b"\x1b[c": b"\x1b[?62;22c"}
 
+# A question is not answered by its own key for a shorter time: it might be held down.
+OWN_KEY_S = 1
+
 
 class Console:
     """Runs `tomcom operate` with these arguments until it is left by `with`."""
@@ -84,6 +87,8 @@ class Console:
         if "RUNNING" not in self.text():
             # Gaze that has only just begun to arrive is slow for a second.
             self.wait_for("starts the trial +esc leaves")
+            # Where nothing was wrong any more when the list came up, that was only just now.
+            time.sleep(OWN_KEY_S)
             self.key(".")
             self.wait_for("RUNNING")
 

@@ -14,7 +14,7 @@ use rand::RngExt;
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::kitchen::cost_to_go::{Care, CostToGo};
 use tomcom::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use tomcom::run::engine::Engine;
 use tomcom::run::options::session_or_default;
@@ -136,6 +136,28 @@ fn burger_states_met_in_sessions() {
 #[test]
 fn burger_states_after_random_presses() {
     check("burger", "scrambled", 0.95, 2);
+}
+
+/// What people in rollouts decide by takes no search: in at least so many of these states the same presses of the human lead
+/// nearer as with one.
+fn check_close(kitchen_name: &str, sample: &str, least_same: f64) {
+    let kitchen = kitchen(kitchen_name);
+    let recipes = kitchen.true_recipes();
+    let mut cost = CostToGo::new(kitchen.clone());
+    let known = read(&file(kitchen_name, sample));
+    let mut nearer = |care: Care, state: State| cost.nearer(care, state, &recipes, Agent::Human);
+    let differ = known.iter().map(|(state, ..)| nearer(Care::Close, *state) ^ nearer(Care::Exact, *state));
+    let same = differ.filter(|&differ| differ == 0).count() as f64 / known.len() as f64;
+    println!("{kitchen_name}, states {sample}: the same presses lead nearer in {same:.4}");
+    assert!(same >= least_same);
+}
+
+#[test]
+fn people_in_rollouts_know_what_leads_nearer() {
+    check_close("sushi", "met", 0.98);
+    check_close("sushi", "scrambled", 0.88);
+    check_close("burger", "met", 0.99);
+    check_close("burger", "scrambled", 0.98);
 }
 
 #[test]

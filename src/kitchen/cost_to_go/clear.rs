@@ -1,163 +1,174 @@
 //! The part of a plan that makes room: throws away, picks up, puts aside.
 
-use super::assign::{STORAGE, ones};
 use super::journeys::FreeMask;
+use super::moves::Move;
 use super::plan::Plan;
 
+/// What the work on a target needs.
+#[derive(Clone, Copy, Debug)]
+pub struct Wants {
+    target: usize,
+    /// Whether parts have to come onto the board.
+    assembling: bool,
+    /// What the target's parts cannot do without.
+    pub needs: FreeMask,
+    /// The same for all that is to come.
+    later: FreeMask,
+    hands_full: bool,
+}
+
+impl Wants {
+    /// Whether the hand of this agent should be empty.
+    pub fn hand(&self, agent: usize) -> bool {
+        self.hands_full || self.needs & (1 << agent) != 0
+    }
+}
+
 impl Plan<'_> {
-    /// Makes room for the target: one press or two that throw away, pick up, or put aside.
+    /// Makes room for the target in the way that mostly is best: one press or two. Whether there is a way.
     pub(super) fn clear(&mut self, target: usize) -> bool {
+        let wants = self.wants(target);
+        let best = self
+            .put_down(&wants)
+            .or_else(|| self.throw_away(&wants))
+            .or_else(|| self.empty_place(&wants))
+            .or_else(|| self.make_way(&wants))
+            .or_else(|| self.empty_hand(&wants));
+        if let Some(best) = best {
+            self.make(best);
+        }
+        best.is_some()
+    }
+
+    pub(super) fn wants(&self, target: usize) -> Wants {
         let of_target = || self.tasks().filter(move |(_, task)| usize::from(task.target) == target);
         let complete = self.goal.complete[target];
         let assembling = of_target().any(|(_, task)| task.bits != complete && !self.is_ready(&task));
         let needs = of_target().filter(|(_, task)| !self.is_ready(task));
         let needs = needs.fold(0, |needs, (_, task)| needs | self.needs(&task));
-        // Which hand the coming work can spare.
         let later = self.tasks().fold(needs, |needs, (_, task)| needs | self.needs(&task));
         let hands_full = self.ground.hands.iter().all(|&hand| self.state[hand] != 0);
-        self.throw_away(needs, later, hands_full)
-            || self.empty_place(target, assembling, needs, later)
-            || self.empty_hand(needs, hands_full)
+        Wants { target, assembling, needs, later, hands_full }
+    }
+
+    /// Whether what lies at a location is where the target's parts have to go.
+    pub(super) fn blocks(&self, wants: &Wants, location: usize) -> bool {
+        let ground = self.ground;
+        match location {
+            _ if self.state[location] == 0 => false,
+            _ if location == ground.board => wants.assembling && !self.board_is_open(wants.target),
+            _ if location == ground.plate => !wants.assembling,
+            _ => !ground.is_hand(location) && wants.needs & ground.journeys.bit[location] != 0,
+        }
+    }
+
+    /// Puts down what a wanted hand holds where it has to go anyway.
+    fn put_down(&self, wants: &Wants) -> Option<Move> {
+        let wanted = (0..2).filter(|&agent| wants.hand(agent));
+        wanted.into_iter().find_map(|agent| {
+            let (task, _) = self.task_at(self.ground.hands[agent])?;
+            match self.best_place(task, wants.needs, true)? {
+                (0, to) => Some(Move::Bring { task, to }),
+                _ => None,
+            }
+        })
     }
 
     /// Throws away what is of no use from a hand that is needed, or from one of two full ones.
-    fn throw_away(&mut self, needs: FreeMask, later: FreeMask, hands_full: bool) -> bool {
+    fn throw_away(&self, wants: &Wants) -> Option<Move> {
         let hands = self.ground.hands;
-        let useless = |index: usize| self.state[hands[index]] != 0 && self.task_at(hands[index]).is_none();
-        let needed = (0..2).find(|&index| needs & (1 << index) != 0 && useless(index));
+        let useless = |agent: usize| self.state[hands[agent]] != 0 && self.task_at(hands[agent]).is_none();
+        let needed = (0..2).find(|&agent| wants.needs & (1 << agent) != 0 && useless(agent));
         // A hand that will be needed later rather than one that may hold it to the end.
-        let full = (0..2).filter(|&index| hands_full && useless(index));
-        let full = full.max_by_key(|&index| (later & (1 << index) != 0, index == 0));
-        let Some(index) = needed.or(full) else { return false };
-        self.presses += 1;
-        self.state[hands[index]] = 0;
-        true
+        let full = (0..2).filter(|&agent| wants.hands_full && useless(agent));
+        let full = full.max_by_key(|&agent| (wants.later & (1 << agent) != 0, agent == 0));
+        needed.or(full).map(|agent| Move::Throw { hand: hands[agent] })
     }
 
     /// Takes away what lies where the target's parts have to go, if a hand is free for it.
-    fn empty_place(&mut self, target: usize, assembling: bool, needs: FreeMask, later: FreeMask) -> bool {
+    fn empty_place(&self, wants: &Wants) -> Option<Move> {
         let ground = self.ground;
         let [human, robot] = ground.hands;
         let hand = match (self.state[human] == 0, self.state[robot] == 0) {
-            (false, false) => return false,
+            (false, false) => return None,
             (true, false) => human,
             (false, true) => robot,
-            (true, true) => {
-                if later & 1 == 0 {
-                    human
-                } else {
-                    robot
-                }
-            }
+            (true, true) if wants.later & 1 == 0 => human,
+            (true, true) => robot,
         };
-        let blocks = |location: usize| match location {
-            _ if self.state[location] == 0 => false,
-            _ if location == ground.board => assembling && !self.board_is_open(target),
-            _ if location == ground.plate => !assembling,
-            _ => !ground.is_hand(location) && needs & ground.journeys.bit[location] != 0,
-        };
-        let blocking: u32 = ground.places().filter(|&location| blocks(location)).map(|at| 1 << at).sum();
-        // First what has a way of its own, then what has to be held or thrown away.
-        let tasks = self.choice.places(self.open);
-        let turns = if self.bold { [blocking & tasks, blocking & !tasks] } else { [blocking, 0] };
-        for location in turns.into_iter().flat_map(ones) {
-            match self.task_at(location) {
-                None => {
-                    self.presses += 1;
-                    self.state[hand] = self.state[location];
-                    self.state[location] = 0;
-                    return true;
-                }
-                Some((index, _)) if self.put_aside(index, hand, needs) => return true,
-                Some(_) => {}
+        let blocking = ground.places().filter(|&location| self.blocks(wants, location));
+        // First what goes on its own way, then what is of no use, then what has to be put elsewhere.
+        let ranked = blocking.filter_map(|from| match self.task_at(from) {
+            None => Some((1, Move::PickUp { from, hand })),
+            Some((task, _)) => {
+                let (detour, made) = self.put_aside(wants, task, hand)?;
+                Some((2 * detour.min(1), made))
             }
-        }
-        false
+        });
+        ranked.min_by_key(|&(rank, _)| rank).map(|(_, made)| made)
     }
 
-    /// Puts down what a needed hand holds, or throws it away if there is no place.
-    fn empty_hand(&mut self, needs: FreeMask, hands_full: bool) -> bool {
-        let mut best: Option<(u32, usize, Option<usize>)> = None;
-        for (index, hand) in self.ground.hands.into_iter().enumerate() {
-            if self.state[hand] == 0 || !(needs & (1 << index) != 0 || hands_full) {
-                continue;
+    /// Moves a part out of the way: along its own way, or into a hand that can hold it, or somewhere else. With the presses
+    /// that this costs extra.
+    fn put_aside(&self, wants: &Wants, task: usize, hand: usize) -> Option<(u32, Move)> {
+        let of = self.choice.tasks[task];
+        let from = usize::from(of.at);
+        // What lies on its target's board as it cannot stay there comes back at once.
+        let returns =
+            usize::from(of.target) == wants.target && from == self.ground.board && self.leads(task, from, hand);
+        if returns {
+            return Some((0, Move::Bring { task, to: hand }));
+        }
+        let spare_hand = wants.needs & self.ground.journeys.bit[hand] == 0;
+        match self.best_place(task, wants.needs, false) {
+            Some((detour, to)) if detour == 0 || !spare_hand => Some((detour, Move::Bring { task, to })),
+            _ if spare_hand => Some((1, Move::Bring { task, to: hand })),
+            _ => None,
+        }
+    }
+
+    /// Takes away what lies where the item in a needed hand has to go anyway.
+    fn make_way(&self, wants: &Wants) -> Option<Move> {
+        let ground = self.ground;
+        let needed = (0..2).filter(|&agent| !wants.hands_full && wants.needs & (1 << agent) != 0);
+        needed.into_iter().find_map(|agent| {
+            let (held, _) = self.task_at(ground.hands[agent])?;
+            let other = ground.hands[1 - agent];
+            let from = self.blocked_by(held)?;
+            let Some((task, _)) = self.task_at(from) else { return Some(Move::PickUp { from, hand: other }) };
+            let spare_hand = wants.needs & ground.journeys.bit[other] == 0;
+            match self.best_place(task, wants.needs, true) {
+                Some((0, to)) => Some(Move::Bring { task, to }),
+                _ if spare_hand && self.leads(task, from, other) => Some(Move::Bring { task, to: other }),
+                _ => None,
             }
-            let Some((task_index, task)) = self.task_at(hand) else { continue };
-            if let Some((rest, place)) = self.best_place(task_index, needs, self.bold)
-                && best.is_none_or(|(least, ..)| rest < least)
-            {
-                best = Some((rest, task_index, Some(place)));
+        })
+    }
+
+    /// Puts down what a wanted hand holds, or throws it away if there is no place.
+    fn empty_hand(&self, wants: &Wants) -> Option<Move> {
+        let mut best: Option<(u32, Move)> = None;
+        let mut consider = |rest: u32, made: Move| {
+            if best.is_none_or(|(least, _)| rest < least) {
+                best = Some((rest, made));
             }
-            if task.bits.count_ones() == 1 {
-                let (fresh, _) = self.goal.fresh[usize::from(task.target)][task.bits.trailing_zeros() as usize];
+        };
+        for agent in (0..2).filter(|&agent| wants.hand(agent)) {
+            let Some((task, of)) = self.task_at(self.ground.hands[agent]) else { continue };
+            if let Some((detour, to)) = self.best_place(task, wants.needs, true) {
+                consider(detour, Move::Bring { task, to });
+            }
+            if of.bits.count_ones() == 1 {
+                let (fresh, _) = self.goal.fresh[usize::from(of.target)][of.bits.trailing_zeros() as usize];
                 // Thrown away with one press, taken anew with those of a fresh one.
-                let rest = (u32::from(fresh) + 1).saturating_sub(self.least(&task));
-                if best.is_none_or(|(least, ..)| rest < least) {
-                    best = Some((rest, task_index, None));
-                }
+                consider((u32::from(fresh) + 1).saturating_sub(self.least(&of)), Move::Discard { task });
             }
         }
-        match best {
-            None => false,
-            Some((_, index, Some(place))) => {
-                self.presses += 1;
-                self.relocate(index, place);
-                true
-            }
-            Some((_, index, None)) => {
-                self.presses += 1;
-                self.state[usize::from(self.choice.tasks[index].at)] = 0;
-                self.choice.tasks[index].at = STORAGE;
-                true
-            }
-        }
-    }
-
-    /// Moves a part out of the way: along its own way, or into a hand that can hold it, or somewhere else.
-    fn put_aside(&mut self, index: usize, hand: usize, needs: FreeMask) -> bool {
-        let spare_hand = needs & self.ground.journeys.bit[hand] == 0;
-        match self.best_place(index, needs, false) {
-            Some((detour, place)) if detour == 0 || !spare_hand => {
-                self.presses += 2;
-                self.relocate(index, place);
-            }
-            _ if spare_hand => {
-                self.presses += 1;
-                self.relocate(index, hand);
-            }
-            _ => return false,
-        }
-        true
-    }
-
-    pub(super) fn relocate(&mut self, index: usize, place: usize) {
-        let from = usize::from(self.choice.tasks[index].at);
-        self.state[place] = self.state[from];
-        self.state[from] = 0;
-        self.choice.tasks[index].at = place as u8;
-        self.process(index, place);
-    }
-
-    /// Does to a part what can be done to it where it is.
-    pub(super) fn process(&mut self, index: usize, place: usize) {
-        let task = self.choice.tasks[index];
-        if task.bits.count_ones() != 1 || self.ground.is_hand(place) {
-            return;
-        }
-        let near = &self.goal.near[usize::from(task.target)];
-        let at = |class: u8| near[place * self.goal.content.len() + usize::from(class)];
-        for (process, at_place) in self.ground.process_place.iter().enumerate() {
-            let class = self.state[place];
-            let result = self.goal.becomes[process][usize::from(class)];
-            if *at_place == Some(place) && result != 0 && at(result) + 1 == at(class) {
-                self.state[place] = result;
-                self.presses += 1;
-            }
-        }
+        best.map(|(_, best)| best)
     }
 
     /// Where to put a part down so that its way becomes longer by as little as possible: (presses that it costs extra, place).
-    fn best_place(&self, index: usize, needs: FreeMask, through: bool) -> Option<(u32, usize)> {
+    pub(super) fn best_place(&self, index: usize, needs: FreeMask, through: bool) -> Option<(u32, usize)> {
         let ground = self.ground;
         let task = self.choice.tasks[index];
         let from = usize::from(task.at);
@@ -188,5 +199,24 @@ impl Plan<'_> {
             }
         }
         best.map(|(detour, _, place)| (detour, place))
+    }
+
+    /// The occupied place where a single item has to be put next.
+    pub(super) fn blocked_by(&self, task: usize) -> Option<usize> {
+        let ground = self.ground;
+        let from = usize::from(self.choice.tasks[task].at);
+        let content = self.goal.content[usize::from(self.state[from])];
+        let places = ground.places().filter(|&place| !ground.is_hand(place) && place != ground.board);
+        let mut blocked = places.filter(|&place| self.state[place] != 0 && ground.accepts(place, content));
+        blocked.find(|&place| self.leads(task, from, place))
+    }
+
+    /// Whether one press from one location to another brings a single item nearer.
+    pub(super) fn leads(&self, task: usize, from: usize, to: usize) -> bool {
+        let of = self.choice.tasks[task];
+        let class = usize::from(self.state[usize::from(of.at)]);
+        let near = &self.goal.near[usize::from(of.target)];
+        let at = |location: usize| near[location * self.goal.content.len() + class];
+        of.bits.count_ones() == 1 && at(to) + 1 == at(from)
     }
 }

@@ -243,7 +243,7 @@ impl CostToGo {
         if lower > most {
             return (lower, None);
         }
-        let upper = match rating.upper(&self.ground, &goal, &classes, BLOCKED) {
+        let upper = match rating.close_upper(&self.ground, &goal, &classes) {
             BLOCKED => self.solve(Look::Plan, slot, &goal, &classes),
             upper => upper,
         };

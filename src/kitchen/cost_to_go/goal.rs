@@ -4,6 +4,7 @@
 
 use crate::kitchen::{Action, Agent, ContentId, Kitchen, LocationId, State};
 
+use super::assign::{STORAGE, Task};
 use super::ground::Ground;
 use super::journeys::{Journeys, NEVER, Needs};
 
@@ -141,6 +142,17 @@ impl Goal {
         goal.fill_moves(kitchen);
         goal.fill_keys(kitchen);
         goal
+    }
+
+    /// Presses of a part, and what they cannot do without, if its item lies at `at`.
+    #[inline]
+    pub fn way(&self, state: &Classes, task: &Task, at: u8) -> (u8, Needs) {
+        let target = usize::from(task.target);
+        if at == STORAGE {
+            return self.fresh[target][task.bits.trailing_zeros() as usize];
+        }
+        let index = usize::from(at) * self.content.len() + usize::from(state[usize::from(at)]);
+        (self.near[target][index], self.near_needs[target][index])
     }
 
     fn fill_distances(&mut self, kitchen: &Kitchen, journeys: &Journeys) {

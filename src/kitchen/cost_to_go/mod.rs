@@ -12,9 +12,11 @@ mod assign;
 mod cache;
 mod clear;
 mod decide;
+mod demand;
 mod goal;
 mod ground;
 mod journeys;
+mod moves;
 mod plan;
 mod rating;
 mod search;
@@ -246,7 +248,7 @@ impl CostToGo {
         if look == Look::Bound {
             return rating.lower;
         }
-        let upper = rating.upper(&self.ground, goal, state, BLOCKED);
+        let upper = rating.close_upper(&self.ground, goal, state);
         if upper <= rating.lower || look == Look::Plan && upper < BLOCKED {
             return upper;
         }

@@ -1,6 +1,7 @@
 //! Plans: the presses that carry out an assignment, one target after another, and clear what is in the way.
 
 use super::assign::{Assignment, STORAGE, Task};
+use super::demand::Demand;
 use super::goal::{Classes, Goal};
 use super::ground::Ground;
 use super::journeys::{FreeMask, NEVER};
@@ -16,61 +17,72 @@ pub struct Plan<'a> {
     pub(super) goal: &'a Goal,
     pub(super) state: Classes,
     pub(super) choice: Assignment,
-    /// Whether a complete stack may wait in a hand, and items may be brought on their way through a place that is needed.
-    pub(super) bold: bool,
     /// Tasks that are not done, one bit each.
     pub(super) open: u32,
     pub(super) presses: u32,
+    /// How many targets are served, and how many steps were taken.
+    served: usize,
+    steps: usize,
 }
 
 impl<'a> Plan<'a> {
-    pub fn new(ground: &'a Ground, goal: &'a Goal, state: &Classes, choice: &Assignment, bold: bool) -> Plan<'a> {
-        Plan { ground, goal, state: *state, choice: *choice, bold, open: choice.all(), presses: 0 }
+    pub fn new(ground: &'a Ground, goal: &'a Goal, state: &Classes, choice: &Assignment) -> Plan<'a> {
+        Plan { ground, goal, state: *state, choice: *choice, open: choice.all(), presses: 0, served: 0, steps: 0 }
     }
 
-    /// The presses of the whole plan, [`BLOCKED`] if it comes to a standstill or takes more than `limit`.
-    pub fn carry_out(mut self, limit: u32) -> u32 {
-        let mut steps = MAX_STEPS;
-        let order = self.choice.order;
-        if self.choice.presses > limit {
+    /// The presses of the whole plan, [`BLOCKED`] if it comes to a standstill or takes more than `limit`. Room is made in the
+    /// way that mostly is best; with a second thought, once in any other way that there is: a search of one discrepancy
+    /// (Harvey and Ginsberg 1995, Limited Discrepancy Search).
+    pub fn carry_out(mut self, limit: u32, second_thought: bool) -> u32 {
+        if self.choice.demand.bound(self.ground, &self.state) > limit {
             return BLOCKED;
         }
-        for &target in &order[..self.goal.targets.len()] {
-            while !self.serve(target) {
-                steps -= 1;
-                if steps == 0 {
-                    return BLOCKED;
-                }
-                // A part that is brought takes what was reckoned with; only what makes room takes more.
-                if self.bring_part(target) {
-                    continue;
-                }
-                let lifts = self.bold && self.goal.targets.len() > 1;
-                let advanced = lifts && self.lift(target, 1 - target) || self.clear(target);
-                if !advanced || self.presses + self.journeys() > limit {
-                    return BLOCKED;
-                }
-            }
-        }
-        self.presses
+        self.process_all();
+        self.go_on(limit, second_thought)
     }
 
-    /// Presses of the open tasks if nothing were in the way.
-    fn journeys(&self) -> u32 {
-        let mut presses = 0;
-        for (target, &complete) in self.goal.complete.iter().enumerate().take(self.goal.targets.len()) {
-            let mut at = None;
-            for (_, task) in self.tasks().filter(|(_, task)| usize::from(task.target) == target) {
-                if task.bits == complete {
-                    at = Some(usize::from(task.at));
-                } else {
-                    at = at.or(Some(self.ground.board));
-                    presses += if self.is_ready(&task) { 0 } else { self.least(&task) };
+    fn go_on(mut self, mut limit: u32, second_thought: bool) -> u32 {
+        let mut best = BLOCKED;
+        while self.served < self.goal.targets.len() {
+            let target = self.choice.order[self.served];
+            if self.serve(target) {
+                self.served += 1;
+                continue;
+            }
+            self.steps += 1;
+            if self.steps == MAX_STEPS {
+                return best;
+            }
+            // A part that is brought takes what was reckoned with; only what makes room takes more.
+            if self.bring_part(target) {
+                continue;
+            }
+            if second_thought {
+                for &made in self.moves(target).all() {
+                    let mut other = Plan { ..self };
+                    other.make(made);
+                    if other.bound() > limit {
+                        continue;
+                    }
+                    let presses = other.go_on(limit, false);
+                    if presses <= limit {
+                        (best, limit) = (presses, presses - 1);
+                    }
                 }
             }
-            presses += at.map_or(0, |at| self.ground.last_presses(at));
+            let lifts = self.goal.targets.len() > 1;
+            let advanced = lifts && self.lift(target, 1 - target) || self.clear(target);
+            if !advanced || limit < BLOCKED && self.bound() > limit {
+                return best;
+            }
         }
-        presses
+        if self.presses <= limit { self.presses } else { best }
+    }
+
+    /// What the whole plan takes at least.
+    fn bound(&self) -> u32 {
+        let tasks = self.tasks().map(|(_, task)| task);
+        self.presses + Demand::of(self.ground, self.goal, &self.state, tasks).bound(self.ground, &self.state)
     }
 
     /// Does what is certain to be right: serves a complete stack if the way is free, processes parts where they are, and
@@ -83,14 +95,19 @@ impl<'a> Plan<'a> {
                     return (self.presses, self.state, Some(target));
                 }
             }
-            for index in 0..self.choice.count {
-                let at = self.choice.tasks[index].at;
-                if at != STORAGE && self.open & (1 << index) != 0 {
-                    self.process(index, usize::from(at));
-                }
-            }
+            self.process_all();
             if !self.begun().is_some_and(|target| self.bring_part(target)) {
                 return (self.presses, self.state, None);
+            }
+        }
+    }
+
+    /// Does to all parts what can be done to them where they are.
+    fn process_all(&mut self) {
+        for index in 0..self.choice.count {
+            let at = self.choice.tasks[index].at;
+            if at != STORAGE && self.open & (1 << index) != 0 {
+                self.process(index, usize::from(at));
             }
         }
     }
@@ -214,16 +231,17 @@ impl<'a> Plan<'a> {
             if self.is_ready(&task) || task.bits == self.goal.complete[target] {
                 continue;
             }
+            let rank = match task.at {
+                STORAGE => 2,
+                at if ground.is_hand(usize::from(at)) => 0,
+                _ => 1,
+            };
+            if best.is_some_and(|(least, ..)| rank >= least) {
+                continue;
+            }
             let presses = self.bring(&task, free);
             if presses != NEVER && u32::from(presses) <= self.least(&task) {
-                let rank = match task.at {
-                    STORAGE => 2,
-                    at if ground.is_hand(usize::from(at)) => 0,
-                    _ => 1,
-                };
-                if best.is_none_or(|(least, ..)| rank < least) {
-                    best = Some((rank, index, presses));
-                }
+                best = Some((rank, index, presses));
             }
         }
         let Some((_, index, presses)) = best else { return false };
@@ -275,12 +293,12 @@ impl<'a> Plan<'a> {
 
     /// Presses of a task if nothing were in the way.
     pub(super) fn least(&self, task: &Task) -> u32 {
-        u32::from(Assignment::way(self.goal, &self.state, task, task.at).0)
+        u32::from(self.goal.way(&self.state, task, task.at).0)
     }
 
     /// What the rest of a task cannot do without.
     pub(super) fn needs(&self, task: &Task) -> FreeMask {
-        usize::from(Assignment::way(self.goal, &self.state, task, task.at).1)
+        usize::from(self.goal.way(&self.state, task, task.at).1)
     }
 
     /// The task whose item lies at a location.

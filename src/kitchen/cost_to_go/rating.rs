@@ -16,7 +16,7 @@ pub struct Rating {
 impl Rating {
     pub fn new(ground: &Ground, goal: &Goal, state: &Classes) -> Rating {
         let forwards = Assignment::choose(ground, goal, state, [0, 1]);
-        let lower = forwards.bound(ground, state);
+        let lower = forwards.demand.bound(ground, state);
         if goal.targets.len() < 2 || goal.targets[0] == goal.targets[1] {
             return Rating { choices: [forwards, forwards], count: 1, lower };
         }
@@ -24,7 +24,7 @@ impl Rating {
             return Rating { choices: [forwards, forwards.reversed()], count: 2, lower };
         }
         let backwards = Assignment::choose(ground, goal, state, [1, 0]);
-        let other = backwards.bound(ground, state);
+        let other = backwards.demand.bound(ground, state);
         match lower <= other {
             true => Rating { choices: [forwards, backwards], count: 2, lower },
             false => Rating { choices: [backwards, forwards], count: 2, lower: other },
@@ -51,19 +51,30 @@ impl Rating {
 
     /// The presses of the best plan, [`BLOCKED`] if none comes to an end with at most `most`.
     pub fn upper(&self, ground: &Ground, goal: &Goal, state: &Classes, most: u32) -> u32 {
+        self.best_plan(ground, goal, state, most, false)
+    }
+
+    /// The same, with second thoughts where the plans do not reach the bound.
+    pub fn close_upper(&self, ground: &Ground, goal: &Goal, state: &Classes) -> u32 {
+        let upper = self.upper(ground, goal, state, BLOCKED);
+        if upper <= self.lower {
+            return upper;
+        }
+        upper.min(self.best_plan(ground, goal, state, upper - 1, true))
+    }
+
+    fn best_plan(&self, ground: &Ground, goal: &Goal, state: &Classes, most: u32, second_thought: bool) -> u32 {
         let (mut upper, mut limit) = (BLOCKED, most);
-        for bold in [false, true] {
-            for choice in self.choices() {
-                let presses = Plan::new(ground, goal, state, choice, bold).carry_out(limit);
-                if presses > limit {
-                    continue;
-                }
-                upper = presses;
-                if upper <= self.lower {
-                    return upper;
-                }
-                limit = upper - 1;
+        for choice in self.choices() {
+            let presses = Plan::new(ground, goal, state, choice).carry_out(limit, second_thought);
+            if presses > limit {
+                continue;
             }
+            upper = presses;
+            if upper <= self.lower {
+                return upper;
+            }
+            limit = upper - 1;
         }
         upper
     }

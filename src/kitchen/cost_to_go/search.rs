@@ -154,7 +154,7 @@ impl<'a> Search<'a> {
         let rating = Rating::new(&self.costs.ground, goal, &open.state);
         if goal.targets.len() > 1 {
             for choice in rating.choices() {
-                let plan = Plan::new(&self.costs.ground, goal, &open.state, choice, false);
+                let plan = Plan::new(&self.costs.ground, goal, &open.state, choice);
                 if let Some((presses, next)) = plan.begin(choice.order[0]) {
                     self.meet(&next, open.presses + presses, open.bound);
                 }
@@ -208,7 +208,7 @@ impl<'a> Search<'a> {
     /// A closer look at a state: does what is certain to be right, and plans from there.
     fn look(&mut self, state: &Classes, mut rating: Rating, presses: u32, bound: u32) {
         let goal = self.goal;
-        let plan = Plan::new(&self.costs.ground, goal, state, rating.best_choice(), false);
+        let plan = Plan::new(&self.costs.ground, goal, state, rating.best_choice());
         let (settling, settled, served) = plan.settle();
         let presses = presses + settling;
         if let Some(target) = served {

@@ -1,0 +1,89 @@
+//! What tasks take at least: the presses of their journeys, and those that clear what is in their way.
+
+use super::assign::{STORAGE, Task};
+use super::goal::{Classes, Goal};
+use super::ground::Ground;
+use super::journeys::Needs;
+
+/// What tasks take at least.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Demand {
+    /// Presses if nothing were ever in the way.
+    presses: u32,
+    /// Locations whose content is used, one bit each.
+    used: u32,
+    /// What the journeys cannot do without.
+    needs: Needs,
+    /// The same for those journeys that cannot do without a station, by station.
+    station_needs: [Needs; 8],
+    /// The targets that have to be assembled on the board, one bit each.
+    assembled: u32,
+    /// Whether anything but the last press is left.
+    is_busy: bool,
+}
+
+impl Demand {
+    /// Of these tasks as their items lie now.
+    pub fn of(ground: &Ground, goal: &Goal, state: &Classes, tasks: impl Iterator<Item = Task>) -> Demand {
+        let mut demand = Demand::default();
+        for task in tasks {
+            let (target, at) = (usize::from(task.target), usize::from(task.at));
+            if task.at != STORAGE {
+                demand.used |= 1 << task.at;
+            }
+            demand.is_busy |= at != ground.plate;
+            if task.bits == goal.complete[target] {
+                demand.presses += ground.last_presses(at);
+                continue;
+            }
+            if demand.assembled & 1 << target == 0 {
+                demand.assembled |= 1 << target;
+                demand.presses += ground.last_presses(ground.board);
+            }
+            let is_ready = at == ground.board && goal.ready[target][usize::from(state[at])] == task.bits;
+            if !is_ready {
+                let (presses, needs) = goal.way(state, &task, task.at);
+                demand.presses += u32::from(presses);
+                demand.need(needs);
+            }
+        }
+        demand
+    }
+
+    fn need(&mut self, needs: Needs) {
+        self.needs |= needs;
+        let mut stations = needs >> 2;
+        while stations != 0 {
+            self.station_needs[stations.trailing_zeros() as usize & 7] |= needs;
+            stations &= stations - 1;
+        }
+    }
+
+    /// Presses that are needed at least: those of the journeys, and those that clear what is in their way.
+    pub fn bound(&self, ground: &Ground, state: &Classes) -> u32 {
+        let unused = |location: usize| state[location] != 0 && self.used & (1 << location) == 0;
+        let mut in_the_way = 0;
+        // Everything of no use that is in a hand or picked up has to be thrown away, but what a hand holds to the end that
+        // is not needed any more.
+        let mut kept = false;
+        if unused(ground.plate) {
+            in_the_way += 1;
+            kept = true;
+        }
+        if self.assembled != 0 && unused(ground.board) {
+            in_the_way += 1;
+            kept = true;
+        }
+        for (index, &station) in ground.journeys.stations.iter().enumerate() {
+            let needs = self.station_needs[index];
+            if needs != 0 && unused(station.index()) && station.index() != ground.plate {
+                in_the_way += 1;
+                kept |= needs & 3 != 3;
+            }
+        }
+        let held = ground.hands.map(unused);
+        kept |= held[0] && self.needs & 1 == 0 || held[1] && self.needs & 2 == 0;
+        let thrown = u32::from(held[0]) + u32::from(held[1]) + in_the_way - u32::from(kept);
+        self.presses + in_the_way + if in_the_way > 0 || self.is_busy { thrown } else { 0 }
+    }
+}

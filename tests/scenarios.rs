@@ -141,9 +141,13 @@ impl Scenario {
         let situation =
             Situation { state, belief: &belief, changed: &[], robot: self.outlook(&kitchen), robot_press_s: 2.4 };
         let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
-        let moment = Moment { seq: 0, time: SessionTime::ZERO, situation, signals: &signals, error };
-        concept.advise(&mut CostToGo::new(kitchen), &moment)
+        concept.advise(&mut CostToGo::new(kitchen), &Moment { error, ..moment(situation, &signals) })
     }
+}
+
+/// A moment at the start of a session.
+fn moment<'a>(situation: Situation<'a>, signals: &'a [Signal]) -> Moment<'a> {
+    Moment { seq: 0, time: SessionTime::ZERO, presses: 0, situation, signals, error: None }
 }
 
 fn value_named(kitchen: &Kitchen, aspect: AspectId, label: &str) -> usize {
@@ -236,7 +240,7 @@ fn an_answer_depends_on_nothing_that_was_asked_before() {
         let situation = Situation { state, belief: &belief, changed: &[], robot, robot_press_s: 2.4 };
         if scenario.cost.is_none() {
             assert_eq!(
-                planner.advise(&mut cost, &situation, &signals, 0, SessionTime::ZERO),
+                planner.advise(&mut cost, &moment(situation, &signals)),
                 scenario.answer(1),
                 "{}",
                 scenario.about
@@ -260,7 +264,7 @@ fn what_will_be_seen_anyway_is_not_worth_saying() {
         let situation =
             Situation { state, belief: &belief, changed, robot: scenario.outlook(&kitchen), robot_press_s: 2.4 };
         let mut cost = CostToGo::new(kitchen.clone());
-        let answer = planner.advise(&mut cost, &situation, &signals, 0, SessionTime::ZERO);
+        let answer = planner.advise(&mut cost, &moment(situation, &signals));
         let option = answer.options.iter().find(|option| option.signal.target() == "cooking_pot");
         option.expect("the pot may be highlighted").benefit
     };

@@ -65,6 +65,8 @@ pub struct Moment<'a> {
     /// The number and the time of the event that brought it about.
     pub seq: u64,
     pub time: SessionTime,
+    /// Presses of both agents so far. Chance follows from their number, so that nothing else that is recorded changes it.
+    pub presses: u32,
     pub situation: Situation<'a>,
     /// What may be said; what is no use saying again is not among it.
     pub signals: &'a [Signal],
@@ -79,7 +81,7 @@ pub trait Concept: fmt::Debug + Send {
     fn advise(&mut self, cost: &mut CostToGo, moment: &Moment) -> Recommendation;
 }
 
-/// The concept of this name with the settings of a session. Chances follow from `seed` and the number of an event.
+/// The concept of this name with the settings of a session. Chance follows from `seed` and the moment's presses.
 pub fn concept(
     name: ConceptName,
     kitchen: Arc<Kitchen>,
@@ -92,12 +94,6 @@ pub fn concept(
         ConceptName::Tom => Box::new(Tom::new(kitchen, spec.belief_threshold)),
         ConceptName::Dev => Box::new(Dev::new(kitchen, spec.proposed_presses)),
         ConceptName::None => Box::new(Silent),
-    }
-}
-
-impl Concept for Planner {
-    fn advise(&mut self, cost: &mut CostToGo, moment: &Moment) -> Recommendation {
-        Planner::advise(self, cost, &moment.situation, moment.signals, moment.seq, moment.time)
     }
 }
 

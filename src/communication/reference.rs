@@ -10,9 +10,10 @@ use std::sync::Arc;
 
 use rand::RngExt;
 
+use super::concept::Moment;
 use super::recommendation::aspects_told;
 use super::settings::AssistantSpec;
-use super::situation::{RobotOutlook, Situation};
+use super::situation::RobotOutlook;
 use super::{Signal, unavailable};
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::{Care, CostToGo};
@@ -60,20 +61,22 @@ impl Future {
 }
 
 impl ReferencePlanner {
-    /// A planner for people as `human` says. Its chances follow from `seed` and the number of an event.
+    /// A planner for people as `human` says. Its chances follow from `seed` and a moment's presses.
     pub fn new(kitchen: Arc<Kitchen>, human: HumanModel, spec: AssistantSpec, seed: u64) -> ReferencePlanner {
         ReferencePlanner { kitchen, human, spec, seed }
     }
 
-    /// What each of these signals is worth after the event of this number; those that cannot be sent are left out.
-    pub fn advise(&self, cost: &mut CostToGo, situation: &Situation, signals: &[Signal], seq: u64) -> Vec<Worth> {
-        let possible = signals.iter().filter(|signal| unavailable(&self.kitchen, situation.state, signal).is_none());
+    /// What each signal of a moment is worth; those that cannot be sent are left out.
+    pub fn advise(&self, cost: &mut CostToGo, moment: &Moment) -> Vec<Worth> {
+        let situation = &moment.situation;
+        let possible =
+            moment.signals.iter().filter(|signal| unavailable(&self.kitchen, situation.state, signal).is_none());
         let signals: Vec<&Signal> = possible.collect();
         let mut saved: Vec<Vec<f64>> = vec![Vec::new(); signals.len()];
         for rollout in 0..self.spec.rollout.rollouts as u64 {
-            let silent = self.roll_out(cost, situation, None, seq, rollout);
+            let silent = self.roll_out(cost, moment, None, rollout);
             for (signal, saved) in signals.iter().zip(&mut saved) {
-                saved.push(silent - self.roll_out(cost, situation, Some(signal), seq, rollout));
+                saved.push(silent - self.roll_out(cost, moment, Some(signal), rollout));
             }
         }
         let worth = |(signal, saved): (&&Signal, &Vec<f64>)| {
@@ -87,20 +90,14 @@ impl ReferencePlanner {
     }
 
     /// The random numbers of a rollout for something at a step, the same whatever was said.
-    fn chance(&self, of: &str, seq: u64, rollout: u64, step: u64) -> Stream {
-        stream(self.seed, of, seq << 32 | rollout << 8 | step)
+    fn chance(&self, of: &str, presses: u32, rollout: u64, step: u64) -> Stream {
+        stream(self.seed, of, u64::from(presses) << 32 | rollout << 8 | step)
     }
 
     /// Presses of both agents and the cost to go at the end of one rollout.
-    fn roll_out(
-        &self,
-        cost: &mut CostToGo,
-        situation: &Situation,
-        signal: Option<&Signal>,
-        seq: u64,
-        rollout: u64,
-    ) -> f64 {
-        let mut random = self.chance("plain belief", seq, rollout, 0);
+    fn roll_out(&self, cost: &mut CostToGo, moment: &Moment, signal: Option<&Signal>, rollout: u64) -> f64 {
+        let Moment { situation, presses, .. } = *moment;
+        let mut random = self.chance("plain belief", presses, rollout, 0);
         let mut person = Person::draw(&self.kitchen, situation.belief, &mut random);
         let first_s = random.random::<f64>() * self.spec.rollout.human_press_s;
         let sees = random.random::<f64>() < self.spec.rollout.capture;
@@ -118,11 +115,11 @@ impl ReferencePlanner {
         for step in 0..self.spec.rollout.horizon {
             let until_s = first_s + step as f64 * self.spec.rollout.human_press_s;
             if situation.robot != RobotOutlook::Still {
-                let mut random = self.chance("plain robot", seq, rollout, step as u64);
+                let mut random = self.chance("plain robot", presses, rollout, step as u64);
                 self.robot_until(cost, &mut future, until_s, situation.robot_press_s, &mut random);
             }
             future.now_s = until_s;
-            let mut random = self.chance("plain decision", seq, rollout, step as u64);
+            let mut random = self.chance("plain decision", presses, rollout, step as u64);
             self.decide(cost, &mut future, &mut random);
         }
         f64::from(future.presses) + f64::from(cost.all_orders(future.state, &self.kitchen.true_recipes()))

@@ -100,8 +100,8 @@ impl Attributor {
         Attributor { model, seed }
     }
 
-    /// The cause of an error: of pressing `button` in `state`, with this belief. `index` tells the errors of a session
-    /// apart.
+    /// The cause of an error: of pressing `button` in `state`, with this belief. `press`: its number among
+    /// those of both agents, which chance follows from.
     pub fn cause(
         &self,
         kitchen: &Kitchen,
@@ -109,9 +109,9 @@ impl Attributor {
         belief: &Belief,
         state: State,
         button: ButtonId,
-        index: u64,
+        press: u32,
     ) -> Cause {
-        let mut random = stream(self.seed, "attribution", index);
+        let mut random = stream(self.seed, "attribution", u64::from(press));
         let cases = self.model.cases(kitchen, belief, &mut random);
         let error = Inquiry { kitchen, model: &self.model, cases, state, button };
         let believed = error.log_p(cost, &error.cases);

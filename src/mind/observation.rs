@@ -4,11 +4,9 @@ use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::{Agent, ButtonId, LocationId, State};
 
-/// Something that happened, and when. Chance in the estimate follows from the session's seed and `number` alone.
+/// Something that happened, and when.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
-    /// Of the event: never twice the same in a session.
-    pub number: u64,
     pub time: SessionTime,
     pub what: Observed,
 }

@@ -170,7 +170,7 @@ impl Bench {
         let plain = ReferencePlanner::new(self.kitchen.clone(), human, assistant, seed);
         let (question, mut cost) = (self.question(step), CostToGo::new(self.kitchen.clone()));
         let began = Instant::now();
-        let worth = plain.advise(&mut cost, &question.situation(), question.signals(), question.seq);
+        let worth = plain.advise(&mut cost, &question.moment());
         (began.elapsed().as_secs_f64(), worth)
     }
 }

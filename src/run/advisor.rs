@@ -24,6 +24,7 @@ pub struct Question {
     /// The number and the time of the event.
     pub seq: u64,
     pub time: SessionTime,
+    presses: u32,
     state: State,
     belief: DirichletBelief,
     changed: Vec<AspectId>,
@@ -52,18 +53,16 @@ impl Question {
         let signals = follower.repeats.allowed(&session.kitchen, session.spec.signals.own_hand);
         let error = follower.judged.last().filter(|press| press.verdict.error).map(|press| press.seq);
         let changed = session.changed_at(time).map(AspectId::of_location).collect();
-        Question { seq, time, state, belief, changed, robot, robot_press_s, signals, error }
+        let presses = session.all_presses();
+        Question { seq, time, presses, state, belief, changed, robot, robot_press_s, signals, error }
     }
 
     /// What there is to decide about.
-    pub fn situation(&self) -> Situation<'_> {
-        let Question { state, ref belief, ref changed, robot, robot_press_s, .. } = *self;
-        Situation { state, belief, changed, robot, robot_press_s }
-    }
-
-    /// What may be said.
-    pub fn signals(&self) -> &[Signal] {
-        &self.signals
+    pub fn moment(&self) -> Moment<'_> {
+        let Question { seq, time, presses, state, ref belief, ref changed, robot, robot_press_s, ref signals, error } =
+            *self;
+        let situation = Situation { state, belief, changed, robot, robot_press_s };
+        Moment { seq, time, presses, situation, signals, error }
     }
 
     /// The same question about another estimate, and with other things that may be said.
@@ -91,9 +90,7 @@ impl Advisor {
     }
 
     pub fn answer(&mut self, question: &Question) -> Recommendation {
-        let Question { seq, time, ref signals, error, .. } = *question;
-        let situation = question.situation();
-        self.concept.advise(&mut self.cost, &Moment { seq, time, situation, signals, error })
+        self.concept.advise(&mut self.cost, &question.moment())
     }
 
     /// Answers on a thread of its own, which ends with the desk that asks.

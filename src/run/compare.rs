@@ -195,7 +195,7 @@ impl Watcher {
         if matches!(what, Observed::Told { .. }) {
             return;
         }
-        let observation = Observation { number: stamped.seq, time: stamped.time, what };
+        let observation = Observation { time: stamped.time, what };
         for one in &mut self.without {
             one.filter.observe(&observation, &mut self.follower.cost);
         }

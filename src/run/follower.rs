@@ -129,7 +129,7 @@ impl Follower {
     /// Moves the estimate of the belief on by an event that was just applied; `counts`: the trial ran when it came.
     fn estimate(&mut self, stamped: &Stamped, before: State, counts: bool) {
         let Some(what) = self.observed(stamped, before, counts) else { return };
-        let observation = Observation { number: stamped.seq, time: stamped.time, what };
+        let observation = Observation { time: stamped.time, what };
         let is_human = matches!(what, Observed::Pressed { agent: Agent::Human, .. });
         let belief = is_human.then(|| self.filter.belief().clone());
         let began = self.timing.is_some().then(Instant::now);
@@ -197,13 +197,14 @@ impl Follower {
     /// Judges a press of the human that has just been applied, and finds out why it was an error.
     fn human_pressed(&mut self, stamped: &Stamped, button: ButtonId, before: State) {
         let (kitchen, after) = (self.session.kitchen.clone(), self.session.state);
+        let press = self.session.all_presses();
         let verdict = self.judge.human_pressed(&mut self.cost, stamped.time, button, before, after);
         // A belief is told before every press, and is that of this press alone.
         let belief = self.belief.take();
         let cause = belief
             .as_ref()
             .filter(|_| verdict.error)
-            .map(|belief| self.attributor.cause(&kitchen, &mut self.cost, belief, before, button, stamped.seq));
+            .map(|belief| self.attributor.cause(&kitchen, &mut self.cost, belief, before, button, press));
         if let Some(cause) = cause {
             self.episodes.erred(&kitchen, cause);
         }

@@ -72,7 +72,7 @@ impl Replay {
             let (before, counts) = (self.session().state, self.session().is_running());
             let Some(line) = self.step()? else { return Ok(observations) };
             if let Some(what) = self.follower.observed(&line.stamped, before, counts) {
-                observations.push(Observation { number: line.stamped.seq, time: line.stamped.time, what });
+                observations.push(Observation { time: line.stamped.time, what });
             }
         }
     }

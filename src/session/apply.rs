@@ -331,7 +331,7 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
         if let (Action::Serve(order), OrderContent::Dish(dish)) =
             (kitchen.button(agent, button).action, served_dish(&kitchen.button(agent, button).action, before))
         {
-            let presses = session.presses.iter().sum();
+            let presses = session.all_presses();
             session.served.push(Served { time: now, dish, presses });
             note(session, now, Happening::Served { order });
             let after_s = |seconds| now + SessionTime::from_secs_f64(seconds);
@@ -342,7 +342,7 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
             effects.push(Effect::At { time: now, timer: Timer::EndTrialByOrders });
         }
     }
-    if session.presses.iter().sum::<u32>() >= session.spec.trial.presses {
+    if session.all_presses() >= session.spec.trial.presses {
         effects.push(Effect::At { time: now, timer: Timer::EndTrialByPresses });
     }
 }

@@ -266,6 +266,11 @@ impl Session {
         arrived.map(|_| self.gaze.rate_hz)
     }
 
+    /// Presses of both agents during the trial.
+    pub fn all_presses(&self) -> u32 {
+        self.presses.iter().sum()
+    }
+
     /// Whether presses count now.
     pub fn is_running(&self) -> bool {
         self.phase == Phase::Running

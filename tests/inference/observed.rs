@@ -26,7 +26,7 @@ pub fn recorded(kitchen: &Arc<Kitchen>, seed: u64, presses: u32) -> Vec<Observat
             let (before, counts) = (follower.session.state, follower.session.is_running());
             follower.apply(stamped).expect("an event of the session");
             if let Some(what) = follower.observed(stamped, before, counts) {
-                observations.push(Observation { number: stamped.seq, time: stamped.time, what });
+                observations.push(Observation { time: stamped.time, what });
             }
         }
         if !engine.session().is_running() {

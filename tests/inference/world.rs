@@ -48,7 +48,6 @@ pub struct World {
     /// Gaze samples a second.
     gaze_hz: f64,
     state: State,
-    number: u64,
     gaze_at: f64,
     fixation: (f64, [f64; 2]),
     /// When human and robot press next.
@@ -70,21 +69,8 @@ impl World {
         let changes = shows.collect();
         let state = kitchen.empty_state();
         let (fixation, press_at) = ((0.0, [0.5, 0.5]), [2.0, 3.0]);
-        let (number, gaze_at, signal_s, signal_at) = (0, 0.05, None, f64::INFINITY);
-        World {
-            kitchen,
-            cost,
-            chance,
-            gaze_hz,
-            state,
-            number,
-            gaze_at,
-            fixation,
-            press_at,
-            signal_s,
-            signal_at,
-            changes,
-        }
+        let (gaze_at, signal_s, signal_at) = (0.05, None, f64::INFINITY);
+        World { kitchen, cost, chance, gaze_hz, state, gaze_at, fixation, press_at, signal_s, signal_at, changes }
     }
 
     /// With somebody who sends a signal every so many seconds.
@@ -136,8 +122,7 @@ impl World {
     }
 
     fn observation(&mut self, now: f64, what: Observed) -> Observation {
-        self.number += 1;
-        Observation { number: self.number, time: SessionTime::from_secs_f64(now), what }
+        Observation { time: SessionTime::from_secs_f64(now), what }
     }
 
     /// Looks here and there.

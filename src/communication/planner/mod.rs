@@ -20,12 +20,12 @@ use self::robot::RobotPolicy;
 use self::rollout::{Draws, Moment, Rollout, Stage, Trace};
 use self::sample::Samples;
 use self::tally::Tally;
+use super::concept::{self, Concept};
 use super::recommendation::{Reason, Recommendation, SignalOption, aspects_told};
 use super::settings::AssistantSpec;
 use super::situation::Situation;
 use super::{Signal, unavailable};
 use crate::base::rng::{Stream, stream};
-use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Action, Agent, AspectId, ButtonId, Kitchen};
 use crate::mind::model::HumanModel;
@@ -89,30 +89,6 @@ impl Planner {
             spec,
             seed,
         }
-    }
-
-    /// What the signals are worth now. The answer follows from the situation, the signals, and the number of the event that
-    /// it is asked after (`time` is only noted); signals that cannot be sent are left out.
-    pub fn advise(
-        &mut self,
-        cost: &mut CostToGo,
-        situation: &Situation,
-        signals: &[Signal],
-        seq: u64,
-        time: SessionTime,
-    ) -> Recommendation {
-        let mut random = stream(self.seed, "communication", seq);
-        let mut arms = self.arms(situation, signals);
-        let rollouts = self.spec.rollout.rollouts;
-        self.samples.prepare(situation.belief, rollouts, self.spec.rollout.states, &mut random);
-        let lattice = Lattice::shifted(&mut random);
-        for number in 0..rollouts {
-            self.roll_out(cost, situation, &mut arms, number, &lattice, &mut random);
-            if (number + 1) % BATCH == 0 && self.is_decided(&mut arms, number + 1) {
-                break;
-            }
-        }
-        self.recommendation(situation, arms, seq, time)
     }
 
     fn arms(&self, situation: &Situation, signals: &[Signal]) -> Vec<Arm> {
@@ -195,7 +171,7 @@ impl Planner {
         arms.iter().all(|arm| arm.is_decided)
     }
 
-    fn recommendation(&self, situation: &Situation, arms: Vec<Arm>, seq: u64, time: SessionTime) -> Recommendation {
+    fn recommendation(&self, situation: &Situation, arms: Vec<Arm>, silent: Recommendation) -> Recommendation {
         let price = self.spec.cost_of_communication;
         let mut arms = arms;
         // The first of equals is the first in the layout.
@@ -218,6 +194,25 @@ impl Planner {
         });
         let options: Vec<SignalOption> = arms.iter().map(option).collect();
         let best = options.first().filter(|option| option.net > 0.0).map(|option| option.signal.clone());
-        Recommendation { options, best, reason, ..Recommendation::silent(seq, time) }
+        Recommendation { options, best, reason, ..silent }
+    }
+}
+
+impl Concept for Planner {
+    /// What the signals are worth now; those that cannot be sent are left out.
+    fn advise(&mut self, cost: &mut CostToGo, moment: &concept::Moment) -> Recommendation {
+        let situation = &moment.situation;
+        let mut random = stream(self.seed, "communication", u64::from(moment.presses));
+        let mut arms = self.arms(situation, moment.signals);
+        let rollouts = self.spec.rollout.rollouts;
+        self.samples.prepare(situation.belief, rollouts, self.spec.rollout.states, &mut random);
+        let lattice = Lattice::shifted(&mut random);
+        for number in 0..rollouts {
+            self.roll_out(cost, situation, &mut arms, number, &lattice, &mut random);
+            if (number + 1) % BATCH == 0 && self.is_decided(&mut arms, number + 1) {
+                break;
+            }
+        }
+        self.recommendation(situation, arms, Recommendation::silent(moment.seq, moment.time))
     }
 }

@@ -29,7 +29,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     }
     if session.study_phase().is_none_or(|phase| phase.phase().has_trial()) {
         x = clock(brush, x, area.y, session, model) + gap;
-        let presses = session.presses.iter().sum::<u32>();
+        let presses = session.all_presses();
         let unit = if is_tight && model.playback.is_none() { "" } else { " presses" };
         let counts = format!("{presses:>3}/{}{unit}", session.spec.trial.presses);
         let text = brush.style(Role::Text);

@@ -54,6 +54,9 @@ pub struct BeliefFilter {
     lessons: Vec<Lesson>,
     sampler: Sampler,
     shown: State,
+    /// Presses of both agents so far: chance follows from their number, so that nothing else that is recorded or told
+    /// changes it.
+    presses: u64,
     /// When it was last forgotten; nothing while the trial stands still.
     forgot: Option<SessionTime>,
     evidence: Option<Evidence>,
@@ -83,6 +86,7 @@ impl BeliefFilter {
             prior,
             lessons,
             shown,
+            presses: 0,
         }
     }
 
@@ -96,7 +100,7 @@ impl BeliefFilter {
         self.evidence
     }
 
-    /// Moves the estimate on by one observation. Chance follows from seed and the observation's number alone.
+    /// Moves the estimate on by one observation. Chance follows from the seed and the number of presses alone.
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
         let now = observation.time;
         if let Observed::Gaze { sample, taken } = observation.what {
@@ -116,7 +120,8 @@ impl BeliefFilter {
             }
             Observed::Gaze { .. } => {}
             Observed::Pressed { agent, button, before, after } => {
-                let mut random = stream(self.seed, "belief", observation.number);
+                self.presses += 1;
+                let mut random = stream(self.seed, "belief", self.presses);
                 match agent {
                     Agent::Human => self.human_pressed(button, after.is_some(), cost, &mut random),
                     Agent::Robot => {

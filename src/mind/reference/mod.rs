@@ -32,6 +32,8 @@ pub struct ReferenceFilter {
     beliefs: usize,
     seed: u64,
     people: People,
+    /// Observations so far.
+    observed: u64,
     /// Gaze has moved them on since they were last drawn.
     looked: bool,
     log_p: Option<f64>,
@@ -46,6 +48,7 @@ impl ReferenceFilter {
             kitchen,
             beliefs,
             seed,
+            observed: 0,
             looked: false,
             log_p: None,
         }
@@ -64,9 +67,10 @@ impl ReferenceFilter {
         self.log_p
     }
 
-    /// Moves the estimate on by one observation. Chance follows from seed and the observation's number alone.
+    /// Moves the estimate on by one observation. Chance follows from the seed and the number of observations alone.
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
-        let mut random = stream(self.seed, "reference", observation.number);
+        self.observed += 1;
+        let mut random = stream(self.seed, "reference", self.observed);
         if let Observed::Started { state } = observation.what {
             self.people.start(observation.time, state, self.beliefs, &mut random);
             return;

@@ -115,7 +115,8 @@ impl ByEstimate {
         {
             let belief = expected(kitchen, estimated.state, &estimated.belief);
             let (cost, state) = (&mut self.cost, estimated.state);
-            let cause = self.attributor.cause(kitchen, cost, &belief, state, button, stamped.seq);
+            let press = follower.session.all_presses();
+            let cause = self.attributor.cause(kitchen, cost, &belief, state, button, press);
             self.causes.push((stamped.seq, cause));
         }
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::reading::sequence_errors;
 use crate::base::time::SessionTime;
-use crate::communication::concept::{Concept, ConceptName, Moment};
+use crate::communication::concept::{Concept, ConceptName};
 use crate::communication::planner::Planner;
 use crate::communication::recommendation::{SignalOption, aspects_told};
 use crate::communication::repeats::Repeats;
@@ -101,10 +101,8 @@ impl Sweeper {
         let (kitchen, state) = (&session.kitchen, session.state);
         let own_hand = session.spec.signals.own_hand;
         let question = Question::of(&self.follower, seq, time);
-        let situation = question.situation();
-        let signals = question.signals();
-        let benefits = self.planner.advise(&mut self.cost, &situation, signals, seq, time).options;
-        let moment = Moment { seq, time, situation, signals, error: None };
+        let moment = question.moment();
+        let benefits = self.planner.advise(&mut self.cost, &moment).options;
         let deviations = self.tom.advise(&mut self.cost, &moment).options;
         let press = session.presses[Agent::Human.index()] as usize;
         for voice in &mut self.voices {

@@ -1,6 +1,7 @@
 //! What every room may use: time, random streams, words, and a little numerical mathematics.
 
 pub mod ascent;
+pub mod bits;
 pub mod linear;
 pub mod minimise;
 pub mod rng;

@@ -1,8 +1,9 @@
-//! Which item in the kitchen becomes which part of which target, and the lower bound that follows from it.
+//! Which item in the kitchen becomes which part of which target.
 
 use super::demand::Demand;
 use super::goal::{Classes, Goal, MAX_TARGETS, Offer, USELESS};
 use super::ground::Ground;
+use crate::base::bits::ones;
 
 /// At most so many parts of all targets together.
 pub const MAX_TASKS: usize = 16;
@@ -96,9 +97,7 @@ impl Assignment {
 
     /// Lets two targets exchange their items where that saves presses.
     fn exchange(&mut self, ground: &Ground, goal: &Goal, state: &Classes) {
-        let fits = |task: &Task, at: u8| {
-            at == STORAGE || goal.fills[usize::from(task.target)][usize::from(state[usize::from(at)])] == task.bits
-        };
+        let fits = |task: &Task, at: u8| goal.fits(state, task, at);
         let of_first = self.tasks[..self.count].iter().take_while(|task| task.target == self.tasks[0].target).count();
         let stored = self.tasks[..of_first].iter().filter(|task| task.at == STORAGE);
         let wanted = stored.fold(0, |needs, task| needs | usize::from(goal.way(state, task, STORAGE).1)) & 3;
@@ -159,14 +158,4 @@ impl Assignment {
     pub fn all(&self) -> u32 {
         (1 << self.count) - 1
     }
-}
-
-/// The positions of the bits that are set.
-#[inline]
-pub fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let position = bits.trailing_zeros();
-        bits &= bits.wrapping_sub(1);
-        (position < u32::BITS).then_some(position as usize)
-    })
 }

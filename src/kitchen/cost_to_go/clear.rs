@@ -25,21 +25,21 @@ impl Wants {
 }
 
 impl Plan<'_> {
-    /// Makes room for the target in the way that mostly is best: one press or two. Whether there is a way.
-    pub(super) fn clear(&mut self, target: usize) -> bool {
-        let wants = self.wants(target);
+    /// Makes room for the work on a target in the way that mostly is best: one press or two. Whether there is a way.
+    pub(super) fn clear(&mut self, wants: &Wants) -> bool {
         let best = self
-            .put_down(&wants)
-            .or_else(|| self.throw_away(&wants))
-            .or_else(|| self.empty_place(&wants))
-            .or_else(|| self.make_way(&wants))
-            .or_else(|| self.empty_hand(&wants));
+            .put_down(wants)
+            .or_else(|| self.throw_away(wants))
+            .or_else(|| self.empty_place(wants))
+            .or_else(|| self.make_way(wants))
+            .or_else(|| self.empty_hand(wants));
         if let Some(best) = best {
             self.make(best);
         }
         best.is_some()
     }
 
+    /// What the work on a target needs now.
     pub(super) fn wants(&self, target: usize) -> Wants {
         let of_target = || self.tasks().filter(move |(_, task)| usize::from(task.target) == target);
         let complete = self.goal.complete[target];
@@ -172,8 +172,8 @@ impl Plan<'_> {
         let ground = self.ground;
         let task = self.choice.tasks[index];
         let from = usize::from(task.at);
-        let class = usize::from(self.state[from]);
-        let accepts = |place: usize| ground.accepts(place, self.goal.content[class]);
+        let class = self.state[from];
+        let accepts = |place: usize| ground.accepts(place, self.goal.content[usize::from(class)]);
         let mut best: Option<(u32, u32, usize)> = None;
         for place in ground.places() {
             let taken = self.state[place] != 0 || ground.is_hand(place) || place == ground.board || !accepts(place);
@@ -183,8 +183,7 @@ impl Plan<'_> {
             let in_use = needs & ground.journeys.bit[place] != 0;
             let detour = match task.bits.count_ones() {
                 1 => {
-                    let near = &self.goal.near[usize::from(task.target)];
-                    let at = |location: usize| u32::from(near[location * self.goal.content.len() + class]);
+                    let at = |location: usize| u32::from(self.goal.presses_from(task.target, location, class));
                     let moved = if ground.is_hand(from) { 1 } else { 2 };
                     (at(place) + moved).saturating_sub(at(from))
                 }
@@ -214,9 +213,8 @@ impl Plan<'_> {
     /// Whether one press from one location to another brings a single item nearer.
     pub(super) fn leads(&self, task: usize, from: usize, to: usize) -> bool {
         let of = self.choice.tasks[task];
-        let class = usize::from(self.state[usize::from(of.at)]);
-        let near = &self.goal.near[usize::from(of.target)];
-        let at = |location: usize| near[location * self.goal.content.len() + class];
+        let class = self.state[usize::from(of.at)];
+        let at = |location: usize| self.goal.presses_from(of.target, location, class);
         of.bits.count_ones() == 1 && at(to) + 1 == at(from)
     }
 }

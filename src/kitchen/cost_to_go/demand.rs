@@ -40,8 +40,7 @@ impl Demand {
                 demand.assembled |= 1 << target;
                 demand.presses += ground.last_presses(ground.board);
             }
-            let is_ready = at == ground.board && goal.ready[target][usize::from(state[at])] == task.bits;
-            if !is_ready {
+            if !goal.is_ready(ground, state, &task) {
                 let (presses, needs) = goal.way(state, &task, task.at);
                 demand.presses += u32::from(presses);
                 demand.need(needs);

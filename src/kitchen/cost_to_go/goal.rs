@@ -155,6 +155,25 @@ impl Goal {
         (self.near[target][index], self.near_needs[target][index])
     }
 
+    /// Presses that bring an item of a class from a location onto the board for a target if nothing is in the way.
+    #[inline]
+    pub fn presses_from(&self, target: u8, location: usize, class: u8) -> u8 {
+        self.near[usize::from(target)][location * self.content.len() + usize::from(class)]
+    }
+
+    /// Whether what lies at `at` is the item of a task, or can become it.
+    #[inline]
+    pub fn fits(&self, state: &Classes, task: &Task, at: u8) -> bool {
+        at == STORAGE || self.fills[usize::from(task.target)][usize::from(state[usize::from(at)])] == task.bits
+    }
+
+    /// Whether a task's item lies on the board as it has to be.
+    #[inline]
+    pub fn is_ready(&self, ground: &Ground, state: &Classes, task: &Task) -> bool {
+        let at = usize::from(task.at);
+        at == ground.board && self.ready[usize::from(task.target)][usize::from(state[at])] == task.bits
+    }
+
     fn fill_distances(&mut self, kitchen: &Kitchen, journeys: &Journeys) {
         for target in 0..self.targets.len() {
             for &component in &self.components[target] {

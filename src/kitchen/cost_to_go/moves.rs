@@ -49,15 +49,14 @@ impl Moves {
 }
 
 impl Plan<'_> {
-    /// All moves that might make room for the target.
-    pub(super) fn moves(&self, target: usize) -> Moves {
-        let wants = self.wants(target);
+    /// All moves that might make room for what the work on a target needs.
+    pub(super) fn moves(&self, wants: &Wants) -> Moves {
         let mut moves = Moves::new();
         for agent in 0..2 {
-            self.empty(&wants, agent, &mut moves);
+            self.empty(wants, agent, &mut moves);
         }
-        for from in self.ground.places().filter(|&place| self.blocks(&wants, place)) {
-            self.take_away(&wants, from, &mut moves);
+        for from in self.ground.places().filter(|&place| self.blocks(wants, place)) {
+            self.take_away(wants, from, &mut moves);
         }
         self.exchange(&mut moves);
         self.fetch(&mut moves);
@@ -98,6 +97,7 @@ impl Plan<'_> {
         }
     }
 
+    /// The item of a task lies at another place from now on, and is processed there; a press to get there is not counted.
     pub(super) fn relocate(&mut self, index: usize, place: usize) {
         let from = usize::from(self.choice.tasks[index].at);
         self.state[place] = std::mem::take(&mut self.state[from]);
@@ -111,8 +111,7 @@ impl Plan<'_> {
         if task.bits.count_ones() != 1 || self.ground.is_hand(place) {
             return;
         }
-        let near = &self.goal.near[usize::from(task.target)];
-        let at = |class: u8| near[place * self.goal.content.len() + usize::from(class)];
+        let at = |class: u8| self.goal.presses_from(task.target, place, class);
         for (process, at_place) in self.ground.process_place.iter().enumerate() {
             let class = self.state[place];
             let result = self.goal.becomes[process][usize::from(class)];
@@ -166,10 +165,7 @@ impl Plan<'_> {
         let way = |task: &Task, at: u8| self.goal.way(&self.state, task, at).0;
         for (one, a) in self.tasks().filter(|(_, task)| movable(task)) {
             for (other, b) in self.tasks().filter(|(_, task)| movable(task) && task.target > a.target) {
-                let fits = |task: &Task, at: u8| {
-                    self.goal.fills[usize::from(task.target)][usize::from(self.state[usize::from(at)])] == task.bits
-                };
-                let fit = fits(&a, b.at) && fits(&b, a.at);
+                let fit = self.goal.fits(&self.state, &a, b.at) && self.goal.fits(&self.state, &b, a.at);
                 if fit && way(&a, b.at) + way(&b, a.at) <= way(&a, a.at) + way(&b, b.at) {
                     moves.add(Move::Exchange { tasks: [one, other] });
                 }
@@ -187,9 +183,7 @@ impl Plan<'_> {
             for (agent, hand) in ground.hands.into_iter().enumerate().filter(|(_, hand)| self.state[*hand] == 0) {
                 let fits = |class: &u8| goal.fills[target][usize::from(*class)] == of.bits;
                 for class in goal.takes[agent].iter().copied().filter(fits) {
-                    let at = |location: usize| {
-                        u32::from(goal.near[target][location * goal.content.len() + usize::from(class)])
-                    };
+                    let at = |location: usize| u32::from(goal.presses_from(of.target, location, class));
                     let is_free = |place: &usize| {
                         let is_place = !ground.is_hand(*place) && *place != ground.board;
                         is_place && self.state[*place] == 0 && ground.accepts(*place, goal.content[usize::from(class)])

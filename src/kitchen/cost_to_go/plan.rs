@@ -34,7 +34,7 @@ impl<'a> Plan<'a> {
     /// way that mostly is best; with a second thought, once in any other way that there is: a search of one discrepancy
     /// (Harvey and Ginsberg 1995, Limited Discrepancy Search).
     pub fn carry_out(mut self, limit: u32, second_thought: bool) -> u32 {
-        if self.choice.demand.bound(self.ground, &self.state) > limit {
+        if limit < BLOCKED && self.choice.demand.bound(self.ground, &self.state) > limit {
             return BLOCKED;
         }
         self.process_all();
@@ -57,11 +57,12 @@ impl<'a> Plan<'a> {
             if self.bring_part(target) {
                 continue;
             }
+            let wants = self.wants(target);
             if second_thought {
-                for &made in self.moves(target).all() {
+                for &made in self.moves(&wants).all() {
                     let mut other = Plan { ..self };
                     other.make(made);
-                    if other.bound() > limit {
+                    if other.is_over(limit) {
                         continue;
                     }
                     let presses = other.go_on(limit, false);
@@ -71,18 +72,21 @@ impl<'a> Plan<'a> {
                 }
             }
             let lifts = self.goal.targets.len() > 1;
-            let advanced = lifts && self.lift(target, 1 - target) || self.clear(target);
-            if !advanced || limit < BLOCKED && self.bound() > limit {
+            let advanced = lifts && self.lift(target, 1 - target) || self.clear(&wants);
+            if !advanced || self.is_over(limit) {
                 return best;
             }
         }
         if self.presses <= limit { self.presses } else { best }
     }
 
-    /// What the whole plan takes at least.
-    fn bound(&self) -> u32 {
-        let tasks = self.tasks().map(|(_, task)| task);
-        self.presses + Demand::of(self.ground, self.goal, &self.state, tasks).bound(self.ground, &self.state)
+    /// Whether the whole plan is certain to take more than `limit`.
+    fn is_over(&self, limit: u32) -> bool {
+        let rest = || {
+            let tasks = self.tasks().map(|(_, task)| task);
+            Demand::of(self.ground, self.goal, &self.state, tasks).bound(self.ground, &self.state)
+        };
+        limit < BLOCKED && self.presses + rest() > limit
     }
 
     /// Does what is certain to be right: serves a complete stack if the way is free, processes parts where they are, and
@@ -173,8 +177,7 @@ impl<'a> Plan<'a> {
 
     /// Whether a task's item lies on the board as it has to be.
     pub(super) fn is_ready(&self, task: &Task) -> bool {
-        let at = usize::from(task.at);
-        at == self.ground.board && self.goal.ready[usize::from(task.target)][usize::from(self.state[at])] == task.bits
+        self.goal.is_ready(self.ground, &self.state, task)
     }
 
     /// Whether the board is free for parts of this target: empty, or started for it.

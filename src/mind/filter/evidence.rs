@@ -8,6 +8,7 @@
 
 use std::ops::Range;
 
+use crate::base::bits::ones;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, OrderContent, Recipes, State};
@@ -289,16 +290,6 @@ fn draw_on(kitchen: &Kitchen, urns: &[Urn], states: usize, drawn: &mut [u8], ran
         }
     }
     mixed
-}
-
-/// The positions of the bits that are set.
-#[inline]
-fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let position = bits.trailing_zeros();
-        bits &= bits.wrapping_sub(1);
-        (position < u32::BITS).then_some(position as usize)
-    })
 }
 
 /// Mean and second moment of a mixture of Dirichlets, from those of the Dirichlet that all of them come from.

@@ -20,7 +20,6 @@ use miette::MietteHandlerOpts;
 use serde::Serialize;
 
 use self::args::*;
-use self::choices::SimulatedCondition;
 use crate::communication::concept::ConceptName;
 use crate::communication::settings::Shadow;
 use crate::console;
@@ -297,10 +296,12 @@ fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
             trials.unwrap_or(most)
         }
     };
+    check_condition(args, files.spec.plan.is_some())?;
     // With a plan it says the conditions.
     files.spec.trial.condition = match args.condition {
-        SimulatedCondition::None if !args.sweep.is_empty() => Condition::Assistant,
-        condition => Condition::from(condition),
+        None if !args.sweep.is_empty() => Condition::Assistant,
+        None => Condition::None,
+        Some(condition) => condition.into(),
     };
     if files.spec.unattended(files.spec.trial.condition) != files.spec.trial.condition {
         let found = "--condition wizard, with a wizard who is a person".to_string();
@@ -325,6 +326,26 @@ fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         }
     }
     print(args.format, &figures, || simulate::describe(&figures))
+}
+
+/// Options that have no effect beside who sends signals.
+fn check_condition(args: &SimulateArgs, is_planned: bool) -> Result<(), Failure> {
+    let condition = args.condition.map(Condition::from);
+    let is_silent = matches!(condition, None | Some(Condition::None));
+    let (found, remedy) = match () {
+        () if is_planned && condition.is_some() => {
+            ("--condition, of a session with a plan", "no --condition: the plan says who sends signals")
+        }
+        () if !args.sweep.is_empty() && condition == Some(Condition::None) => (
+            "--sweep, with --condition none",
+            "--condition assistant or wizard; trials without signals are beside them",
+        ),
+        () if args.concept.is_some() && !is_planned && args.sweep.is_empty() && is_silent && !args.shadow => {
+            ("--concept, where nobody asks the assistant", "--condition assistant or --shadow with it")
+        }
+        () => return Ok(()),
+    };
+    Err(wrong_argument(&args.session, found.to_string(), remedy))
 }
 
 fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {

@@ -71,7 +71,7 @@ impl Stage {
         model.recording = Recording::On("sessions/2026-03-14-P01-1".to_string());
         model.free_bytes = Some(1 << 40);
         let belief = DirichletBelief::prior(&kitchen, &PriorModel::default(), kitchen.empty_state());
-        Stage { session: Session::new(kitchen, spec), model, seq: 0, belief }
+        Stage { session: Session::new(kitchen, spec, 0), model, seq: 0, belief }
     }
 
     fn at(&mut self, seconds: f64, event: Event) {
@@ -1035,7 +1035,7 @@ fn planned(slot: usize, instructed: bool) -> Stage {
     let study = read_session(Path::new("sessions/study.toml")).expect("the study").study().expect("a plan");
     let (spec, _) = study.settings(Wanted { participant: 0, slot, attempt: 1, instructed });
     let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
-    stage.session = Session::new(kitchen("sushi"), spec);
+    stage.session = Session::new(kitchen("sushi"), spec, 0);
     stage.next_phase();
     stage
 }
@@ -1128,7 +1128,7 @@ fn advised(best: bool) -> Stage {
         aspect: "recipe of tuna nigiri".to_string(),
         believes: "salmon nigiri".to_string(),
         truth: "tuna nigiri".to_string(),
-        p_wrong: 0.83,
+        p_believes: 0.83,
         prevents: Some("take salmon".to_string()),
         instead: None,
     };

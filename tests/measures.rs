@@ -27,7 +27,7 @@ use tomcom::run::engine::Engine;
 use tomcom::run::figures::{BeliefFigures, TrialFigures};
 use tomcom::run::follower::Follower;
 use tomcom::run::headless;
-use tomcom::session::{Event, SessionSpec, Stamped};
+use tomcom::session::{Event, Session, SessionSpec, Stamped};
 
 fn kitchen(name: &str) -> Arc<Kitchen> {
     match read_kitchen(Path::new(&format!("layouts/{name}.toml"))) {
@@ -312,7 +312,7 @@ fn a_belief_can_be_told_from_its_witness() {
         let mut engine = Engine::new(kitchen.clone(), settings(""), 0, CostToGo::new(kitchen.clone()));
         let mut witnesses: Vec<BeliefWitness> = Vec::new();
         let mut told = Vec::new();
-        let mut replay = Follower::new(kitchen.clone(), settings(""), CostToGo::new(kitchen.clone()));
+        let mut replay = Follower::new(Session::new(kitchen.clone(), settings(""), 0), CostToGo::new(kitchen.clone()));
         let mut keep = |stamped: &Stamped| {
             replay.apply(stamped).expect("what was recorded can be replayed");
             if let Event::ParticipantBelieves(witness) = &stamped.event {
@@ -355,7 +355,8 @@ fn a_belief_can_be_told_from_its_witness() {
 fn what_nobody_knows_stays_unknown() {
     let kitchen = kitchen("sushi");
     let figures = |participant: &str| {
-        let follower = Follower::new(kitchen.clone(), settings(participant), CostToGo::new(kitchen.clone()));
+        let follower =
+            Follower::new(Session::new(kitchen.clone(), settings(participant), 0), CostToGo::new(kitchen.clone()));
         BeliefFigures::of([&TrialFigures::of(&follower)])
     };
     let nobody = figures("kind = \"keyboard\"\ngaze = \"none\"");

@@ -9,6 +9,7 @@ use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
 use tomcom::communication::recommendation::Recommendation;
+use tomcom::communication::settings::Shadow;
 use tomcom::communication::{Sender, Signal, signals};
 use tomcom::console::comparison::Known;
 use tomcom::console::playback::Landmark;
@@ -21,6 +22,7 @@ use tomcom::measures::matching::Content;
 use tomcom::run::compare::{Request, Watcher};
 use tomcom::run::engine::Engine;
 use tomcom::run::film::Film;
+use tomcom::run::headless;
 use tomcom::run::replay::Replay;
 use tomcom::run::simulate::{Shard, Simulation, simulate};
 use tomcom::run::verify::verify;
@@ -28,7 +30,7 @@ use tomcom::scene::{Derived, Moment, Row, Scene, Shown};
 use tomcom::session::event::{EndReason, SignalEnd};
 use tomcom::session::header::VERSION;
 use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
-use tomcom::session::{Event, Header, Phase, Stamped};
+use tomcom::session::{Event, Header, Phase, Session, Stamped};
 
 /// One session for each kitchen.
 const SESSIONS: [&str; 2] = ["default.toml", "burger.toml"];
@@ -449,10 +451,37 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionFiles, Vec<Stamped>
     (files, events)
 }
 
+#[test]
+fn advice_that_nobody_sees_changes_nothing_else() {
+    let told = |shadow: Shadow| {
+        let mut files = session("default.toml");
+        (files.spec.robot.arm, files.spec.assistant.shadow) = (ArmKind::Timed, shadow);
+        (files.spec.trial.condition, files.spec.trial.seconds) = (Condition::None, 60.0);
+        let kitchen = Arc::new(files.kitchen.kitchen);
+        let mut engine = Engine::new(kitchen.clone(), files.spec, 3, CostToGo::new(kitchen));
+        let (mut told, mut advised) = (Vec::new(), 0);
+        let noted: Result<(), ()> = headless::run(&mut engine, |stamped| {
+            match &stamped.event {
+                Event::Advised(_) => advised += 1,
+                // The number of the press in the log counts the advice, too.
+                Event::BeliefEstimated(witness) => told.push(format!("{:?} {:?}", witness.log_p, witness.aspects)),
+                event => told.push(format!("{:?} {event:?}", stamped.time)),
+            }
+            Ok(())
+        });
+        assert_eq!(noted, Ok(()));
+        (told, advised)
+    };
+    let ((told_beside, advised), (told_alone, none)) = (told(Shadow::On), told(Shadow::Off));
+    assert!(advised > 20 && none == 0, "{advised} answers, and {none}");
+    assert_eq!(told_beside, told_alone);
+}
+
 /// What was known at every moment at which the concepts were asked, with the presses of the human until then.
 fn asked(files: &SessionFiles, events: &[Stamped], window: u32) -> (Vec<(u32, Arc<Known>)>, Watcher) {
     let request = Request { with: vec![ConceptName::Dev], window };
-    let mut watcher = Watcher::new(Arc::new(files.kitchen.kitchen.clone()), &files.spec, &request);
+    let mut watcher =
+        Watcher::new(Session::new(Arc::new(files.kitchen.kitchen.clone()), files.spec.clone(), 0), &request);
     let mut known: Vec<(u32, Arc<Known>)> = Vec::new();
     for stamped in events {
         let press = watcher.presses();
@@ -515,7 +544,7 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
         .expect("the folder can be written");
     let mut log = LogReader::open(&out.join("seed1-S001")).expect("a recording");
     let request = Request { with: vec![ConceptName::Dev], window: 3 };
-    let watcher = || Watcher::new(log.kitchen.clone(), &log.header.session, &request);
+    let watcher = || Watcher::new(log.session(), &request);
     let (mut here, there) = (watcher(), watcher().on_thread());
     let mut compared = 0;
     while let Some(line) = log.next_line().expect("an event") {

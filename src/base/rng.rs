@@ -13,6 +13,11 @@ pub fn stream(seed: u64, name: &str, index: u64) -> Stream {
     Stream::seed_from_u64(mix(key ^ mix(index)))
 }
 
+/// The seed of what follows from one trial alone, among the trials with this seed.
+pub fn of_trial(seed: u64, trial: u64) -> u64 {
+    mix(seed ^ mix(trial))
+}
+
 /// The finaliser of SplitMix64 (Steele, Lea and Flood 2014): a bijection that spreads every bit.
 pub fn mix(value: u64) -> u64 {
     let mut z = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -33,5 +38,7 @@ mod tests {
         assert_ne!(draw(7, "robot", 0), draw(7, "robot", 1));
         assert_ne!(draw(7, "robot", 0), draw(8, "robot", 0));
         assert_ne!(draw(7, "robot", 0), draw(7, "orders", 0));
+        assert_ne!(of_trial(7, 0), of_trial(7, 1));
+        assert_ne!(of_trial(7, 0), of_trial(8, 0));
     }
 }

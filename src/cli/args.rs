@@ -133,7 +133,7 @@ pub(super) struct ReplayArgs {
     /// With --accuracy: at most so many steps, spread evenly over the recordings.
     #[arg(long, default_value_t = 500, requires = "accuracy", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(super) steps: u64,
-    /// With --accuracy: at most so many of them for the plain reference.
+    /// With --accuracy: at most so many of them for the plain reference; 0: none.
     #[arg(long, default_value_t = 30, requires = "accuracy", value_parser = clap::value_parser!(u64).range(0..=100_000))]
     pub(super) reference_steps: u64,
     /// Watch a session that is still running, until it ends.
@@ -183,9 +183,9 @@ pub(super) struct SimulateArgs {
     /// Everything random follows from it; by default the session file's.
     #[arg(long)]
     pub(super) seed: Option<u64>,
-    /// Who sends signals; of a session with a plan, the plan says it.
-    #[arg(long, value_enum, default_value = "none")]
-    pub(super) condition: SimulatedCondition,
+    /// Who sends signals: by default nobody, and with --sweep the assistant; of a session with a plan, the plan says it.
+    #[arg(long, value_enum)]
+    pub(super) condition: Option<SimulatedCondition>,
     /// By what the assistant decides, instead of the session file's concept.
     #[arg(long, value_enum)]
     pub(super) concept: Option<ConceptArg>,

@@ -13,7 +13,8 @@ use crate::console::playback::SPEEDS;
 use crate::measures::matching::WINDOW;
 use crate::measures::wizard::TrainingCriterion;
 use crate::run::compare::Request;
-use crate::run::similarity::{self, CompareFigures, TrainingFigures};
+use crate::run::lesson_report::TrainingFigures;
+use crate::run::similarity::{self, CompareFigures};
 use crate::run::train::{self, Lesson};
 use crate::run::{lesson_report, review, series, simulate};
 use crate::session::settings::is_code;
@@ -127,7 +128,7 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     bar.finish_and_clear();
     match args.open {
         Some(number) => Ok(write!(std::io::stdout(), "{}", similarity::open(&first, number)?)?),
-        None => print(args.format, &figures, || similarity::describe(&figures)),
+        None => print(args.format, &figures, || similarity::describe(&figures, &request(windows[0]))),
     }
 }
 

@@ -58,8 +58,8 @@ pub struct Reason {
     /// What is believed of it if not the truth.
     pub believes: String,
     pub truth: String,
-    /// The expected probability that it is not known as it is.
-    pub p_wrong: f64,
+    /// The expected probability of that.
+    pub p_believes: f64,
     /// The press that this would lead to and the signal would prevent, by its name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prevents: Option<String>,
@@ -72,6 +72,14 @@ impl Recommendation {
     /// The advice to say nothing, after the event of this number and time.
     pub fn silent(seq: u64, time: SessionTime) -> Recommendation {
         Recommendation { for_seq: seq, for_ns: time, options: Vec::new(), best: None, reason: None, proposal: None }
+    }
+
+    /// Takes out a signal that was sent. What is best after it only the next advice knows.
+    pub fn remove(&mut self, sent: &Signal) {
+        self.options.retain(|option| option.signal != *sent);
+        if self.best.as_ref() == Some(sent) {
+            (self.best, self.reason) = (None, None);
+        }
     }
 
     /// The option that is worth most.
@@ -110,16 +118,18 @@ impl Reason {
             aspect: told.name.clone(),
             believes: told.labels[believed].clone(),
             truth: told.labels[truth].clone(),
-            p_wrong: rounded(1.0 - mean[truth]),
+            p_believes: rounded(mean[believed]),
             prevents: None,
             instead: None,
         })
     }
 
-    /// What is taken for what, in words: "takes order 1 for tuna nigiri (0.83)".
+    /// What is taken for what, in words: "takes order 1 for tuna nigiri (0.83)", and where it is less likely than not "may
+    /// take".
     pub fn taken(&self) -> String {
-        let Reason { aspect, believes, p_wrong, .. } = self;
-        format!("takes {} for {} ({p_wrong:.2})", aspect.replace('_', " "), phrase(believes))
+        let Reason { aspect, believes, p_believes, .. } = self;
+        let takes = if *p_believes < 0.5 { "may take" } else { "takes" };
+        format!("{takes} {} for {} ({p_believes:.2})", aspect.replace('_', " "), phrase(believes))
     }
 
     /// In words: "takes order 1 for tuna nigiri (0.83): would press "take tuna" instead of "take salmon"".

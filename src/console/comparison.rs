@@ -8,7 +8,7 @@ use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
-use crate::communication::recommendation::Recommendation;
+use crate::communication::recommendation::{Recommendation, SignalOption};
 use crate::kitchen::{AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::measures::matching::{Content, Kind, Likeness, Said, Similarity, Tally, matched};
 use crate::measures::sequences::FALSE_BELOW;
@@ -202,7 +202,8 @@ impl Comparison {
             return lines;
         };
         if let Some(advice) = self.advice(difference) {
-            lines.push(format!("{} then: {}", self.lanes[self.assistant(difference)].name, thought(advice)));
+            let lane = &self.lanes[self.assistant(difference)];
+            lines.push(format!("{} then: {}", lane.name, thought(advice, lane.concept == Some(ConceptName::Tom))));
         }
         lines.extend(believed(kitchen, known));
         lines.push(format!("truly: {}", truly(kitchen, known.state)));
@@ -256,21 +257,25 @@ impl Compared {
     }
 }
 
-/// What an assistant thought, in words.
-fn thought(advice: &Recommendation) -> String {
+/// What an assistant thought, in words; ToM thinks of deviations.
+fn thought(advice: &Recommendation, is_tom: bool) -> String {
     if let Some(proposal) = &advice.proposal {
         return What::Proposal(proposal.presses.clone()).words();
     }
-    let option = |option: &crate::communication::recommendation::SignalOption| {
-        let signal = words::signal(&option.signal);
-        format!("{signal} {:.2} ±{:.2} (net {:+.2})", option.benefit, option.standard_error, option.net)
+    let option = |option: &SignalOption| {
+        let (signal, SignalOption { benefit, standard_error, net, .. }) = (words::signal(&option.signal), option);
+        match is_tom {
+            true => format!("{signal} {benefit:.2} (above threshold {net:+.2})"),
+            false => format!("{signal} {benefit:.2} ±{standard_error:.2} (net {net:+.2})"),
+        }
     };
     let options: Vec<String> = advice.options.iter().take(3).map(option).collect();
     let best = advice.best.as_ref().map_or("say nothing".to_string(), words::signal);
     let reason = advice.reason.as_ref().map_or(String::new(), |reason| format!(", since it {}", reason.words()));
     match options.is_empty() {
         true => best,
-        false => format!("{best}{reason}; benefits: {}", options.join(", ")),
+        false if is_tom => format!("{best}{reason}; deviations: {}", options.join(", ")),
+        false => format!("{best}{reason}; presses saved: {}", options.join(", ")),
     }
 }
 

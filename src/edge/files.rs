@@ -6,12 +6,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
-use serde::de::DeserializeOwned;
 use toml::Spanned;
 
 use super::language::read_words;
+use super::parse::parse;
 use super::place::place_of;
-use super::type_error::in_words;
 use crate::console::KeyMap;
 use crate::console::keys::{self, KeyError, KeyPlace, Layer};
 use crate::kitchen::compile::{SpecError, SpecFile};
@@ -38,6 +37,14 @@ pub enum FileError {
         #[help]
         remedy: String,
     },
+    /// A folder or an option of the command line, or a file as a whole.
+    #[error("{name}: found {found}")]
+    Unfit {
+        name: String,
+        found: String,
+        #[help]
+        remedy: String,
+    },
     #[error("{name}:{line}: found {found}")]
     Wrong {
         name: String,
@@ -60,6 +67,11 @@ impl FileError {
         let line = text.as_bytes()[..start].iter().filter(|&&byte| byte == b'\n').count() + 1;
         let source = NamedSource::new(&name, text.to_string());
         FileError::Wrong { name, line, found, text: Arc::new(source), span: span.map(SourceSpan::from), remedy }
+    }
+
+    /// An error that has no place in a text: of a folder, an option, a file as a whole.
+    pub fn of(what: &Path, found: String, remedy: String) -> FileError {
+        FileError::Unfit { name: what.display().to_string(), found, remedy }
     }
 
     /// An error of a file that cannot be read or written.
@@ -318,101 +330,4 @@ fn check_reach(path: &Path, text: &str, layout: &LayoutSpec, kitchen: &Kitchen) 
 pub fn read_text(path: &Path) -> FileResult<String> {
     std::fs::read_to_string(path)
         .map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))
-}
-
-/// The kinds of files that people write.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    Session,
-    Layout,
-    Recipes,
-    HumanModel,
-    Keys,
-    Questionnaire,
-    Language,
-}
-
-impl Kind {
-    /// What a text is by the tables in it, if it is any of them.
-    fn of(text: &str) -> Option<Kind> {
-        let table: toml::Table = text.parse().ok()?;
-        let has = |keys: &[&str]| keys.iter().any(|key| table.contains_key(*key));
-        match () {
-            () if has(&["recipes", "storage", "place"]) => Some(Kind::Layout),
-            () if has(&["ingredient", "slot", "dish"]) => Some(Kind::Recipes),
-            () if has(&["scale", "item"]) => Some(Kind::Questionnaire),
-            () if has(&["layout"]) => Some(Kind::Session),
-            () if has(&["language"]) => Some(Kind::Language),
-            () if has(&["prior", "perception", "transition", "decision"]) => Some(Kind::HumanModel),
-            () if has(&["console", "replay", "signals", "buttons"]) => Some(Kind::Keys),
-            () => None,
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Kind::Session => "a session file",
-            Kind::Layout => "a layout file",
-            Kind::Recipes => "a recipe file",
-            Kind::HumanModel => "a file with parameters of the human model",
-            Kind::Keys => "a key file",
-            Kind::Questionnaire => "a questionnaire",
-            Kind::Language => "words of the participant's display",
-        }
-    }
-
-    fn remedy(self) -> &'static str {
-        match self {
-            Kind::Session => "a session file, like sessions/default.toml",
-            Kind::Layout => "a layout file, like layouts/sushi.toml",
-            Kind::Recipes => "a recipe file, like recipes/sushi.toml",
-            Kind::Questionnaire => "a questionnaire, like sessions/questionnaires/acceptance.toml",
-            Kind::Language => "words of the participant's display, lines like \"rice\" = \"riz\"",
-            Kind::HumanModel => "parameters of the human model, like those that tomcom fit writes",
-            Kind::Keys => "a key file, as tomcom keys prints it",
-        }
-    }
-}
-
-/// What a file of one kind is parsed into.
-pub trait OfKind: DeserializeOwned {
-    /// The kind.
-    const KIND: Kind;
-}
-
-impl OfKind for SessionSpec {
-    const KIND: Kind = Kind::Session;
-}
-
-impl OfKind for LayoutSpec {
-    const KIND: Kind = Kind::Layout;
-}
-
-impl OfKind for RecipesSpec {
-    const KIND: Kind = Kind::Recipes;
-}
-
-impl OfKind for Questionnaire {
-    const KIND: Kind = Kind::Questionnaire;
-}
-
-impl OfKind for HumanModel {
-    const KIND: Kind = Kind::HumanModel;
-}
-
-impl OfKind for KeyMap {
-    const KIND: Kind = Kind::Keys;
-}
-
-/// Parses TOML into `T`.
-pub fn parse<T: OfKind>(path: &Path, text: &str) -> FileResult<T> {
-    toml::from_str(text).map_err(|error| match Kind::of(text).filter(|kind| *kind != T::KIND) {
-        Some(other) => FileError::at(path, text, None, other.name().to_string(), T::KIND.remedy().to_string()),
-        None => {
-            let (found, right) = in_words(error.message());
-            let kind = T::KIND.remedy();
-            let remedy = right.map_or(kind.to_string(), |right| format!("{right}; in {kind}"));
-            FileError::at(path, text, error.span(), found, remedy)
-        }
-    })
 }

@@ -8,8 +8,8 @@ use super::files::{FileError, FileResult};
 use super::log::{LogReader, at_line};
 use crate::gaze::GazeSample;
 use crate::gaze::surface::SurfaceMap;
+use crate::session::Event;
 use crate::session::apply::apply;
-use crate::session::{Event, Session};
 
 /// No line of an export is longer, in bytes.
 const MAX_LINE: u64 = 1 << 16;
@@ -40,7 +40,7 @@ pub fn read(path: &Path, map: &SurfaceMap) -> FileResult<GazeFile> {
 
 fn of_recording(path: &Path) -> FileResult<GazeFile> {
     let mut log = LogReader::open(path)?;
-    let mut session = Session::new(log.kitchen.clone(), log.header.session.clone());
+    let mut session = log.session();
     let mut found = GazeFile::default();
     while let Some(line) = log.next_line()? {
         apply(&mut session, &line.stamped)

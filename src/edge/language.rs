@@ -5,7 +5,8 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::files::{FileResult, Kind, OfKind, missing, parse, read_text};
+use super::files::{FileResult, missing, read_text};
+use super::parse::{Kind, OfKind, parse};
 use crate::session::SessionSpec;
 use crate::session::display::DisplaySpec;
 

@@ -12,6 +12,7 @@ pub mod gaze_input;
 pub mod gaze_json;
 pub mod language;
 pub mod log;
+pub mod parse;
 mod place;
 pub mod pupil;
 pub mod recordings;

@@ -60,7 +60,7 @@ pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
     }
     if found.is_empty() {
         let found = "a folder without recordings".to_string();
-        return Err(FileError::at(folder, "", None, found, remedy.to_string()));
+        return Err(FileError::of(folder, found, remedy.to_string()));
     }
     found.sort();
     let mut continued = Vec::new();

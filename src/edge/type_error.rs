@@ -1,5 +1,20 @@
 //! What serde says of a value of the wrong type, in the words of people who write settings and no programs.
 
+use serde::de::DeserializeOwned;
+
+/// What the parser says. Of a value that is no text at all it does not say which words could stand there; of a wrong word
+/// there it does.
+pub(super) fn message<T: DeserializeOwned>(text: &str, error: &toml::de::Error) -> String {
+    let no_word = error.span().filter(|_| error.message() == "wanted string or table");
+    let said = no_word.and_then(|span| {
+        let with_a_word = [text.get(..span.start)?, "\"\"", text.get(span.end..)?].concat();
+        let error = toml::from_str::<T>(&with_a_word).err()?;
+        let (_, words) = error.message().split_once(", expected ")?;
+        Some(format!("invalid value: {}, expected {words}", &text[span]))
+    });
+    said.unwrap_or_else(|| error.message().to_string())
+}
+
 /// What was found, and what would be right where the message knows it.
 pub(super) fn in_words(message: &str) -> (String, Option<String>) {
     let (found, expected) = match message.split_once(", expected ") {

@@ -21,7 +21,7 @@ use crate::communication::reference::{ReferencePlanner, Worth};
 use crate::edge::files::FileResult;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::session::SessionSpec;
+use crate::session::Session;
 
 /// How many times the rollouts of the converged answer.
 const CONVERGED: usize = 64;
@@ -70,7 +70,7 @@ pub struct AccuracyFigures {
 
 /// What was asked in a recording.
 struct Asked {
-    spec: SessionSpec,
+    session: Session,
     questions: Vec<Question>,
 }
 
@@ -101,7 +101,7 @@ pub fn measure(recordings: &[PathBuf], extent: Extent, done: impl Fn() + Sync) -
     let bench = Bench { kitchen: kitchen.clone(), asked };
     // As in a session: after every press, on one thread, what is remembered helps the next answer. The plain reference
     // follows at once, so that the machine is as fast for both.
-    let every = steps.len().div_ceil(extent.reference_steps.max(1)).max(1);
+    let every = (extent.reference_steps > 0).then(|| steps.len().div_ceil(extent.reference_steps));
     let mut worker = Worker::default();
     for (index, step) in steps.iter_mut().enumerate() {
         let (advisor, answered) = worker.advisor(&bench, step.recording, 1);
@@ -113,7 +113,7 @@ pub fn measure(recordings: &[PathBuf], extent: Extent, done: impl Fn() + Sync) -
         step.ours = benefits(advisor, bench.question(step));
         step.took_s = began.elapsed().as_secs_f64();
         done();
-        if index % every == 0 {
+        if every.is_some_and(|every| index % every == 0) {
             step.plain = Some(bench.plain(step));
             done();
         }
@@ -124,18 +124,18 @@ pub fn measure(recordings: &[PathBuf], extent: Extent, done: impl Fn() + Sync) -
         Step { converged, ..step.clone() }
     };
     let steps = parallel::each_with(&steps, Worker::default, answer, || {});
-    let price = bench.asked.first().map_or(0.0, |asked| asked.spec.assistant.cost_of_communication);
+    let price = bench.asked.first().map_or(0.0, |asked| asked.session.spec.assistant.cost_of_communication);
     Ok(figures(&steps, price))
 }
 
 /// The questions that the assistant is asked after presses.
 fn ask(replay: &mut Replay) -> FileResult<Asked> {
-    let spec = replay.session().spec.clone();
+    let session = replay.log().session();
     let mut questions = Vec::new();
     while let Some(question) = replay.next_question()? {
         questions.push(question);
     }
-    Ok(Asked { spec, questions })
+    Ok(Asked { session, questions })
 }
 
 /// So many questions at most, spread evenly over all.
@@ -166,8 +166,9 @@ impl Bench {
 
     /// How long the plain reference takes for a step, in seconds, and what it answers.
     fn plain(&self, step: &Step) -> (f64, Vec<Worth>) {
-        let SessionSpec { human, assistant, seed, .. } = self.asked[step.recording].spec.clone();
-        let plain = ReferencePlanner::new(self.kitchen.clone(), human, assistant, seed);
+        let session = &self.asked[step.recording].session;
+        let (human, assistant) = (session.spec.human.clone(), session.spec.assistant.clone());
+        let plain = ReferencePlanner::new(self.kitchen.clone(), human, assistant, session.seed());
         let (question, mut cost) = (self.question(step), CostToGo::new(self.kitchen.clone()));
         let began = Instant::now();
         let worth = plain.advise(&mut cost, &question.moment());
@@ -186,14 +187,14 @@ impl Worker {
     /// The planner of a recording's session, with so many times the rollouts, and how many questions it has answered.
     fn advisor(&mut self, bench: &Bench, recording: usize, times: usize) -> (&mut Advisor, &mut usize) {
         let made = || {
-            let mut spec = bench.asked[recording].spec.clone();
+            let mut session = bench.asked[recording].session.clone();
             if times > 1 {
-                let rollout = &mut spec.assistant.rollout;
+                let rollout = &mut session.spec.assistant.rollout;
                 rollout.rollouts = (rollout.rollouts * times).min(MOST_ROLLOUTS);
                 rollout.least_rollouts = rollout.rollouts;
             }
             let cost = CostToGo::new(bench.kitchen.clone());
-            (recording, Advisor::by(ConceptName::TomCom, bench.kitchen.clone(), &spec, cost), 0)
+            (recording, Advisor::by(ConceptName::TomCom, &session, cost), 0)
         };
         self.advisor = self.advisor.take().filter(|(of, ..)| *of == recording);
         let (_, advisor, answered) = self.advisor.get_or_insert_with(made);
@@ -293,19 +294,24 @@ pub fn describe(figures: &AccuracyFigures) -> String {
             told(figures.reference_error, 3),
         ),
     };
-    format!(
+    let mut text = format!(
         "{}: the same decision as with {CONVERGED} times the rollouts at {} of the {} clear ones, benefits off by {} presses \
-         (root mean square over {} of step and signal, worth more than {MATTERS})\n\
-         plain reference on {}: {} times the time ({} ms a step, planner {} ms); the same decision at {}, {of_reference}\n",
+         (root mean square over {} of step and signal, worth more than {MATTERS})\n",
         count(figures.steps, "step", "steps"),
         told(figures.same_decision, 3),
         figures.clear_steps,
         told(figures.benefit_rmse, 3),
         count(figures.benefit_pairs, "pair", "pairs"),
-        count(figures.reference_steps, "step", "steps"),
-        told(figures.reference_ratio, 0),
-        told(figures.reference_ms, 1),
-        told(figures.plan_ms, 2),
-        told(figures.reference_same_decision, 3),
-    )
+    );
+    if figures.reference_steps > 0 {
+        text += &format!(
+            "plain reference on {}: {} times the time ({} ms a step, planner {} ms); the same decision at {}, {of_reference}\n",
+            count(figures.reference_steps, "step", "steps"),
+            told(figures.reference_ratio, 0),
+            told(figures.reference_ms, 1),
+            told(figures.plan_ms, 2),
+            told(figures.reference_same_decision, 3),
+        );
+    }
+    text
 }

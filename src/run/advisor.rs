@@ -1,7 +1,6 @@
 //! The assistant beside a session: gets a question after every press and every order change, and answers it. Headless in
 //! place, live on a thread of its own, where the newest question goes first.
 
-use std::sync::Arc;
 use std::sync::mpsc::{Sender, channel};
 use std::thread;
 
@@ -14,9 +13,9 @@ use crate::communication::concept::{Concept, ConceptName, Moment, concept};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::situation::{RobotOutlook, Situation};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{AspectId, Kitchen, State};
+use crate::kitchen::{AspectId, State};
 use crate::mind::dirichlet::DirichletBelief;
-use crate::session::SessionSpec;
+use crate::session::Session;
 
 /// What the assistant is asked: the session as it was after an event and all that followed from it at once.
 #[derive(Clone, Debug)]
@@ -80,13 +79,14 @@ pub struct Advisor {
 
 impl Advisor {
     /// The assistant of a session, by the concept that its settings name.
-    pub fn new(kitchen: Arc<Kitchen>, spec: &SessionSpec, cost: CostToGo) -> Advisor {
-        Advisor::by(spec.assistant.concept, kitchen, spec, cost)
+    pub fn new(session: &Session, cost: CostToGo) -> Advisor {
+        Advisor::by(session.spec.assistant.concept, session, cost)
     }
 
     /// One that advises by this concept.
-    pub fn by(name: ConceptName, kitchen: Arc<Kitchen>, spec: &SessionSpec, cost: CostToGo) -> Advisor {
-        Advisor { concept: concept(name, kitchen, &spec.human, &spec.assistant, spec.seed), cost }
+    pub fn by(name: ConceptName, session: &Session, cost: CostToGo) -> Advisor {
+        let Session { kitchen, spec, .. } = session;
+        Advisor { concept: concept(name, kitchen.clone(), &spec.human, &spec.assistant, session.seed()), cost }
     }
 
     pub fn answer(&mut self, question: &Question) -> Recommendation {

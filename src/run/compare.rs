@@ -22,7 +22,7 @@ use crate::communication::repeats::Repeats;
 use crate::console::belief::Moment;
 use crate::console::comparison::{Comparison, Known, Lane, Spoken, What};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Kitchen, LocationId, State};
+use crate::kitchen::{Agent, LocationId, State};
 use crate::measures::matching::Said;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::BeliefFilter;
@@ -30,7 +30,7 @@ use crate::mind::observation::{Observation, Observed};
 use crate::session::apply::ApplyError;
 use crate::session::screen::Screen;
 use crate::session::settings::Condition;
-use crate::session::{Event, SessionSpec, Stamped};
+use crate::session::{Event, Session, SessionSpec, Stamped};
 
 /// What is compared.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -101,20 +101,20 @@ pub struct Watcher {
 }
 
 impl Watcher {
-    /// A watcher before the first event of a session.
-    pub fn new(kitchen: Arc<Kitchen>, spec: &SessionSpec, request: &Request) -> Watcher {
-        let cost = CostToGo::new(kitchen.clone());
+    /// A watcher of a session from before its first event on.
+    pub fn new(session: Session, request: &Request) -> Watcher {
+        let cost = CostToGo::new(session.kitchen.clone());
         let voice = |name: ConceptName| Voice {
             name,
-            advisor: Advisor::by(name, kitchen.clone(), spec, cost.clone()),
+            advisor: Advisor::by(name, &session, cost.clone()),
             said: Vec::new(),
             repeats: Repeats::default(),
             proposed: None,
             spoken: Vec::new(),
         };
-        let voices = request.concepts(spec).into_iter().map(voice).collect();
+        let voices = request.concepts(&session.spec).into_iter().map(voice).collect();
         Watcher {
-            follower: Follower::new(kitchen, spec.clone(), cost),
+            follower: Follower::new(session, cost),
             window: request.window,
             voices,
             without: VecDeque::new(),
@@ -277,7 +277,8 @@ impl Watcher {
     pub fn comparison(&self, over: bool) -> Comparison {
         let sender = match self.follower.session.spec.trial.condition {
             Condition::Assistant => "assistant",
-            Condition::Wizard | Condition::None => "wizard",
+            Condition::Wizard => "wizard",
+            Condition::None => "nobody",
         };
         let mut lanes = vec![Lane { name: sender.to_string(), concept: None, spoken: self.sent.clone() }];
         lanes.extend(self.voices.iter().map(|voice| Lane {

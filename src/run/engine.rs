@@ -81,7 +81,7 @@ impl Engine {
         let wizard = spec.scripts_wizard().then(|| {
             ScriptedWizard::new(kitchen.clone(), spec.wizard.clone(), spec.signals.own_hand, spec.seed, trial)
         });
-        let follower = Follower::new(kitchen, spec, cost);
+        let follower = Follower::new(Session::new(kitchen, spec, trial), cost);
         let timers = TimerQueue::default();
         let (out, questions) = (Vec::new(), Vec::new());
         Engine { follower, timers, orders, robot, participant, wizard, next_seq: 0, out, to_ask: None, questions }
@@ -89,8 +89,7 @@ impl Engine {
 
     /// The assistant of this session; its answers come back as [`Event::Advised`].
     pub fn advisor(&self) -> Advisor {
-        let session = self.session();
-        Advisor::new(session.kitchen.clone(), &session.spec, self.follower.cost.clone())
+        Advisor::new(self.session(), self.follower.cost.clone())
     }
 
     /// What the assistant is asked since this was called last, oldest first.

@@ -137,7 +137,7 @@ impl Trials {
             let mut replay = Replay::open(recording)?;
             one_kitchen.admit(recording, &replay.session().kitchen)?;
             models.push(replay.session().spec.human.clone());
-            observations.push((replay.session().spec.seed, replay.observations()?));
+            observations.push((replay.session().seed(), replay.observations()?));
         }
         let kitchen = one_kitchen.kitchen()?;
         let differ = models.windows(2).any(|pair| pair[0] != pair[1]);

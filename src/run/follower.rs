@@ -1,6 +1,5 @@
 //! A session with what is derived from it press by press. Live runs and replays go through it alike.
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use crate::communication::repeats::Repeats;
@@ -16,7 +15,7 @@ use crate::mind::filter::{BeliefFilter, Evidence};
 use crate::mind::observation::{Observation, Observed};
 use crate::mind::witness::EstimateWitness;
 use crate::session::apply::ApplyError;
-use crate::session::{Effect, Event, Session, SessionSpec, Stamped, apply};
+use crate::session::{Effect, Event, Session, Stamped, apply};
 
 /// A session, the errors in it, and their causes.
 #[derive(Clone, Debug)]
@@ -70,11 +69,12 @@ pub struct Timing {
 }
 
 impl Follower {
-    pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, cost: CostToGo) -> Follower {
+    /// From before the first event of this session on.
+    pub fn new(session: Session, cost: CostToGo) -> Follower {
+        let (kitchen, spec, seed) = (session.kitchen.clone(), &session.spec, session.seed());
         let judge = Judge::new(kitchen.clone());
-        let attributor = Attributor::new(spec.human.decision.clone(), spec.seed);
-        let filter = BeliefFilter::new(kitchen.clone(), spec.human.clone(), spec.seed);
-        let session = Session::new(kitchen, spec);
+        let attributor = Attributor::new(spec.human.decision.clone(), seed);
+        let filter = BeliefFilter::new(kitchen, spec.human.clone(), seed);
         let (judged, episodes) = (Vec::new(), Episodes::default());
         let (timing, belief, estimated, finds_causes) = (None, None, None, true);
         let repeats = Repeats::default();

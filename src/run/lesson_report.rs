@@ -3,11 +3,14 @@
 
 use std::path::Path;
 
+use serde::Serialize;
+
 use crate::base::words::count;
 use crate::communication::recommendation::{aspects_told, phrase};
 use crate::communication::{Signal, signals, unavailable};
 use crate::console::words;
-use crate::edge::training::{JudgedBelief, JudgedRecording, JudgedSignal, TrainingRecord};
+use crate::edge::files::FileResult;
+use crate::edge::training::{self, JudgedBelief, JudgedRecording, JudgedSignal, TrainingRecord};
 use crate::kitchen::{AspectId, Kitchen};
 use crate::measures::matching::{Content, Kind, Said, Tally, WINDOW};
 use crate::measures::wizard::{Spell, TrainingCriterion, WizardMeasures};
@@ -16,6 +19,49 @@ use crate::session::Session;
 
 /// With fewer false beliefs that led to errors the shares say little: at 10 a share of 60 % is known to within 30 %.
 const TELLING: u64 = 10;
+
+/// What a wizard was trained.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TrainingFigures {
+    pub wizard: String,
+    /// Where its records are looked for.
+    pub folder: String,
+    pub times: u64,
+    pub minutes: f64,
+    /// The criterion of the last time, and whether it was met then; null: never trained.
+    pub criterion: Option<TrainingCriterion>,
+    pub met: Option<bool>,
+}
+
+impl TrainingFigures {
+    /// Of a wizard's training as it is recorded in this folder.
+    ///
+    /// # Errors
+    /// Those of [`training::read`].
+    pub fn read(folder: &Path, wizard: &str) -> FileResult<TrainingFigures> {
+        let records = training::read(folder, wizard)?;
+        let last = records.last();
+        Ok(TrainingFigures {
+            wizard: wizard.to_string(),
+            folder: folder.display().to_string(),
+            times: records.len() as u64,
+            // The sum of nothing would be -0.
+            minutes: records.iter().fold(0.0, |sum, record| sum + record.minutes),
+            criterion: last.map(|record| record.criterion),
+            met: last.map(|record| record.met),
+        })
+    }
+
+    /// In words, for people.
+    pub fn describe(&self) -> String {
+        let Some(met) = self.met else {
+            return format!("\nno training of {} in {}; see --training\n", self.wizard, self.folder);
+        };
+        let met = if met { "the criterion was met" } else { "the criterion was not met" };
+        let times = count(self.times, "time", "times");
+        format!("\n{}: trained {times}, {:.1} minutes; {met}\n", self.wizard, self.minutes)
+    }
+}
 
 /// What a spell was about, as it is known before anything was said of it.
 pub fn unheard(session: &Session, spell: &Spell) -> JudgedBelief {

@@ -32,7 +32,7 @@ impl Replay {
 
     /// A replay of this log; `cost` is for its kitchen, and may have been used before.
     pub fn over(log: LogReader, cost: CostToGo) -> Replay {
-        let follower = Follower::new(log.kitchen.clone(), log.header.session.clone(), cost);
+        let follower = Follower::new(log.session(), cost);
         Replay { log, follower }
     }
 
@@ -126,7 +126,7 @@ impl OneKitchen {
         }
         let found = format!("a recording of the kitchen {}, beside {}", kitchen.name, path.display());
         let remedy = format!("recordings of one kitchen, here of {}", first.name);
-        Err(FileError::at(recording, "", None, found, remedy))
+        Err(FileError::of(recording, found, remedy))
     }
 
     /// The kitchen of all of them.
@@ -136,7 +136,7 @@ impl OneKitchen {
     pub fn kitchen(self) -> FileResult<Arc<Kitchen>> {
         let none = || {
             let remedy = "at least one recording".to_string();
-            FileError::at(Path::new("."), "", None, "no recording".to_string(), remedy)
+            FileError::of(Path::new("."), "no recording".to_string(), remedy)
         };
         self.first.map(|(_, kitchen)| kitchen).ok_or_else(none)
     }

@@ -115,8 +115,8 @@ impl Review {
         model.comparison = compare.map(|_| Compared::default());
         model.coding = coding;
         let watch = compare.map(|request| {
-            let session = &film.session;
-            Watcher::new(session.kitchen.clone(), &session.spec, request).without_causes().on_thread()
+            let session = film.replay.log().session();
+            Watcher::new(session, request).without_causes().on_thread()
         });
         let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
         let excluded = film.standing()?.excluded.is_some();

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::compare::{Request, Watcher};
+use super::lesson_report::TrainingFigures;
 use super::parallel;
 use super::standing::Standing;
 use super::wizard::{self, WizardFigures, WizardLog};
@@ -15,10 +16,8 @@ use crate::communication::recommendation::Recommendation;
 use crate::console::comparison::{Comparison, Difference};
 use crate::edge::files::{FileError, FileResult};
 use crate::edge::log::{LogReader, at_line};
-use crate::edge::training;
 use crate::kitchen::{AspectId, Kitchen};
-use crate::measures::matching::{Level, Said, Similarity, Tally};
-use crate::measures::wizard::TrainingCriterion;
+use crate::measures::matching::{Level, Said, Similarity, Tally, WINDOW};
 use crate::session::screen::Screen;
 use crate::session::settings::Condition;
 
@@ -36,39 +35,6 @@ pub struct CompareFigures {
     pub recordings: Vec<RecordingComparison>,
     /// Of the wizard who was named.
     pub training: Option<TrainingFigures>,
-}
-
-/// What a wizard was trained.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TrainingFigures {
-    pub wizard: String,
-    /// Where its records are looked for.
-    pub folder: String,
-    pub times: u64,
-    pub minutes: f64,
-    /// The criterion of the last time, and whether it was met then; null: never trained.
-    pub criterion: Option<TrainingCriterion>,
-    pub met: Option<bool>,
-}
-
-impl TrainingFigures {
-    /// Of a wizard's training as it is recorded in this folder.
-    ///
-    /// # Errors
-    /// Those of [`training::read`].
-    pub fn read(folder: &Path, wizard: &str) -> FileResult<TrainingFigures> {
-        let records = training::read(folder, wizard)?;
-        let last = records.last();
-        Ok(TrainingFigures {
-            wizard: wizard.to_string(),
-            folder: folder.display().to_string(),
-            times: records.len() as u64,
-            // The sum of nothing would be -0.
-            minutes: records.iter().fold(0.0, |sum, record| sum + record.minutes),
-            criterion: last.map(|record| record.criterion),
-            met: last.map(|record| record.met),
-        })
-    }
 }
 
 /// Two lanes against each other.
@@ -166,7 +132,7 @@ impl Watched {
     /// It cannot be read or applied.
     pub fn new(recording: &Path, request: &Request) -> FileResult<Watched> {
         let mut log = LogReader::open(recording)?;
-        let mut watcher = Watcher::new(log.kitchen.clone(), &log.header.session, request);
+        let mut watcher = Watcher::new(log.session(), request);
         let mut hands = WizardLog::default();
         while let Some(line) = log.next_line()? {
             let applied = watcher.apply(&line.stamped);
@@ -312,7 +278,8 @@ impl DifferenceFigures {
 pub fn open(watched: &[Watched], number: usize) -> FileResult<String> {
     let [one] = watched else {
         let found = format!("--open {number} with {} recordings", watched.len());
-        return Err(FileError::at(Path::new("."), "", None, found, "one recording at a time".to_string()));
+        let remedy = "one recording at a time".to_string();
+        return Err(FileError::of(Path::new("tomcom compare"), found, remedy));
     };
     let differences = &one.comparison.differences;
     let Some(difference) = number.checked_sub(1).and_then(|index| differences.get(index)) else {
@@ -320,28 +287,19 @@ pub fn open(watched: &[Watched], number: usize) -> FileResult<String> {
             "--open {number}, where there are {}",
             count(differences.len() as u64, "difference", "differences")
         );
-        return Err(FileError::at(&one.recording, "", None, found, "a number of the list of differences".to_string()));
+        return Err(FileError::of(&one.recording, found, "a number of the list of differences".to_string()));
     };
     Ok(one.comparison.opened(one.kitchen(), difference).join("\n") + "\n")
 }
 
-/// The figures for people.
-pub fn describe(figures: &CompareFigures) -> String {
+/// The figures for people, of what was compared by this request.
+pub fn describe(figures: &CompareFigures, request: &Request) -> String {
     let mut text = format!(
         "{:<24}{:>7}{:>8}{:>8}{:>11}{:>6}{:>7}{:>8}\n",
         "", "window", "recall", "chance", "precision", "F1", "kappa", "lead"
     );
     figures.pairs.iter().for_each(|pair| text += &describe_pair(pair));
-    if let Some(training) = &figures.training {
-        text += &match training.met {
-            None => format!("\nno training of {} in {}; see --training\n", training.wizard, training.folder),
-            Some(met) => {
-                let met = if met { "the criterion was met" } else { "the criterion was not met" };
-                let times = count(training.times, "time", "times");
-                format!("\n{}: trained {times}, {:.1} minutes; {met}\n", training.wizard, training.minutes)
-            }
-        };
-    }
+    text += &figures.training.as_ref().map_or(String::new(), TrainingFigures::describe);
     for one in &figures.recordings {
         let presses = count(one.human_actions, "press", "presses");
         text += &format!("\n{}: {presses} of the human\n", one.recording);
@@ -353,7 +311,9 @@ pub fn describe(figures: &CompareFigures) -> String {
         // That of the session's own concept, if there is one.
         if let Some(first) = one.differences.iter().min_by_key(|one| one.rank()) {
             text += &format!(
-                "what each knew: --open {}; the moment itself: tomcom review {} --at {}\n",
+                "what each knew: tomcom compare {}{} --open {}\nthe moment itself: tomcom review {} --at {}\n",
+                one.recording,
+                flags(request),
                 first.number,
                 one.recording,
                 SessionTime::from_secs_f64(first.spoken.clock_s)
@@ -361,6 +321,19 @@ pub fn describe(figures: &CompareFigures) -> String {
         }
     }
     text
+}
+
+/// The options that ask for the same comparison again.
+fn flags(request: &Request) -> String {
+    let mut flags = String::new();
+    if !request.with.is_empty() {
+        let names: Vec<&str> = request.with.iter().map(|concept| concept.name()).collect();
+        flags += &format!(" --with {}", names.join(","));
+    }
+    if request.window != WINDOW {
+        flags += &format!(" --window {}", request.window);
+    }
+    flags
 }
 
 /// Differences by who said what the other did not: the session's own concept first. Their numbers go by time.

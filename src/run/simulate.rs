@@ -163,9 +163,10 @@ pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>,
     (files.spec.trial.condition, files.spec.assistant.shadow) = (Condition::None, Shadow::Off);
     (files.spec.trial.seconds, files.spec.trial.orders) = (seconds, None);
     files.spec.participant = ParticipantSpec::default();
-    files.spec.check().map_err(|error| {
-        Box::new(FileError::at(Path::new("--seconds"), "", None, error.found, error.remedy.to_string()))
-    })?;
+    files
+        .spec
+        .check()
+        .map_err(|error| Box::new(FileError::of(Path::new("--seconds"), error.found, error.remedy.to_string())))?;
     // What differs in length is another recording.
     let out = out.join(format!("{seconds}s"));
     let figures = simulate(&Simulation { files, trials: 1, shard: Shard::WHOLE, out }, || ())?;
@@ -236,7 +237,8 @@ pub fn describe(figures: &SimulationFigures) -> String {
         some => format!(", {some} of them before"),
     };
     let by_condition: String = match &figures.conditions[..] {
-        [] | [_] => String::new(),
+        [] => String::new(),
+        [one] if one.condition == Condition::None => String::new(),
         several => several.iter().map(describe_condition).collect(),
     };
     let look = figures.recordings.first().map_or(String::new(), |first| {
@@ -272,6 +274,6 @@ fn describe_condition(one: &ConditionFigures) -> String {
         Condition::Assistant => "with the assistant",
     };
     let per_100 = |number: u64| 100.0 * number as f64 / one.human_actions.max(1) as f64;
-    let (errors, signals) = (per_100(one.errors), per_100(one.signals));
-    format!("  {who}: {errors:.1} %, {signals:.1} signals per 100 presses\n")
+    let (errors, signals) = (per_100(one.errors), count(one.signals, "signal", "signals"));
+    format!("  {who}: {errors:.1} %, {signals} ({:.1} per 100 presses)\n", per_100(one.signals))
 }

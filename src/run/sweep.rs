@@ -11,6 +11,7 @@ use super::error::RunError;
 use super::figures::{SimulationFigures, SimulationSums, TrialFigures};
 use super::kitchen::plan_lengths;
 use super::simulate::{Simulation, each_trial};
+use crate::communication::concept::ConceptName;
 use crate::communication::settings::Shadow;
 use crate::edge::files::FileError;
 use crate::edge::log::WriteError;
@@ -152,6 +153,7 @@ pub fn trials(simulation: &Simulation, axes: &[Axis]) -> u64 {
 /// Those of simulations, too many combinations, or a value that cannot be.
 pub fn sweep(simulation: &Simulation, axes: &[Axis], done: impl Fn() + Sync) -> Result<SweepFigures, RunError> {
     let cells = grid(axes)?;
+    check_axes(&simulation.files.spec, axes)?;
     let specs = cells.iter().map(|cell| spec_of(&simulation.files.spec, axes, cell)).collect::<Result<Vec<_>, _>>()?;
     let mut unassisted = simulation.clone();
     unassisted.files.spec.trial.condition = Condition::None;
@@ -176,9 +178,8 @@ pub fn sweep(simulation: &Simulation, axes: &[Axis], done: impl Fn() + Sync) -> 
 
 /// Every combination of the values, the last axis the quickest.
 fn grid(axes: &[Axis]) -> Result<Vec<Cell>, RunError> {
-    let wrong = |found: String, remedy: String| {
-        Err(Box::new(FileError::at(Path::new("--sweep"), "", None, found, remedy)).into())
-    };
+    let wrong =
+        |found: String, remedy: String| Err(Box::new(FileError::of(Path::new("--sweep"), found, remedy)).into());
     let twice = axes.iter().enumerate().find(|(index, axis)| axes[..*index].iter().any(|one| one.name == axis.name));
     if let Some((_, axis)) = twice {
         return wrong(format!("{} twice", axis.name), "each setting once, with all its values".to_string());
@@ -199,6 +200,27 @@ fn grid(axes: &[Axis]) -> Result<Vec<Cell>, RunError> {
     Ok(cells)
 }
 
+/// Settings of another concept than the one that decides change nothing.
+fn check_axes(spec: &SessionSpec, axes: &[Axis]) -> Result<(), RunError> {
+    let decides = match spec.trial.condition {
+        Condition::Assistant => Some(spec.assistant.concept),
+        Condition::Wizard | Condition::None => None,
+    };
+    let of = |knob: Knob| match knob {
+        Knob::Cost | Knob::Horizon | Knob::Rollouts => Some(ConceptName::TomCom),
+        Knob::Threshold => Some(ConceptName::Tom),
+        Knob::Tau | Knob::Radius | Knob::Gaze => None,
+    };
+    for axis in axes {
+        let Some(concept) = of(axis.knob).filter(|concept| decides != Some(*concept)) else { continue };
+        let by = decides.map_or("the wizard", ConceptName::name);
+        let found = format!("{}, which only {} heeds, where {by} decides", axis.name, concept.name());
+        let remedy = format!("--condition assistant --concept {}, or another setting", concept.name());
+        return Err(Box::new(FileError::of(Path::new("--sweep"), found, remedy)).into());
+    }
+    Ok(())
+}
+
 fn spec_of(spec: &SessionSpec, axes: &[Axis], cell: &Cell) -> Result<SessionSpec, RunError> {
     let mut spec = spec.clone();
     for (axis, (_, value)) in axes.iter().zip(cell) {
@@ -208,7 +230,7 @@ fn spec_of(spec: &SessionSpec, axes: &[Axis], cell: &Cell) -> Result<SessionSpec
         Ok(()) => Ok(spec),
         Err(error) => {
             let path = Path::new("--sweep");
-            Err(Box::new(FileError::at(path, "", None, error.found, error.remedy.to_string())).into())
+            Err(Box::new(FileError::of(path, error.found, error.remedy.to_string())).into())
         }
     }
 }

@@ -53,8 +53,7 @@ pub fn measure(recording: &Path) -> FileResult<TimingFigures> {
     let mut replay = Replay::open(recording)?;
     replay.follower.timing = Some(Timing::default());
     let session = replay.session();
-    let (kitchen, spec) = (session.kitchen.clone(), session.spec.clone());
-    let mut advisor = Advisor::new(kitchen.clone(), &spec, CostToGo::new(kitchen));
+    let mut advisor = Advisor::new(session, CostToGo::new(session.kitchen.clone()));
     let began = Instant::now();
     let (mut plan_ns, mut step_ns) = (Vec::new(), Vec::new());
     while let Some(question) = replay.next_question()? {

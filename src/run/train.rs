@@ -74,7 +74,7 @@ fn open(recording: &Path) -> FileResult<(Film, Vec<Spell>)> {
     let mut film = Film::open(recording)?;
     let unfit = |found: &str| {
         let remedy = "a recording of a simulated participant without signals (tomcom simulate SESSION)".to_string();
-        FileError::at(recording, "", None, found.to_string(), remedy)
+        FileError::of(recording, found.to_string(), remedy)
     };
     if film.session.spec.trial.condition != Condition::None {
         return Err(unfit("a trial in which somebody sends signals"));

@@ -77,7 +77,7 @@ impl Rerun {
     pub fn of(mut log: LogReader) -> FileResult<Rerun> {
         let (kitchen, header) = (log.kitchen.clone(), log.header.clone());
         let cost = CostToGo::new(kitchen.clone());
-        let mut replayed = Follower::new(kitchen.clone(), header.session.clone(), cost.clone());
+        let mut replayed = Follower::new(log.session(), cost.clone());
         let engine = Engine::new(kitchen, header.session, header.trial, cost);
         let advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
         let mut again = Again { engine, produced: VecDeque::new(), advisor, questions: VecDeque::new() };

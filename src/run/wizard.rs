@@ -111,7 +111,6 @@ pub fn describe(figures: &WizardFigures) -> String {
     let drawn = measures.key_to_display_ms.map_or("not recorded".to_string(), |times| {
         format!("{:.1} ms in the median, {:.1} ms at most", times.median, times.max)
     });
-    let latency = measures.latency_s.map_or("-".to_string(), |times| format!("{:.1} s in the median", times.median));
     let blind = if figures.unblinded { "; saw what assistants would say" } else { "" };
     let mut text = format!(
         "wizard: {}, {} taken back, from key to display {drawn}{blind}\n",
@@ -121,8 +120,10 @@ pub fn describe(figures: &WizardFigures) -> String {
     match measures.episodes {
         None => text += "        what was believed is not known, so neither are hits and omissions\n",
         Some(episodes) => {
+            let after =
+                measures.latency_s.map_or(String::new(), |s| format!(", after {:.1} s in the median", s.median));
             text += &format!(
-                "        {} of {episodes} false beliefs with errors hit, after {latency}; {} omitted\n        \
+                "        {} of {episodes} false beliefs with errors hit{after}; {} omitted\n        \
                  {} repeated, {} late, {} about the wrong thing, {} while nothing was wrong, {} harmless\n",
                 number(measures.hits),
                 number(measures.omissions),

@@ -299,6 +299,9 @@ fn show(session: &mut Session, now: SessionTime, by: Sender, signal: &Signal, ef
     session.shown = Some(ShownSignal { signal: signal.clone(), by, since: now, until });
     if by == Sender::Wizard {
         session.signalled_at = Some(now);
+        if let Some(advice) = &mut session.advice {
+            advice.remove(signal);
+        }
     }
     effects.push(Effect::Cancel(Timer::EndSignal));
     effects.push(Effect::At { time: until, timer: Timer::EndSignal });

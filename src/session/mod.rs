@@ -21,6 +21,7 @@ pub mod tracker;
 
 use std::sync::Arc;
 
+use crate::base::rng::of_trial;
 use crate::base::time::SessionTime;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
@@ -56,6 +57,8 @@ pub enum Phase {
 pub struct Session {
     pub kitchen: Arc<Kitchen>,
     pub spec: SessionSpec,
+    /// Which trial of its seed it is.
+    pub trial: u64,
     /// The time of the last event.
     pub time: SessionTime,
     pub phase: Phase,
@@ -200,12 +203,13 @@ impl Session {
     }
 
     /// A session before its first event.
-    pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec) -> Session {
+    pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64) -> Session {
         let state = kitchen.empty_state();
         let protocol = spec.step.as_ref().map(|_| protocol::Protocol::default());
         Session {
             kitchen,
             spec,
+            trial,
             time: SessionTime::ZERO,
             phase: Phase::Ready,
             trial_start: SessionTime::ZERO,
@@ -264,6 +268,11 @@ impl Session {
     pub fn gaze_hz(&self, now: SessionTime) -> Option<f64> {
         let arrived = self.gaze.arrived.filter(|&arrived| now.secs_since(arrived) <= SILENT_S);
         arrived.map(|_| self.gaze.rate_hz)
+    }
+
+    /// The seed of estimates and advice, which no two trials share.
+    pub fn seed(&self) -> u64 {
+        of_trial(self.spec.seed, self.trial)
     }
 
     /// Presses of both agents during the trial.

@@ -8,7 +8,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::mind::observation::Observation;
 use tomcom::run::engine::Engine;
 use tomcom::run::follower::Follower;
-use tomcom::session::{Event, SessionSpec};
+use tomcom::session::{Event, Session, SessionSpec};
 
 /// All observations of an unassisted trial, until so many presses of both agents.
 pub fn recorded(kitchen: &Arc<Kitchen>, seed: u64, presses: u32) -> Vec<Observation> {
@@ -18,7 +18,7 @@ pub fn recorded(kitchen: &Arc<Kitchen>, seed: u64, presses: u32) -> Vec<Observat
     (spec.human.inference.beliefs, spec.human.inference.states, spec.human.inference.max_beliefs) = (1, 1, 1);
     let cost = CostToGo::new(kitchen.clone());
     let mut engine = Engine::new(kitchen.clone(), spec.clone(), 0, cost.clone());
-    let mut follower = Follower::new(kitchen.clone(), spec, cost);
+    let mut follower = Follower::new(Session::new(kitchen.clone(), spec, 0), cost);
     let mut observations = Vec::new();
     let mut events = engine.input(SessionTime::ZERO, Event::TrialStarted).events;
     loop {

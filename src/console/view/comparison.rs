@@ -142,8 +142,8 @@ impl View<'_> {
 fn figures_line(brush: &mut Brush, inside: Rect, y: u16, seen: &Comparison, lane: usize) {
     let name = format!("{:<9}", seen.lanes[lane].name);
     if seen.lanes[0].spoken.is_empty() {
-        let text = format!("no signals by the {} yet: nothing to hold against", seen.lanes[0].name);
-        brush.parts(inside.x + 1, y, inside.width - 1, &[(&name, Role::Strong), (&text, Role::Quiet)]);
+        let text = "no signal was sent yet: nothing to hold against";
+        brush.parts(inside.x + 1, y, inside.width - 1, &[(&name, Role::Strong), (text, Role::Quiet)]);
         return;
     }
     let found = &seen.pairs[lane - 1].similarity;

@@ -166,6 +166,8 @@ fn legend(signs: &Signs) -> Vec<Line<'static>> {
         (signs.rules[2], "shown to the participant"),
         (signs.to, "the robot goes there; trial or robot goes on"),
         (signs.bar_full, "how sure a belief is; what a signal saves"),
+        (signs.bar_empty, "what it may save more, by its error"),
+        (signs.frame[5], "between those: what a signal costs"),
         (signs.press, "press"),
         (signs.no_effect, "press without effect"),
         (signs.error, "error; trial excluded"),

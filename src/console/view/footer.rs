@@ -6,6 +6,8 @@ use super::paint::{Brush, width};
 use super::regions::Regions;
 use super::theme::Role;
 use super::{comparison, timeline};
+use crate::communication::Sender;
+use crate::communication::concept::ConceptName;
 use crate::console::coding::Rate;
 use crate::console::form::sheet;
 use crate::console::hands::Hand;
@@ -13,8 +15,9 @@ use crate::console::keys::{Action, Binding, Layer};
 use crate::console::model::{Dialog, Level, Model, Notice};
 use crate::console::panels::Look;
 use crate::console::playback::Move;
+use crate::session::admit::may_send;
 use crate::session::protocol::StudyPhase;
-use crate::session::settings::{Condition, ParticipantKind};
+use crate::session::settings::{ParticipantKind, Visibility};
 use crate::session::{Phase, Session};
 
 /// How long a notice stays, in seconds.
@@ -169,11 +172,18 @@ fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&
         Action::EndTrial => runs.then_some(label),
         Action::StopRobot => (!session.robot.stopped).then_some(label),
         Action::ResumeRobot => session.robot.stopped.then_some(label),
-        Action::Accept => (session.spec.trial.condition == Condition::Wizard).then_some(label),
+        Action::Accept => can_accept(session).then_some(label),
         Action::TakeBack => session.shown.is_some().then_some(label),
         Action::Look(Look::All) => {
             (model.alone.is_some() || model.events_back > 0 || model.timeline_back_s > 0).then_some(label)
         }
         _ => Some(label),
     }
+}
+
+/// Whether there can be something that the wizard accepts.
+fn can_accept(session: &Session) -> bool {
+    let recommends = matches!(session.spec.assistant.concept, ConceptName::TomCom | ConceptName::Tom);
+    let is_shown = session.spec.console.visibility == Visibility::Recommendation;
+    recommends && is_shown && session.spec.asks_assistant() && may_send(session, Sender::Wizard).is_ok()
 }

@@ -35,6 +35,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
             Layer::Wizard if model.coding.is_some() => "[key]: wrong about this",
             Layer::Wizard if model.playback.is_some() => "",
             Layer::Wizard if session.spec.trial.condition == Condition::None => "unassisted: no signals",
+            Layer::Wizard if session.spec.trial.condition == Condition::Assistant => "the assistant sends the signals",
             Layer::Wizard => "[key] tells the participant",
             Layer::Participant => "[key] is the participant's button",
         };

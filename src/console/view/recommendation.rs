@@ -5,12 +5,14 @@ use ratatui::layout::Rect;
 use super::paint::{Brush, width, wrap};
 use super::regions::{Regions, Room};
 use super::theme::Role;
+use crate::communication::Sender;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::{Proposal, Recommendation, SignalOption};
 use crate::console::keys::Action;
 use crate::console::model::Model;
 use crate::console::words;
 use crate::session::Session;
+use crate::session::admit::may_send;
 
 /// Columns of a gauge; each stands for half a press that is saved, of ToM for a twelfth of a whole belief.
 const GAUGE: u16 = 12;
@@ -234,7 +236,8 @@ fn cost_line(
         ConceptName::TomCom => format!("{silence}a signal costs {price:.1}"),
     };
     let role = if advice.best.is_none() { Role::Strong } else { Role::Quiet };
-    let accept = model.keys.of(&Action::Accept).filter(|_| advice.best.is_some());
+    let accept =
+        model.keys.of(&Action::Accept).filter(|_| advice.best.is_some() && may_send(session, Sender::Wizard).is_ok());
     let accept = accept.map_or(String::new(), |chord| format!("  [{}] accepts", chord.name()));
     brush.parts(inside.x, y, inside.width, &[(left.as_str(), role), (accept.as_str(), Role::Signal)]);
     let style = brush.style(Role::Quiet);

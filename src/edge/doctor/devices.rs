@@ -90,6 +90,8 @@ fn file(path: &str) -> Check {
 /// What would be right of a file.
 fn told(error: &FileError) -> String {
     match error {
-        FileError::Unreadable { remedy, .. } | FileError::Wrong { remedy, .. } => remedy.clone(),
+        FileError::Unreadable { remedy, .. } | FileError::Unfit { remedy, .. } | FileError::Wrong { remedy, .. } => {
+            remedy.clone()
+        }
     }
 }

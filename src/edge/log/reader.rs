@@ -9,7 +9,7 @@ use super::{LOG_NAME, Lock};
 use crate::edge::files::{FileError, FileResult, compile_kitchen};
 use crate::kitchen::Kitchen;
 use crate::session::header::{Continues, FORMAT, VERSION};
-use crate::session::{Event, Header, Stamped};
+use crate::session::{Event, Header, Session, Stamped};
 
 /// No line of a log is longer, in bytes: what is longer is no log.
 const MAX_LINE: usize = 1 << 24;
@@ -82,6 +82,11 @@ impl LogReader {
         let recipes = (Path::new(&header.recipes.path), header.recipes.text.clone());
         let kitchen = Arc::new(compile_kitchen(layout, recipes)?.kitchen);
         Ok(LogReader { header, kitchen, path, before, input, number: 1, next_seq, partial: Vec::new(), ended: false })
+    }
+
+    /// The session before its first event.
+    pub fn session(&self) -> Session {
+        Session::new(self.kitchen.clone(), self.header.session.clone(), self.header.trial)
     }
 
     /// The next event; `None` where the log ends for now.

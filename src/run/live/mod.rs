@@ -38,7 +38,7 @@ use crate::run::standing::Standing;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::screen::Screen as OnScreen;
 use crate::session::settings::GazeSource;
-use crate::session::{Event, Header};
+use crate::session::{Event, Header, Session};
 
 /// At most 30 frames a second.
 const FRAME: Duration = Duration::from_millis(33);
@@ -148,7 +148,9 @@ impl Live {
         let mut model = Model::new(keys, theme(&spec.console, desk.screen.ground), size);
         model.recording = Recording::On(log.folder().display().to_string());
         model.comparison = compare.as_ref().map(|_| Compared::default());
-        let watch = compare.as_ref().map(|request| Watcher::new(kitchen.clone(), &spec, request));
+        let watch = compare
+            .as_ref()
+            .map(|request| Watcher::new(Session::new(kitchen.clone(), spec.clone(), header.trial), request));
         let watch = watch.map(|watcher| watcher.without_causes().on_thread());
         let (display, health) = OnDisplay::at(desk);
         model.display = health;

@@ -155,5 +155,5 @@ fn same_kitchen(first: (&Path, &Arc<Kitchen>), other: (&Path, &Arc<Kitchen>)) ->
 fn nothing(analysis: &Analysis) -> StudyError {
     let path = analysis.paths.first().map_or(Path::new("."), PathBuf::as_path);
     let remedy = "at least one recording".to_string();
-    StudyError::from(FileError::at(path, "", None, "no recording".to_string(), remedy))
+    StudyError::from(FileError::of(path, "no recording".to_string(), remedy))
 }

@@ -60,23 +60,19 @@ enum Pass {
 }
 
 impl Pass {
-    fn new(kitchen: Arc<Kitchen>, header: &Header, extent: Extent) -> Pass {
-        let spec = &header.session;
-        let cost = CostToGo::new(kitchen.clone());
+    fn new(session: Session, extent: Extent) -> Pass {
+        let (spec, mut session) = (&session.spec.clone(), session);
+        let cost = CostToGo::new(session.kitchen.clone());
         let is_simulated = spec.participant.kind == ParticipantKind::Simulated;
         match spec.trial.condition {
             Condition::Wizard if extent.concepts => {
                 let request = Request { with: Vec::new(), window: WINDOW };
-                let own = ConceptName::TomCom;
-                let mut spec = spec.clone();
-                spec.assistant.concept = own;
-                Pass::Beside(Box::new(Watcher::new(kitchen, &spec, &request)))
+                session.spec.assistant.concept = ConceptName::TomCom;
+                Pass::Beside(Box::new(Watcher::new(session, &request)))
             }
             // What would have been prevented is known only where it is known what was believed.
-            Condition::None if extent.concepts && is_simulated => {
-                Pass::Swept(Box::new(Sweeper::new(kitchen, spec, cost)))
-            }
-            _ => Pass::Plain(Box::new(Follower::new(kitchen, spec.clone(), cost))),
+            Condition::None if extent.concepts && is_simulated => Pass::Swept(Box::new(Sweeper::new(session, cost))),
+            _ => Pass::Plain(Box::new(Follower::new(session, cost))),
         }
     }
 
@@ -143,14 +139,14 @@ pub fn read(recording: &Path, name: &str, extent: Extent) -> FileResult<Option<(
         return Ok(None);
     }
     let kitchen = log.kitchen.clone();
-    let mut pass = Pass::new(kitchen.clone(), &header, extent);
+    let mut pass = Pass::new(log.session(), extent);
     let mut rows = RowGatherer::new(name);
     let mut hands = WizardLog::default();
     let mut robot = RobotTally::new(header.session.robot.arm);
     let mut answers = Vec::new();
     let is_simulated = header.session.participant.kind == ParticipantKind::Simulated;
     let mut by_estimate = (!is_simulated).then(|| ByEstimate {
-        attributor: Attributor::new(header.session.human.decision.clone(), header.session.seed),
+        attributor: Attributor::new(header.session.human.decision.clone(), log.session().seed()),
         cost: CostToGo::new(kitchen.clone()),
         causes: Vec::new(),
     });

@@ -1,8 +1,6 @@
 //! What communication concepts would have done in an unassisted trial, for every value of their parameters at once: the
 //! dear part, the planning, is done once a moment, and all costs are swept over the same benefits.
 
-use std::sync::Arc;
-
 use super::reading::sequence_errors;
 use crate::base::time::SessionTime;
 use crate::communication::concept::{Concept, ConceptName};
@@ -12,7 +10,6 @@ use crate::communication::repeats::Repeats;
 use crate::communication::settings::AssistantSpec;
 use crate::communication::tom::Tom;
 use crate::kitchen::Agent;
-use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::measures::attribution::Cause;
 use crate::run::advisor::Question;
@@ -20,7 +17,7 @@ use crate::run::compare::follows_at_once;
 use crate::run::engine::changes_task;
 use crate::run::follower::Follower;
 use crate::session::apply::ApplyError;
-use crate::session::{Event, SessionSpec, Stamped};
+use crate::session::{Event, Session, Stamped};
 use crate::study::prevention::{PressTruth, Sent, SequenceTruth, SpellTruth, Truth};
 use crate::study::roc::{CONCEPTS, LEAST_COST, Swept, parameters};
 
@@ -47,8 +44,9 @@ pub struct Sweeper {
 }
 
 impl Sweeper {
-    /// A sweeper before the first event of a session.
-    pub fn new(kitchen: Arc<Kitchen>, spec: &SessionSpec, cost: CostToGo) -> Sweeper {
+    /// A sweeper of a session from before its first event on.
+    pub fn new(session: Session, cost: CostToGo) -> Sweeper {
+        let (kitchen, spec) = (session.kitchen.clone(), &session.spec);
         // Planned as carefully as the least cost asks for.
         let assistant = AssistantSpec { cost_of_communication: LEAST_COST, ..spec.assistant.clone() };
         let voice = |concept: ConceptName, parameter: f64| Voice {
@@ -60,9 +58,9 @@ impl Sweeper {
         let of_concept = |concept: ConceptName| parameters(concept).into_iter().map(move |one| voice(concept, one));
         let speaking = CONCEPTS.into_iter().filter(|concept| *concept != ConceptName::Dev);
         Sweeper {
-            planner: Planner::new(kitchen.clone(), &spec.human, assistant, spec.seed),
-            tom: Tom::new(kitchen.clone(), 0.0),
-            follower: Follower::new(kitchen, spec.clone(), cost.clone()),
+            planner: Planner::new(kitchen.clone(), &spec.human, assistant, session.seed()),
+            tom: Tom::new(kitchen, 0.0),
+            follower: Follower::new(session, cost.clone()),
             cost,
             voices: speaking.flat_map(of_concept).collect(),
             to_ask: None,

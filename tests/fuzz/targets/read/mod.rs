@@ -4,17 +4,18 @@
 
 use std::path::{Path, PathBuf};
 
-use tomcom::edge::files::{FileResult, compile_kitchen, key_map, parse};
+use tomcom::edge::files::{FileResult, compile_kitchen, key_map};
 use tomcom::edge::gaze_json;
 use tomcom::edge::log::LogReader;
+use tomcom::edge::parse::parse;
 use tomcom::edge::pupil::message;
 use tomcom::edge::pupil::zmtp::Inbox;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::mind::model::HumanModel;
+use tomcom::session::SessionSpec;
 use tomcom::session::apply::apply;
 use tomcom::session::header::FileText;
 use tomcom::session::plan::{Questionnaire, Study};
-use tomcom::session::{Session, SessionSpec};
 
 const LAYOUT: &str = include_str!("../../../../layouts/sushi.toml");
 const RECIPES: &str = include_str!("../../../../recipes/sushi.toml");
@@ -86,7 +87,7 @@ fn replay(log: &[u8]) {
     let path = path();
     std::fs::write(&path, log).expect("the temporary folder can be written");
     shown(LogReader::open(&path).and_then(|mut log| {
-        let mut session = Session::new(log.kitchen.clone(), log.header.session.clone());
+        let mut session = log.session();
         while let Some(line) = log.next_line()? {
             if apply(&mut session, &line.stamped).is_err() {
                 break;

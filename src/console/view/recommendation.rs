@@ -5,6 +5,7 @@ use ratatui::layout::Rect;
 use super::paint::{Brush, width, wrap};
 use super::regions::{Regions, Room};
 use super::theme::Role;
+use crate::base::words::count;
 use crate::communication::Sender;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::{Proposal, Recommendation, SignalOption};
@@ -17,6 +18,8 @@ use crate::session::admit::may_send;
 /// Columns of a gauge; each stands for half a press that is saved, of ToM for a twelfth of a whole belief.
 const GAUGE: u16 = 12;
 const PRESSES_A_COLUMN: f64 = 0.5;
+/// What would be shown as 0.0 ±0.0 is not listed.
+const NOTHING: f64 = 0.05;
 /// "[a] highlight assembly board": there is a bar only where so much has room beside it.
 const LONGEST_SIGNAL: u16 = 28;
 /// With fewer columns the line of the cost is said shorter.
@@ -54,11 +57,22 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         }
     }
     y = cost_line(brush, inside, y, session, advice, model);
+    let (useless, not_worth_it): (Vec<&SignalOption>, Vec<&SignalOption>) =
+        not_worth_it.into_iter().partition(|option| option.benefit.abs().max(option.standard_error) < NOTHING);
     for option in not_worth_it {
         if y >= inside.bottom() {
             return;
         }
         y = option_line(brush, inside, y, option, session, model, advice);
+    }
+    if !useless.is_empty() && y < inside.bottom() {
+        let what = match session.spec.assistant.concept {
+            ConceptName::Tom => "would tell nothing new",
+            _ => "would save nothing",
+        };
+        let text = format!("{} {what}", count(useless.len() as u64, "signal", "signals"));
+        let style = brush.style(Role::Quiet);
+        brush.text(inside.x, y, inside.width, &text, style);
     }
 }
 

@@ -4,8 +4,8 @@
 //! An episode counts if it caused two or more errors; it is caught if its aspect is flagged after it became false and
 //! before the third error (the estimate from before a press is before that press). A false flag is one that is raised on an
 //! aspect that is believed right. There is one threshold for locations and one for recipes. Unless they are given, those
-//! are taken that catch most, with at most [`MOST_FALSE_FLAGS`], and each group flagged at most [`MOST_WRONGLY_FLAGGED`] of
-//! the time while it is believed right; of equals those with the fewest false flags.
+//! are taken that catch most, with at most [`MOST_FALSE_FLAGS`], and aspects flagged at most [`MOST_WRONGLY_FLAGGED`] of the
+//! time while they are believed right; of equals those with the fewest false flags.
 
 use serde::Serialize;
 
@@ -70,15 +70,17 @@ impl Flags {
             return Flags::default();
         }
         let given = thresholds.map(|given| [given.locations, given.recipes]);
+        let wrongly = given.map_or_else(|| allowed_wrongly(trials, groups), |_| usize::MAX);
         let (mut episodes, mut outcomes) = (Vec::new(), Vec::new());
         for (index, group) in groups.iter().enumerate() {
             let of_group: Vec<Episode> = group.iter().flat_map(|&aspect| harmful(trials, aspect)).collect();
-            let tried = given.map_or_else(|| candidates(trials, group), |given| vec![given[index]]);
+            let tried = given.map_or_else(|| candidates(trials, group, wrongly), |given| vec![given[index]]);
             outcomes.push(tried.iter().map(|&one| Outcome::of(trials, group, &of_group, one)).collect::<Vec<_>>());
             episodes.push(of_group.len());
         }
-        let allowed = (MOST_FALSE_FLAGS * presses.len() as f64 / PER_PRESSES) as usize;
-        let best = best_pair(&outcomes[0], &outcomes[1], given.map_or(allowed, |_| usize::MAX));
+        let false_flags = (MOST_FALSE_FLAGS * presses.len() as f64 / PER_PRESSES) as usize;
+        let allowed = [given.map_or(false_flags, |_| usize::MAX), wrongly];
+        let best = best_pair(&outcomes[0], &outcomes[1], allowed);
         let Some([location, recipe]) = best else { return Flags::default() };
         let total = episodes.iter().sum::<usize>();
         let (wrongly, right) = (location.wrongly + recipe.wrongly, location.right + recipe.right);
@@ -93,22 +95,27 @@ impl Flags {
     }
 }
 
-/// The pair of outcomes that catches most with at most so many false flags.
-fn best_pair(locations: &[Outcome], recipes: &[Outcome], allowed: usize) -> Option<[Outcome; 2]> {
+/// The pair of outcomes that catches most with at most so many false flags, and so much flagged wrongly.
+fn best_pair(locations: &[Outcome], recipes: &[Outcome], allowed: [usize; 2]) -> Option<[Outcome; 2]> {
     let pairs = locations.iter().flat_map(|one| recipes.iter().map(move |other| [*one, *other]));
     let false_flags = |pair: &[Outcome; 2]| pair.iter().map(|one| one.false_flags).sum::<usize>();
+    let wrongly = |pair: &[Outcome; 2]| pair.iter().map(|one| one.wrongly).sum::<usize>();
     let caught = |pair: &[Outcome; 2]| pair.iter().map(|one| one.caught).sum::<usize>();
-    let fitting = pairs.filter(|pair| false_flags(pair) <= allowed);
+    let fitting = pairs.filter(|pair| false_flags(pair) <= allowed[0] && wrongly(pair) <= allowed[1]);
     fitting.max_by(|a, b| caught(a).cmp(&caught(b)).then(false_flags(b).cmp(&false_flags(a))))
 }
 
-/// Thresholds worth trying: those that flag at most the allowed share of what is believed right, from the strictest on.
-fn candidates(trials: &[TrialView], group: &[usize]) -> Vec<f64> {
-    let presses = trials.iter().flatten();
-    let right = presses.flat_map(|press| group.iter().filter_map(move |&aspect| p_if_right(press, aspect)));
-    let mut right: Vec<f64> = right.collect();
+/// How many pairs of a press and an aspect that is believed right may be flagged.
+fn allowed_wrongly(trials: &[TrialView], groups: &[Vec<usize>; 2]) -> usize {
+    let right = groups.iter().map(|group| while_right(trials, group).count()).sum::<usize>();
+    (MOST_WRONGLY_FLAGGED * right as f64) as usize
+}
+
+/// Thresholds worth trying: those that flag at most so much of what is believed right, from the strictest on.
+fn candidates(trials: &[TrialView], group: &[usize], allowed: usize) -> Vec<f64> {
+    let mut right: Vec<f64> = while_right(trials, group).collect();
     right.sort_by(|a, b| b.total_cmp(a));
-    let allowed = (MOST_WRONGLY_FLAGGED * right.len() as f64) as usize;
+    let allowed = allowed.min(right.len().saturating_sub(1));
     // Just above the score at a rank at most that many are flagged, also where scores are equal.
     let above = |index: usize| right.get(index).map(|p| p.next_up());
     let steps = CANDIDATES.min(allowed + 1);
@@ -122,8 +129,12 @@ fn p_wrong(press: &PressView, aspect: usize) -> f64 {
     press.estimate.as_ref().map_or(0.0, |estimate| estimate.p_wrong[aspect])
 }
 
-fn p_if_right(press: &PressView, aspect: usize) -> Option<f64> {
-    (press.is_wrong(aspect) == Some(false)).then(|| p_wrong(press, aspect))
+/// The estimates of these aspects before all presses while they are believed right.
+fn while_right<'a>(trials: &'a [TrialView], group: &'a [usize]) -> impl Iterator<Item = f64> + 'a {
+    let is_right = |press: &PressView, aspect: usize| press.is_wrong(aspect) == Some(false);
+    trials.iter().flatten().flat_map(move |press| {
+        group.iter().filter(move |&&aspect| is_right(press, aspect)).map(move |&aspect| p_wrong(press, aspect))
+    })
 }
 
 /// The episodes of an aspect with enough errors.

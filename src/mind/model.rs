@@ -149,7 +149,7 @@ pub struct InferenceModel {
 
 impl Default for InferenceModel {
     fn default() -> Self {
-        InferenceModel { beliefs: 256, states: 32, min_effective: 32.0, max_beliefs: 1024, predictions: 64 }
+        InferenceModel { beliefs: 256, states: 32, min_effective: 32.0, max_beliefs: 512, predictions: 64 }
     }
 }
 

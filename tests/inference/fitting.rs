@@ -98,7 +98,7 @@ fn a_tau_that_no_press_tells_is_bounded_from_below() {
 /// radius reaches beyond the place that is looked at: else it would make no difference.
 fn people() -> (HumanModel, HumanModel) {
     let mut start = HumanModel::default();
-    (start.inference.beliefs, start.inference.states, start.inference.max_beliefs) = (128, 16, 256);
+    (start.inference.beliefs, start.inference.states, start.inference.max_beliefs) = (512, 16, 512);
     start.prior.recipe_truth = 0.5;
     let mut truth = start.clone();
     (truth.decision.tau, truth.decision.lapse) = (2.5, 0.08);
@@ -127,7 +127,7 @@ fn fitting_recovers_how_a_human_forgets() {
     let (truth, mut start) = people();
     (start.decision, start.perception) = (truth.decision.clone(), truth.perception.clone());
     let kitchen = kitchen("layouts/sushi.toml");
-    let experiment = Experiment { humans: 128, presses: 200, gaze_hz: 30.0, signal_s: Some(15.0), seed: 29 };
+    let experiment = Experiment { humans: 48, presses: 200, gaze_hz: 30.0, signal_s: Some(15.0), seed: 29 };
     let plan = Plan { parameters: vec![Parameter::RecipeHalfLifeS], start: Some(start), most_tries: 200 };
     check(&fit(&trials(&kitchen, &truth, &experiment), &plan, || {}), &plan, &truth, 4.0);
 }

@@ -485,11 +485,16 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     for told in ["not said by", "believed wrong, by the estimate", "truly: ", "on the wizard's screen: "] {
         assert!(opened.contains(told), "{told} in\n{opened}");
     }
-    assert!(complaint(&["compare", recordings[0], "--open", "999"]).contains("a number of the list of differences"));
+    assert!(complaint(&["compare", recordings[0], "--open", "999"]).contains("of the list of differences"));
     assert!(complaint(&["compare", recordings[0], "--seed", "3"]).contains("--seed, with recordings"));
     assert!(complaint(&["compare", session, "--open", "1"]).contains("--open, with a session"));
     assert!(complaint(&["compare", session, "--only", "tom"]).contains("--only, with a session"));
     assert!(complaint(&["compare", "tests/golden"]).contains("events.jsonl"));
+    // What is summed up counts once, whatever path leads to it.
+    let [one, same] = ["tests/golden/format-1-hand.jsonl", "tests/../tests/golden/format-1-hand.jsonl"];
+    for command in [&["compare"][..], &["fit"], &["replay", "--check-beliefs"], &["replay", "--accuracy"]] {
+        assert!(complaint(&[command, &[one, same]].concat()).contains("the same recording twice"), "{command:?}");
+    }
     let swept = figures(&["compare", recordings[0], "--sweep", "--format", "json"], 0);
     let swept: Vec<u64> =
         swept["pairs"].as_array().expect("pairs").iter().filter_map(|pair| pair["window_actions"].as_u64()).collect();

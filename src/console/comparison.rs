@@ -271,7 +271,7 @@ fn thought(advice: &Recommendation, is_tom: bool) -> String {
     };
     let options: Vec<String> = advice.options.iter().take(3).map(option).collect();
     let best = advice.best.as_ref().map_or("say nothing".to_string(), words::signal);
-    let reason = advice.reason.as_ref().map_or(String::new(), |reason| format!(", since it {}", reason.words()));
+    let reason = advice.reason.as_ref().map_or(String::new(), |reason| format!("; the human {}", reason.words()));
     match options.is_empty() {
         true => best,
         false if is_tom => format!("{best}{reason}; deviations: {}", options.join(", ")),

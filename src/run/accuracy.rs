@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use super::advisor::{Advisor, Question};
 use super::parallel;
-use super::replay::{OneKitchen, Replay};
+use super::replay::{OneKitchen, Replay, each_once};
 use crate::base::words::count;
 use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
@@ -90,6 +90,7 @@ struct Step {
 /// # Errors
 /// A recording that cannot be read or applied, or one of another kitchen.
 pub fn measure(recordings: &[PathBuf], extent: Extent, done: impl Fn() + Sync) -> FileResult<AccuracyFigures> {
+    each_once(recordings)?;
     let (mut one_kitchen, mut asked) = (OneKitchen::default(), Vec::new());
     for recording in recordings {
         let mut replay = Replay::open(recording)?;

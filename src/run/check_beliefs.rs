@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::parallel;
-use super::replay::{OneKitchen, Replay};
+use super::replay::{OneKitchen, Replay, each_once};
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::edge::files::FileResult;
@@ -74,6 +74,7 @@ pub struct Views {
 /// # Errors
 /// Those of [`check`].
 pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Views> {
+    each_once(recordings)?;
     let results = parallel::each(recordings, |recording| view(recording), done);
     let (mut one_kitchen, mut trials) = (OneKitchen::default(), Vec::new());
     for (result, recording) in results.into_iter().zip(recordings) {

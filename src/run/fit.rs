@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex};
 use serde::Serialize;
 
 use super::parallel;
-use super::replay::{OneKitchen, Replay};
+use super::replay::{OneKitchen, Replay, each_once};
 use crate::base::ascent::{End, Maximum, Variable, ascend};
 use crate::base::words::count;
 use crate::edge::files::FileResult;
@@ -132,6 +132,7 @@ impl Trials {
     /// # Errors
     /// A recording that cannot be read or applied, or one of another kitchen.
     pub fn read(recordings: &[PathBuf]) -> FileResult<Trials> {
+        each_once(recordings)?;
         let (mut one_kitchen, mut observations, mut models) = (OneKitchen::default(), Vec::new(), Vec::new());
         for recording in recordings {
             let mut replay = Replay::open(recording)?;

@@ -1,12 +1,13 @@
 //! Replays a recording: feeds its events through the same [`apply`](crate::session::apply) as the live session.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::advisor::Question;
 use super::follower::Follower;
 use crate::edge::files::{FileError, FileResult};
-use crate::edge::log::{LogLine, LogReader, at_line};
+use crate::edge::log::{LOG_NAME, LogLine, LogReader, at_line};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::mind::observation::Observation;
@@ -106,6 +107,23 @@ impl Replay {
     pub fn log(&self) -> &LogReader {
         &self.log
     }
+}
+
+/// Recordings that are summed up count once each.
+///
+/// # Errors
+/// One is named twice, by whatever path.
+pub fn each_once(recordings: &[PathBuf]) -> FileResult<()> {
+    let mut known = BTreeSet::new();
+    for recording in recordings {
+        let log = if recording.is_dir() { recording.join(LOG_NAME) } else { recording.clone() };
+        // What is not there is told when it is opened.
+        if !known.insert(log.canonicalize().unwrap_or(log)) {
+            let remedy = "each recording once".to_string();
+            return Err(FileError::of(recording, "the same recording twice".to_string(), remedy));
+        }
+    }
+    Ok(())
 }
 
 /// Recordings that are looked at together must be of one kitchen.

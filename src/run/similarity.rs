@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::compare::{Request, Watcher};
 use super::lesson_report::TrainingFigures;
 use super::parallel;
+use super::replay::each_once;
 use super::standing::Standing;
 use super::wizard::{self, WizardFigures, WizardLog};
 use crate::base::time::SessionTime;
@@ -155,8 +156,9 @@ impl Watched {
 /// Follows recordings on all processors. `done` is called after each.
 ///
 /// # Errors
-/// Those of [`Watched::new`].
+/// Those of [`Watched::new`], or one is named twice.
 pub fn watch(recordings: &[PathBuf], request: &Request, done: impl Fn() + Sync) -> FileResult<Vec<Watched>> {
+    each_once(recordings)?;
     parallel::each(recordings, |recording| Watched::new(recording, request), done).into_iter().collect()
 }
 
@@ -283,11 +285,12 @@ pub fn open(watched: &[Watched], number: usize) -> FileResult<String> {
     };
     let differences = &one.comparison.differences;
     let Some(difference) = number.checked_sub(1).and_then(|index| differences.get(index)) else {
-        let found = format!(
-            "--open {number}, where there are {}",
-            count(differences.len() as u64, "difference", "differences")
-        );
-        return Err(FileError::of(&one.recording, found, "a number of the list of differences".to_string()));
+        let found = format!("--open {number}, of {}", count(differences.len() as u64, "difference", "differences"));
+        return Err(FileError::of(
+            &one.recording,
+            found,
+            format!("a number from 1 to {}, of the list of differences", differences.len()),
+        ));
     };
     Ok(one.comparison.opened(one.kitchen(), difference).join("\n") + "\n")
 }

@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::error::RunError;
 use super::figures::{SimulationFigures, SimulationSums, TrialFigures};
 use super::kitchen::plan_lengths;
-use super::simulate::{Simulation, each_trial};
+use super::simulate::{Shard, Simulation, each_trial};
 use crate::communication::concept::ConceptName;
 use crate::communication::settings::Shadow;
 use crate::edge::files::FileError;
@@ -19,8 +19,9 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::SessionSpec;
 use crate::session::settings::{Condition, GazeSource};
 
-/// The name of the table, in the folder of the recordings.
+/// The name of the table, in the folder of the recordings, and what a part of the trials has instead.
 pub const TABLE_NAME: &str = "sweep.csv";
+const PART_NAME: &str = "sweep-part";
 /// No grid has more cells.
 const MAX_CELLS: usize = 1000;
 
@@ -75,6 +76,10 @@ impl FromStr for Axis {
             Knob::Horizon | Knob::Rollouts => value.parse::<usize>().is_ok(),
             _ => value.parse::<f64>().is_ok_and(f64::is_finite),
         };
+        let is_twice = |index: &usize| values[..*index].contains(&values[*index]);
+        if let Some(index) = (0..values.len()).find(is_twice) {
+            return Err(format!("{name}={} twice: each value once", values[index]));
+        }
         match values.iter().find(|value| !is_right(value)) {
             None => Ok(Axis { name, knob, values }),
             Some(wrong) => {
@@ -167,13 +172,21 @@ pub fn sweep(simulation: &Simulation, axes: &[Axis], done: impl Fn() + Sync) -> 
         let (trials, figures) = of_cell(&one, &done)?;
         rows.push(row(cell, &figures, Some([&before, &trials])));
     }
-    let table = simulation.out.join(TABLE_NAME);
+    let table = simulation.out.join(table_name(simulation.shard));
     write_table(&table, axes, &rows).map_err(|reason| WriteError::Unwritable {
         path: table.clone(),
         reason,
         saved: None,
     })?;
     Ok(SweepFigures { rows, table })
+}
+
+/// Parts of the trials go into tables of their own; the whole one is made of the recordings of all.
+fn table_name(shard: Shard) -> String {
+    match shard {
+        Shard::WHOLE => TABLE_NAME.to_string(),
+        Shard { number, of } => format!("{PART_NAME}-{number}-of-{of}.csv"),
+    }
 }
 
 /// Every combination of the values, the last axis the quickest.

@@ -98,7 +98,13 @@ impl SessionSpec {
             true => Ok(()),
             false => Err(SettingError::new(format!("{table}.{key}"), format!("{key} = {value}"), "a number above 0")),
         };
-        above_0("trial", "presses", f64::from(self.trial.presses))?;
+        if self.trial.presses == 0 {
+            return Err(SettingError::new(
+                "trial.presses".to_string(),
+                "presses = 0".to_string(),
+                "a whole number above 0",
+            ));
+        }
         above_0("trial", "seconds", self.trial.seconds)?;
         if self.trial.seconds > MAX_TRIAL_S {
             let found = format!("seconds = {}", self.trial.seconds);

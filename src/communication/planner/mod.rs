@@ -66,7 +66,7 @@ struct Arm {
 }
 
 impl Planner {
-    /// A planner for people as `human` says. Its chances follow from `seed` and the number of an event.
+    /// A planner for people as `human` says. Its chances follow from `seed` and the presses until a moment.
     pub fn new(kitchen: Arc<Kitchen>, human: &HumanModel, spec: AssistantSpec, seed: u64) -> Planner {
         let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
         let aspects = |button| kitchen.involved(Agent::Human, button).into_iter().map(AspectId::of_location);

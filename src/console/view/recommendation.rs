@@ -83,7 +83,7 @@ fn remark(session: &Session, columns: u16) -> &'static str {
         ConceptName::TomCom if is_narrow => "net presses",
         ConceptName::TomCom => "ToM-Com, net presses saved",
         ConceptName::Tom if is_narrow => "above threshold",
-        ConceptName::Tom => "ToM, belief off above threshold",
+        ConceptName::Tom => "ToM, above threshold",
         ConceptName::Dev if is_narrow => "after an error",
         ConceptName::Dev => "DEV, presses after an error",
         ConceptName::None => "no concept",
@@ -123,7 +123,7 @@ fn line(brush: &mut Brush, area: Rect, session: &Session, model: &Model) {
         Some((Recommendation { proposal: Some(proposal), .. }, None)) => {
             parts.push((proposed(proposal), Role::Strong));
         }
-        Some((_, None)) => parts.push(("say nothing".to_string(), Role::Quiet)),
+        Some((advice, None)) => parts.push((nothing(session, advice).to_string(), Role::Quiet)),
         Some((advice, Some(option))) => {
             let worth = worth(option, session);
             let worth = match session.spec.assistant.concept {
@@ -145,6 +145,14 @@ fn line(brush: &mut Brush, area: Rect, session: &Session, model: &Model) {
     brush.text_right(area.right().saturating_sub(1), area.y, area.width, &age, style);
 }
 
+/// What it means that nothing is recommended: nothing was worth it, or what was recommended has been sent.
+fn nothing(session: &Session, advice: &Recommendation) -> &'static str {
+    match session.signalled_at.is_some_and(|sent| sent >= advice.for_ns) {
+        true => "sent",
+        false => "say nothing",
+    }
+}
+
 /// How old the advice is.
 fn age(session: &Session, advice: &Recommendation, model: &Model) -> String {
     format!("  {:.1} s old", session.age(advice.for_ns, model.now).as_secs_f64())
@@ -161,7 +169,8 @@ fn worth(option: &SignalOption, session: &Session) -> String {
 /// The key of an option's signal, if it has one: "[q] ".
 fn key(option: &SignalOption, session: &Session, model: &Model) -> String {
     let location = session.kitchen.location_named(option.signal.target());
-    let chord = location.and_then(|location| model.keys.mark(location));
+    let chord =
+        location.and_then(|location| model.keys.mark(location)).filter(|_| may_send(session, Sender::Wizard).is_ok());
     chord.map_or(String::new(), |chord| format!("[{}] ", chord.name()))
 }
 
@@ -241,7 +250,10 @@ fn cost_line(
     advice: &Recommendation,
     model: &Model,
 ) -> u16 {
-    let silence = if advice.best.is_none() && advice.proposal.is_none() { "say nothing; " } else { "" };
+    let silence = match advice.best.is_none() && advice.proposal.is_none() {
+        true => format!("{}; ", nothing(session, advice)),
+        false => String::new(),
+    };
     let price = session.spec.assistant.price();
     let left = match session.spec.assistant.concept {
         ConceptName::Tom => format!("{silence}threshold {price:.2}"),

@@ -1164,6 +1164,24 @@ fn enter_accepts_what_is_recommended_and_says_so() {
     assert_eq!(input(unseen.key(KeyCode::Enter)), None, "what is not shown is not accepted");
 }
 
+#[test]
+fn what_was_sent_is_not_offered_again_before_there_is_newer_advice() {
+    let mut stage = advised(true);
+    let advice = stage.session.advice.clone().expect("advice");
+    let sent = advice.best.clone().expect("a recommendation");
+    stage.at(22.6, Event::SignalShown { by: Sender::Wizard, signal: sent, accepted: Some(17) });
+    stage.model.now = SessionTime::from_secs_f64(23.2);
+    assert_eq!(input(stage.key(KeyCode::Enter)), None);
+    // The answer to what was asked before comes late, and does not know of it.
+    let late = |at| Recommendation { for_ns: SessionTime::from_secs_f64(at), ..advice.clone() };
+    stage.at(23.2, Event::Advised(late(22.5)));
+    assert_eq!(input(stage.key(KeyCode::Enter)), None);
+    stage.at(26.6, Event::SignalEnded { reason: SignalEnd::TakenBack });
+    stage.at(30.0, Event::Advised(late(30.0)));
+    stage.model.now = SessionTime::from_secs_f64(30.0);
+    assert!(input(stage.key(KeyCode::Enter)).is_some(), "that is newer");
+}
+
 /// A long session needs no more memory than a short one, and still knows since when what is believed wrong.
 #[test]
 fn the_belief_forgets_what_no_panel_shows() {

@@ -5,6 +5,7 @@ use super::event::{EndReason, Event, SignalEnd, Stamped};
 use super::{Entry, Happening, Phase, Served, Session, ShownSignal};
 use super::{calibration, protocol, robot};
 use crate::base::time::SessionTime;
+use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 use crate::kitchen::{Action, Agent, ButtonId, ContentId, DishId, LocationId, OrderContent, State};
@@ -134,7 +135,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
             change(session, now, |state| state.set_content(location, content));
             note(session, now, Happening::Corrected { location });
         }
-        Event::Advised(advice) => session.advice = Some(advice.clone()),
+        Event::Advised(advice) => advise(session, advice.clone()),
         Event::SignalShown { by, signal, .. } => {
             named.location(signal.target())?;
             session.cue = Some(stamped.seq);
@@ -306,6 +307,15 @@ fn show(session: &mut Session, now: SessionTime, by: Sender, signal: &Signal, ef
     effects.push(Effect::Cancel(Timer::EndSignal));
     effects.push(Effect::At { time: until, timer: Timer::EndSignal });
     note(session, now, Happening::Signal { by, signal: signal.clone() });
+}
+
+/// An answer to what was asked before the wizard sent a signal does not know of it.
+fn advise(session: &mut Session, mut advice: Recommendation) {
+    let shown = session.shown.as_ref().filter(|shown| shown.by == Sender::Wizard && shown.since >= advice.for_ns);
+    if let Some(shown) = shown {
+        advice.remove(&shown.signal);
+    }
+    session.advice = Some(advice);
 }
 
 fn end_signal(session: &mut Session, now: SessionTime, reason: SignalEnd, effects: &mut Vec<Effect>) {

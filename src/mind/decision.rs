@@ -92,28 +92,6 @@ impl DecisionModel {
         Chances { wait: waits / (waits + total), press: self.slipped(&Slips::of(kitchen), &meant) }
     }
 
-    /// p(a | b) of a human who presses something. `sums[x]` is C(s') after button x, summed over `states` states and
-    /// recipes drawn from b.
-    pub fn press_chance(&self, slips: &Slips, sums: &[u32], states: f64, button: ButtonId) -> f64 {
-        let least = sums.iter().copied().min().unwrap_or(0);
-        let mut meant = [0.0; MAX_BUTTONS];
-        let mut total = 0.0;
-        for (weight, &sum) in meant.iter_mut().zip(sums) {
-            *weight = match sum == least {
-                true => 1.0,
-                false => (-self.tau * f64::from(sum - least) / states).exp(),
-            };
-            total += *weight;
-        }
-        let slipping = self.lapse * (1.0 - self.lapse_anywhere) / 2.0;
-        let mut pressed = (1.0 - self.lapse) * meant[button.index()];
-        for (to, weight) in slips.to.iter().zip(&meant) {
-            let here = to.iter().filter(|&&slipped| slipped == button).count();
-            pressed += slipping * here as f64 * weight;
-        }
-        pressed / total + self.lapse * self.lapse_anywhere / sums.len() as f64
-    }
-
     /// What is pressed of what is meant.
     fn slipped(&self, slips: &Slips, meant: &[f64]) -> Vec<f64> {
         let anywhere = self.lapse * self.lapse_anywhere / meant.len() as f64;
@@ -125,5 +103,51 @@ impl DecisionModel {
             }
         }
         pressed
+    }
+}
+
+/// p(a | b) of a human who presses something, with what that needs again and again.
+#[derive(Clone, Debug)]
+pub struct PressLikelihood {
+    /// `[k]`: exp(-tau k / states), up to where it is 0.
+    weights: Vec<f64>,
+    /// The share of the presses that are done as they are meant.
+    meant: f64,
+    /// By button, from which other ones a press slips to it, and with which chance.
+    slips: Vec<Vec<(usize, f64)>>,
+    /// The chance that a press slips to one certain button, whatever was meant.
+    anywhere: f64,
+}
+
+impl PressLikelihood {
+    /// For beliefs that `states` states and recipes stand for.
+    pub fn new(kitchen: &Kitchen, model: &DecisionModel, states: usize) -> PressLikelihood {
+        let slips = Slips::of(kitchen);
+        let buttons = slips.to.len();
+        let weight = |k: usize| (-model.tau * k as f64 / states as f64).exp();
+        let slipping = model.lapse * (1.0 - model.lapse_anywhere) / 2.0;
+        let of_button = |button: usize| {
+            let times = |to: &[ButtonId; 2]| to.iter().filter(|slipped| slipped.index() == button).count();
+            let all = slips.to.iter().map(times).enumerate().filter(|(_, times)| *times > 0);
+            all.map(|(from, times)| (from, slipping * times as f64)).collect()
+        };
+        PressLikelihood {
+            weights: (0..=states * usize::from(u8::MAX)).map(weight).take_while(|weight| *weight > 0.0).collect(),
+            meant: 1.0 - model.lapse,
+            slips: (0..buttons).map(of_button).collect(),
+            anywhere: model.lapse * model.lapse_anywhere / buttons as f64,
+        }
+    }
+
+    /// p(a | b): `sums[x]` is C(s') after button x, summed over the states and recipes that stand for b.
+    #[inline]
+    pub fn of(&self, sums: &[u32], button: ButtonId) -> f64 {
+        let least = sums.iter().copied().min().unwrap_or(0);
+        let weight = |sum: u32| self.weights.get((sum - least) as usize).copied().unwrap_or(0.0);
+        let total: f64 = sums.iter().map(|&sum| weight(sum)).sum();
+        let slipped = |&(from, chance): &(usize, f64)| chance * weight(sums[from]);
+        let slips = self.slips[button.index()].iter().map(slipped);
+        let pressed = slips.fold(self.meant * weight(sums[button.index()]), |pressed, slipped| pressed + slipped);
+        pressed / total + self.anywhere
     }
 }

@@ -40,9 +40,10 @@ impl Samples {
         self.mixed.clear();
         for (index, urn) in self.urns.iter().enumerate() {
             let drawn = &mut self.drawn[index * states..(index + 1) * states];
-            drawn[0] = self.firsts[index * self.samples + sample];
-            if !urn.draw_on(random, drawn) {
-                self.mixed.push(index);
+            let first = self.firsts[index * self.samples + sample];
+            match urn.draw_on(random, first, drawn) {
+                true => drawn.fill(first),
+                false => self.mixed.push(index),
             }
         }
         cases.all.clear();

@@ -6,13 +6,11 @@
 //! subtracted and the prior's exact moments are added (a control variate), so that a press without information changes
 //! nothing.
 
-use std::ops::Range;
-
 use crate::base::bits::ones;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
-use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, OrderContent, Recipes, State};
-use crate::mind::decision::{DecisionModel, Slips};
+use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, OrderContent};
+use crate::mind::decision::PressLikelihood;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::model::InferenceModel;
 
@@ -40,9 +38,15 @@ pub struct Evidence {
 #[derive(Clone, Debug, Default)]
 pub struct Sampler {
     urns: Vec<Urn>,
-    /// `[(belief * aspects + aspect) * states + draw]`: value indices.
-    drawn: Vec<u8>,
+    /// `[order][value]`: the recipes that count, one bit each by aspect.
+    wants: Vec<Vec<u32>>,
+    /// `[aspect * new samples + sample]`: the first draws of the samples that are drawn at once.
+    proposed: Vec<u8>,
+    /// `[sample * aspects + aspect]`: the values of the first draws.
     firsts: Vec<u8>,
+    /// All draws of the aspects of which a sample has several values, one row of `states` after another.
+    rows: Vec<u8>,
+    samples: Vec<Sample>,
     /// By aspect and value, how much a first draw counts; nothing where they come from the mean.
     counts: Vec<Vec<f64>>,
     /// How much each belief sample counts, before its likelihood p(a | belief) and with it.
@@ -51,14 +55,31 @@ pub struct Sampler {
     cases: Cases,
     /// The different cases among the draws of all belief samples, one sample after another.
     runs: Vec<Run>,
-    /// By belief sample, where its runs end.
-    run_ends: Vec<usize>,
-    /// The different draws of one belief sample: the first that is like this, and how many are.
-    alike: Vec<(usize, u32)>,
+    /// The different draws of one belief sample.
+    alike: Vec<Alike>,
+    /// By draw, its values of the mixed aspects.
+    keys: Vec<Key>,
     /// By case, the weight of its draws after the press.
     case_weights: Vec<f64>,
-    /// Aspects of which a belief sample has several values, one bit each, by belief sample.
-    mixed: Vec<u32>,
+}
+
+/// A belief sample.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    /// Aspects of which it has several values, one bit each.
+    mixed: u32,
+    /// Where their rows begin.
+    rows: usize,
+    /// Where its runs begin and end.
+    runs: [usize; 2],
+}
+
+impl Sample {
+    /// Where the row of a mixed aspect begins.
+    #[inline]
+    fn row(&self, aspect: usize, states: usize) -> usize {
+        self.rows + (self.mixed & ((1 << aspect) - 1)).count_ones() as usize * states
+    }
 }
 
 /// Draws of one belief sample that are the same case: the first of them, and how many there are.
@@ -69,11 +90,23 @@ struct Run {
     draws: u32,
 }
 
+/// The values of up to 32 aspects, one byte each.
+type Key = [u128; 2];
+/// So many of them fit into one number.
+const KEY_PART: usize = (u128::BITS / u8::BITS) as usize;
+
+/// Draws of one belief sample that are alike: their values, the first of them, and how many there are.
+#[derive(Clone, Copy, Debug)]
+struct Alike {
+    key: Key,
+    first: usize,
+    draws: u32,
+}
+
 /// What a press is judged by.
 pub struct Judge<'a> {
     pub kitchen: &'a Kitchen,
-    pub decision: &'a DecisionModel,
-    pub slips: &'a Slips,
+    pub likelihood: &'a PressLikelihood,
     pub inference: &'a InferenceModel,
 }
 
@@ -95,11 +128,12 @@ impl Sampler {
             let is_recipe = matches!(aspect.kind, AspectKind::Recipe(_));
             self.counts.push(if is_recipe { urn.spread(SPREAD) } else { Vec::new() });
         }
+        self.wants = judge.kitchen.orders.iter().map(|&order| wants(judge.kitchen, order)).collect();
         let mut wanted = judge.inference.beliefs;
-        self.drawn.clear();
+        self.firsts.clear();
+        self.rows.clear();
+        self.samples.clear();
         self.runs.clear();
-        self.run_ends.clear();
-        self.mixed.clear();
         self.priors.clear();
         self.posteriors.clear();
         self.cases.clear(states * wanted.max(judge.inference.max_beliefs));
@@ -118,44 +152,17 @@ impl Sampler {
     /// Draws belief samples until there are so many.
     fn draw(&mut self, judge: &Judge, cost: &mut CostToGo, button: ButtonId, wanted: usize, random: &mut Stream) {
         let (kitchen, states) = (judge.kitchen, judge.inference.states);
-        let aspects = self.urns.len();
-        let row = aspects * states;
-        let truth = kitchen.true_recipes();
-        let old = self.posteriors.len();
-        self.drawn.resize(wanted * row, UNDRAWN);
-        let mut firsts = std::mem::take(&mut self.firsts);
-        firsts.resize(wanted - old, 0);
-        for aspect in 0..aspects {
-            self.urns[aspect].first_draws(random, &mut firsts);
-            for (sample, &first) in firsts.iter().enumerate() {
-                self.drawn[(old + sample) * row + aspect * states] = first;
-            }
+        let (aspects, old) = (self.urns.len(), self.samples.len());
+        let new = wanted - old;
+        self.proposed.resize(new * aspects, 0);
+        for (urn, proposed) in self.urns.iter().zip(self.proposed.chunks_mut(new)) {
+            urn.first_draws(random, proposed);
         }
-        self.firsts = firsts;
-        for sample in old..wanted {
-            let drawn = &mut self.drawn[sample * row..(sample + 1) * row];
-            let mixed = draw_on(kitchen, &self.urns, states, drawn, random);
-            let counts = self.counts.iter().enumerate().filter(|(_, counts)| !counts.is_empty());
-            let count = counts.map(|(aspect, counts)| match drawn[aspect * states] {
-                UNDRAWN => 1.0,
-                value => counts[usize::from(value)],
-            });
-            self.priors.push(count.product());
-            self.mixed.push(mixed);
-            self.tell_apart(sample, mixed, states);
-            let drawn = &self.drawn[sample * row..(sample + 1) * row];
-            let (mut state, mut recipes) = (kitchen.empty_state(), truth);
-            for aspect in 0..aspects {
-                set(kitchen, &mut state, &mut recipes, aspect, drawn[aspect * states]);
-            }
-            for &(draw, draws) in &self.alike {
-                for aspect in ones(mixed) {
-                    set(kitchen, &mut state, &mut recipes, aspect, drawn[aspect * states + draw]);
-                }
-                let case = self.cases.count(state, recipes, draws);
-                self.runs.push(Run { case, first: draw as u32, draws });
-            }
-            self.run_ends.push(self.runs.len());
+        for sample in 0..new {
+            let (rows, runs) = (self.rows.len(), self.runs.len());
+            let mixed = self.draw_on(kitchen, new, sample, states, random);
+            self.samples.push(Sample { mixed, rows, runs: [runs; 2] });
+            self.count_cases(kitchen, states);
         }
         self.cases.rate(cost, wanted * states);
         self.press_chances(judge, button, old);
@@ -164,54 +171,108 @@ impl Sampler {
         }
     }
 
-    /// Finds the draws of a belief sample that differ.
-    fn tell_apart(&mut self, sample: usize, mixed: u32, states: usize) {
-        self.alike.clear();
-        if mixed == 0 {
-            return self.alike.push((0, states as u32));
+    /// Draws the values of one of `new` belief samples, and tells of which aspects it has several, one bit each.
+    fn draw_on(&mut self, kitchen: &Kitchen, new: usize, sample: usize, states: usize, random: &mut Stream) -> u32 {
+        let (mut mixed, mut counting) = (0, 0);
+        let mut prior = 1.0;
+        for (aspect, urn) in self.urns.iter().enumerate() {
+            // Recipes count where an order wants the dish.
+            if aspect >= kitchen.locations.len() && counting & 1 << aspect == 0 {
+                self.firsts.push(UNDRAWN);
+                continue;
+            }
+            let first = self.proposed[aspect * new + sample];
+            self.firsts.push(first);
+            if let Some(count) = self.counts[aspect].get(usize::from(first)) {
+                prior *= count;
+            }
+            let start = self.rows.len();
+            self.rows.resize(start + states, first);
+            let is_pure = urn.draw_on(random, first, &mut self.rows[start..]);
+            if is_pure {
+                self.rows.truncate(start);
+            } else {
+                mixed |= 1 << aspect;
+            }
+            if let Some(wants) = self.wants.get(aspect) {
+                let values = if is_pure { &[first] } else { &self.rows[start..] };
+                counting = values.iter().fold(counting, |counting, &value| counting | wants[usize::from(value)]);
+            }
         }
-        let row = self.urns.len() * states;
-        let drawn = &self.drawn[sample * row..(sample + 1) * row];
-        for draw in 0..states {
-            let like = |other: usize| {
-                ones(mixed).all(|aspect| drawn[aspect * states + other] == drawn[aspect * states + draw])
-            };
-            match self.alike.iter_mut().find(|(other, _)| like(*other)) {
-                Some((_, draws)) => *draws += 1,
-                None => self.alike.push((draw, 1)),
+        self.priors.push(prior);
+        mixed
+    }
+
+    /// Counts the cases among the draws of the newest belief sample.
+    fn count_cases(&mut self, kitchen: &Kitchen, states: usize) {
+        let Some(&sample) = self.samples.last() else { return };
+        self.tell_apart(&sample, states);
+        let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
+        let firsts = &self.firsts[self.firsts.len() - self.urns.len()..];
+        for (aspect, &value) in firsts.iter().enumerate().filter(|(_, value)| **value != UNDRAWN) {
+            kitchen.set_value(&mut state, &mut recipes, AspectId(aspect as u8), usize::from(value));
+        }
+        for &Alike { first, draws, .. } in &self.alike {
+            for (aspect, row) in ones(sample.mixed).zip(self.rows[sample.rows..].chunks_exact(states)) {
+                kitchen.set_value(&mut state, &mut recipes, AspectId(aspect as u8), usize::from(row[first]));
+            }
+            let case = self.cases.count(state, recipes, draws);
+            self.runs.push(Run { case, first: first as u32, draws });
+        }
+        if let Some(sample) = self.samples.last_mut() {
+            sample.runs[1] = self.runs.len();
+        }
+    }
+
+    /// Finds the draws of a belief sample that differ.
+    fn tell_apart(&mut self, sample: &Sample, states: usize) {
+        self.alike.clear();
+        if sample.mixed == 0 {
+            return self.alike.push(Alike { key: Key::default(), first: 0, draws: states as u32 });
+        }
+        self.keys.clear();
+        self.keys.resize(states, Key::default());
+        for (index, row) in self.rows[sample.rows..].chunks_exact(states).enumerate() {
+            for (key, &value) in self.keys.iter_mut().zip(row) {
+                let part = &mut key[index / KEY_PART];
+                *part = *part << u8::BITS | u128::from(value);
+            }
+        }
+        for (first, &key) in self.keys.iter().enumerate() {
+            match self.alike.iter_mut().find(|alike| alike.key == key) {
+                Some(alike) => alike.draws += 1,
+                None => self.alike.push(Alike { key, first, draws: 1 }),
             }
         }
     }
 
     /// Weighs the belief samples from this one on by p(a | belief).
     fn press_chances(&mut self, judge: &Judge, button: ButtonId, from: usize) {
-        let states = judge.inference.states;
         let buttons = judge.kitchen.buttons[Agent::Human.index()].len();
         self.posteriors.truncate(from);
-        for (sample, prior) in self.priors.iter().enumerate().skip(from) {
+        for (sample, prior) in self.samples.iter().zip(&self.priors).skip(from) {
             let mut sums = [0u32; MAX_BUTTONS];
-            for run in &self.runs[self.runs_of(sample)] {
+            for run in self.runs_of(sample) {
                 let after = self.cases.after(run.case);
                 sums.iter_mut().zip(after).for_each(|(sum, &after)| *sum += run.draws * u32::from(after));
             }
-            let sums = &sums[..buttons];
-            let likelihood = judge.decision.press_chance(judge.slips, sums, states as f64, button);
+            let likelihood = judge.likelihood.of(&sums[..buttons], button);
             self.posteriors.push(prior * likelihood);
         }
     }
 
     /// The runs of one belief sample.
-    fn runs_of(&self, sample: usize) -> Range<usize> {
-        let start = sample.checked_sub(1).map_or(0, |before| self.run_ends[before]);
-        start..self.run_ends[sample]
+    #[inline]
+    fn runs_of(&self, sample: &Sample) -> &[Run] {
+        &self.runs[sample.runs[0]..sample.runs[1]]
     }
 
     /// Takes more care of the cases that hardly counted before the press, and do now; whether there were any.
     fn rate_again(&mut self, cost: &mut CostToGo, states: usize) -> bool {
         self.case_weights.clear();
         self.case_weights.resize(self.cases.len(), 0.0);
-        for (sample, weight) in self.posteriors.iter().enumerate() {
-            for run in &self.runs[self.runs_of(sample)] {
+        for (sample, weight) in self.samples.iter().zip(&self.posteriors) {
+            for run in &self.runs[sample.runs[0]..sample.runs[1]] {
                 self.case_weights[run.case as usize] += weight * f64::from(run.draws);
             }
         }
@@ -228,68 +289,32 @@ impl Sampler {
     /// Maps the weighted samples back to Dirichlets.
     fn collapse(&self, belief: &mut DirichletBelief, states: usize) {
         let (before, total): (f64, f64) = (self.priors.iter().sum(), self.posteriors.iter().sum());
-        let weights = || self.posteriors.iter().zip(&self.priors).map(|(after, prior)| after / total - prior / before);
-        let row = belief.aspects.len() * states;
-        for (aspect, dirichlet) in belief.aspects.iter_mut().enumerate() {
-            let mut moments = Moments::of(dirichlet);
-            // Belief samples with one and the same value in all their draws are added together.
-            let mut of_value = [0.0; UNDRAWN as usize + 1];
-            for (sample, weight) in weights().enumerate() {
-                let start = sample * row + aspect * states;
-                match self.mixed[sample] >> aspect & 1 {
-                    0 => of_value[usize::from(self.drawn[start])] += weight,
-                    _ => {
-                        let runs = self.runs[self.runs_of(sample)].iter();
-                        moments.add(
-                            runs.map(|run| (self.drawn[start + run.first as usize], run.draws)),
-                            states,
-                            weight,
-                        );
-                    }
+        let mut all: Vec<Moments> = belief.aspects.iter().map(Moments::of).collect();
+        let samples = self.samples.iter().zip(self.firsts.chunks_exact(all.len()));
+        for ((sample, firsts), (after, prior)) in samples.zip(self.posteriors.iter().zip(&self.priors)) {
+            let weight = after / total - prior / before;
+            for (aspect, (moments, &first)) in all.iter_mut().zip(firsts).enumerate() {
+                if sample.mixed >> aspect & 1 == 0 {
+                    moments.add_later(first, weight);
+                    continue;
                 }
+                let row = &self.rows[sample.row(aspect, states)..];
+                let runs = self.runs_of(sample).iter();
+                moments.add(runs.map(|run| (row[run.first as usize], run.draws)), states, weight);
             }
-            for (value, &weight) in of_value.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
-                moments.add_pure(value, states, weight);
-            }
-            *dirichlet = moments.collapsed(self.urns[aspect].stand_in());
         }
+        let collapsed = all.into_iter().zip(&self.urns).map(|(moments, urn)| moments.collapsed(states, urn.stand_in()));
+        belief.aspects = collapsed.collect();
     }
 }
 
-/// Gives an aspect the value that was drawn for it, if one was.
-#[inline]
-fn set(kitchen: &Kitchen, state: &mut State, recipes: &mut Recipes, aspect: usize, value: u8) {
-    if value != UNDRAWN {
-        kitchen.set_value(state, recipes, AspectId(aspect as u8), usize::from(value));
-    }
-}
-
-/// Draws the values of one belief sample that follow the first ones, and tells of which aspects there are several, one bit
-/// each.
-fn draw_on(kitchen: &Kitchen, urns: &[Urn], states: usize, drawn: &mut [u8], random: &mut Stream) -> u32 {
-    let mut mixed = 0;
-    let locations = kitchen.locations.len();
-    for location in 0..locations {
-        if !urns[location].draw_on(random, &mut drawn[location * states..(location + 1) * states]) {
-            mixed |= 1 << location;
-        }
-    }
-    // Recipes count where an order wants the dish; the other first draws are taken back.
-    for aspect in locations..kitchen.aspects.len() {
-        let AspectKind::Recipe(dish) = kitchen.aspects[aspect].kind else { continue };
-        let code = OrderContent::Dish(dish).code();
-        let is_wanted = kitchen.orders.iter().any(|&order| {
-            let value = kitchen.aspects[order.index()].index_of(code).map_or(UNDRAWN, |value| value as u8);
-            drawn[order.index() * states..(order.index() + 1) * states].contains(&value)
-        });
-        let of_aspect = &mut drawn[aspect * states..(aspect + 1) * states];
-        if !is_wanted {
-            of_aspect.fill(UNDRAWN);
-        } else if !urns[aspect].draw_on(random, of_aspect) {
-            mixed |= 1 << aspect;
-        }
-    }
-    mixed
+/// By value of an order, the recipes that count if it has it, one bit each by aspect.
+fn wants(kitchen: &Kitchen, order: LocationId) -> Vec<u32> {
+    let wanted = |&code: &u8| match OrderContent::from_code(code) {
+        OrderContent::Dish(dish) => 1 << kitchen.aspect_of_dish(dish).index(),
+        OrderContent::None | OrderContent::Served => 0,
+    };
+    kitchen.aspects[order.index()].values.iter().map(wanted).collect()
 }
 
 /// Mean and second moment of a mixture of Dirichlets, from those of the Dirichlet that all of them come from.
@@ -300,6 +325,8 @@ struct Moments<'a> {
     square: f64,
     /// How much of the prior's mean is to be added in the end.
     share: f64,
+    /// By value, the weights of belief samples that have it in all their draws; at last those that were not drawn.
+    pure: Vec<f64>,
     /// The values of one belief sample, and how often each was drawn.
     counts: Vec<(u8, u32)>,
 }
@@ -308,7 +335,8 @@ impl Moments<'_> {
     fn of(prior: &Dirichlet) -> Moments<'_> {
         let mean = prior.mean().to_vec();
         let square = mean.iter().map(|m| m * m).sum();
-        Moments { prior, mean, second: prior.second(), square, share: 0.0, counts: Vec::new() }
+        let pure = vec![0.0; mean.len() + 1];
+        Moments { prior, mean, second: prior.second(), square, share: 0.0, pure, counts: Vec::new() }
     }
 
     /// Adds Dir(alpha + counts of these values, `draws` in all) with this weight; all weights sum to 0.
@@ -332,9 +360,15 @@ impl Moments<'_> {
         self.add_moments(weight, size, cross, squares);
     }
 
-    /// The same for `draws` draws of one value.
+    /// The same for draws of one value, or none: they are added together in the end.
+    #[inline]
+    fn add_later(&mut self, value: u8, weight: f64) {
+        let last = self.pure.len() - 1;
+        self.pure[usize::from(value).min(last)] += weight;
+    }
+
     fn add_pure(&mut self, value: usize, draws: usize, weight: f64) {
-        if value == usize::from(UNDRAWN) {
+        if value == self.mean.len() {
             self.share += weight;
             self.second += weight * self.prior.second();
             return;
@@ -355,7 +389,12 @@ impl Moments<'_> {
 
     /// What the value that stands for the tail has gained is its own; what it has lost the whole tail loses, since it is
     /// so improbable only as a part of it.
-    fn collapsed(mut self, stand_in: Option<usize>) -> Dirichlet {
+    fn collapsed(mut self, draws: usize, stand_in: Option<usize>) -> Dirichlet {
+        for value in 0..self.pure.len() {
+            if self.pure[value] != 0.0 {
+                self.add_pure(value, draws, self.pure[value]);
+            }
+        }
         let prior = self.prior.mean();
         self.mean.iter_mut().zip(prior).for_each(|(mean, p)| *mean += self.share * p);
         if let Some(value) = stand_in

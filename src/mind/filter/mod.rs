@@ -16,7 +16,7 @@ pub mod urn;
 
 use std::sync::Arc;
 
-use super::decision::Slips;
+use super::decision::PressLikelihood;
 use super::dirichlet::{Dirichlet, DirichletBelief};
 use super::model::HumanModel;
 use super::observation::{Observation, Observed};
@@ -49,7 +49,7 @@ pub struct BeliefFilter {
     /// What recipes are forgotten to.
     prior: DirichletBelief,
     reader: Reader,
-    slips: Slips,
+    likelihood: PressLikelihood,
     /// By button of the human.
     lessons: Vec<Lesson>,
     sampler: Sampler,
@@ -75,7 +75,7 @@ impl BeliefFilter {
         let lessons = kitchen.buttons[Agent::Human.index()].iter().map(|button| lesson(button.action)).collect();
         BeliefFilter {
             reader: Reader::new(&kitchen, &model.perception),
-            slips: Slips::of(&kitchen),
+            likelihood: PressLikelihood::new(&kitchen, &model.decision, model.inference.states),
             belief: prior.clone(),
             sampler: Sampler::default(),
             forgot: None,
@@ -162,12 +162,7 @@ impl BeliefFilter {
     }
 
     fn human_pressed(&mut self, button: ButtonId, effective: bool, cost: &mut CostToGo, random: &mut Stream) {
-        let judge = Judge {
-            kitchen: &self.kitchen,
-            decision: &self.model.decision,
-            slips: &self.slips,
-            inference: &self.model.inference,
-        };
+        let judge = Judge { kitchen: &self.kitchen, likelihood: &self.likelihood, inference: &self.model.inference };
         self.evidence = Some(self.sampler.weigh(&judge, cost, &mut self.belief, button, random));
         let draws = self.model.inference.beliefs;
         match &self.lessons[button.index()] {

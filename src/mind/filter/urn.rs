@@ -118,28 +118,33 @@ impl Urn {
         }
     }
 
-    /// The draws that follow `drawn[0]`; whether all are the same.
+    /// The draws that follow the first one, as many as there is room for with it. True if all are the same; what `drawn`
+    /// holds means nothing then.
     #[inline]
-    pub fn draw_on(&self, random: &mut Stream, drawn: &mut [u8]) -> bool {
+    pub fn draw_on(&self, random: &mut Stream, first: u8, drawn: &mut [u8]) -> bool {
         let mut next_new = self.next_new(random, 0);
-        if next_new == drawn.len() {
-            drawn.fill(drawn[0]);
-            return true;
-        }
-        let mut is_pure = true;
-        for index in 1..drawn.len() {
+        let (other, value) = loop {
+            if next_new == drawn.len() {
+                return true;
+            }
+            let index = next_new;
+            next_new = self.next_new(random, index);
+            let value = self.draw(random);
+            if value != first {
+                break (index, value);
+            }
+        };
+        drawn[..other].fill(first);
+        drawn[other] = value;
+        for index in other + 1..drawn.len() {
             drawn[index] = if index == next_new {
                 next_new = self.next_new(random, index);
-                let value = self.draw(random);
-                is_pure &= value == drawn[0];
-                value
-            } else if is_pure {
-                drawn[0]
+                self.draw(random)
             } else {
                 drawn[random.random_range(0..index)]
             };
         }
-        is_pure
+        false
     }
 
     /// The next draw after this one that repeats none before it.

@@ -93,10 +93,26 @@ impl PerceptionModel {
         self.viewing_distance_m * self.radius_deg.to_radians().tan()
     }
 
-    /// How fast a location is read, per second, whose area is `distance_m` from the gaze.
-    pub fn rate_hz(&self, distance_m: f64, confidence: f64) -> f64 {
-        let radius_m = self.radius_m();
-        self.reading_rate_hz * (-distance_m * distance_m / (2.0 * radius_m * radius_m)).exp() * confidence
+    /// How fast locations are read.
+    pub fn reading_rate(&self) -> ReadingRate {
+        ReadingRate { full_hz: self.reading_rate_hz, spread_m2: 2.0 * self.radius_m() * self.radius_m() }
+    }
+}
+
+/// How fast locations are read, with what every gaze sample needs of the model.
+#[derive(Clone, Copy, Debug)]
+pub struct ReadingRate {
+    /// Where the gaze is, per second.
+    full_hz: f64,
+    /// 2 r^2.
+    spread_m2: f64,
+}
+
+impl ReadingRate {
+    /// Of a location whose area is `distance_m` from the gaze, per second.
+    #[inline]
+    pub fn at(&self, distance_m: f64, confidence: f64) -> f64 {
+        self.full_hz * (-distance_m * distance_m / self.spread_m2).exp() * confidence
     }
 }
 

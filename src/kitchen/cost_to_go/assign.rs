@@ -65,60 +65,54 @@ impl Assignment {
             have = ready;
         }
         let classes = goal.content.len();
-        let offer = |location: usize| goal.offers[target][location * classes + usize::from(state[location])];
-        let mut offered = [(Offer::default(), 0u8); 16];
+        let mut offered = [Offer::default(); 16];
         let mut count = 0;
         for location in ones(useful & !self.used) {
-            offered[count] = (offer(location), location as u8);
-            count += usize::from(offered[count].0.fills & !have != 0);
+            offered[count] = goal.offers[target][location * classes + usize::from(state[location])];
+            count += usize::from(offered[count].fills() & !have != 0);
         }
-        let offered = &offered[..count];
         while have != complete {
-            // The first of the best.
-            let mut best: Option<(Offer, u8)> = None;
-            for &(offer, location) in offered.iter().filter(|(offer, _)| offer.fills & have == 0) {
-                if best.is_none_or(|(other, _)| offer.rank > other.rank) {
-                    best = Some((offer, location));
-                }
-            }
-            match best {
-                Some((offer, location)) => {
-                    self.push(target, offer.fills, location);
-                    have |= offer.fills;
-                }
-                None => {
-                    let bit = (complete & !have).trailing_zeros() as usize;
-                    self.push(target, 1 << bit, STORAGE);
-                    have |= 1 << bit;
-                }
-            }
+            let open = |&offer: &Offer| if offer.fills() & have == 0 { offer } else { Offer::default() };
+            let best = offered[..count].iter().map(open).max().unwrap_or_default();
+            let (fills, at) = match best.fills() {
+                0 => (1 << (complete & !have).trailing_zeros(), STORAGE),
+                fills => (fills, best.location()),
+            };
+            self.push(target, fills, at);
+            have |= fills;
         }
     }
 
     /// Lets two targets exchange their items where that saves presses.
     fn exchange(&mut self, ground: &Ground, goal: &Goal, state: &Classes) {
-        let fits = |task: &Task, at: u8| goal.fits(state, task, at);
-        let of_first = self.tasks[..self.count].iter().take_while(|task| task.target == self.tasks[0].target).count();
-        let stored = self.tasks[..of_first].iter().filter(|task| task.at == STORAGE);
-        let wanted = stored.fold(0, |needs, task| needs | usize::from(goal.way(state, task, STORAGE).1)) & 3;
         // What lies somewhere can only be exchanged if both targets can use it.
-        let can = |task: &Task| {
-            let is_shared = || goal.is_shared[usize::from(state[usize::from(task.at)])];
-            task.bits.count_ones() == 1 && (task.at == STORAGE || is_shared())
-        };
-        for first in 0..of_first {
-            if !can(&self.tasks[first]) {
-                continue;
+        let (mut stored, mut shared) = (0u32, 0u32);
+        for (index, task) in self.tasks[..self.count].iter().enumerate().filter(|(_, task)| task.bits.count_ones() == 1)
+        {
+            if task.at == STORAGE {
+                stored |= 1 << index;
+            } else if goal.is_shared[usize::from(state[usize::from(task.at)])] {
+                shared |= 1 << index;
             }
-            for second in of_first..self.count {
+        }
+        if shared == 0 {
+            return;
+        }
+        let of_first = self.tasks[..self.count].iter().take_while(|task| task.target == self.tasks[0].target).count();
+        let is_first = (1 << of_first) - 1;
+        let needs = |index: usize| usize::from(goal.way(state, &self.tasks[index], STORAGE).1);
+        let wanted = ones(stored & is_first).fold(0, |wanted, index| wanted | needs(index)) & 3;
+        let fits = |task: &Task, at: u8| goal.fits(state, task, at);
+        let presses = |task: &Task, at: u8| u32::from(goal.way(state, task, at).0);
+        // Of two hands the one that the first target needs should be free first; what is on the board stays there.
+        let frees = |at: u8| at != STORAGE && wanted & ground.journeys.bit[usize::from(at)] != 0;
+        for first in ones((stored | shared) & is_first) {
+            for second in ones((stored | shared) & !is_first) {
                 let (a, b) = (self.tasks[first], self.tasks[second]);
-                if !can(&b) || !can(&a) || a.at == b.at || !fits(&a, b.at) || !fits(&b, a.at) {
+                if a.at == b.at || !fits(&a, b.at) || !fits(&b, a.at) {
                     continue;
                 }
-                let presses = |task: &Task, at: u8| u32::from(goal.way(state, task, at).0);
                 let (exchanged, kept) = (presses(&a, b.at) + presses(&b, a.at), presses(&a, a.at) + presses(&b, b.at));
-                // Of two hands the one that the first target needs should be free first; what is on the board stays there.
-                let frees = |at: u8| at != STORAGE && wanted & ground.journeys.bit[usize::from(at)] != 0;
                 let may_change = usize::from(a.at) != ground.board && !frees(a.at);
                 if exchanged < kept || exchanged == kept && frees(b.at) && may_change {
                     self.tasks[first].at = b.at;

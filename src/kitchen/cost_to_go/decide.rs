@@ -38,8 +38,6 @@ pub struct Next {
     button: usize,
     state: State,
     kept: Kept,
-    /// Whether one press leads back.
-    can_be_undone: bool,
     /// Its bound and, where that was wanted, what its best plan takes.
     bracket: (u32, Option<u32>),
 }
@@ -152,7 +150,8 @@ impl CostToGo {
         }
         let mut after = [here.min(UNREACHABLE) as u8; MAX_BUTTONS];
         for next in &nexts {
-            let value = match (next.bracket, next.can_be_undone) {
+            let action = self.kitchen.buttons[agent.index()][next.button].action;
+            let value = match (next.bracket, self.can_be_undone(state, agent, action)) {
                 ((_, None), true) => here + 1,
                 ((lower, None), false) => lower,
                 ((_, Some(upper)), true) => upper.min(here + 1),
@@ -177,8 +176,7 @@ impl CostToGo {
                 (_, Kept::At(slot, key)) => Kept::At(slot, self.moved(slot, key, state, there)),
                 (_, Kept::Always(value)) => Kept::Always(value),
             };
-            let can_be_undone = self.can_be_undone(state, agent, button.action);
-            nexts.push(Next { button: index, state: there, kept, can_be_undone, bracket: (0, None) });
+            nexts.push(Next { button: index, state: there, kept, bracket: (0, None) });
         }
         let keys = nexts.iter().filter_map(|next| match next.kept {
             Kept::At(_, key) => Some(key),

@@ -16,13 +16,28 @@ pub const USELESS: u8 = 1;
 /// Classes of the physical locations, by location index.
 pub type Classes = [u8; 16];
 
-/// What an item is worth where it is, for one target.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Offer {
+/// What an item is worth where it is, for one target. Of two offers the greater one is better: it gains more, or as much
+/// and its location comes first. One number, so that the best of many is found without branches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Offer(u32);
+
+impl Offer {
+    /// `gain`: presses saved by taking it rather than what is in a storage, and what it is worth that its location becomes
+    /// free, in half presses.
+    fn new(gain: u16, location: u8, fills: u8) -> Offer {
+        Offer(u32::from_be_bytes([(gain >> 8) as u8, gain as u8, !location, fills]))
+    }
+
     /// Bit j if it can become the j-th item of the target; 0 if a storage is nearer.
-    pub fills: u8,
-    /// How much is gained by taking it rather than what is in a storage, in half presses.
-    pub rank: i16,
+    #[inline]
+    pub fn fills(self) -> u8 {
+        self.0 as u8
+    }
+
+    #[inline]
+    pub fn location(self) -> u8 {
+        !((self.0 >> 8) as u8)
+    }
 }
 
 /// One set of targets with its tables over classes.
@@ -144,6 +159,12 @@ impl Goal {
         goal
     }
 
+    /// Whether there are two targets that are not the same.
+    #[inline]
+    pub fn targets_differ(&self) -> bool {
+        matches!(self.targets[..], [first, second] if first != second)
+    }
+
     /// Presses of a part, and what they cannot do without, if its item lies at `at`.
     #[inline]
     pub fn way(&self, state: &Classes, task: &Task, at: u8) -> (u8, Needs) {
@@ -208,9 +229,10 @@ impl Goal {
                 let (location, fills) = (index / classes, self.fills[target][index % classes]);
                 let of_bits = self.fresh[target].iter().enumerate().filter(|(bit, _)| fills & (1 << bit) != 0);
                 let fresh: i16 = of_bits.map(|(_, (presses, _))| i16::from(*presses)).sum();
-                let saves = fresh - i16::from(near);
-                let rank = 2 * saves + ground.in_the_way[location];
-                if saves >= 0 { Offer { fills, rank } } else { Offer::default() }
+                match u16::try_from(fresh - i16::from(near)) {
+                    Ok(saves) => Offer::new(2 * saves + ground.in_the_way[location], location as u8, fills),
+                    Err(_) => Offer::default(),
+                }
             };
             self.offers[target] = self.near[target].iter().enumerate().map(offer).collect();
         }

@@ -20,7 +20,7 @@ pub struct Ground {
     /// Places where anything can be put for a moment.
     spare: Vec<usize>,
     /// How much it is worth, in half presses, that a location becomes free.
-    pub in_the_way: Vec<i16>,
+    pub in_the_way: Vec<u16>,
     /// The presses other than taking and serving, once each.
     moves: Vec<(Agent, Action)>,
     /// Where each process happens; none: in the hand.

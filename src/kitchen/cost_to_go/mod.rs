@@ -244,10 +244,10 @@ impl CostToGo {
     }
 
     fn solve(&mut self, look: Look, slot: usize, goal: &Goal, state: &Classes) -> u32 {
-        let rating = Rating::new(&self.ground, goal, state);
         if look == Look::Bound {
-            return rating.lower;
+            return Rating::bound(&self.ground, goal, state);
         }
+        let rating = Rating::new(&self.ground, goal, state);
         let upper = rating.close_upper(&self.ground, goal, state);
         if upper <= rating.lower || look == Look::Plan && upper < BLOCKED {
             return upper;

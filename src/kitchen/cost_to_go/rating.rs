@@ -17,11 +17,9 @@ impl Rating {
     pub fn new(ground: &Ground, goal: &Goal, state: &Classes) -> Rating {
         let forwards = Assignment::choose(ground, goal, state, [0, 1]);
         let lower = forwards.demand.bound(ground, state);
-        if goal.targets.len() < 2 || goal.targets[0] == goal.targets[1] {
-            return Rating { choices: [forwards, forwards], count: 1, lower };
-        }
-        if !state.iter().any(|&class| goal.is_shared[usize::from(class)]) {
-            return Rating { choices: [forwards, forwards.reversed()], count: 2, lower };
+        if !order_counts(goal, state) {
+            let count = if goal.targets_differ() { 2 } else { 1 };
+            return Rating { choices: [forwards, forwards.reversed()], count, lower };
         }
         let backwards = Assignment::choose(ground, goal, state, [1, 0]);
         let other = backwards.demand.bound(ground, state);
@@ -29,6 +27,13 @@ impl Rating {
             true => Rating { choices: [forwards, backwards], count: 2, lower },
             false => Rating { choices: [backwards, forwards], count: 2, lower: other },
         }
+    }
+
+    /// The lower bound alone.
+    pub fn bound(ground: &Ground, goal: &Goal, state: &Classes) -> u32 {
+        let of_order = |order| Assignment::choose(ground, goal, state, order).demand.bound(ground, state);
+        let forwards = of_order([0, 1]);
+        if order_counts(goal, state) { forwards.min(of_order([1, 0])) } else { forwards }
     }
 
     pub fn choices(&self) -> &[Assignment] {
@@ -78,4 +83,9 @@ impl Rating {
         }
         upper
     }
+}
+
+/// Whether it may make a difference which of the targets chooses first.
+fn order_counts(goal: &Goal, state: &Classes) -> bool {
+    goal.targets_differ() && state.iter().any(|&class| goal.is_shared[usize::from(class)])
 }

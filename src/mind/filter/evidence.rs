@@ -91,9 +91,9 @@ struct Run {
 }
 
 /// The values of up to 32 aspects, one byte each.
-type Key = [u128; 2];
+type Key = [u64; 4];
 /// So many of them fit into one number.
-const KEY_PART: usize = (u128::BITS / u8::BITS) as usize;
+const KEY_PART: usize = (u64::BITS / u8::BITS) as usize;
 
 /// Draws of one belief sample that are alike: their values, the first of them, and how many there are.
 #[derive(Clone, Copy, Debug)]
@@ -235,7 +235,7 @@ impl Sampler {
         for (index, row) in self.rows[sample.rows..].chunks_exact(states).enumerate() {
             for (key, &value) in self.keys.iter_mut().zip(row) {
                 let part = &mut key[index / KEY_PART];
-                *part = *part << u8::BITS | u128::from(value);
+                *part = *part << u8::BITS | u64::from(value);
             }
         }
         for (first, &key) in self.keys.iter().enumerate() {

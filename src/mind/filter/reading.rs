@@ -13,7 +13,7 @@ use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::{AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::model::PerceptionModel;
+use crate::mind::model::{PerceptionModel, ReadingRate};
 
 /// Where reading is slower than this share of the full rate, the gaze is elsewhere.
 const ELSEWHERE: f64 = 0.1;
@@ -48,6 +48,7 @@ impl Look {
 pub struct Reader {
     /// By location and value of its aspect, the chance that each value is read.
     confusions: Vec<Vec<Vec<f64>>>,
+    rate: ReadingRate,
     looks: Vec<Look>,
     /// What the display showed, and since when.
     shown: VecDeque<(SessionTime, State)>,
@@ -63,7 +64,7 @@ impl Reader {
         };
         let confusions: Vec<_> = (0..kitchen.locations.len()).map(of_location).collect();
         let looks = vec![Look { unread: 1.0, survived: 1.0, code: 0, last: SessionTime::ZERO }; confusions.len()];
-        Reader { confusions, looks, shown: VecDeque::new(), last: None }
+        Reader { confusions, rate: model.reading_rate(), looks, shown: VecDeque::new(), last: None }
     }
 
     /// The display shows this from now on.
@@ -110,7 +111,7 @@ impl Reader {
         let (full_hz, confidence) = (model.reading_rate_hz, sample.confidence.min(1.0));
         for (index, look) in self.looks.iter_mut().enumerate() {
             let distance_m = kitchen.locations[index].display.distance_m([sample.x, sample.y], kitchen.display_m);
-            let rate_hz = model.rate_hz(distance_m, confidence);
+            let rate_hz = self.rate.at(distance_m, confidence);
             let code = state.code(LocationId(index as u8));
             if code != look.code || taken.secs_since(look.last) > model.look_ends_s {
                 (look.unread, look.survived) = (1.0, 1.0);

@@ -62,7 +62,7 @@ impl Sight {
         for index in 0..kitchen.locations.len() {
             let location = LocationId(index as u8);
             let distance_m = kitchen.locations[index].display.distance_m([sample.x, sample.y], kitchen.display_m);
-            let rate_hz = model.rate_hz(distance_m, confidence);
+            let rate_hz = model.reading_rate().at(distance_m, confidence);
             let code = state.code(location);
             let (of_look, last) = &mut self.looks[index];
             let begins = code != *of_look || taken.secs_since(*last) > model.look_ends_s;

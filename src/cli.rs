@@ -5,6 +5,7 @@ mod choices;
 mod data;
 mod estimates;
 mod review;
+mod simulation;
 mod study;
 mod wizard;
 
@@ -21,7 +22,6 @@ use serde::Serialize;
 
 use self::args::*;
 use crate::communication::concept::ConceptName;
-use crate::communication::settings::Shadow;
 use crate::console;
 use crate::edge::doctor;
 use crate::edge::files::{self, FileError};
@@ -32,11 +32,10 @@ use crate::run::live::LiveError;
 use crate::run::options::{self, Beginning, Overrides, Series};
 use crate::run::plan::{self, Overview};
 use crate::run::replay::Replay;
-use crate::run::rerun::save as save_stream;
 use crate::run::review::{self as console_over, ReviewError};
 use crate::run::series::{self, Sitting};
 use crate::run::standing::{self, Standing};
-use crate::run::{kitchen, simulate, sweep, tell, timing, verify};
+use crate::run::{kitchen, tell, timing, verify};
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, SettingError};
 
 /// Exit code: something failed.
@@ -132,7 +131,7 @@ pub fn main() -> ExitCode {
         Command::Train(args) => wizard::train(&args),
         Command::Replay(args) => replay(&args),
         Command::Review(args) => review::review(&args),
-        Command::Simulate(args) => simulate(&args),
+        Command::Simulate(args) => simulation::simulate(&args),
         Command::Study(args) => study::study(&args),
         Command::Plan(args) => show_plan(&args),
         Command::Fit(args) => estimates::fit(&args),
@@ -272,80 +271,6 @@ fn progress(of: u64, what: &str) -> ProgressBar {
         bar.set_style(style);
     }
     bar
-}
-
-fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
-    let mut files = files::read_session(&args.session)?;
-    if files.spec.participant.kind != ParticipantKind::Simulated || files.spec.participant.gaze != GazeSource::Simulated
-    {
-        let found = "a session whose participant or gaze is not simulated".to_string();
-        return Err(wrong_argument(&args.session, found, "kind = \"simulated\" and gaze = \"simulated\""));
-    }
-    files.spec.seed = args.seed.unwrap_or(files.spec.seed);
-    if !args.sweep.is_empty() {
-        files.spec.plan = None;
-    }
-    let trials = match (args.trials, files.study()) {
-        (trials, None) => trials.unwrap_or(1),
-        (trials, Some(study)) => {
-            let most = study.plan.codes().len() as u64 * study.plan.conditions.len() as u64;
-            if let Some(trials) = trials.filter(|&trials| trials > most) {
-                let found = format!("--trials {trials}, with a plan of {most} trials");
-                return Err(wrong_argument(&args.session, found, "at most the trials of the plan"));
-            }
-            trials.unwrap_or(most)
-        }
-    };
-    check_condition(args, files.spec.plan.is_some())?;
-    // With a plan it says the conditions.
-    files.spec.trial.condition = match args.condition {
-        None if !args.sweep.is_empty() => Condition::Assistant,
-        None => Condition::None,
-        Some(condition) => condition.into(),
-    };
-    if files.spec.unattended(files.spec.trial.condition) != files.spec.trial.condition {
-        let found = "--condition wizard, with a wizard who is a person".to_string();
-        return Err(wrong_argument(&args.session, found, "[wizard] with kind = \"scripted\" in the session file"));
-    }
-    files.spec.assistant.concept = args.concept.map_or(files.spec.assistant.concept, ConceptName::from);
-    files.spec.robot.arm = args.arm.map_or(files.spec.robot.arm, ArmKind::from);
-    files.spec.assistant.shadow = if args.shadow { Shadow::On } else { Shadow::Off };
-    let simulation = simulate::Simulation { files, trials, shard: args.shard, out: args.out.clone() };
-    if !args.sweep.is_empty() {
-        let bar = progress(sweep::trials(&simulation, &args.sweep), "trials");
-        let figures = sweep::sweep(&simulation, &args.sweep, || bar.inc(1))?;
-        bar.finish_and_clear();
-        return print(args.format, &figures, || sweep::describe(&figures, &args.sweep));
-    }
-    let bar = progress(simulation.own_trials().count() as u64, "trials");
-    let figures = simulate::simulate(&simulation, || bar.inc(1))?;
-    bar.finish_and_clear();
-    if args.rerun {
-        for recording in &figures.recordings {
-            save_stream(Path::new(recording))?;
-        }
-    }
-    print(args.format, &figures, || simulate::describe(&figures))
-}
-
-/// Options that have no effect beside who sends signals.
-fn check_condition(args: &SimulateArgs, is_planned: bool) -> Result<(), Failure> {
-    let condition = args.condition.map(Condition::from);
-    let is_silent = matches!(condition, None | Some(Condition::None));
-    let (found, remedy) = match () {
-        () if is_planned && condition.is_some() => {
-            ("--condition, of a session with a plan", "no --condition: the plan says who sends signals")
-        }
-        () if !args.sweep.is_empty() && condition == Some(Condition::None) => (
-            "--sweep, with --condition none",
-            "--condition assistant or wizard; trials without signals are beside them",
-        ),
-        () if args.concept.is_some() && !is_planned && args.sweep.is_empty() && is_silent && !args.shadow => {
-            ("--concept, where nobody asks the assistant", "--condition assistant or --shadow with it")
-        }
-        () => return Ok(()),
-    };
-    Err(wrong_argument(&args.session, found.to_string(), remedy))
 }
 
 fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {

@@ -513,6 +513,25 @@ least_rollouts = 2
 ";
 
 #[test]
+fn simulate_tells_what_holds_at_the_console_alone() {
+    let folder = folder("unused");
+    let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
+    let [session, out] = ["session.toml", "out"].map(path);
+    let layout = fs::canonicalize("layouts/sushi.toml").expect("the layout is there");
+    let acting =
+        QUICK.replace("\"none\"", "\"assistant\"").replace("[assistant.", "[assistant]\nshadow = \"on\"\n[assistant.");
+    fs::write(&session, format!("layout = {layout:?}\n{acting}")).expect("the session can be written");
+    let told = |arguments: &[&str]| {
+        let output = check(&[&["simulate", &session, "--out", &out], arguments].concat(), 0);
+        let told = String::from_utf8_lossy(&output.stderr);
+        ["by --condition assistant", "by --shadow"].map(|option| told.contains(option))
+    };
+    assert_eq!(told(&[]), [true, true]);
+    assert_eq!(told(&["--shadow", "--seed", "2"]), [true, false]);
+    assert_eq!(told(&["--condition", "assistant", "--seed", "3"]), [false, true]);
+}
+
+#[test]
 fn fit_writes_a_parameter_file_and_accuracy_tells_its_figures() {
     let folder = folder("fit");
     let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();

@@ -854,6 +854,9 @@ fn each_panel_can_be_looked_at_alone() {
         stage.key(KeyCode::Right);
     }
     assert_eq!(panels(&stage), ["gaze_map"], "what may not be seen is left out");
+    stage.wait(0.2);
+    stage.key(KeyCode::Up);
+    assert_eq!(stage.model.events_back, 0, "what is not seen does not move");
 }
 
 #[test]

@@ -78,6 +78,8 @@ pub fn look(model: &mut Model, session: &Session, look: Look) {
             let before = at.map_or(Some(seen.len() - 1), |at| at.checked_sub(1));
             model.alone = before.and_then(|before| seen.get(before)).copied();
         }
+        // A panel alone that shows only what holds now has no further back.
+        Look::Back | Look::Forward if !goes_back(model.alone) => {}
         Look::Back => scroll(model, session, is_of_time(model.alone), 1),
         Look::Forward => scroll(model, session, is_of_time(model.alone), -1),
     }
@@ -86,6 +88,11 @@ pub fn look(model: &mut Model, session: &Session, look: Look) {
 /// Whether a panel has an axis of time.
 fn is_of_time(panel: Option<Panel>) -> bool {
     matches!(panel, Some(Panel::Timeline | Panel::Comparison))
+}
+
+/// Whether more was seen of the past than fits: of all panels together those of events.
+fn goes_back(alone: Option<Panel>) -> bool {
+    matches!(alone, None | Some(Panel::Events)) || is_of_time(alone)
 }
 
 /// Leafs through the help.

@@ -221,8 +221,8 @@ fn legend(check: &BeliefCheck) -> String {
     let few = match check.recordings {
         TELLING.. => String::new(),
         few => format!(
-            "\n{} say little about single aspects, least about recipes, which are seldom wrong: take {TELLING} or more.",
-            count(few, "recording", "recordings")
+            "\n{} little about single aspects, least about recipes, which are seldom wrong: take {TELLING} or more.",
+            count(few, "recording says", "recordings say")
         ),
     };
     format!(

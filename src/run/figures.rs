@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::follower::Follower;
+use crate::base::words::count;
 use crate::kitchen::{Agent, DishId};
 use crate::measures::attribution::Cause;
 use crate::measures::sequences::{Sequence, sequences, sequences_by_target};
@@ -116,9 +117,10 @@ impl BeliefFigures {
         };
         let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.1}"));
         format!(
-            "belief related: {related} of {errors} errors ({:.0} %), in {sequences} sequences of {} errors each (by \
+            "belief related: {related} of {errors} errors ({:.0} %), in {} of {} errors each (by \
              single aspect {}), over after {} s",
             100.0 * related as f64 / errors.max(1) as f64,
+            count(sequences, "sequence", "sequences"),
             number(self.mean_sequence_length),
             number(self.mean_sequence_length_by_aspect),
             number(self.mean_recovery_s),

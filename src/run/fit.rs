@@ -198,9 +198,14 @@ pub fn fit(trials: &Trials, plan: &Plan, tried: impl Fn()) -> Fit {
     let start: Vec<f64> = plan.parameters.iter().map(|one| scaled(one, one.get(begin))).collect();
     let bounds: Vec<[f64; 2]> = plan.parameters.iter().map(|one| one.bounds().map(|end| scaled(one, end))).collect();
     let before = judge.likelihood(begin);
-    let Maximum { variables, evaluations, converged } = ascend(loss, &start, &bounds, plan.most_tries);
-    let model = with(&variables.iter().map(|variable| variable.at).collect::<Vec<f64>>());
-    let log_p = judge.likelihood(&model).log_p;
+    let Maximum { mut variables, evaluations, converged } = ascend(loss, &start, &bounds, plan.most_tries);
+    let mut model = with(&variables.iter().map(|variable| variable.at).collect::<Vec<f64>>());
+    let mut log_p = judge.likelihood(&model).log_p;
+    // An unfinished search may have been on its way through worse places.
+    if !converged && log_p < before.log_p {
+        variables.iter_mut().zip(&start).for_each(|(variable, &start)| variable.at = start);
+        (model, log_p) = (begin.clone(), before.log_p);
+    }
     let presses = before.presses.max(1) as f64;
     let fitted = plan.parameters.iter().zip(&variables);
     Fit {
@@ -230,6 +235,9 @@ pub fn comment(fit: &Fit) -> String {
                 one.value
             )
         }
+        (None, None) if !fit.converged => {
+            format!("{} = {:.4}, from a search that did not come to its end", one.name, one.value)
+        }
         (None, None) => format!("{} = {:.4}, which the recordings do not tell surely", one.name, one.value),
     });
     let values: Vec<String> = values.collect();
@@ -243,7 +251,13 @@ pub fn comment(fit: &Fit) -> String {
 
 /// The figures for people.
 pub fn describe(fit: &Fit) -> String {
+    let lost = fit.log_likelihood_before - fit.log_likelihood;
     let end = match fit.converged {
+        true if lost > 0.0 => format!(
+            "\nless likely than before by {:.1} nats over all presses: not more than the search can tell from chance in the \
+             estimate; more samples ([inference] in a file for --start) or recordings tell more",
+            lost * fit.human_actions as f64
+        ),
         true => String::new(),
         false => format!(
             "\nthe search did not come to its end: its next step takes more than is left of the {} that --tries allows",
@@ -289,7 +303,7 @@ fn untold(fit: &Fit) -> String {
         false => ("not known, since the search did not come to its end", "A larger --tries may tell them"),
     };
     format!(
-        "\n{why}: {}. Their values are where the search ended, and no findings; a file (--out) has them all the same. \
+        "\n{why}: {}. Their values are the best that the search knew, and no findings; a file (--out) has them all the same. \
          {remedy}, or keep them as they are: leave them out of --parameters.\n",
         untold.join(", ")
     )

@@ -93,6 +93,22 @@ fn a_tau_that_no_press_tells_is_bounded_from_below() {
     assert!(low.is_none_or(|low| low < 0.05) && high.is_none_or(|high| high > 0.05), "{lapse:?}");
 }
 
+#[test]
+fn a_search_that_did_not_end_gives_nothing_worse_than_it_began_with() {
+    let kitchen = kitchen("layouts/sushi.toml");
+    let mut truth = coarse();
+    (truth.decision.tau, truth.decision.lapse) = (2.5, 0.08);
+    let experiment = Experiment { humans: 4, presses: 40, gaze_hz: 30.0, signal_s: None, seed: 23 };
+    let trials = trials(&kitchen, &truth, &experiment);
+    let parameters = vec![Parameter::Tau, Parameter::Lapse, Parameter::ReadingRateHz];
+    for most_tries in [1, 30] {
+        let plan = Plan { parameters: parameters.clone(), start: Some(truth.clone()), most_tries };
+        let found = fit(&trials, &plan, || {});
+        println!("{}", describe(&found));
+        assert!(!found.converged && found.log_likelihood >= found.log_likelihood_before, "{found:?}");
+    }
+}
+
 /// People in the sushi kitchen whose parameters differ from those that the search begins with, and the latter. Half of what
 /// they believe of recipes at first is wrong, and some recipes are shown to them: else there would be little to forget. Their
 /// radius reaches beyond the place that is looked at: else it would make no difference.

@@ -15,8 +15,8 @@ use crate::session::{Phase, Session};
 /// The chart of one aspect goes back so far, in seconds; the small ones beside each aspect half as far.
 const COURSE_S: f64 = belief::SHOWN_S;
 /// From so many columns on, an aspect with all that is told of it takes one line, and from so many its course too.
-const ONE_LINE: u16 = 46;
-const WITH_COURSE: u16 = 62;
+const ONE_LINE: u16 = 66;
+const WITH_COURSE: u16 = 72;
 const COURSE: u16 = 10;
 /// Rows of the chart with its title, at least and at most.
 const CHART_ROWS: [u16; 2] = [3, 10];

@@ -8,6 +8,9 @@ use crate::console::words;
 use crate::kitchen::Agent;
 use crate::session::{Happening, Session};
 
+/// Columns of who did it, the longest of which is "assistant".
+const WHO: u16 = 10;
+
 /// Draws the list of events.
 pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
     if regions.events.area() == 0 {
@@ -35,9 +38,9 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         let quiet = brush.style(Role::Quiet);
         brush.text_right(inside.x + 6, y, 6, &age, quiet);
         let x = inside.x + 7;
-        let columns = inside.right().saturating_sub(x + 9);
-        brush.parts(x, y, 9, &[(who, role)]);
+        let columns = inside.right().saturating_sub(x + WHO);
+        brush.parts(x, y, WHO - 1, &[(who, role)]);
         let mark = if is_error { format!(" {} error", brush.theme.signs().error) } else { String::new() };
-        brush.parts(x + 9, y, columns, &[(&what, Role::Text), (&mark, Role::Alarm)]);
+        brush.parts(x + WHO, y, columns, &[(&what, Role::Text), (&mark, Role::Alarm)]);
     }
 }

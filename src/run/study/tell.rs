@@ -27,9 +27,10 @@ pub fn describe(figures: &StudyFigures) -> String {
     );
     text += &match (totals.belief_related_errors, totals.sequences) {
         (Some(related), Some(sequences)) => format!(
-            "belief related: {related} ({}), in {sequences} sequences of {} errors each (by single aspect {}), over after \
+            "belief related: {related} ({}), in {} of {} errors each (by single aspect {}), over after \
              {} s{}\n",
             percent(totals.belief_related_share),
+            count(sequences, "sequence", "sequences"),
             number(totals.mean_sequence_length),
             number(totals.mean_sequence_length_by_aspect),
             number(totals.mean_recovery_s),

@@ -1,0 +1,104 @@
+//! Whole trials without anybody at the console: what is simulated, and by which of the options.
+
+use std::path::Path;
+
+use super::args::SimulateArgs;
+use super::{Failure, print, progress, wrong_argument};
+use crate::communication::concept::ConceptName;
+use crate::communication::settings::Shadow;
+use crate::edge::files;
+use crate::run::rerun::save as save_stream;
+use crate::run::{simulate, sweep};
+use crate::session::SessionSpec;
+use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
+
+/// `tomcom simulate SESSION`.
+pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
+    let mut files = files::read_session(&args.session)?;
+    if files.spec.participant.kind != ParticipantKind::Simulated || files.spec.participant.gaze != GazeSource::Simulated
+    {
+        let found = "a session whose participant or gaze is not simulated".to_string();
+        return Err(wrong_argument(&args.session, found, "kind = \"simulated\" and gaze = \"simulated\""));
+    }
+    files.spec.seed = args.seed.unwrap_or(files.spec.seed);
+    if !args.sweep.is_empty() {
+        files.spec.plan = None;
+    }
+    let trials = match (args.trials, files.study()) {
+        (trials, None) => trials.unwrap_or(1),
+        (trials, Some(study)) => {
+            let most = study.plan.codes().len() as u64 * study.plan.conditions.len() as u64;
+            if let Some(trials) = trials.filter(|&trials| trials > most) {
+                let found = format!("--trials {trials}, with a plan of {most} trials");
+                return Err(wrong_argument(&args.session, found, "at most the trials of the plan"));
+            }
+            trials.unwrap_or(most)
+        }
+    };
+    check_condition(args, files.spec.plan.is_some())?;
+    tell_unused(args, &files.spec);
+    // With a plan it says the conditions.
+    files.spec.trial.condition = match args.condition {
+        None if !args.sweep.is_empty() => Condition::Assistant,
+        None => Condition::None,
+        Some(condition) => condition.into(),
+    };
+    if files.spec.unattended(files.spec.trial.condition) != files.spec.trial.condition {
+        let found = "--condition wizard, with a wizard who is a person".to_string();
+        return Err(wrong_argument(&args.session, found, "[wizard] with kind = \"scripted\" in the session file"));
+    }
+    files.spec.assistant.concept = args.concept.map_or(files.spec.assistant.concept, ConceptName::from);
+    files.spec.robot.arm = args.arm.map_or(files.spec.robot.arm, ArmKind::from);
+    files.spec.assistant.shadow = if args.shadow { Shadow::On } else { Shadow::Off };
+    let simulation = simulate::Simulation { files, trials, shard: args.shard, out: args.out.clone() };
+    if !args.sweep.is_empty() {
+        let bar = progress(sweep::trials(&simulation, &args.sweep), "trials");
+        let figures = sweep::sweep(&simulation, &args.sweep, || bar.inc(1))?;
+        bar.finish_and_clear();
+        return print(args.format, &figures, || sweep::describe(&figures, &args.sweep));
+    }
+    let bar = progress(simulation.own_trials().count() as u64, "trials");
+    let figures = simulate::simulate(&simulation, || bar.inc(1))?;
+    bar.finish_and_clear();
+    if args.rerun {
+        for recording in &figures.recordings {
+            save_stream(Path::new(recording))?;
+        }
+    }
+    print(args.format, &figures, || simulate::describe(&figures))
+}
+
+/// Tells what the session file says of the assistant for sessions at the console alone: trials are simulated without it,
+/// unless options ask for it.
+fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
+    if spec.plan.is_some() || !args.sweep.is_empty() {
+        return;
+    }
+    let acts = args.condition.is_none() && spec.trial.condition == Condition::Assistant;
+    let advises = !args.shadow && spec.assistant.shadow == Shadow::On;
+    let unused =
+        [(acts, "condition = \"assistant\"", "--condition assistant"), (advises, "shadow = \"on\"", "--shadow")];
+    for (_, found, option) in unused.iter().filter(|(is_unused, ..)| *is_unused) {
+        eprintln!("{}: {found} holds at the console; trials are simulated with it by {option}", args.session.display());
+    }
+}
+
+/// Options that have no effect beside who sends signals.
+fn check_condition(args: &SimulateArgs, is_planned: bool) -> Result<(), Failure> {
+    let condition = args.condition.map(Condition::from);
+    let is_silent = matches!(condition, None | Some(Condition::None));
+    let (found, remedy) = match () {
+        () if is_planned && condition.is_some() => {
+            ("--condition, of a session with a plan", "no --condition: the plan says who sends signals")
+        }
+        () if !args.sweep.is_empty() && condition == Some(Condition::None) => (
+            "--sweep, with --condition none",
+            "--condition assistant or wizard; trials without signals are beside them",
+        ),
+        () if args.concept.is_some() && !is_planned && args.sweep.is_empty() && is_silent && !args.shadow => {
+            ("--concept, where nobody asks the assistant", "--condition assistant or --shadow with it")
+        }
+        () => return Ok(()),
+    };
+    Err(wrong_argument(&args.session, found.to_string(), remedy))
+}

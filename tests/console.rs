@@ -856,6 +856,7 @@ fn each_panel_can_be_looked_at_alone() {
     assert_eq!(panels(&stage), ["gaze_map"], "what may not be seen is left out");
     stage.wait(0.2);
     stage.key(KeyCode::Up);
+    update(&mut stage.model, &stage.session, Message::Wheel(40, 12, 1));
     assert_eq!(stage.model.events_back, 0, "what is not seen does not move");
 }
 

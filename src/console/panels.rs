@@ -78,21 +78,9 @@ pub fn look(model: &mut Model, session: &Session, look: Look) {
             let before = at.map_or(Some(seen.len() - 1), |at| at.checked_sub(1));
             model.alone = before.and_then(|before| seen.get(before)).copied();
         }
-        // A panel alone that shows only what holds now has no further back.
-        Look::Back | Look::Forward if !goes_back(model.alone) => {}
-        Look::Back => scroll(model, session, is_of_time(model.alone), 1),
-        Look::Forward => scroll(model, session, is_of_time(model.alone), -1),
+        Look::Back => scroll(model, session, model.alone, 1),
+        Look::Forward => scroll(model, session, model.alone, -1),
     }
-}
-
-/// Whether a panel has an axis of time.
-fn is_of_time(panel: Option<Panel>) -> bool {
-    matches!(panel, Some(Panel::Timeline | Panel::Comparison))
-}
-
-/// Whether more was seen of the past than fits: of all panels together those of events.
-fn goes_back(alone: Option<Panel>) -> bool {
-    matches!(alone, None | Some(Panel::Events)) || is_of_time(alone)
 }
 
 /// Leafs through the help.
@@ -104,12 +92,14 @@ pub fn leaf(model: &mut Model, look: Look) {
     };
 }
 
-fn scroll(model: &mut Model, session: &Session, timeline: bool, steps: i64) {
-    if timeline {
+/// Goes further back: the time of a panel that has an axis of it, or else the list of events, unless another panel alone
+/// hides that.
+fn scroll(model: &mut Model, session: &Session, panel: Option<Panel>, steps: i64) {
+    if matches!(panel, Some(Panel::Timeline | Panel::Comparison)) {
         let back_s = i64::from(model.timeline_back_s) + steps * i64::from(STEP.0);
         let most_s = model.now.secs_since(session.trial_start).max(0.0) as i64;
         model.timeline_back_s = back_s.clamp(0, most_s) as u32;
-    } else {
+    } else if matches!(model.alone, None | Some(Panel::Events)) {
         let back = model.events_back as i64 + steps * STEP.1 as i64;
         model.events_back = back.clamp(0, session.timeline.len().saturating_sub(1) as i64) as usize;
     }
@@ -122,7 +112,7 @@ pub fn wheel(model: &mut Model, session: &Session, cell: (u16, u16), steps: i64)
         return;
     }
     let regions = Regions::showing(model.size, session, model);
-    scroll(model, session, is_of_time(Panel::at(&regions, cell)), steps);
+    scroll(model, session, Panel::at(&regions, cell), steps);
 }
 
 /// A click tells what a place's key does, since a signal sent by mistake cannot be unseen; beside the places it shows the

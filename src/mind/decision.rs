@@ -94,8 +94,7 @@ impl DecisionModel {
 
     /// What is pressed of what is meant.
     fn slipped(&self, slips: &Slips, meant: &[f64]) -> Vec<f64> {
-        let anywhere = self.lapse * self.lapse_anywhere / meant.len() as f64;
-        let slipping = self.lapse * (1.0 - self.lapse_anywhere) / 2.0;
+        let [anywhere, slipping] = self.slip_chances(meant.len());
         let mut pressed: Vec<f64> = meant.iter().map(|p| (1.0 - self.lapse) * p + anywhere).collect();
         for (to, p) in slips.to.iter().zip(meant) {
             for button in to {
@@ -103,6 +102,17 @@ impl DecisionModel {
             }
         }
         pressed
+    }
+
+    /// The chance that a press becomes that of one certain button of so many, whatever was meant, and that it slips to each
+    /// of the two that its own may be taken for.
+    fn slip_chances(&self, buttons: usize) -> [f64; 2] {
+        [self.lapse * self.lapse_anywhere / buttons as f64, self.lapse * (1.0 - self.lapse_anywhere) / 2.0]
+    }
+
+    /// exp(tau Q) beside that of the best, of what takes `more` presses more over `draws` draws together.
+    pub fn weight(&self, more: usize, draws: usize) -> f64 {
+        (-self.tau * more as f64 / draws as f64).exp()
     }
 }
 
@@ -124,18 +134,18 @@ impl PressLikelihood {
     pub fn new(kitchen: &Kitchen, model: &DecisionModel, states: usize) -> PressLikelihood {
         let slips = Slips::of(kitchen);
         let buttons = slips.to.len();
-        let weight = |k: usize| (-model.tau * k as f64 / states as f64).exp();
-        let slipping = model.lapse * (1.0 - model.lapse_anywhere) / 2.0;
+        let [anywhere, slipping] = model.slip_chances(buttons);
+        let weights = (0..=states * usize::from(u8::MAX)).map(|more| model.weight(more, states));
         let of_button = |button: usize| {
             let times = |to: &[ButtonId; 2]| to.iter().filter(|slipped| slipped.index() == button).count();
             let all = slips.to.iter().map(times).enumerate().filter(|(_, times)| *times > 0);
             all.map(|(from, times)| (from, slipping * times as f64)).collect()
         };
         PressLikelihood {
-            weights: (0..=states * usize::from(u8::MAX)).map(weight).take_while(|weight| *weight > 0.0).collect(),
+            weights: weights.take_while(|weight| *weight > 0.0).collect(),
             meant: 1.0 - model.lapse,
             slips: (0..buttons).map(of_button).collect(),
-            anywhere: model.lapse * model.lapse_anywhere / buttons as f64,
+            anywhere,
         }
     }
 

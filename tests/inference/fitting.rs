@@ -97,12 +97,13 @@ fn a_tau_that_no_press_tells_is_bounded_from_below() {
 fn a_search_that_did_not_end_gives_nothing_worse_than_it_began_with() {
     let kitchen = kitchen("layouts/sushi.toml");
     let mut truth = coarse();
-    (truth.decision.tau, truth.decision.lapse) = (2.5, 0.08);
-    let experiment = Experiment { humans: 4, presses: 40, gaze_hz: 30.0, signal_s: None, seed: 23 };
+    // So strict that the first surface leads away from where the likelihood is flat.
+    (truth.decision.tau, truth.decision.lapse) = (20.0, 0.03);
+    let experiment = Experiment { humans: 2, presses: 40, gaze_hz: 30.0, signal_s: None, seed: 23 };
     let trials = trials(&kitchen, &truth, &experiment);
-    let parameters = vec![Parameter::Tau, Parameter::Lapse, Parameter::ReadingRateHz];
-    for most_tries in [1, 30] {
-        let plan = Plan { parameters: parameters.clone(), start: Some(truth.clone()), most_tries };
+    for most_tries in [1, 12, 30] {
+        let parameters = vec![Parameter::Tau, Parameter::Lapse];
+        let plan = Plan { parameters, start: Some(truth.clone()), most_tries };
         let found = fit(&trials, &plan, || {});
         println!("{}", describe(&found));
         assert!(!found.converged && found.log_likelihood >= found.log_likelihood_before, "{found:?}");

@@ -177,7 +177,7 @@ impl Decider {
     pub fn new(kitchen: &Kitchen, model: &DecisionModel, states: usize) -> Decider {
         let row = |n: usize| {
             let last = (VANISHES * n as f64 / model.tau) as usize;
-            (0..=last).map(|k| (-model.tau * k as f64 / n.max(1) as f64).exp()).collect()
+            (0..=last).map(|more| model.weight(more, n.max(1))).collect()
         };
         let buttons = kitchen.buttons[Agent::Human.index()].len();
         let weights = (0..=states).map(row).collect();

@@ -111,6 +111,10 @@ pub struct Judge<'a> {
 }
 
 impl Sampler {
+    pub fn new(kitchen: &Kitchen) -> Sampler {
+        Sampler { wants: kitchen.orders.iter().map(|&order| wants(kitchen, order)).collect(), ..Sampler::default() }
+    }
+
     /// Updates the belief by the evidence of a press of the human.
     pub fn weigh(
         &mut self,
@@ -128,7 +132,6 @@ impl Sampler {
             let is_recipe = matches!(aspect.kind, AspectKind::Recipe(_));
             self.counts.push(if is_recipe { urn.spread(SPREAD) } else { Vec::new() });
         }
-        self.wants = judge.kitchen.orders.iter().map(|&order| wants(judge.kitchen, order)).collect();
         let mut wanted = judge.inference.beliefs;
         self.firsts.clear();
         self.rows.clear();
@@ -159,10 +162,11 @@ impl Sampler {
             urn.first_draws(random, proposed);
         }
         for sample in 0..new {
-            let (rows, runs) = (self.rows.len(), self.runs.len());
+            let rows = self.rows.len();
             let mixed = self.draw_on(kitchen, new, sample, states, random);
-            self.samples.push(Sample { mixed, rows, runs: [runs; 2] });
-            self.count_cases(kitchen, states);
+            let begin = self.runs.len();
+            self.count_cases(kitchen, states, mixed, rows);
+            self.samples.push(Sample { mixed, rows, runs: [begin, self.runs.len()] });
         }
         self.cases.rate(cost, wanted * states);
         self.press_chances(judge, button, old);
@@ -203,36 +207,32 @@ impl Sampler {
         mixed
     }
 
-    /// Counts the cases among the draws of the newest belief sample.
-    fn count_cases(&mut self, kitchen: &Kitchen, states: usize) {
-        let Some(&sample) = self.samples.last() else { return };
-        self.tell_apart(&sample, states);
+    /// Counts the cases among the draws of the newest belief sample, whose rows begin here.
+    fn count_cases(&mut self, kitchen: &Kitchen, states: usize, mixed: u32, rows: usize) {
+        self.tell_apart(states, mixed, rows);
         let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
         let firsts = &self.firsts[self.firsts.len() - self.urns.len()..];
         for (aspect, &value) in firsts.iter().enumerate().filter(|(_, value)| **value != UNDRAWN) {
             kitchen.set_value(&mut state, &mut recipes, AspectId(aspect as u8), usize::from(value));
         }
         for &Alike { first, draws, .. } in &self.alike {
-            for (aspect, row) in ones(sample.mixed).zip(self.rows[sample.rows..].chunks_exact(states)) {
+            for (aspect, row) in ones(mixed).zip(self.rows[rows..].chunks_exact(states)) {
                 kitchen.set_value(&mut state, &mut recipes, AspectId(aspect as u8), usize::from(row[first]));
             }
             let case = self.cases.count(state, recipes, draws);
             self.runs.push(Run { case, first: first as u32, draws });
         }
-        if let Some(sample) = self.samples.last_mut() {
-            sample.runs[1] = self.runs.len();
-        }
     }
 
     /// Finds the draws of a belief sample that differ.
-    fn tell_apart(&mut self, sample: &Sample, states: usize) {
+    fn tell_apart(&mut self, states: usize, mixed: u32, rows: usize) {
         self.alike.clear();
-        if sample.mixed == 0 {
+        if mixed == 0 {
             return self.alike.push(Alike { key: Key::default(), first: 0, draws: states as u32 });
         }
         self.keys.clear();
         self.keys.resize(states, Key::default());
-        for (index, row) in self.rows[sample.rows..].chunks_exact(states).enumerate() {
+        for (index, row) in self.rows[rows..].chunks_exact(states).enumerate() {
             for (key, &value) in self.keys.iter_mut().zip(row) {
                 let part = &mut key[index / KEY_PART];
                 *part = *part << u8::BITS | u64::from(value);

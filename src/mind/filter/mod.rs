@@ -77,7 +77,7 @@ impl BeliefFilter {
             reader: Reader::new(&kitchen, &model.perception),
             likelihood: PressLikelihood::new(&kitchen, &model.decision, model.inference.states),
             belief: prior.clone(),
-            sampler: Sampler::default(),
+            sampler: Sampler::new(&kitchen),
             forgot: None,
             evidence: None,
             kitchen,

@@ -12,7 +12,7 @@ import time
 import tomllib
 from pathlib import Path
 
-README = Path("README.md").read_text()
+PAGE = Path("docs/eye-trackers.md").read_text()
 PORT = tomllib.loads(Path("sessions/default.toml").read_text())["participant"]["gaze_port"]
 MALFORMED = [
     b"nonsense",
@@ -137,16 +137,16 @@ def check_sender(tomcom, scratch):
     print(f"gaze over TCP: {len(sent)} samples recorded in order among 63 malformed lines; the recording verifies")
 
 
-def check_readme_sender(tomcom, scratch):
-    """The sender that the README prints, run as it is printed."""
-    senders = [code for code in re.findall(r"```python\n(.*?)```", README, re.DOTALL) if str(PORT) in code]
-    assert len(senders) == 1, "one sender in the README, with the default port"
+def check_documented_sender(tomcom, scratch):
+    """The sender on docs/eye-trackers.md, run as it is printed."""
+    senders = [code for code in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL) if str(PORT) in code]
+    assert len(senders) == 1, "one sender on the page, with the default port"
     lines = [line for line in senders[0].splitlines() if line.strip()]
     assert len(lines) <= 10, f"the ten-line sender has {len(lines)} lines"
-    with Console(tomcom, scratch / "readme") as console:
+    with Console(tomcom, scratch / "documented") as console:
         sender = subprocess.Popen([sys.executable, "-c", senders[0]])
         time.sleep(3)
-        assert sender.poll() is None, "the sender of the README ended"
+        assert sender.poll() is None, "the documented sender ended"
         sender.kill()
         sender.wait()
         recording = console.quit()
@@ -157,10 +157,10 @@ def check_readme_sender(tomcom, scratch):
         radius = math.hypot(sample["x"] - 0.5, sample["y"] - 0.5)
         assert abs(radius - 0.3) < 1e-3, f"{sample} is not on the circle"
     verify(tomcom, recording)
-    print(f"the sender of the README: {len(gaze)} samples in {seconds:.1f} s; the recording verifies")
+    print(f"the documented sender: {len(gaze)} samples in {seconds:.1f} s; the recording verifies")
 
 
 if __name__ == "__main__":
     program, folder = sys.argv[1], Path(sys.argv[2])
     check_sender(program, folder)
-    check_readme_sender(program, folder)
+    check_documented_sender(program, folder)

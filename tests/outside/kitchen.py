@@ -1,4 +1,4 @@
-"""The rules of a kitchen, written a second time from the README alone: what a press does, counted by nobody's help."""
+"""The rules of a kitchen, written a second time from docs/writing-a-kitchen.md alone: what a press does, counted by nobody's help."""
 
 import tomllib
 from itertools import product

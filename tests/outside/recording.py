@@ -13,7 +13,8 @@ import pandas
 
 from kitchen import Kitchen, Trial
 
-README = Path("README.md").read_text()
+RECORDINGS = Path("docs/recordings.md").read_text()
+WRITING_A_KITCHEN = Path("docs/writing-a-kitchen.md").read_text()
 
 
 def tomcom(*arguments, code=0, **options):
@@ -54,7 +55,7 @@ def check_order(events):
     of_trial = events["kind"][events["kind"] != "protocol"]  # what a plan asks for before its trial
     assert of_trial.iloc[0] == "trial_started" and of_trial.iloc[-1] == "session_ended"
     for kind in events["kind"].unique():
-        assert f"`{kind}`" in README, f"the README does not say what {kind} is"
+        assert f"`{kind}`" in RECORDINGS, f"docs/recordings.md does not say what {kind} is"
 
 
 def check_gaze(events):
@@ -174,12 +175,12 @@ def check_kitchen(layout):
     print(f"{layout.name}: {states} states, computed again")
 
 
-def check_readme_kitchen(scratch):
-    """The kitchen that the README explains is one: it loads, and a session in it verifies."""
-    files = re.findall(r"```toml\n# (\S+)\n(.*?)```", README, re.DOTALL)
-    assert sorted(name for name, _ in files) == ["layouts/toast.toml", "recipes/toast.toml"], files
-    folder = scratch / "readme"
-    files.append(("sessions/toast.toml", 'layout = "../layouts/toast.toml"\n[trial]\npresses = 60\n'))
+def check_documented_kitchen(scratch):
+    """The kitchen that docs/writing-a-kitchen.md explains loads, and a session in it verifies."""
+    files = re.findall(r"```toml\n# (\S+)\n(.*?)```", WRITING_A_KITCHEN, re.DOTALL)
+    names = ["layouts/toast.toml", "recipes/toast.toml", "sessions/toast.toml"]
+    assert sorted(name for name, _ in files) == names, files
+    folder = scratch / "documented"
     for name, text in files:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text)
@@ -188,14 +189,14 @@ def check_readme_kitchen(scratch):
     check_counts(figures["recordings"], figures)
     found = tomcom("replay", figures["recordings"][0], "--verify")
     assert found["verified"] is True, found
-    check_readme_pandas(figures["recordings"][0])
+    check_documented_pandas(figures["recordings"][0])
 
 
-def check_readme_pandas(recording):
-    """The line of pandas that the README prints reads a recording."""
-    (code,) = re.findall(r"```python\n(events = .*?)```", README, re.DOTALL)
-    found = {"pandas": pandas}
-    exec(code.replace("events.jsonl", str(Path(recording) / "events.jsonl")), found)
+def check_documented_pandas(recording):
+    """The line of pandas on docs/recordings.md reads a recording."""
+    (code,) = re.findall(r"```python\n(.*?events = .*?)```", RECORDINGS, re.DOTALL)
+    found = {}
+    exec(code.replace("recordings/seed7-S001", str(recording)), found)
     _, events = read(recording)
     assert found["events"]["kind"].tolist() == events["kind"].tolist()
     assert found["events"]["t_ns"].tolist() == events["t_ns"].tolist()
@@ -207,4 +208,4 @@ if __name__ == "__main__":
         check_kitchen(layout)
     for session in sorted(Path("sessions").glob("*.toml")):
         check_session(session, scratch)
-    check_readme_kitchen(scratch)
+    check_documented_kitchen(scratch)

@@ -12,7 +12,7 @@ use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, Observed};
 use tomcom::mind::reference::ReferenceFilter;
 
-#[path = "../tests/inference/observed.rs"]
+#[path = "../tests/library/inference/observed.rs"]
 mod observed;
 
 /// Recorded trials a kitchen, and presses of both agents in each.

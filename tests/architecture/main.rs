@@ -197,6 +197,18 @@ fn files_stay_short() {
     }
 }
 
+/// Tests that run the program share terminals, ports and a disk with each other.
+#[test]
+fn tests_of_the_program_run_one_after_another() {
+    let mut paths = Vec::new();
+    collect(Path::new("tests/program"), &mut paths);
+    for path in paths {
+        let text = std::fs::read_to_string(&path).expect("a source file");
+        let (tests, serial) = (text.matches("#[test]\n").count(), text.matches("#[test]\n#[serial]\n").count());
+        assert_eq!(tests, serial, "{}: a test is not #[serial]", path.display());
+    }
+}
+
 /// Paths in backticks that begin with a folder or file of the repository.
 #[test]
 fn every_path_in_the_architecture_exists() {

@@ -43,6 +43,8 @@ use tomcom::session::protocol::ProtocolEvent;
 use tomcom::session::settings::{GazeSource, ParticipantKind, Visibility};
 use tomcom::session::{Phase, Session, SessionSpec, apply};
 
+use crate::check_snapshot;
+
 const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
 
 fn kitchen(name: &str) -> Arc<Kitchen> {
@@ -211,7 +213,7 @@ fn input(command: Option<Command>) -> Option<Event> {
 fn a_running_session_at_three_sizes() {
     let stage = Stage::sushi(ParticipantKind::Simulated);
     for size in SIZES {
-        insta::assert_snapshot!(format!("running_{}x{}", size.0, size.1), stage.screen(size));
+        check_snapshot("console", format!("running_{}x{}", size.0, size.1), stage.screen(size));
     }
 }
 
@@ -229,7 +231,7 @@ fn one_belief_is_looked_at_over_time_and_then_the_next() {
     stage.wait(1.0);
     stage.control('b');
     for size in SIZES {
-        insta::assert_snapshot!(format!("belief_over_time_{}x{}", size.0, size.1), stage.screen(size));
+        check_snapshot("console", format!("belief_over_time_{}x{}", size.0, size.1), stage.screen(size));
     }
     for _ in 0..ranked.len() - 2 {
         stage.wait(1.0);
@@ -242,7 +244,7 @@ fn one_belief_is_looked_at_over_time_and_then_the_next() {
 fn the_belief_has_the_room_of_the_recommendation_where_there_is_none() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.session.spec.console.visibility = Visibility::Belief;
-    insta::assert_snapshot!("belief_120x40", stage.screen((120, 40)));
+    check_snapshot("console", "belief_120x40", stage.screen((120, 40)));
 }
 
 #[test]
@@ -254,8 +256,8 @@ fn the_participants_keys_stand_at_their_places() {
         };
         assert_eq!(stage.key(KeyCode::Tab), None);
         assert_eq!(stage.model.layer, Layer::Participant);
-        insta::assert_snapshot!(format!("participant_{name}_120x40"), stage.screen((120, 40)));
-        insta::assert_snapshot!(format!("participant_{name}_80x24"), stage.screen((80, 24)));
+        check_snapshot("console", format!("participant_{name}_120x40"), stage.screen((120, 40)));
+        check_snapshot("console", format!("participant_{name}_80x24"), stage.screen((80, 24)));
     }
 }
 
@@ -264,7 +266,7 @@ fn a_gaze_map_fills_the_room_of_what_the_wizard_may_not_see() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.session.spec.console.visibility = Visibility::State;
     stage.model.see(stage.model.now, GazeSample::new(0.30, 0.4, 0.97));
-    insta::assert_snapshot!("gaze_map_120x40", stage.screen((120, 40)));
+    check_snapshot("console", "gaze_map_120x40", stage.screen((120, 40)));
 }
 
 #[test]
@@ -288,12 +290,12 @@ fn a_training_says_what_to_do_keeps_what_it_said_and_ends_when_that_is_read() {
     ];
     stage.model.lesson = Some(Lesson { feedback, begun: true, ..lesson });
     for size in SIZES {
-        insta::assert_snapshot!(format!("training_{}x{}", size.0, size.1), stage.screen(size));
+        check_snapshot("console", format!("training_{}x{}", size.0, size.1), stage.screen(size));
     }
     stage.control('b');
     assert!(stage.notice().contains("not shown in this session"), "{}", stage.notice());
     stage.model.dialog = Some(Dialog::Report(vec!["1 of 2 hit".to_string(), "    missed; ".to_string() + long]));
-    insta::assert_snapshot!("training_over_120x40", stage.screen((120, 40)));
+    check_snapshot("console", "training_over_120x40", stage.screen((120, 40)));
     stage.wait(1.0);
     stage.key(KeyCode::Char('q'));
     assert!(stage.model.dialog.is_some(), "a signal that came too late closes nothing");
@@ -306,13 +308,13 @@ fn help_and_questions_and_the_ascii_fallback() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.key(KeyCode::Char('?'));
     assert_eq!(stage.model.dialog, Some(Dialog::Help));
-    insta::assert_snapshot!("help_80x24", stage.screen((80, 24)));
-    insta::assert_snapshot!("help_120x40", stage.screen((120, 40)));
+    check_snapshot("console", "help_80x24", stage.screen((80, 24)));
+    check_snapshot("console", "help_120x40", stage.screen((120, 40)));
     stage.wait(1.0);
     stage.key(KeyCode::Down);
     assert_eq!(stage.model.dialog, None, "all of it is seen: every key closes");
     stage.control('c');
-    insta::assert_snapshot!("quit_80x24", stage.screen((80, 24)));
+    check_snapshot("console", "quit_80x24", stage.screen((80, 24)));
     stage.model.dialog = None;
     stage.model.theme = Theme { colour: false, unicode: false, ground: Ground::Dark };
     let screen = stage.screen((120, 40));
@@ -366,7 +368,7 @@ fn what_a_wizard_sees_at_each_size() {
     ];
     for (name, stage) in stages {
         for size in SIZES {
-            insta::assert_snapshot!(format!("{name}_{}x{}", size.0, size.1), stage.screen(size));
+            check_snapshot("console", format!("{name}_{}x{}", size.0, size.1), stage.screen(size));
         }
     }
 }
@@ -390,7 +392,7 @@ fn without_colour_every_meaning_has_a_sign_or_a_weight() {
         };
         let lines: Vec<String> =
             buffer.content.chunks(usize::from(columns)).map(|row| row.iter().map(weights).collect()).collect();
-        insta::assert_snapshot!(format!("no_color_{columns}x{rows}"), lines.join("\n"));
+        check_snapshot("console", format!("no_color_{columns}x{rows}"), lines.join("\n"));
     }
 }
 
@@ -674,12 +676,12 @@ fn the_kitchen_is_corrected_from_two_lists() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.control('k');
     for size in SIZES {
-        insta::assert_snapshot!(format!("correct_{}x{}", size.0, size.1), stage.screen(size));
+        check_snapshot("console", format!("correct_{}x{}", size.0, size.1), stage.screen(size));
     }
     type_in(&mut stage, "pot");
     stage.wait(0.05);
     assert_eq!(stage.key(KeyCode::Enter), None);
-    insta::assert_snapshot!("correct_content_80x24", stage.screen((80, 24)));
+    check_snapshot("console", "correct_content_80x24", stage.screen((80, 24)));
     for _ in 0..20 {
         stage.wait(0.03);
         assert_eq!(stage.key(KeyCode::Enter), None, "a held enter answers one question");
@@ -715,13 +717,13 @@ fn the_robot_is_held_skipped_and_driven_by_keys() {
     let by = Sender::Wizard;
     assert_eq!(input(stage.control('p')), Some(Event::RobotHeld { by }));
     stage.at(22.7, Event::RobotHeld { by });
-    insta::assert_snapshot!("held_80x24", stage.screen((80, 24)));
+    check_snapshot("console", "held_80x24", stage.screen((80, 24)));
     let screen = stage.screen((120, 40));
     assert!(screen.contains("HELD") && screen.contains("^p releases it"), "{screen}");
     stage.wait(1.0);
     assert_eq!(input(stage.control('s')), Some(Event::RobotSkipped { by }));
     assert_eq!(stage.control('d'), None);
-    insta::assert_snapshot!("drive_120x40", stage.screen((120, 40)));
+    check_snapshot("console", "drive_120x40", stage.screen((120, 40)));
     type_in(&mut stage, "counter");
     let driven = Event::RobotDriven { by, button: "counter".to_string() };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(driven));
@@ -758,7 +760,7 @@ fn a_trial_is_aborted_with_a_reason_and_done_again() {
     assert_eq!(stage.control('n'), None);
     assert!(stage.notice().contains("abort the trial first"), "{}", stage.notice());
     assert_eq!(stage.control('x'), None);
-    insta::assert_snapshot!("abort_80x24", stage.screen((80, 24)));
+    check_snapshot("console", "abort_80x24", stage.screen((80, 24)));
     stage.key(KeyCode::Down);
     let aborted = Event::TrialAborted { reason: "technical failure".to_string() };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(aborted.clone()));
@@ -959,7 +961,7 @@ fn what_is_not_ok_before_a_trial_is_listed_mended_or_overridden() {
     assert_eq!(stage.key(KeyCode::Char('.')), None);
     assert_eq!(stage.model.dialog, Some(Dialog::Preflight));
     for size in SIZES {
-        insta::assert_snapshot!(format!("preflight_{}x{}", size.0, size.1), stage.screen(size));
+        check_snapshot("console", format!("preflight_{}x{}", size.0, size.1), stage.screen(size));
     }
     // The key that opened the list does not start the trial, held or pressed again.
     for gap_s in [0.5, 0.03, 1.0] {
@@ -1005,7 +1007,7 @@ fn notes_in_words_are_written_when_paused_and_only_there_the_space_bar_types() {
     stage.key(KeyCode::Char('o'));
     stage.key(KeyCode::End);
     for size in [(80, 24), (200, 60)] {
-        insta::assert_snapshot!(format!("note_{}x{}", size.0, size.1), stage.screen(size));
+        check_snapshot("console", format!("note_{}x{}", size.0, size.1), stage.screen(size));
     }
     let note = Event::Marker { note: "Asks for  help".to_string() };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(note));
@@ -1146,10 +1148,10 @@ fn advised(best: bool) -> Stage {
 
 #[test]
 fn advice_is_ranked_with_its_errors_against_the_cost_of_a_signal() {
-    insta::assert_snapshot!("advised_80x24", advised(true).screen((80, 24)));
-    insta::assert_snapshot!("advised_120x40", advised(true).screen((120, 40)));
-    insta::assert_snapshot!("advised_200x60", advised(true).screen((200, 60)));
-    insta::assert_snapshot!("advised_silence_120x40", advised(false).screen((120, 40)));
+    check_snapshot("console", "advised_80x24", advised(true).screen((80, 24)));
+    check_snapshot("console", "advised_120x40", advised(true).screen((120, 40)));
+    check_snapshot("console", "advised_200x60", advised(true).screen((200, 60)));
+    check_snapshot("console", "advised_silence_120x40", advised(false).screen((120, 40)));
 }
 
 #[test]
@@ -1257,13 +1259,13 @@ fn compared(assistants: usize) -> Stage {
 #[test]
 fn wizard_and_assistant_stand_side_by_side_at_every_size() {
     for (columns, rows) in SIZES {
-        insta::assert_snapshot!(format!("compared_{columns}x{rows}"), compared(1).screen((columns, rows)));
+        check_snapshot("console", format!("compared_{columns}x{rows}"), compared(1).screen((columns, rows)));
     }
-    insta::assert_snapshot!("compared_all_80x24", compared(3).screen((80, 24)));
-    insta::assert_snapshot!("compared_all_120x40", compared(3).screen((120, 40)));
+    check_snapshot("console", "compared_all_80x24", compared(3).screen((80, 24)));
+    check_snapshot("console", "compared_all_120x40", compared(3).screen((120, 40)));
     let mut plain = compared(3);
     plain.model.theme = Theme { colour: false, unicode: false, ground: Ground::Dark };
-    insta::assert_snapshot!("compared_all_ascii_120x40", plain.screen((120, 40)));
+    check_snapshot("console", "compared_all_ascii_120x40", plain.screen((120, 40)));
 }
 
 #[test]
@@ -1287,7 +1289,7 @@ fn a_difference_is_chosen_and_opened_by_keys_and_the_screen_says_what_was_seen()
             assert!(opened.contains(told), "{told} in\n{opened}");
         }
     }
-    insta::assert_snapshot!("compared_opened_120x40", stage.screen((120, 40)));
+    check_snapshot("console", "compared_opened_120x40", stage.screen((120, 40)));
     // The one before, without closing; then any key closes.
     stage_of_all.control('t');
     assert!(matches!(stage_of_all.model.dialog, Some(Dialog::Difference(_))));
@@ -1323,7 +1325,7 @@ fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
     assert_eq!(begun, Event::Calibration(CalibrationEvent::begin()));
     stage.at(1.0, begun);
     stage.at(2.0, Event::Calibration(CalibrationEvent::TargetShown { target: 1 }));
-    insta::assert_snapshot!("calibration_target_120x40", stage.screen((120, 40)));
+    check_snapshot("console", "calibration_target_120x40", stage.screen((120, 40)));
     assert!(stage.screen((80, 24)).contains("look here: 2 of 5"));
     let target = |samples, accuracy_deg| FoundTarget { samples, accuracy_deg };
     let found = Found {
@@ -1336,7 +1338,7 @@ fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
     stage.at(3.0, Event::Calibration(CalibrationEvent::TargetsHidden));
     stage.at(3.0, Event::Calibration(CalibrationEvent::Measured { found: Some(found) }));
     for size in SIZES {
-        insta::assert_snapshot!(format!("calibration_{}x{}", size.0, size.1), stage.screen(size));
+        check_snapshot("console", format!("calibration_{}x{}", size.0, size.1), stage.screen(size));
     }
     stage.wait(1.0);
     let accepted = input(stage.key(KeyCode::Enter));

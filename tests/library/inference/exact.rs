@@ -8,9 +8,9 @@ use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, Observed};
 use tomcom::mind::reference::ReferenceFilter;
 
-use crate::grid::{GridFilter, quadrature};
-use crate::particles::ParticleFilter;
-use crate::world::{Human, World, distance, kitchen, live, tiny_model};
+use super::grid::{GridFilter, quadrature};
+use super::particles::ParticleFilter;
+use super::world::{Human, World, distance, kitchen, live, tiny_model};
 
 /// Events that are not gaze samples.
 const EVENTS: usize = 20;
@@ -34,7 +34,7 @@ fn the_grid_holds_the_moments_of_a_beta() {
 /// many samples, so that it is the algorithm that is tested. What chance adds at the default number of samples is told.
 #[test]
 fn the_estimate_is_close_to_exact_assumed_density_filtering() {
-    let kitchen = kitchen("tests/inference/tiny.toml");
+    let kitchen = kitchen("tests/kitchens/tiny.toml");
     let mut model = tiny_model();
     // Forgetting has a closed form of its own; the grid leaves it out.
     model.transition.recipe_half_life_s = 1e12;

@@ -2,14 +2,11 @@
 //!
 //! Exact search takes up to seconds a state, so its results are kept in `tests/oracle/`: a line a state, with the least
 //! presses for the first order and for all orders. Some of them are searched again in every run; all of them by
-//! `cargo test --release --test cost_to_go -- --ignored`.
-
-mod oracle;
+//! `cargo test --release --test library cost_to_go -- --ignored`.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use oracle::Oracle;
 use rand::RngExt;
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
@@ -19,6 +16,8 @@ use tomcom::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent
 use tomcom::run::engine::Engine;
 use tomcom::run::options::session_or_default;
 use tomcom::session::{Event, Phase};
+
+use crate::oracle::Oracle;
 
 /// States a sample.
 const STATES: usize = 1000;

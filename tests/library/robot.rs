@@ -166,7 +166,7 @@ fn every_inverse_solution_reproduces_the_pose_and_the_joints_it_came_from_are_am
 #[test]
 fn every_button_of_every_layout_is_within_reach_with_clearance() {
     let arm = Arm::ur5();
-    for layout in ["layouts/sushi.toml", "layouts/burger.toml", "tests/inference/tiny.toml"] {
+    for layout in ["layouts/sushi.toml", "layouts/burger.toml", "tests/kitchens/tiny.toml"] {
         let kitchen = read_kitchen(Path::new(layout)).expect("a layout of the project").kitchen;
         assert_eq!(out_of_reach(&kitchen), None, "{layout}");
         let around = Surroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };

@@ -9,8 +9,8 @@ use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
 use tomcom::mind::reference::person::{draw, pick};
 
-use crate::particles::ParticleFilter;
-use crate::world::{Human, World, kitchen, live, tiny_model};
+use super::particles::ParticleFilter;
+use super::world::{Human, World, kitchen, live, tiny_model};
 
 const HUMANS: u64 = 160;
 const PRESSES: usize = 8;
@@ -42,7 +42,7 @@ fn truth(kitchen: &Kitchen, state: State, aspect: usize) -> usize {
 /// uniform.
 #[test]
 fn the_unprojected_posterior_is_calibrated_and_what_the_projection_adds_is_told() {
-    let kitchen = kitchen("tests/inference/tiny.toml");
+    let kitchen = kitchen("tests/kitchens/tiny.toml");
     let model = tiny_model();
     let mut fast_model = model.clone();
     fast_model.inference = HumanModel::default().inference;

@@ -1,9 +1,7 @@
 //! Recordings survive: the real program is killed, its disk fills up, its folder vanishes, its clock stands still, and what
 //! was acknowledged is there and goes on. Without tmux the tests say that they were skipped.
 //!
-//! `TOMCOM_KILLS=200 cargo test --release --test survival kill` kills that often, and demands 100 ms.
-
-mod tmux;
+//! `TOMCOM_KILLS=200 cargo test --release --test program survival::kill` kills that often, and demands 100 ms.
 
 use std::fs;
 use std::io::Write;
@@ -14,9 +12,11 @@ use std::time::{Duration, Instant};
 
 use rand::RngExt;
 use serde_json::Value;
-use tmux::{TOMCOM, Terminal, tiny_plan, tomcom};
+use serial_test::serial;
 use tomcom::base::rng::stream;
 use tomcom::edge::log::LOG_NAME;
+
+use crate::tmux::{TOMCOM, Terminal, tiny_plan, tomcom};
 
 /// How soon the wizard is told that something is wrong.
 const ALARM: Duration = Duration::from_secs(1);
@@ -109,6 +109,7 @@ fn check_kill(number: u64, limit: Duration) {
 }
 
 #[test]
+#[serial]
 fn a_kill_at_any_moment_loses_nothing_and_the_session_goes_on_in_a_new_part() {
     let kills: Option<u64> = std::env::var("TOMCOM_KILLS").ok().and_then(|count| count.parse().ok());
     // Beside other tests, a program may wait for the processor for longer than for anything else.
@@ -117,6 +118,7 @@ fn a_kill_at_any_moment_loses_nothing_and_the_session_goes_on_in_a_new_part() {
 }
 
 #[test]
+#[serial]
 fn a_recording_is_written_by_one_program_and_continued_once() {
     let Some(terminal) = Terminal::open("one-writer") else { return };
     terminal.operate("default.toml", "");
@@ -189,11 +191,13 @@ fn check_loss(name: &str, bad: impl FnOnce(&Path)) {
 }
 
 #[test]
+#[serial]
 fn a_folder_that_is_deleted_is_told_at_once_and_saved() {
     check_loss("deleted", |recording| fs::remove_dir_all(recording).expect("deleted"));
 }
 
 #[test]
+#[serial]
 fn a_folder_that_is_moved_away_is_told_at_once_and_saved() {
     check_loss("moved", |recording| {
         let away = recording.parent().and_then(Path::parent).expect("a folder").join("away");
@@ -202,6 +206,7 @@ fn a_folder_that_is_moved_away_is_told_at_once_and_saved() {
 }
 
 #[test]
+#[serial]
 fn a_folder_that_becomes_read_only_is_told_at_once() {
     check_loss("read-only", |recording| {
         let mut permissions = fs::metadata(recording).expect("a folder").permissions();
@@ -233,6 +238,7 @@ impl Drop for Disk {
 }
 
 #[test]
+#[serial]
 fn a_full_disk_is_told_at_once_and_the_session_goes_on_when_there_is_room() {
     let Some(terminal) = Terminal::open("full") else { return };
     let Some(disk) = Disk::mount(terminal.folder.join("recordings")) else { return };
@@ -255,6 +261,7 @@ fn a_full_disk_is_told_at_once_and_the_session_goes_on_when_there_is_room() {
 }
 
 #[test]
+#[serial]
 fn a_limit_for_files_is_told_as_a_full_disk_is() {
     let Some(terminal) = Terminal::open("limit") else { return };
     // In blocks of 512 bytes.
@@ -267,6 +274,7 @@ fn a_limit_for_files_is_told_as_a_full_disk_is() {
 }
 
 #[test]
+#[serial]
 fn a_program_that_stood_still_goes_on_where_it_was_and_the_log_says_so() {
     let Some(terminal) = Terminal::open("standstill") else { return };
     // A shell with job control would take the terminal back from a stopped program.
@@ -291,6 +299,7 @@ fn a_program_that_stood_still_goes_on_where_it_was_and_the_log_says_so() {
 }
 
 #[test]
+#[serial]
 fn a_terminal_that_is_fine_is_found_fine() {
     let Some(terminal) = Terminal::open("doctor") else { return };
     terminal.run(&format!("{TOMCOM} doctor --out {}/recordings", terminal.folder.display()));
@@ -320,6 +329,7 @@ fn logs(out: &Path) -> Vec<(PathBuf, String)> {
 }
 
 #[test]
+#[serial]
 fn a_plan_goes_on_where_it_was_however_often_it_is_killed() {
     let kills: u64 = std::env::var("TOMCOM_KILLS").ok().and_then(|count| count.parse().ok()).unwrap_or(5);
     let Some(home) = Terminal::open("plan-kills") else { return };

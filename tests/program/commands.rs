@@ -7,13 +7,13 @@ use std::process::{Command, Output};
 
 use serde::Deserialize;
 use serde_json::Value;
+use serial_test::serial;
 
-#[path = "fuzz/targets/read/mod.rs"]
-mod read;
+use crate::tmux::TOMCOM;
 
 /// Runs the program with these arguments and demands the exit code.
 fn check(arguments: &[&str], code: i32) -> Output {
-    let output = Command::new(env!("CARGO_BIN_EXE_tomcom")).args(arguments).output().expect("the program starts");
+    let output = Command::new(TOMCOM).args(arguments).output().expect("the program starts");
     let told = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(code), "tomcom {arguments:?}\n{told}");
     output
@@ -40,6 +40,7 @@ fn folder(name: &str) -> PathBuf {
 }
 
 #[test]
+#[serial]
 fn kitchen_prints_the_state_space_and_the_plans() {
     let sushi = figures(&["kitchen", "layouts/sushi.toml", "--format", "json"], 0);
     assert_eq!(sushi["states"], "83878450387200000");
@@ -59,6 +60,7 @@ fn kitchen_prints_the_state_space_and_the_plans() {
 }
 
 #[test]
+#[serial]
 fn simulate_records_what_replay_verifies() {
     let out = folder("simulate");
     let out = out.to_str().expect("a path in UTF-8");
@@ -103,6 +105,7 @@ fn simulate_records_what_replay_verifies() {
 }
 
 #[test]
+#[serial]
 fn a_simulation_replaces_itself_and_no_other_recording() {
     let out = folder("replaced");
     let out = out.to_str().expect("a path in UTF-8");
@@ -119,6 +122,7 @@ fn a_simulation_replaces_itself_and_no_other_recording() {
 }
 
 #[test]
+#[serial]
 fn a_kitchen_takes_no_key_from_the_console() {
     let folder = folder("keys");
     let text = fs::read_to_string("layouts/sushi.toml").expect("the layout");
@@ -141,6 +145,7 @@ fn a_kitchen_takes_no_key_from_the_console() {
 }
 
 #[test]
+#[serial]
 fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     let session = folder("wrong").join("keyboard.toml");
     let sushi = fs::canonicalize("layouts/sushi.toml").expect("the layout");
@@ -175,6 +180,7 @@ struct Bad {
 }
 
 #[test]
+#[serial]
 fn each_bad_file_has_its_own_message_with_file_line_and_remedy() {
     let mut paths: Vec<PathBuf> =
         fs::read_dir("tests/bad").expect("tests/bad").map(|entry| entry.expect("an entry").path()).collect();
@@ -240,7 +246,7 @@ fn told_about(name: &str, bad: &Bad) -> String {
         let found = lines().filter(|(_, line)| line.contains(at.as_str())).nth(bad.nth.unwrap_or(1) - 1);
         found.map_or_else(|| panic!("{name}: no line with {at}"), |(index, _)| index + 1)
     });
-    let mut program = Command::new(env!("CARGO_BIN_EXE_tomcom"));
+    let mut program = Command::new(TOMCOM);
     let output = program.args(command).current_dir(&folder).output().expect("the program starts");
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{name}: {told}");
@@ -277,6 +283,7 @@ fn session_with_keys(name: &str, keys: &str) -> String {
 }
 
 #[test]
+#[serial]
 fn the_printed_keys_are_a_key_file_that_changes_nothing_until_it_is_changed() {
     let keys = |session: &str| String::from_utf8_lossy(&check(&["keys", session], 0).stdout).into_owned();
     let printed = keys("sessions/default.toml");
@@ -302,6 +309,7 @@ fn the_printed_keys_are_a_key_file_that_changes_nothing_until_it_is_changed() {
 }
 
 #[test]
+#[serial]
 fn a_key_file_that_is_not_there_is_told() {
     let session = session_with_keys("no-keys", "");
     fs::remove_file(Path::new(&session).with_file_name("keys.toml")).expect("a file");
@@ -310,6 +318,7 @@ fn a_key_file_that_is_not_there_is_told() {
 }
 
 #[test]
+#[serial]
 fn doctor_looks_at_the_machine_and_says_how_to_mend_it() {
     let out = folder("doctor");
     let found = figures(&["doctor", "--out", &out.join("new").display().to_string(), "--format", "json"], 1);
@@ -331,6 +340,7 @@ fn doctor_looks_at_the_machine_and_says_how_to_mend_it() {
 }
 
 #[test]
+#[serial]
 fn doctor_looks_at_what_a_session_names() {
     let layout = Path::new(env!("CARGO_MANIFEST_DIR")).join("layouts/sushi.toml");
     let session = folder("doctor-session").join("session.toml");
@@ -364,6 +374,7 @@ fn doctor_looks_at_what_a_session_names() {
 }
 
 #[test]
+#[serial]
 fn completions_and_man_pages_know_every_command() {
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let text = String::from_utf8_lossy(&check(&["completions", shell], 0).stdout).into_owned();
@@ -377,6 +388,7 @@ fn completions_and_man_pages_know_every_command() {
 }
 
 #[test]
+#[serial]
 fn a_closed_recording_is_excluded_and_taken_back_and_the_figures_say_so() {
     let out = folder("exclude");
     let session = out.join("session.toml");
@@ -410,37 +422,8 @@ fn a_closed_recording_is_excluded_and_taken_back_and_the_figures_say_so() {
     assert!(told.contains("exclusion.toml:2") && told.contains("[[ruling]]"), "{told}");
 }
 
-/// What fuzzing does with the readers, with what it begins with, and with every file cut and changed at many places.
 #[test]
-fn the_readers_survive_cut_and_changed_files() {
-    let seeds = [
-        (0, "layouts/sushi.toml"),
-        (0, "layouts/burger.toml"),
-        (1, "recipes/sushi.toml"),
-        (2, "sessions/default.toml"),
-        (2, "sessions/study.toml"),
-        (4, "sessions/questionnaires/acceptance.toml"),
-    ];
-    for (kind, path) in seeds {
-        let text = fs::read(path).unwrap_or_else(|error| panic!("{path}: {error}"));
-        for at in (0..text.len()).step_by(text.len().div_ceil(10)) {
-            let mut changed = [&[kind], &text[..]].concat();
-            read::read(&changed[..=at]);
-            changed[at + 1] = changed[at + 1].wrapping_add(1) | 1;
-            read::read(&changed);
-        }
-    }
-    let log = fs::read("tests/golden/format-1-hand.jsonl").expect("a log");
-    let events = log.splitn(2, |byte| *byte == b'\n').nth(1).expect("events after the header");
-    for (kind, text) in [(3, &log[..]), (7, events)] {
-        let text = &text[..text.len().min(60_000)];
-        for at in (0..text.len()).step_by(text.len() / 10) {
-            read::read(&[&[kind], &text[..at], b"\xff\x00}", &text[at..]].concat());
-        }
-    }
-}
-
-#[test]
+#[serial]
 fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     let out = folder("compare");
     let session = out.join("short.toml");
@@ -513,6 +496,7 @@ least_rollouts = 2
 ";
 
 #[test]
+#[serial]
 fn simulate_tells_what_holds_at_the_console_alone() {
     let folder = folder("unused");
     let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
@@ -532,6 +516,7 @@ fn simulate_tells_what_holds_at_the_console_alone() {
 }
 
 #[test]
+#[serial]
 fn fit_writes_a_parameter_file_and_accuracy_tells_its_figures() {
     let folder = folder("fit");
     let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();

@@ -327,7 +327,7 @@ fn a_flood_is_let_through_at_the_rate_of_the_fastest_tracker() {
     assert!((20_000..=21_001).contains(&flood), "{flood} of a flood");
 }
 
-const DATUM: &[u8] = include_bytes!("pupil/surfaces_wall.msgpack");
+const DATUM: &[u8] = include_bytes!("../pupil/surfaces_wall.msgpack");
 
 #[test]
 fn a_real_datum_of_pupil_is_read_in_full() {

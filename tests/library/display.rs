@@ -318,7 +318,7 @@ fn what_the_display_tells_is_recorded_and_verified() {
 
 #[test]
 fn every_shape_is_drawn() {
-    let art = include_str!("../src/edge/display/page/art.js");
+    let art = include_str!("../../src/edge/display/page/art.js");
     for shape in tomcom::kitchen::look::SHAPES {
         assert!(art.contains(&format!("    {shape}(")) || art.contains(&format!("    {shape}: (")), "{shape}");
     }
@@ -327,8 +327,8 @@ fn every_shape_is_drawn() {
 #[test]
 fn german_has_every_word_of_the_page_and_of_both_kitchens() {
     let read = |text: &str| parse::<Language>(Path::new("words"), text).expect("words").0;
-    let english = read(include_str!("../src/display/languages/en.toml"));
-    let german = read(include_str!("../src/display/languages/de.toml"));
+    let english = read(include_str!("../../src/display/languages/en.toml"));
+    let german = read(include_str!("../../src/display/languages/de.toml"));
     for key in english.keys() {
         assert!(german.contains_key(key), "{key}");
     }

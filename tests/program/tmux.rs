@@ -1,9 +1,6 @@
 //! The real program in a real terminal: runs the binary in tmux, presses keys and moves the mouse as a person does, and
 //! reads the screen and the recording.
 
-// Not every test binary needs all of it.
-#![allow(dead_code)]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -8,8 +8,8 @@ use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::Observed;
 use tomcom::mind::reference::ReferenceFilter;
 
-use crate::observed::recorded;
-use crate::world::{distance, kitchen};
+use super::observed::recorded;
+use super::world::{distance, kitchen};
 
 fn means(belief: &DirichletBelief) -> Vec<Vec<f64>> {
     belief.aspects.iter().map(|aspect| aspect.mean().to_vec()).collect()

@@ -32,6 +32,8 @@ use tomcom::session::header::VERSION;
 use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 use tomcom::session::{Event, Header, Phase, Session, Stamped};
 
+use crate::check_snapshot;
+
 /// One session for each kitchen.
 const SESSIONS: [&str; 2] = ["default.toml", "burger.toml"];
 
@@ -312,7 +314,7 @@ fn recordings_of_every_format_replay_to_what_they_replayed_to() {
         let mut replay = Replay::open(&log).expect("a golden recording");
         replay.run().unwrap_or_else(|error| panic!("{error}"));
         let name = log.file_stem().expect("a name").to_string_lossy().into_owned();
-        insta::assert_snapshot!(name, summary(&replay));
+        check_snapshot("replay", name, summary(&replay));
     }
 }
 

@@ -9,7 +9,7 @@ use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::Observation;
 use tomcom::run::fit::{Fit, Plan, Trials, describe, fit};
 
-use crate::world::{Human, World, kitchen, live};
+use super::world::{Human, World, kitchen, live};
 
 /// How an experiment is done.
 struct Experiment {

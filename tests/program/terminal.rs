@@ -1,14 +1,13 @@
 //! The real program in a real terminal: every test runs the binary in tmux, presses keys and moves the mouse as a person
 //! does, and reads the screen and the recording. Without tmux the tests say that they were skipped.
 
-mod tmux;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use serial_test::serial;
 use tomcom::console::arrange::{Plan, Thing};
 use tomcom::console::view::regions::Regions;
 use tomcom::edge::files::read_session;
@@ -18,7 +17,7 @@ use tomcom::kitchen::{Action, Agent, ButtonId, Kitchen};
 use tomcom::run::replay::Replay;
 use tomcom::session::settings::Visibility;
 
-use tmux::{PATIENCE, SIZE, TOMCOM, Terminal};
+use crate::tmux::{self, PATIENCE, SIZE, TOMCOM, Terminal};
 
 fn kitchen(session: &str) -> Arc<Kitchen> {
     let files = read_session(&Path::new("sessions").join(session)).expect("a session of the project");
@@ -84,16 +83,19 @@ fn check_wizard(session: &str) {
 }
 
 #[test]
+#[serial]
 fn a_wizard_runs_a_session_in_the_sushi_kitchen() {
     check_wizard("default.toml");
 }
 
 #[test]
+#[serial]
 fn a_wizard_runs_a_session_in_the_burger_kitchen() {
     check_wizard("burger.toml");
 }
 
 #[test]
+#[serial]
 fn a_signal_to_the_program_closes_the_recording_and_gives_the_terminal_back() {
     for signal in ["TERM", "INT", "HUP"] {
         let Some(terminal) = Terminal::open(&format!("signal-{signal}")) else { return };
@@ -110,6 +112,7 @@ fn a_signal_to_the_program_closes_the_recording_and_gives_the_terminal_back() {
 
 /// Not a test by itself: what the next one runs in a terminal.
 #[test]
+#[serial]
 #[ignore = "panics on purpose, inside of the terminal of another test"]
 fn a_program_that_panics() {
     let _screen = Screen::take().expect("a terminal");
@@ -117,6 +120,7 @@ fn a_program_that_panics() {
 }
 
 #[test]
+#[serial]
 fn a_panic_gives_the_terminal_back_and_its_message_can_be_read() {
     let Some(terminal) = Terminal::open("panic") else { return };
     let this = std::env::current_exe().expect("a path");
@@ -178,6 +182,7 @@ fn check_by_hand(session: &str) {
 }
 
 #[test]
+#[serial]
 fn the_same_button_pressed_twice_is_in_the_log_twice() {
     let Some(terminal) = Terminal::open("twice") else { return };
     let kitchen = kitchen("default.toml");
@@ -197,16 +202,19 @@ fn the_same_button_pressed_twice_is_in_the_log_twice() {
 }
 
 #[test]
+#[serial]
 fn an_order_is_made_and_served_by_hand_in_the_sushi_kitchen() {
     check_by_hand("default.toml");
 }
 
 #[test]
+#[serial]
 fn an_order_is_made_and_served_by_hand_in_the_burger_kitchen() {
     check_by_hand("burger.toml");
 }
 
 #[test]
+#[serial]
 fn a_running_session_is_watched_from_another_terminal_and_looked_at_again() {
     let Some(terminal) = Terminal::open("watched") else { return };
     let Some(other) = Terminal::open("watching") else { return };
@@ -235,6 +243,7 @@ fn a_running_session_is_watched_from_another_terminal_and_looked_at_again() {
 }
 
 #[test]
+#[serial]
 fn a_rater_codes_errors_by_keys_and_sees_no_estimate() {
     let Some(terminal) = Terminal::open("rater") else { return };
     let out = terminal.folder.join("recordings");
@@ -280,6 +289,7 @@ fn a_rater_codes_errors_by_keys_and_sees_no_estimate() {
 }
 
 #[test]
+#[serial]
 fn gaze_comes_from_any_program_that_writes_lines() {
     use std::io::Write;
     let Some(terminal) = Terminal::open("json") else { return };
@@ -309,6 +319,7 @@ fn gaze_comes_from_any_program_that_writes_lines() {
 }
 
 #[test]
+#[serial]
 fn an_aborted_trial_is_done_again_in_a_recording_of_its_own() {
     let Some(terminal) = Terminal::open("again") else { return };
     terminal.operate("default.toml", "");
@@ -356,6 +367,7 @@ fn an_aborted_trial_is_done_again_in_a_recording_of_its_own() {
 }
 
 #[test]
+#[serial]
 fn wizard_and_assistant_are_compared_live_and_from_another_terminal() {
     let Some(terminal) = Terminal::open("compare") else { return };
     let Some(beside) = Terminal::open("compare-follow") else { return };
@@ -389,6 +401,7 @@ fn wizard_and_assistant_are_compared_live_and_from_another_terminal() {
 }
 
 #[test]
+#[serial]
 fn a_wizard_is_trained_with_feedback_and_a_score_and_held_against_oneself() {
     let Some(terminal) = Terminal::open("train") else { return };
     let out = terminal.folder.join("training");

@@ -1,0 +1,29 @@
+//! The crate used as a library, a module a theme.
+
+mod arm;
+mod cohort;
+mod console;
+mod cost_to_go;
+mod display;
+mod gaze;
+mod inference;
+mod kitchen;
+mod measures;
+mod oracle;
+mod participant;
+mod plan;
+mod readers;
+mod replay;
+mod robot;
+mod scenarios;
+mod session;
+mod study;
+
+/// Holds a text against `tests/snapshots/THEME__NAME.snap`.
+fn check_snapshot(theme: &str, name: impl std::fmt::Display, text: impl std::fmt::Display) {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("../snapshots");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!(format!("{theme}__{name}"), text.to_string()));
+}

@@ -1,0 +1,9 @@
+//! The program as people and scripts run it. Its tests use terminals, ports, disks and times, so that each is `#[serial]`: they
+//! run one after another.
+
+mod commands;
+mod forgetting;
+mod plan;
+mod survival;
+mod terminal;
+mod tmux;

@@ -5,11 +5,12 @@ use std::path::Path;
 use std::time::Instant;
 
 use nalgebra::Point3;
+use tomcom::arm::controller::PhysicalArm;
+use tomcom::arm::physics::CYCLE_S;
+use tomcom::arm::physics::hand::HandPlace;
 use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::{Agent, ButtonId};
-use tomcom::robot::arm::{ArmPhase, PhysicalArm};
-use tomcom::robot::physics::CYCLE_S;
-use tomcom::robot::physics::hand::HandPlace;
+use tomcom::robot::moment::ArmPhase;
 
 /// So much is simulated, in seconds.
 const SIMULATED_S: f64 = 300.0;

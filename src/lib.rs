@@ -1,5 +1,6 @@
 //! tomcom: a console for Wizard-of-Oz experiments in human-robot cooperation.
 
+pub mod arm;
 pub mod base;
 pub mod cli;
 pub mod communication;

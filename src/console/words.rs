@@ -5,7 +5,7 @@ use crate::base::words::count;
 use crate::communication::{Sender, Signal};
 use crate::gaze::quality::DropCounts;
 use crate::kitchen::{Action, Agent, Kitchen, LocationId, OrderContent};
-use crate::robot::arm::ArmPhase;
+use crate::robot::moment::ArmPhase;
 use crate::robot::safety::SafetyMode;
 use crate::session::calibration::CalibrationEvent;
 use crate::session::event::{EndReason, SignalEnd};

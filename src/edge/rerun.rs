@@ -21,8 +21,8 @@ use rerun::web_viewer::WebViewerConfig;
 use rerun::{AsComponents, Color, FillMode, Quaternion, RecordingStream, RecordingStreamBuilder, TextLogLevel};
 
 use self::layout::{Layout, Opens};
+use crate::arm::link::{Shape, Solid};
 use crate::base::time::SessionTime;
-use crate::robot::urdf::{Shape, Solid};
 use crate::scene::shown::{Area, Disc, Level, Point, Series};
 use crate::scene::{Moment, Row, Shown};
 

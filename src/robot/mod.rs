@@ -1,24 +1,15 @@
-//! The robot: its task policy, and the arm that carries it out, timed or in the physics.
+//! The robot: its task policy, and what is recorded of its arm. The arms that carry the policy out are in `crate::arm`.
 
-pub mod arm;
-pub mod body;
-pub mod clearance;
-pub mod inverse;
-pub mod kinematics;
-pub mod motion;
-pub mod physics;
+pub mod moment;
 pub mod policy;
-pub mod reach;
-pub mod reaching;
 pub mod safety;
-mod touch;
-pub mod trajectory;
-pub mod urdf;
-pub mod worker;
 
 use serde::{Deserialize, Serialize};
 
-use reach::Unreachable;
+use self::moment::ArmMoment;
+use self::safety::SafetyMode;
+use crate::base::time::SessionTime;
+use crate::kitchen::ButtonId;
 
 /// Why the robot gave up a press.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -46,16 +37,6 @@ pub enum AbortReason {
     Contact,
     /// A joint did not follow, and the arm stopped.
     Fault,
-}
-
-impl From<Unreachable> for AbortReason {
-    fn from(why: Unreachable) -> AbortReason {
-        match why {
-            Unreachable::TooFar | Unreachable::JointLimit => AbortReason::OutOfReach,
-            Unreachable::Singular => AbortReason::Singular,
-            Unreachable::Blocked(_) => AbortReason::Obstructed,
-        }
-    }
 }
 
 impl AbortReason {
@@ -107,4 +88,24 @@ pub enum IdleReason {
     HumanTurn,
     /// The wizard skipped the only press that would help, a moment ago.
     Skipped,
+}
+
+/// What the robot does at a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RobotDeed {
+    /// Sets out to press a button, which it will touch at `until`.
+    Intend { button: ButtonId, until: SessionTime },
+    /// Presses the button that it set out for.
+    Press(ButtonId),
+    /// Gives up the press that it set out for, or was about to.
+    Abort(ButtonId, AbortReason),
+    /// Begins to do nothing, or goes on doing nothing for another reason.
+    Idle(IdleReason),
+    /// The arm moves, or begins to do something else.
+    Move(ArmMoment),
+    /// The arm is safe in another way: slower, waiting, or stopped. With what it felt in newtons where that is why, and with
+    /// the joint at fault, 1 the first.
+    Safety { mode: SafetyMode, force_n: Option<f64>, joint: Option<u8> },
+    /// Somebody touched the arm, with so much force in newtons.
+    Touched { force_n: f64 },
 }

@@ -4,17 +4,17 @@ use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
 use super::colours;
 use super::shown::{Point, Row, Series, Shown};
+use crate::arm::kinematics::Arm;
+use crate::arm::link::{Shape, Solid};
+use crate::arm::motion::ArmMotion;
+use crate::arm::physics::hand::HandPlace;
+use crate::arm::reach::BUTTON_M;
+use crate::arm::reaching::resting_place;
 use crate::base::time::SessionTime;
 use crate::console::words;
 use crate::kitchen::{Agent, Button, ButtonId, Kitchen};
-use crate::robot::body::ArmMoment;
-use crate::robot::kinematics::{Arm, Joints};
-use crate::robot::motion::ArmMotion;
-use crate::robot::physics::hand::HandPlace;
-use crate::robot::reach::BUTTON_M;
-use crate::robot::reaching::resting_place;
+use crate::robot::moment::{ArmMoment, Joints};
 use crate::robot::safety::SafetyMode;
-use crate::robot::urdf::{Shape, Solid};
 use crate::session::settings::ArmKind;
 use crate::session::{Event, Session, Stamped};
 

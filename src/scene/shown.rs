@@ -4,7 +4,7 @@
 use nalgebra::Isometry3;
 
 use super::colours::Colour;
-use crate::robot::urdf::Solid;
+use crate::arm::link::Solid;
 
 /// Something that an entity shows from a moment on.
 #[derive(Clone, Debug, PartialEq)]

@@ -19,7 +19,7 @@ use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
 use crate::mind::BeliefWitness;
 use crate::mind::witness::EstimateWitness;
-use crate::robot::body::ArmMoment;
+use crate::robot::moment::ArmMoment;
 use crate::robot::safety::SafetyMode;
 use crate::robot::{AbortReason, IdleReason};
 

@@ -6,7 +6,7 @@ use super::apply::note;
 use super::{Event, Happening, Session};
 use crate::base::time::SessionTime;
 use crate::kitchen::ButtonId;
-use crate::robot::body::ArmMoment;
+use crate::robot::moment::ArmMoment;
 use crate::robot::safety::SafetyMode;
 use crate::robot::{AbortReason, IdleReason};
 

@@ -10,7 +10,7 @@ const FLOORS: [&[&str]; 14] = [
     &["mind"],
     &["measures"],
     &["communication"],
-    &["participant", "wizard"],
+    &["participant", "wizard", "arm"],
     &["session"],
     &["console", "study", "display"],
     &["scene"],
@@ -55,9 +55,9 @@ const ONLY_IN: [(&str, &[&str]); 8] = [
     ("tokio", &["src/edge", "src/run", "src/main.rs", "src/cli.rs"]),
     ("rerun", &["src/edge/rerun.rs", "src/edge/rerun"]),
     ("zeromq", &["src/edge"]),
-    ("nalgebra", &["src/robot", "src/scene", "src/edge/rerun.rs"]),
-    ("urdf_rs", &["src/robot"]),
-    ("rapier3d", &["src/robot"]),
+    ("nalgebra", &["src/arm", "src/scene", "src/edge/rerun.rs"]),
+    ("urdf_rs", &["src/arm"]),
+    ("rapier3d", &["src/arm"]),
 ];
 
 struct Source {

@@ -4,18 +4,19 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
+use tomcom::arm::clearance::{InTheWay, Surroundings};
+use tomcom::arm::inverse::{twist, wrapped};
+use tomcom::arm::kinematics::Arm;
+use tomcom::arm::motion::ArmMotion;
+use tomcom::arm::reach::{AtButton, BUTTON_M, Unreachable, out_of_reach};
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, ButtonId, DishId, Kitchen, OrderContent, State};
 use tomcom::robot::IdleReason;
-use tomcom::robot::clearance::{InTheWay, Surroundings};
-use tomcom::robot::inverse::{twist, wrapped};
-use tomcom::robot::kinematics::{Arm, Joints};
-use tomcom::robot::motion::ArmMotion;
+use tomcom::robot::moment::Joints;
 use tomcom::robot::policy::{Decision, decide};
-use tomcom::robot::reach::{AtButton, BUTTON_M, Unreachable, out_of_reach};
 
 fn sushi() -> Arc<Kitchen> {
     Arc::new(read_kitchen(Path::new("layouts/sushi.toml")).expect("the sushi kitchen loads").kitchen)

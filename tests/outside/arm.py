@@ -8,7 +8,7 @@ from importlib.metadata import files
 import numpy as np
 import pinocchio
 
-# The stick on the flange, as in src/robot/ur5.urdf.
+# The stick on the flange, as in src/arm/ur5.urdf.
 STICK_M = 0.12
 
 

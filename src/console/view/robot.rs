@@ -12,7 +12,7 @@ use crate::console::model::Model;
 use crate::console::words;
 use crate::kitchen::Agent;
 use crate::robot::IdleReason;
-use crate::robot::body::ArmMoment;
+use crate::robot::moment::ArmMoment;
 use crate::robot::safety::{SLOWS_M, SafetyMode};
 use crate::session::settings::ArmKind;
 use crate::session::{Phase, Session};

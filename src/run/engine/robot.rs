@@ -1,11 +1,12 @@
 //! The robot in a running session: its deeds become events, and it is told what concerns it.
 
 use super::Engine;
+use crate::arm::reaching::Reaching;
+use crate::arm::worker::Robot;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, ButtonId, Kitchen};
 use crate::participant::SimulatedParticipant;
-use crate::robot::reaching::Reaching;
-use crate::robot::worker::{Robot, RobotDeed};
+use crate::robot::RobotDeed;
 use crate::session::settings::{ArmKind, ParticipantKind};
 use crate::session::{Event, SessionSpec, Stamped};
 

@@ -1,37 +1,17 @@
 //! The arm in the physics and the human's hand beside it, in time; and what is told of them.
 
-use serde::{Deserialize, Serialize};
-
-use super::arm::{ArmPhase, Cycle, PhysicalArm, Report};
-use super::kinematics::Joints;
+use super::controller::{Cycle, PhysicalArm, Report};
 use super::physics::CYCLE_S;
 use super::reach::Unreachable;
 use super::reaching::ReachingHand;
-use super::safety::SafetyMode;
-use super::worker::RobotDeed;
 use crate::base::time::SessionTime;
 use crate::kitchen::{ButtonId, Kitchen, State};
+use crate::robot::RobotDeed;
+use crate::robot::moment::{ArmMoment, ArmPhase};
+use crate::robot::safety::SafetyMode;
 
 /// So often it is told where a moving arm is: some twelve times a second.
 const TOLD_EVERY: SessionTime = SessionTime(80_000_000);
-
-/// How the arm stands, as it is recorded.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ArmMoment {
-    pub phase: ArmPhase,
-    /// Joint angles in radians, from the base on, to a ten thousandth.
-    pub joints: Joints,
-    /// The greatest force that it felt since it was told last, from a button or from somebody, in newtons.
-    #[serde(default, skip_serializing_if = "is_nothing")]
-    pub force_n: f64,
-    /// The middle of the human's hand, in the frame of the arm's base, in metres, and how far it is from the arm.
-    pub hand_m: [f64; 3],
-    pub hand_away_m: f64,
-}
-
-fn is_nothing(force_n: &f64) -> bool {
-    *force_n == 0.0
-}
 
 fn rounded(value: f64, parts: f64) -> f64 {
     // Not -0, which is written otherwise than 0.

@@ -4,36 +4,16 @@
 
 use rand_distr::{Distribution, LogNormal};
 
-use super::arm::{PhysicalArm, Report};
-use super::body::{ArmMoment, Body};
-use super::policy::{self, Decision};
+use super::body::Body;
+use super::controller::{PhysicalArm, Report};
 use super::reaching::{Reaching, ReachingHand};
-use super::safety::SafetyMode;
-use super::{AbortReason, IdleReason};
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::{Care, CostToGo};
 use crate::kitchen::{ButtonId, Kitchen, State};
-
-/// What the robot does at a moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RobotDeed {
-    /// Sets out to press a button, which it will touch at `until`.
-    Intend { button: ButtonId, until: SessionTime },
-    /// Presses the button that it set out for.
-    Press(ButtonId),
-    /// Gives up the press that it set out for, or was about to.
-    Abort(ButtonId, AbortReason),
-    /// Begins to do nothing, or goes on doing nothing for another reason.
-    Idle(IdleReason),
-    /// The arm moves, or begins to do something else.
-    Move(ArmMoment),
-    /// The arm is safe in another way: slower, waiting, or stopped. With what it felt in newtons where that is why, and with
-    /// the joint at fault, 1 the first.
-    Safety { mode: SafetyMode, force_n: Option<f64>, joint: Option<u8> },
-    /// Somebody touched the arm, with so much force in newtons.
-    Touched { force_n: f64 },
-}
+use crate::robot::policy::{self, Decision};
+use crate::robot::safety::SafetyMode;
+use crate::robot::{AbortReason, IdleReason, RobotDeed};
 
 /// A press that was skipped is not decided for again within this time, in seconds.
 pub const SKIP_S: f64 = 5.0;

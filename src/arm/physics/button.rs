@@ -5,7 +5,7 @@ use rapier3d::prelude::{
     MotorModel, Pose, PrismaticJointBuilder, RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Rotation, Vector,
 };
 
-use crate::robot::reach::BUTTON_M;
+use crate::arm::reach::BUTTON_M;
 
 /// How far the cap goes, where it closes on its way down and opens on its way up, in metres.
 const TRAVEL_M: f32 = 0.004;

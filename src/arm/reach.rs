@@ -6,8 +6,10 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use super::clearance::{InTheWay, Surroundings};
 use super::inverse::turned_towards;
-use super::kinematics::{Arm, JOINTS, Joints};
+use super::kinematics::Arm;
 use crate::kitchen::{Agent, ButtonId, Kitchen};
+use crate::robot::AbortReason;
+use crate::robot::moment::{JOINTS, Joints};
 
 /// The height of a button above the table, in metres.
 pub const BUTTON_M: f64 = 0.02;
@@ -42,6 +44,16 @@ impl Unreachable {
             Unreachable::Blocked(InTheWay::Table) => "where its arm would be on the table",
             Unreachable::Blocked(InTheWay::ItsOwnLinks) => "where its arm would be in its own way",
             Unreachable::Blocked(InTheWay::Obstacle) => "where something stands in its arm's way",
+        }
+    }
+}
+
+impl From<Unreachable> for AbortReason {
+    fn from(why: Unreachable) -> AbortReason {
+        match why {
+            Unreachable::TooFar | Unreachable::JointLimit => AbortReason::OutOfReach,
+            Unreachable::Singular => AbortReason::Singular,
+            Unreachable::Blocked(_) => AbortReason::Obstructed,
         }
     }
 }

@@ -5,8 +5,9 @@
 //! those that the maker's `movej` and `movel` have if nothing else is said.
 
 use super::clearance::Surroundings;
-use super::kinematics::{Arm, JOINTS, Joints};
+use super::kinematics::Arm;
 use super::reach::{ABOVE_M, AtButton, BUTTON_M, Unreachable};
+use crate::robot::moment::{JOINTS, Joints};
 
 /// Limits of a leg from pose to pose: radians a second (squared).
 pub const JOINT_SPEED_RAD_S: f64 = 1.05;

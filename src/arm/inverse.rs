@@ -5,7 +5,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector6};
 
-use super::kinematics::{Arm, JOINTS, Joints};
+use super::kinematics::Arm;
+use crate::robot::moment::{JOINTS, Joints};
 
 /// The maker's table (Denavit and Hartenberg), in metres.
 const D1: f64 = 0.089159;

@@ -5,15 +5,12 @@
 
 use nalgebra::{Isometry3, Matrix6, UnitQuaternion, Vector6};
 
-use super::urdf::{Link, Turn};
+use super::link::{Link, Turn};
+use super::urdf::{UrdfError, read_links};
+use crate::robot::moment::Joints;
 
 /// The UR5 as a URDF.
 pub const UR5: &str = include_str!("ur5.urdf");
-
-/// The number of joints that move.
-pub const JOINTS: usize = 6;
-/// Angles of the joints, from the base on, in radians.
-pub type Joints = [f64; JOINTS];
 
 /// A serial arm, from its base to its tip.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +21,15 @@ pub struct Arm {
 impl Arm {
     /// The UR5 with a stick to press buttons with.
     pub fn ur5() -> Arm {
-        Arm::of_urdf(UR5).expect("our own file")
+        Arm::from_urdf(UR5).expect("our own file")
+    }
+
+    /// Reads an arm: one chain of links with [`crate::robot::moment::JOINTS`] joints that turn.
+    ///
+    /// # Errors
+    /// The text is no URDF, or not of such an arm.
+    pub fn from_urdf(text: &str) -> Result<Arm, UrdfError> {
+        Ok(Arm { links: read_links(text)? })
     }
 
     /// Where the links are, in the frame of the base (metres).
@@ -79,6 +84,7 @@ mod tests {
     use nalgebra::{Matrix4, Vector3};
 
     use super::*;
+    use crate::robot::moment::JOINTS;
 
     /// d, a, alpha of the maker's table.
     const DH: [[f64; 3]; JOINTS] = [
@@ -133,9 +139,9 @@ mod tests {
     fn what_is_no_arm_is_told() {
         let one_joint = r#"<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="revolute"><parent link="a"/>
             <child link="b"/><axis xyz="0 0 1"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint></robot>"#;
-        assert_eq!(Arm::of_urdf(one_joint).unwrap_err().found, "1 joints that turn");
-        assert!(Arm::of_urdf("<robot").is_err());
+        assert_eq!(Arm::from_urdf(one_joint).unwrap_err().found, "1 joints that turn");
+        assert!(Arm::from_urdf("<robot").is_err());
         let sliding = UR5.replacen("revolute", "prismatic", 1);
-        assert!(Arm::of_urdf(&sliding).unwrap_err().found.contains("shoulder_pan"));
+        assert!(Arm::from_urdf(&sliding).unwrap_err().found.contains("shoulder_pan"));
     }
 }

@@ -4,8 +4,9 @@ use nalgebra::{Isometry3, Point3};
 use rapier3d::math::Vector;
 use rapier3d::parry::query::details::closest_points_segment_segment_with_locations_nD;
 
-use super::kinematics::{Arm, JOINTS, Joints};
-use super::urdf::{Shape, Solid};
+use super::kinematics::Arm;
+use super::link::{Shape, Solid};
+use crate::robot::moment::{JOINTS, Joints};
 
 /// Its links keep at least so far from each other and from the table, in metres.
 pub const KEPT_M: f64 = 0.02;

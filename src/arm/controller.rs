@@ -1,21 +1,21 @@
 //! The arm that presses buttons in the physics: a cycle of its controller after the other (125 a second).
 //!
-//! It goes along its way to a button as fast as it may (`super::safety`): what slows it lets time along the way go by
+//! It goes along its way to a button as fast as it may (`super::separation`): what slows it lets time along the way go by
 //! more slowly, so that it stays on a way that was looked at before. It reports what came of it.
 
 use std::collections::VecDeque;
 
-use serde::{Deserialize, Serialize};
-
 use super::clearance::Surroundings;
-use super::kinematics::{Arm, JOINTS, Joints};
+use super::kinematics::Arm;
 use super::physics::hand::HandPlace;
 use super::physics::{CYCLE_S, Felt, World};
 use super::reach::{AtButton, Unreachable, resting_pose};
-use super::safety::{self, SafetyMode};
+use super::separation::{MARGIN_M, mode_near, speed_limit};
 use super::touch::Touch;
 use super::trajectory::{Leg, LegKind, way_over, way_to, way_up};
 use crate::kitchen::{Agent, ButtonId, Kitchen};
+use crate::robot::moment::{ArmPhase, JOINTS, Joints};
+use crate::robot::safety::{SLOWS_M, SafetyMode};
 
 /// How fast it slows and speeds up again: changes of its share of the speed planned for, a second; the second for stops.
 const SLOWS: f64 = 10.0;
@@ -36,24 +36,7 @@ const CLICKS_WITHIN_S: f64 = 0.1;
 pub const STILL_RAD_S: f64 = 0.02;
 
 /// A hand further away than this matters to nothing, in metres.
-const FAR_M: f64 = safety::SLOWS_M + safety::MARGIN_M + 0.02;
-
-/// What the arm does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ArmPhase {
-    /// Nothing: it stands above the buttons.
-    #[default]
-    Rests,
-    /// Comes up from a button.
-    Retracts,
-    /// On its way over the buttons.
-    Travels,
-    /// Above its button: it may be told to press now.
-    Hovers,
-    /// Down on its button.
-    Presses,
-}
+const FAR_M: f64 = SLOWS_M + MARGIN_M + 0.02;
 
 /// Why it did not press.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -321,7 +304,7 @@ impl PhysicalArm {
         self.free_s = if blocked { 0.0 } else { self.free_s + CYCLE_S };
         // A hand that moves at its edge does not make the mode flicker.
         let waited = self.mode == SafetyMode::Safeguard && self.free_s < FREE_S;
-        self.mode = safety::mode_near(self.mode, distance_m, blocked || waited);
+        self.mode = mode_near(self.mode, distance_m, blocked || waited);
         self.waited_s = match blocked && self.goal.is_some() {
             true => self.waited_s + CYCLE_S,
             false if self.phase() == ArmPhase::Presses => self.waited_s,
@@ -331,10 +314,10 @@ impl PhysicalArm {
     }
 
     fn share_near(&self, hand: &HandPlace, distance_m: f64) -> f64 {
-        let Some(leg) = self.way.front().filter(|_| distance_m < safety::SLOWS_M) else { return 1.0 };
+        let Some(leg) = self.way.front().filter(|_| distance_m < SLOWS_M) else { return 1.0 };
         let ahead = leg.at(self.since_s + AHEAD_S);
         let comes_nearer = self.arm.distance(&ahead, hand) < distance_m;
-        let limit_m_s = safety::speed_limit(distance_m, comes_nearer);
+        let limit_m_s = speed_limit(distance_m, comes_nearer);
         let tip = |joints: &Joints| self.arm.tip(joints).translation.vector;
         let planned_m_s = (tip(&ahead) - tip(&leg.at(self.since_s))).norm() / AHEAD_S;
         // Also where a leg begins or ends slowly, a hand at the arm stops it.

@@ -16,7 +16,8 @@ use rapier3d::prelude::{
     SoftBodySet, Vector,
 };
 
-use super::kinematics::{Arm, JOINTS, Joints};
+use super::kinematics::Arm;
+use crate::robot::moment::{JOINTS, Joints};
 use button::PhysicalButton;
 use hand::{Hand, HandPlace, double, single};
 

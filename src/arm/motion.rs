@@ -4,10 +4,11 @@
 //! last button, above the next one, down on it.
 
 use super::clearance::Surroundings;
-use super::kinematics::{Arm, JOINTS, Joints};
+use super::kinematics::Arm;
 use super::reach::{AtButton, BENT};
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, Button, ButtonId, Kitchen};
+use crate::robot::moment::{JOINTS, Joints};
 
 /// Of the time until it touches, the arm goes up for the first part, and down for the last.
 const UP: f64 = 0.15;

@@ -8,8 +8,8 @@ use rapier3d::prelude::{
 
 use super::hand::single;
 use super::{World, button};
-use crate::robot::kinematics::{JOINTS, Joints};
-use crate::robot::urdf::{Link, Shape};
+use crate::arm::link::{Link, Shape};
+use crate::robot::moment::{JOINTS, Joints};
 
 /// What a drive's rotor adds to the inertia of its joint through the gear (rotor times ratio squared), in kg m²: an estimate
 /// for the large and the small drives, as the maker does not say.

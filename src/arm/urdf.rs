@@ -3,7 +3,8 @@
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use urdf_rs::{Geometry, JointType, Pose};
 
-use super::kinematics::{Arm, JOINTS};
+use super::link::{Link, Shape, Solid, Turn, Weight};
+use crate::robot::moment::JOINTS;
 
 /// Why a URDF is no arm that the program can move.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -13,95 +14,37 @@ pub struct UrdfError {
     pub remedy: &'static str,
 }
 
-/// A plain shape of a link, about its own centre.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
-    Box {
-        half_m: [f64; 3],
-    },
-    /// Along z.
-    Cylinder {
-        radius_m: f64,
-        length_m: f64,
-    },
-    Sphere {
-        radius_m: f64,
-    },
-}
-
-/// A shape and its place on its link.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solid {
-    pub shape: Shape,
-    pub link_from_solid: Isometry3<f64>,
-}
-
-/// A joint that turns.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn {
-    pub axis: Unit<Vector3<f64>>,
-    /// Between these angles, in radians.
-    pub range_rad: [f64; 2],
-    /// What its motor can do, in newton metres, and how fast it can be, in radians a second.
-    pub torque_nm: f64,
-    pub speed_rad_s: f64,
-}
-
-/// What a link weighs.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Weight {
-    pub mass_kg: f64,
-    pub centre_m: Point3<f64>,
-    /// Moments of inertia about the centre, along the link's axes, in kg m².
-    pub inertia_kg_m2: Vector3<f64>,
-}
-
-/// A link, with the joint that carries it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Link {
-    pub name: String,
-    /// From the link before, while the joint is at 0.
-    pub parent_from_joint: Isometry3<f64>,
-    /// How its joint turns; none: it is fixed.
-    pub turns: Option<Turn>,
-    /// None: it weighs nothing.
-    pub weight: Option<Weight>,
-    pub solids: Vec<Solid>,
-}
-
-impl Arm {
-    /// Reads an arm: one chain of links with [`JOINTS`] joints that turn.
-    ///
-    /// # Errors
-    /// The text is no URDF, or not of such an arm.
-    pub fn of_urdf(text: &str) -> Result<Arm, UrdfError> {
-        let wrong = |found: String, remedy| UrdfError { found, remedy };
-        let robot = urdf_rs::read_from_string(text).map_err(|error| wrong(error.to_string(), "a URDF"))?;
-        let is_root = |link: &&urdf_rs::Link| robot.joints.iter().all(|joint| joint.child.link != link.name);
-        let root = robot.links.iter().find(is_root);
-        let root = root.ok_or_else(|| wrong("links in a ring".to_string(), "a link that no joint carries"))?;
-        let base = Link {
-            name: root.name.clone(),
-            parent_from_joint: Isometry3::identity(),
-            turns: None,
-            weight: weight(root)?,
-            solids: solids(root)?,
-        };
-        let mut links = vec![base];
-        while let Some(last) = links.last() {
-            let mut joints = robot.joints.iter().filter(|joint| joint.parent.link == last.name);
-            let (Some(joint), other) = (joints.next(), joints.next()) else { break };
-            if other.is_some() || links.len() > robot.links.len() {
-                return Err(wrong(format!("two joints on link {}", last.name), "a single chain of links"));
-            }
-            let link = robot.links.iter().find(|link| link.name == joint.child.link);
-            let link = link.ok_or_else(|| wrong(format!("no link {}", joint.child.link), "every link of a joint"))?;
-            links.push(carried(joint, link)?);
+/// Reads the links of an arm: one chain with [`JOINTS`] joints that turn.
+///
+/// # Errors
+/// The text is no URDF, or not of such an arm.
+pub fn read_links(text: &str) -> Result<Vec<Link>, UrdfError> {
+    let wrong = |found: String, remedy| UrdfError { found, remedy };
+    let robot = urdf_rs::read_from_string(text).map_err(|error| wrong(error.to_string(), "a URDF"))?;
+    let is_root = |link: &&urdf_rs::Link| robot.joints.iter().all(|joint| joint.child.link != link.name);
+    let root = robot.links.iter().find(is_root);
+    let root = root.ok_or_else(|| wrong("links in a ring".to_string(), "a link that no joint carries"))?;
+    let base = Link {
+        name: root.name.clone(),
+        parent_from_joint: Isometry3::identity(),
+        turns: None,
+        weight: weight(root)?,
+        solids: solids(root)?,
+    };
+    let mut links = vec![base];
+    while let Some(last) = links.last() {
+        let mut joints = robot.joints.iter().filter(|joint| joint.parent.link == last.name);
+        let (Some(joint), other) = (joints.next(), joints.next()) else { break };
+        if other.is_some() || links.len() > robot.links.len() {
+            return Err(wrong(format!("two joints on link {}", last.name), "a single chain of links"));
         }
-        match links.iter().filter(|link| link.turns.is_some()).count() {
-            JOINTS => Ok(Arm { links }),
-            count => Err(wrong(format!("{count} joints that turn"), "6 joints that turn, one after the other")),
-        }
+        let link = robot.links.iter().find(|link| link.name == joint.child.link);
+        let link = link.ok_or_else(|| wrong(format!("no link {}", joint.child.link), "every link of a joint"))?;
+        links.push(carried(joint, link)?);
+    }
+    match links.iter().filter(|link| link.turns.is_some()).count() {
+        JOINTS => Ok(links),
+        count => Err(wrong(format!("{count} joints that turn"), "6 joints that turn, one after the other")),
     }
 }
 

@@ -1,0 +1,43 @@
+//! How the arm in the physics stands, as it is recorded: plain data, without the physics.
+
+use serde::{Deserialize, Serialize};
+
+/// The number of joints that move.
+pub const JOINTS: usize = 6;
+/// Angles of the joints, from the base on, in radians.
+pub type Joints = [f64; JOINTS];
+
+/// What the arm does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ArmPhase {
+    /// Nothing: it stands above the buttons.
+    #[default]
+    Rests,
+    /// Comes up from a button.
+    Retracts,
+    /// On its way over the buttons.
+    Travels,
+    /// Above its button: it may be told to press now.
+    Hovers,
+    /// Down on its button.
+    Presses,
+}
+
+/// How the arm stands, as it is recorded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ArmMoment {
+    pub phase: ArmPhase,
+    /// Joint angles in radians, from the base on, to a ten thousandth.
+    pub joints: Joints,
+    /// The greatest force that it felt since it was told last, from a button or from somebody, in newtons.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub force_n: f64,
+    /// The middle of the human's hand, in the frame of the arm's base, in metres, and how far it is from the arm.
+    pub hand_m: [f64; 3],
+    pub hand_away_m: f64,
+}
+
+fn is_nothing(force_n: &f64) -> bool {
+    *force_n == 0.0
+}

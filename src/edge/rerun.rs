@@ -12,13 +12,14 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use nalgebra::Isometry3;
-use rerun::components::{InterpolationMode, MarkerShape};
-use rerun::external::re_grpc_server::{MemoryLimit, ServerOptions};
-use rerun::grpc_server::GrpcServerSink;
-use rerun::log::ChunkBatcherConfig;
-use rerun::sink::FileSink;
-use rerun::web_viewer::WebViewerConfig;
-use rerun::{AsComponents, Color, FillMode, Quaternion, RecordingStream, RecordingStreamBuilder, TextLogLevel};
+use re_sdk::grpc_server::GrpcServerSink;
+use re_sdk::log::ChunkBatcherConfig;
+use re_sdk::sink::FileSink;
+use re_sdk::web_viewer::WebViewerConfig;
+use re_sdk::{AsComponents, MemoryLimit, RecordingStream, RecordingStreamBuilder, ServerOptions};
+use re_sdk_types::archetypes;
+use re_sdk_types::components::{Color, FillMode, InterpolationMode, MarkerShape, TextLogLevel};
+use re_sdk_types::datatypes::Quaternion;
 
 use self::layout::{Layout, Opens};
 use crate::arm::link::{Shape, Solid};
@@ -114,7 +115,7 @@ impl Writer {
 
     /// Writes a moment; the number of its rows.
     pub fn moment(&self, lane: &Lane, moment: &Moment) -> u64 {
-        let nanoseconds = |time: u64| rerun::TimeCell::from_duration_nanos(i64::try_from(time).unwrap_or(i64::MAX));
+        let nanoseconds = |time: u64| re_sdk::TimeCell::from_duration_nanos(i64::try_from(time).unwrap_or(i64::MAX));
         for stream in &self.streams {
             // Whole milliseconds are read more easily, and nothing is shown that is closer together.
             stream.set_time(TRIAL_TIME, nanoseconds(moment.trial.0 / MS * MS));
@@ -189,7 +190,7 @@ impl WebViewer {
             open_browser: false,
             ..WebViewerConfig::default()
         };
-        let server = rerun::serve_web_viewer(config).map_err(io::Error::other)?;
+        let server = re_sdk::serve_web_viewer(config).map_err(io::Error::other)?;
         Ok(WebViewer { _server: Box::new(server) })
     }
 }
@@ -205,13 +206,13 @@ fn parts(shown: &Shown) -> Vec<Part> {
         Shown::Points(points) => vec![Box::new(points_in_3d(points))],
         Shown::Solids(solids, colour) => solids_in_3d(solids, colour_of(*colour)),
         Shown::Place(place) => vec![Box::new(transform(place))],
-        Shown::Value(value) => vec![Box::new(rerun::Scalars::single(*value))],
+        Shown::Value(value) => vec![Box::new(archetypes::Scalars::single(*value))],
         Shown::Line(Series { name, colour }) => {
-            let line = rerun::SeriesLines::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
+            let line = archetypes::SeriesLines::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
             vec![Box::new(line.with_widths([2.0]).with_interpolation_mode(InterpolationMode::StepAfter))]
         }
         Shown::Marks(Series { name, colour }) => {
-            let marks = rerun::SeriesPoints::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
+            let marks = archetypes::SeriesPoints::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
             vec![Box::new(marks.with_markers([MarkerShape::Cross]).with_marker_sizes([4.0]))]
         }
         Shown::Words { level, text, colour } => {
@@ -220,10 +221,10 @@ fn parts(shown: &Shown) -> Vec<Part> {
                 Level::Warning => TextLogLevel::WARN,
                 Level::Error => TextLogLevel::ERROR,
             };
-            vec![Box::new(rerun::TextLog::new(text.as_str()).with_level(level).with_color(colour_of(*colour)))]
+            vec![Box::new(archetypes::TextLog::new(text.as_str()).with_level(level).with_color(colour_of(*colour)))]
         }
-        Shown::Page(text) => vec![Box::new(rerun::TextDocument::from_markdown(text.as_str()))],
-        Shown::State(text) => vec![Box::new(rerun::StateChange::single(text.as_str()))],
+        Shown::Page(text) => vec![Box::new(archetypes::TextDocument::from_markdown(text.as_str()))],
+        Shown::State(text) => vec![Box::new(archetypes::StateChange::single(text.as_str()))],
     }
 }
 
@@ -231,16 +232,16 @@ fn colour_of([red, green, blue, opacity]: [u8; 4]) -> Color {
     Color::from_unmultiplied_rgba(red, green, blue, opacity)
 }
 
-fn areas_in_2d(areas: &[Area]) -> rerun::Boxes2D {
+fn areas_in_2d(areas: &[Area]) -> archetypes::Boxes2D {
     let corners = areas.iter().map(|area| [area.left as f32, area.top as f32]);
     let sizes = areas.iter().map(|area| [area.width as f32, area.height as f32]);
-    rerun::Boxes2D::from_mins_and_sizes(corners, sizes)
+    archetypes::Boxes2D::from_mins_and_sizes(corners, sizes)
         .with_colors(areas.iter().map(|area| colour_of(area.colour)))
         .with_radii(areas.iter().map(|area| area.line as f32))
 }
 
-fn discs_in_2d(discs: &[Disc]) -> rerun::Points2D {
-    rerun::Points2D::new(discs.iter().map(|disc| disc.at.map(|length| length as f32)))
+fn discs_in_2d(discs: &[Disc]) -> archetypes::Points2D {
+    archetypes::Points2D::new(discs.iter().map(|disc| disc.at.map(|length| length as f32)))
         .with_radii(discs.iter().map(|disc| disc.radius as f32))
         .with_colors(discs.iter().map(|disc| colour_of(disc.colour)))
         .with_labels(discs.iter().map(|disc| disc.words.as_str()))
@@ -250,13 +251,13 @@ fn discs_in_2d(discs: &[Disc]) -> rerun::Points2D {
 /// One row of two archetypes: a point, and the circle around it.
 fn sight_in_2d(at: [f64; 2], around: f64, colour: Color) -> Vec<Part> {
     let at = at.map(|length| length as f32);
-    let circle = rerun::Ellipses2D::from_half_sizes([[around as f32; 2]]).with_centers([at]).with_colors([colour]);
-    let point = rerun::Points2D::new([at]).with_radii([SIGHT_MM]).with_colors([colour]);
+    let circle = archetypes::Ellipses2D::from_half_sizes([[around as f32; 2]]).with_centers([at]).with_colors([colour]);
+    let point = archetypes::Points2D::new([at]).with_radii([SIGHT_MM]).with_colors([colour]);
     vec![Box::new(circle.with_line_radii([LINE_MM])), Box::new(point)]
 }
 
-fn points_in_3d(points: &[Point]) -> rerun::Points3D {
-    rerun::Points3D::new(points.iter().map(|point| point.at_m.map(|length| length as f32)))
+fn points_in_3d(points: &[Point]) -> archetypes::Points3D {
+    archetypes::Points3D::new(points.iter().map(|point| point.at_m.map(|length| length as f32)))
         .with_radii(points.iter().map(|point| point.radius_m as f32))
         .with_colors(points.iter().map(|point| colour_of(point.colour)))
         .with_labels(points.iter().map(|point| point.words.as_str()))
@@ -270,8 +271,8 @@ fn turn(place: &Isometry3<f64>) -> Quaternion {
     Quaternion::from_xyzw(place.rotation.cast::<f32>().coords.into())
 }
 
-fn transform(place: &Isometry3<f64>) -> rerun::Transform3D {
-    rerun::Transform3D::from_translation_rotation(metres(place), turn(place))
+fn transform(place: &Isometry3<f64>) -> archetypes::Transform3D {
+    archetypes::Transform3D::from_translation_rotation(metres(place), turn(place))
 }
 
 /// Shapes of one kind are one archetype.
@@ -287,20 +288,20 @@ fn solids_in_3d(solids: &[Solid], colour: Color) -> Vec<Part> {
     }
     if !cylinders.is_empty() {
         let all = || cylinders.iter();
-        let shapes = rerun::Cylinders3D::from_lengths_and_radii(all().map(|one| one.2), all().map(|one| one.1));
+        let shapes = archetypes::Cylinders3D::from_lengths_and_radii(all().map(|one| one.2), all().map(|one| one.1));
         let placed = shapes.with_centers(all().map(|one| metres(one.0))).with_quaternions(all().map(|one| turn(one.0)));
         parts.push(Box::new(placed.with_colors([colour]).with_fill_mode(FillMode::Solid)));
     }
     if !boxes.is_empty() {
         let all = || boxes.iter();
         let shapes =
-            rerun::Boxes3D::from_centers_and_half_sizes(all().map(|one| metres(one.0)), all().map(|one| one.1));
+            archetypes::Boxes3D::from_centers_and_half_sizes(all().map(|one| metres(one.0)), all().map(|one| one.1));
         let placed = shapes.with_quaternions(all().map(|one| turn(one.0)));
         parts.push(Box::new(placed.with_colors([colour]).with_fill_mode(FillMode::Solid)));
     }
     if !balls.is_empty() {
         let all = || balls.iter();
-        let shapes = rerun::Points3D::new(all().map(|one| metres(one.0)));
+        let shapes = archetypes::Points3D::new(all().map(|one| metres(one.0)));
         parts.push(Box::new(shapes.with_radii(all().map(|one| one.1)).with_colors([colour])));
     }
     parts

@@ -49,11 +49,12 @@ const BANNED_BELOW_EDGE: [&str; 20] = [
 ];
 
 /// Crates that only some rooms may name; a file name stands for that file alone.
-const ONLY_IN: [(&str, &[&str]); 8] = [
+const ONLY_IN: [(&str, &[&str]); 9] = [
     ("ratatui", &["src/console", "src/edge"]),
     ("crossterm", &["src/console", "src/edge"]),
     ("tokio", &["src/edge", "src/run", "src/main.rs", "src/cli.rs"]),
-    ("rerun", &["src/edge/rerun.rs", "src/edge/rerun"]),
+    ("re_sdk", &["src/edge/rerun.rs", "src/edge/rerun"]),
+    ("re_sdk_types", &["src/edge/rerun.rs", "src/edge/rerun"]),
     ("zeromq", &["src/edge"]),
     ("nalgebra", &["src/arm", "src/scene", "src/edge/rerun.rs"]),
     ("urdf_rs", &["src/arm"]),

@@ -3,15 +3,15 @@
 
 use std::io;
 
-use rerun::blueprint::components::{LoopMode, PanelState, PlayState};
-use rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
-use rerun::blueprint::{
+use re_sdk::blueprint::components::{LoopMode, PanelState, PlayState};
+use re_sdk::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
+use re_sdk::blueprint::{
     Blueprint, BlueprintPanel, ContainerLike, Horizontal, SelectionPanel, Spatial2DView, Spatial3DView,
     StateTimelineView, Tabs, TextDocumentView, TextLogView, TimePanel, TimeSeriesView, Vertical,
 };
-use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, TimeInt};
-use rerun::external::re_sdk_types::blueprint::archetypes::{EyeControls3D, PlotLegend, ScalarAxis, TextLogColumns};
-use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
+use re_sdk::external::re_log_types::{BlueprintActivationCommand, LogMsg, TimeInt};
+use re_sdk::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
+use re_sdk_types::blueprint::archetypes::{EyeControls3D, PlotLegend, ScalarAxis, TextLogColumns};
 
 use super::{APPLICATION, Lane, TRIAL_TIME};
 use crate::base::time::SessionTime;

@@ -18,7 +18,7 @@ use crate::run::sweep::Axis;
 #[derive(Debug, Parser)]
 #[command(name = "tomcom", version, args_conflicts_with_subcommands = true)]
 #[command(
-    after_help = "Without a command: operate the default session.\nExample: tomcom --participant keyboard --gaze mouse"
+    after_help = "Without a command: operates the default session. -h is shorter than --help.\nExample: tomcom --participant keyboard --gaze mouse\nMore: docs/index.md"
 )]
 pub(super) struct Cli {
     #[command(subcommand)]
@@ -57,11 +57,11 @@ pub(super) enum Format {
     Json,
 }
 
-/// Opens the wizard's console and runs a session; everything that happens is recorded.
+/// Runs a session at the wizard's console, and records it.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples: tomcom operate sessions/default.toml --participant keyboard --gaze mouse\n          \
-                  tomcom operate sessions/study.toml --code P07"
+                  tomcom operate sessions/study.toml --code P07\nMore: docs/running-a-session.md"
 )]
 pub(super) struct OperateArgs {
     /// The session file; by default sessions/default.toml, or the one that the program carries.
@@ -111,9 +111,11 @@ pub(super) struct OperateFlags {
     pub(super) out: PathBuf,
 }
 
-/// Opens the console over a recording. Through a pipe: what happened, line by line. Or checks that it comes out the same.
+/// Shows a recording at the console, prints it, or verifies it.
+///
+/// In a terminal it opens the console over the recording; through a pipe it prints what happened, line by line.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify")]
+#[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify\nMore: docs/recordings.md")]
 pub(super) struct ReplayArgs {
     /// The folder of a recording, or its events.jsonl; several only with --check-beliefs and --accuracy.
     #[arg(required = true, value_name = "RECORDING")]
@@ -148,9 +150,11 @@ pub(super) struct ReplayArgs {
     pub(super) format: Format,
 }
 
-/// Prints a plan: participants, groups, what is done and what comes next, from the recordings that are there.
+/// Prints how far a study is.
+///
+/// Participants, their groups, what is done and what comes next, from the recordings on the disk.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom plan sessions/study.toml --out sessions")]
+#[command(after_help = "Example: tomcom plan sessions/study.toml --out sessions\nMore: docs/study.md")]
 pub(super) struct PlanArgs {
     /// The session file with the plan.
     pub(super) session: PathBuf,
@@ -162,12 +166,13 @@ pub(super) struct PlanArgs {
     pub(super) format: Format,
 }
 
-/// Simulates whole trials, faster than real time. Participants are simulated; nobody signals, or the assistant
-/// does, or a scripted wizard.
+/// Simulates whole trials, faster than real time.
+///
+/// Participants are simulated. Signals come from nobody, the assistant, or a scripted wizard.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples: tomcom simulate sessions/default.toml --trials 20 --seed 7 --arm timed --out recordings\n          \
-                  tomcom simulate sessions/default.toml --trials 100 --sweep cost=0.5,1.5,2.4 --sweep gaze=on,off --out grid"
+                  tomcom simulate sessions/default.toml --trials 100 --sweep cost=0.5,1.5,2.4 --sweep gaze=on,off --out grid\nMore: docs/study.md"
 )]
 pub(super) struct SimulateArgs {
     /// The session file.
@@ -212,10 +217,12 @@ pub(super) struct SimulateArgs {
     pub(super) format: Format,
 }
 
-/// Fits the human model to recordings: the parameters under which the recorded presses are likeliest, with standard errors.
+/// Fits the human model to recordings.
+///
+/// Finds the parameters under which the recorded presses are likeliest, with standard errors.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A session uses the file with human_model = \"FILE\".\nExample: tomcom fit recordings/* --out sessions/human.toml"
+    after_help = "A session uses the file with human_model = \"FILE\".\nExample: tomcom fit recordings/* --out sessions/human.toml\nMore: docs/human-model.md"
 )]
 pub(super) struct FitArgs {
     /// The folders of recordings of one kitchen, or their events.jsonl.
@@ -271,9 +278,11 @@ impl FitParameter {
     }
 }
 
-/// Checks a kitchen and prints it: locations, buttons, recipes, optimal plans, size of the state space.
+/// Checks a kitchen and prints it.
+///
+/// Locations, buttons, recipes, shortest plans, size of the state space, tags for eye trackers.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom kitchen layouts/sushi.toml --format json")]
+#[command(after_help = "Example: tomcom kitchen layouts/sushi.toml --format json\nMore: docs/writing-a-kitchen.md")]
 pub(super) struct KitchenArgs {
     /// The layout file.
     pub(super) layout: PathBuf,
@@ -282,18 +291,22 @@ pub(super) struct KitchenArgs {
     pub(super) format: Format,
 }
 
-/// Prints the keys of the console as a key file, with comments, ready to be changed.
+/// Prints the keys of the console as a key file that can be changed.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom keys sessions/default.toml > sessions/keys.toml")]
+#[command(
+    after_help = "Example: tomcom keys sessions/default.toml > sessions/keys.toml\nMore: docs/running-a-session.md"
+)]
 pub(super) struct KeysArgs {
     /// The session file whose kitchen and key file it is about; by default the one of tomcom operate.
     pub(super) session: Option<PathBuf>,
 }
 
-/// Leaves a closed recording out of the analysis, or takes that back. Its log stays as it is.
+/// Leaves a recording out of the analysis, or takes that back.
+///
+/// The recording must be closed. Its log stays as it is.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "While the session is open, its console does it.\nExample: tomcom exclude sessions/2026-03-14-P07-1 --reason \"the tracker slipped\""
+    after_help = "While the session is open, its console does it.\nExample: tomcom exclude sessions/2026-03-14-P07-1 --reason \"the tracker slipped\"\nMore: docs/recordings.md"
 )]
 pub(super) struct ExcludeArgs {
     /// The folder of a recording.
@@ -309,12 +322,14 @@ pub(super) struct ExcludeArgs {
     pub(super) format: Format,
 }
 
-/// Checks terminal, place for recordings, clocks, the port of the wall display and where gaze comes from; says how to mend
-/// what is not as it should be.
+/// Checks whether this machine is fit for a session.
+///
+/// Terminal, place for recordings, clocks, the port of the wall display, Rerun's viewer, and where gaze comes from; says how
+/// to mend what is not as it should be.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Exit code 0: the session works here. 1: something is broken.\nExamples: tomcom doctor --out recordings\n          \
-                  tomcom doctor sessions/study.toml"
+                  tomcom doctor sessions/study.toml\nMore: docs/troubleshooting.md"
 )]
 pub(super) struct DoctorArgs {
     /// The session file whose settings hold; by default sessions/default.toml, or the one that the program carries.

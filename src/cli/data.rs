@@ -14,11 +14,13 @@ use crate::run::codes::{self, Coded, CodesFigures};
 use crate::run::review;
 use crate::session::settings::is_code;
 
-/// Prints what raters say about the errors of recordings, and how far they agree; takes it from a table, or writes one.
+/// Prints how raters coded errors, and how far they agree.
+///
+/// Takes codes from a table, or writes one.
 #[derive(Debug, Args)]
 #[command(after_help = "tomcom replay RECORDING --rater R1 is where errors are coded.\n\
                   Examples: tomcom codes sessions/2026-03-14-P07-1\n          \
-                  tomcom codes sessions/*-P*-* --export codes.csv")]
+                  tomcom codes sessions/*-P*-* --export codes.csv\nMore: docs/recordings.md")]
 pub(super) struct CodesArgs {
     /// The folders of recordings, or their events.jsonl.
     #[arg(required = true, value_name = "RECORDING")]
@@ -62,12 +64,14 @@ pub(super) fn rate(recording: &Path, rater: &str) -> Result<(), Failure> {
     Ok(review::rate(recording, rater)?)
 }
 
-/// Deletes a participant everywhere below a folder: recordings with their parts, streams and codes, rows of tables, reports, and
-/// what a wizard has trained on them. Of a wizard's code: the records of training.
+/// Deletes everything about a participant below a folder.
+///
+/// Recordings with their parts, streams and codes, rows of tables, reports, and what a wizard has trained on them. With a
+/// wizard's code: the records of training.
 #[derive(Debug, Args)]
 #[command(after_help = "Session files stay, and so does what an eye tracker has recorded by itself.\n\
                   Exit code 0: deleted. 1: there was nothing, or not all of it could be deleted.\n\
-                  Example: tomcom forget P07 --in sessions")]
+                  Example: tomcom forget P07 --in sessions\nMore: docs/recordings.md, docs/security.md")]
 pub(super) struct ForgetArgs {
     /// The code of the participant.
     code: String,

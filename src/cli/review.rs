@@ -9,12 +9,14 @@ use super::Failure;
 use crate::base::time::SessionTime;
 use crate::run::rerun::{RerunError, Review, Reviewed, Running, Saved, review as open, running, until_asked_to_end};
 
-/// Opens recordings in Rerun's viewer: kitchen, arm, beliefs, signals and what happened, over time.
+/// Opens recordings in Rerun's viewer.
+///
+/// Kitchen, arm, beliefs, signals and events, over time.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Without a viewer of Rerun in PATH it is served for a browser. Several recordings stand side by side, by the \
                   clocks of their trials.\nExamples: tomcom review sessions/2026-03-14-P07-1\n          \
-                  tomcom review sessions/2026-03-14-P07-1 --at 1:34"
+                  tomcom review sessions/2026-03-14-P07-1 --at 1:34\nMore: docs/rerun.md"
 )]
 pub(super) struct ReviewArgs {
     /// The folders of recordings, or their events.jsonl.

@@ -9,11 +9,13 @@ use super::{Failure, print, progress};
 use crate::run::study::reading::Extent;
 use crate::run::study::{self, Analysis, Recordings, StudyError};
 
-/// Analyses the recordings of a study: errors and their causes, the effect of assistance, wizard and assistant, communication
-/// concepts. Writes a report to look at in a browser, and tables as CSV.
+/// Analyses the recordings of a study: report and tables.
+///
+/// Errors and their causes, the effect of assistance, wizard and assistant, communication concepts. Writes a report to look
+/// at in a browser, and tables as CSV.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples: tomcom study recordings\n          tomcom study shards/* --out results --format json"
+    after_help = "Examples: tomcom study recordings\n          tomcom study shards/* --out results --format json\nMore: docs/study.md, docs/analysis.md"
 )]
 pub(super) struct StudyArgs {
     /// Folders with recordings in them, or recordings, of one kitchen.

@@ -19,10 +19,12 @@ use crate::run::train::{self, Lesson};
 use crate::run::{lesson_report, review, series, simulate};
 use crate::session::settings::is_code;
 
-/// Sets wizard and assistants side by side: what each said, what of it matches, and what each knew where they differ.
+/// Compares what a wizard sent with what assistants would have sent.
+///
+/// What each sent, what of it matches, and what each knew where they differ; over recordings, or live.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples: tomcom compare sessions/2026-03-14-P07-1 --with tom,dev\n          tomcom compare sessions/2026-03-14-P07-* --only tom\n          tomcom compare sessions/2026-03-14-P07-1 --follow\n          tomcom compare sessions/default.toml"
+    after_help = "Examples: tomcom compare sessions/2026-03-14-P07-1 --with tom,dev\n          tomcom compare sessions/2026-03-14-P07-* --only tom\n          tomcom compare sessions/2026-03-14-P07-1 --follow\n          tomcom compare sessions/default.toml\nMore: docs/analysis.md"
 )]
 pub(super) struct CompareArgs {
     /// Folders of recordings, or their events.jsonl; or a session file, to operate it with the comparison in front (by default
@@ -60,10 +62,12 @@ pub(super) struct CompareArgs {
     flags: OperateFlags,
 }
 
-/// Trains a wizard: recordings in which it is known what was believed wrong are watched and answered by the keys of a session,
-/// with feedback at once and a score.
+/// Trains a wizard on simulated recordings.
+///
+/// Recordings in which the participant's beliefs are known are watched and answered with the keys of a session, with
+/// feedback at once and a score.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom train --wizard W1 --hits 0.6 --wrong 0.4")]
+#[command(after_help = "Example: tomcom train --wizard W1 --hits 0.6 --wrong 0.4\nMore: docs/training.md")]
 pub(super) struct TrainArgs {
     /// Recordings of simulated participants without signals; by default one is simulated.
     #[arg(value_name = "RECORDING")]

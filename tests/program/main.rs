@@ -2,6 +2,7 @@
 //! run one after another.
 
 mod commands;
+mod docs;
 mod forgetting;
 mod plan;
 mod survival;

@@ -1,0 +1,144 @@
+//! Pages of documentation: their fenced blocks, marks, headings and links.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A page.
+pub struct Page {
+    pub path: PathBuf,
+    pub blocks: Vec<Block>,
+    pub headings: Vec<String>,
+    pub links: Vec<Link>,
+}
+
+/// A fenced block.
+pub struct Block {
+    /// The line of its opening fence, from 1.
+    pub line: usize,
+    pub language: String,
+    pub text: String,
+    /// Why it is not run: the mark `<!-- not run: REASON -->` on the line before the fence.
+    pub not_run: Option<String>,
+}
+
+/// A link that is no address on the web.
+pub struct Link {
+    pub line: usize,
+    pub target: String,
+}
+
+impl Page {
+    pub fn read(path: &Path) -> Page {
+        let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let (mut blocks, mut headings, mut links) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut open, mut before): (Option<Block>, &str) = (None, "");
+        for (line, text) in (1..).zip(text.lines()) {
+            match (open.take(), text.strip_prefix("```")) {
+                (Some(block), Some(_)) => blocks.push(block),
+                (Some(mut block), None) => {
+                    block.text += text;
+                    block.text += "\n";
+                    open = Some(block);
+                }
+                (None, Some(language)) => {
+                    let mark = before.strip_prefix("<!-- not run: ").and_then(|rest| rest.strip_suffix(" -->"));
+                    let (language, not_run) = (language.trim().to_string(), mark.map(str::to_string));
+                    open = Some(Block { line, language, text: String::new(), not_run });
+                }
+                (None, None) => {
+                    headings.extend(text.strip_prefix('#').map(|rest| slug(rest.trim_start_matches('#'))));
+                    links.extend(links_in(text).map(|target| Link { line, target: target.to_string() }));
+                }
+            }
+            before = text;
+        }
+        assert!(open.is_none(), "{}: a block is not closed", path.display());
+        Page { path: path.to_path_buf(), blocks, headings, links }
+    }
+
+    /// Where a block is, for messages.
+    pub fn at(&self, line: usize) -> String {
+        format!("{}:{line}", self.path.display())
+    }
+}
+
+impl Block {
+    /// The commands in it with the output that each is said to have; nothing is said of the output in `sh` blocks.
+    pub fn commands(&self) -> Vec<(String, Option<Vec<String>>)> {
+        let mut commands: Vec<(String, Option<Vec<String>>)> = Vec::new();
+        for line in self.text.lines() {
+            match (self.language.as_str(), line.strip_prefix("$ "), commands.last_mut()) {
+                ("console", Some(command), _) => commands.push((command.to_string(), Some(Vec::new()))),
+                ("console", None, Some((_, Some(output)))) => output.push(line.to_string()),
+                ("sh", ..) if !line.trim().is_empty() && !line.starts_with('#') => {
+                    commands.push((line.to_string(), None));
+                }
+                _ => {}
+            }
+        }
+        commands
+    }
+
+    /// Where a settings file would stand: its first line is a comment with the path.
+    pub fn settings_path(&self) -> Option<&str> {
+        self.text.lines().next()?.strip_prefix("# ").filter(|path| path.ends_with(".toml"))
+    }
+}
+
+/// The targets of the links in a line of text.
+fn links_in(text: &str) -> impl Iterator<Item = &str> {
+    let targets = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    targets.filter(|target| !target.contains("://"))
+}
+
+/// The name of a heading in links, as GitHub makes it.
+fn slug(heading: &str) -> String {
+    let kept = heading.trim().chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+    kept.map(|c| if c == ' ' { '-' } else { c }).collect::<String>().to_lowercase()
+}
+
+/// Whether lines are as a page prints them: a line `…` stands for any number of lines, `…` in a line for any text.
+pub fn matches(expected: &[String], found: &[&str]) -> bool {
+    let (mut at, mut next) = (0, 0);
+    // The last line `…`, and up to where it reaches.
+    let mut any: Option<(usize, usize)> = None;
+    while next < found.len() {
+        match expected.get(at) {
+            Some(line) if line.trim() == "…" => {
+                any = Some((at, next));
+                at += 1;
+            }
+            Some(line) if line_matches(line, found[next]) => (at, next) = (at + 1, next + 1),
+            _ => {
+                let Some((from, reached)) = any else { return false };
+                any = Some((from, reached + 1));
+                (at, next) = (from + 1, reached + 1);
+            }
+        }
+    }
+    expected[at..].iter().all(|line| line.trim() == "…")
+}
+
+fn line_matches(expected: &str, found: &str) -> bool {
+    let parts: Vec<&str> = expected.split('…').collect();
+    let [first, middle @ .., last] = &parts[..] else { return expected == found };
+    let Some(mut rest) = found.strip_prefix(first) else { return false };
+    for part in middle {
+        let Some(place) = rest.find(part) else { return false };
+        rest = &rest[place + part.len()..];
+    }
+    rest.ends_with(last)
+}
+
+#[test]
+fn lines_and_texts_may_be_left_out() {
+    let lines = |text: &str| text.lines().map(str::to_string).collect::<Vec<String>>();
+    let found = ["a 1 b", "x", "y", "end"];
+    for expected in ["a … b\n…\nend", "…", "a 1 b\n…\ny\nend", "…\nend", "a…\nx\ny\ne…d", "a 1 b\nx\ny\nend\n…"]
+    {
+        assert!(matches(&lines(expected), &found), "{expected}");
+    }
+    for expected in ["a … b\nend", "end", "", "a 1 b\n…\nz", "a … c\n…", "…\ny"] {
+        assert!(!matches(&lines(expected), &found), "{expected}");
+    }
+}

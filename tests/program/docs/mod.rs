@@ -1,0 +1,258 @@
+//! README and docs/: every console block is run, every snippet of settings is read by the reader that it is for, every link
+//! leads somewhere. Blocks that build, or need a person, are marked; they are counted, and their options looked up.
+//!
+//! An own reader, as `trycmd` runs each page where it stands, knows no settings, and cannot say why a block is left out.
+
+mod markdown;
+mod settings;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use serial_test::serial;
+use tomcom::session::event::Stamped;
+
+use self::markdown::{Block, Page, matches};
+use crate::tmux::TOMCOM;
+
+/// Why a block may be left out.
+const REASONS: [&str; 4] = ["builds", "needs a person", "needs the network", "takes minutes"];
+/// What stands in blocks; of the last two nothing is looked at.
+const LANGUAGES: [&str; 8] = ["console", "sh", "toml", "json", "python", "rust", "text", "r"];
+/// No longer than this, in bytes: what somebody reads who decides whether to read on.
+const MOST: [(&str, usize); 1] = [("README.md", 8 * 1024)];
+
+/// README, the other pages at the top, and docs/.
+fn pages() -> Vec<Page> {
+    let docs = fs::read_dir("docs").expect("docs").map(|entry| entry.expect("an entry").path());
+    let mut paths: Vec<PathBuf> = docs.filter(|path| path.extension().is_some_and(|kind| kind == "md")).collect();
+    paths.sort();
+    let top = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(PathBuf::from);
+    top.iter().filter(|path| path.exists()).chain(&paths).map(|path| Page::read(path)).collect()
+}
+
+/// A folder with the project's own settings, in which the blocks of a page find what they name.
+fn scratch(page: &Page) -> PathBuf {
+    let name = page.path.with_extension("").to_string_lossy().replace('/', "-");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("docs").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    for from in ["layouts", "recipes", "sessions", "sessions/questionnaires"] {
+        fs::create_dir_all(folder.join(from)).expect("a folder");
+        for entry in fs::read_dir(from).expect("the project's settings") {
+            let path = entry.expect("an entry").path();
+            if path.extension().is_some_and(|kind| kind == "toml") {
+                fs::copy(&path, folder.join(&path)).expect("a file can be copied");
+            }
+        }
+    }
+    folder
+}
+
+/// Runs a line in a shell, with the program in its path; what it printed.
+fn run(line: &str, folder: &Path, place: &str) -> String {
+    let program = Path::new(TOMCOM).parent().expect("a folder");
+    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap_or_default());
+    let mut shell = Command::new("sh");
+    shell.args(["-c", line]).current_dir(folder).env("PATH", path).stdin(Stdio::null());
+    let output = shell.output().expect("a shell");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{place}: {line}\n{told}");
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// What was done with the blocks of a page, by kind.
+type Counts = BTreeMap<String, usize>;
+
+/// Runs and reads the blocks of a page, in their order.
+fn hold(page: &Page) -> Counts {
+    let folder = scratch(page);
+    let mut counts = Counts::new();
+    settings::write(page, &folder);
+    for block in &page.blocks {
+        let place = page.at(block.line);
+        let what = match (&block.not_run, block.language.as_str()) {
+            (Some(reason), _) => format!("blocks not run, {reason}"),
+            (None, "console" | "sh") => {
+                for (command, expected) in block.commands() {
+                    let output = run(&command, &folder, &place);
+                    let found: Vec<&str> = output.lines().collect();
+                    if let Some(expected) = expected {
+                        assert!(matches(&expected, &found), "{place}: {command}\nprints\n{output}");
+                    }
+                }
+                "console blocks run".to_string()
+            }
+            (None, "toml") => {
+                settings::check(block, &folder, &place);
+                "snippets of settings read".to_string()
+            }
+            (None, "json") => {
+                for line in block.text.lines() {
+                    let event: Result<Stamped, _> = serde_json::from_str(line);
+                    assert!(event.is_ok(), "{place}: {event:?}");
+                }
+                "snippets of logs read".to_string()
+            }
+            (None, "python") => python(block, &folder, &place).to_string(),
+            (None, language) => format!("blocks of {language}"),
+        };
+        *counts.entry(what).or_default() += 1;
+    }
+    counts
+}
+
+/// Compiles a snippet of Python, and runs it if it is about pandas, and pandas is there.
+fn python(block: &Block, folder: &Path, place: &str) -> &'static str {
+    let python = std::env::var("TOMCOM_PYTHON").unwrap_or_else(|_| "python3".to_string());
+    let runs = |code: &str| {
+        let mut command = Command::new(&python);
+        command.args(["-c", code]).current_dir(folder).stdin(Stdio::null()).stdout(Stdio::null());
+        command.output().map(|output| (output.status.success(), String::from_utf8_lossy(&output.stderr).into_owned()))
+    };
+    if runs("").is_err() {
+        return "snippets of Python not looked at: there is no Python";
+    }
+    let is_pandas = block.text.contains("import pandas");
+    let (code, what) = match is_pandas && runs("import pandas").is_ok_and(|(done, _)| done) {
+        true => (block.text.clone(), "snippets of Python run"),
+        false => (format!("compile({:?}, 'snippet', 'exec')", block.text), "snippets of Python compiled"),
+    };
+    let (done, told) = runs(&code).expect("Python is there");
+    assert!(done, "{place}: {told}");
+    what
+}
+
+#[test]
+#[serial]
+fn what_the_pages_show_is_what_the_program_does() {
+    let pages = pages();
+    let next = AtomicUsize::new(0);
+    let workers = std::thread::available_parallelism().map_or(2, usize::from).min(4);
+    let work = || {
+        let mut done = Vec::new();
+        while let Some(page) = pages.get(next.fetch_add(1, Ordering::Relaxed)) {
+            done.push(hold(page));
+        }
+        done
+    };
+    let done: Vec<Counts> = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().flat_map(|worker| worker.join().expect("the blocks hold")).collect()
+    });
+    let mut counts = Counts::new();
+    for (what, count) in done.into_iter().flatten() {
+        *counts.entry(what).or_default() += count;
+    }
+    println!("{} pages", pages.len());
+    for (what, count) in &counts {
+        println!("{count:4} {what}");
+    }
+}
+
+#[test]
+#[serial]
+fn marks_and_languages_are_known_ones() {
+    for page in pages() {
+        for block in &page.blocks {
+            let place = page.at(block.line);
+            assert!(LANGUAGES.contains(&block.language.as_str()), "{place}: a block of \"{}\"", block.language);
+            if let Some(reason) = &block.not_run {
+                assert!(REASONS.contains(&reason.as_str()), "{place}: not run: {reason}");
+                assert!(matches!(block.language.as_str(), "console" | "sh"), "{place}: only commands are not run");
+            }
+        }
+    }
+}
+
+/// Commands, options and features in blocks that are not run exist all the same.
+#[test]
+#[serial]
+fn what_is_not_run_names_commands_that_exist() {
+    let manifest: toml::Table = fs::read_to_string("Cargo.toml").expect("Cargo.toml").parse().expect("a manifest");
+    let features = manifest.get("features").and_then(|features| features.as_table()).cloned().unwrap_or_default();
+    let mut known: BTreeMap<String, String> = BTreeMap::new();
+    let mut help = |command: &str| {
+        let line = format!("tomcom {command} --help");
+        known.entry(command.to_string()).or_insert_with(|| run(&line, Path::new("."), &line)).clone()
+    };
+    for page in pages() {
+        for block in page.blocks.iter().filter(|block| block.not_run.is_some()) {
+            let place = page.at(block.line);
+            for (command, _) in block.commands() {
+                let words: Vec<&str> = command.split('#').next().unwrap_or_default().split_whitespace().collect();
+                if words.first() == Some(&"cargo") {
+                    let named = words.iter().skip_while(|word| **word != "--features").nth(1);
+                    for feature in named.iter().flat_map(|names| names.split(',')) {
+                        assert!(
+                            features.is_empty() || features.contains_key(feature),
+                            "{place}: there is no feature {feature}"
+                        );
+                    }
+                }
+                let Some(("tomcom", rest)) = words.split_first().map(|(first, rest)| (*first, rest)) else { continue };
+                let named = rest.first().filter(|word| !word.starts_with('-')).copied().unwrap_or_default();
+                let told = help(named);
+                let options = rest.iter().filter(|word| word.starts_with("--"));
+                for option in options.map(|word| word.split('=').next().unwrap_or_default()) {
+                    let is_there = told.split(|c: char| !c.is_alphanumeric() && c != '-').any(|word| word == option);
+                    assert!(is_there, "{place}: tomcom {named} has no {option}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+#[serial]
+fn links_lead_somewhere_and_the_index_knows_every_page() {
+    let pages = pages();
+    for page in &pages {
+        let folder = page.path.parent().unwrap_or(Path::new(""));
+        for link in &page.links {
+            let place = page.at(link.line);
+            let (path, heading) = link.target.split_once('#').unwrap_or((&link.target, ""));
+            let target = if path.is_empty() { page.path.clone() } else { folder.join(path) };
+            assert!(target.exists(), "{place} leads to {}, which is not there", link.target);
+            if !heading.is_empty() {
+                let headings = Page::read(&target).headings;
+                assert!(headings.iter().any(|known| known == heading), "{place}: {} has no such heading", link.target);
+            }
+        }
+    }
+    let index = Page::read(Path::new("docs/index.md"));
+    for page in pages.iter().filter(|page| page.path.starts_with("docs") && page.path != index.path) {
+        let name = page.path.file_name().unwrap_or_default().to_string_lossy();
+        assert!(index.links.iter().any(|link| link.target == name), "docs/index.md does not name {name}");
+    }
+}
+
+#[test]
+#[serial]
+fn help_leads_to_pages_that_are_there() {
+    let help = |command: &str| run(&format!("tomcom {command} --help"), Path::new("."), "help");
+    let overview = help("");
+    let commands = overview.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let names = commands.filter_map(|line| line.strip_prefix("  ")?.split(' ').next().filter(|name| !name.is_empty()));
+    let without_page = ["completions", "man", "help"];
+    for command in names.filter(|name| !without_page.contains(name)).chain([""]) {
+        let told = help(command);
+        let words = told.split(|c: char| c.is_whitespace() || c == ',');
+        let pages: Vec<&str> = words.filter(|word| word.starts_with("docs/")).collect();
+        assert!(!pages.is_empty(), "tomcom {command} --help names no page");
+        for page in pages {
+            assert!(Path::new(page).exists(), "tomcom {command} --help leads to {page}, which is not there");
+        }
+    }
+}
+
+#[test]
+#[serial]
+fn pages_that_are_read_first_are_short() {
+    for (path, most) in MOST {
+        let length = fs::metadata(path).unwrap_or_else(|error| panic!("{path}: {error}")).len();
+        assert!(length <= most as u64, "{path} has {length} bytes; at most {most}, the rest belongs into docs/");
+    }
+}

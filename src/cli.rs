@@ -4,6 +4,11 @@ mod args;
 mod choices;
 mod data;
 mod estimates;
+#[cfg(feature = "rerun")]
+mod rerun;
+#[cfg(not(feature = "rerun"))]
+#[path = "cli/without_rerun.rs"]
+mod rerun;
 mod review;
 mod simulation;
 mod study;
@@ -21,6 +26,7 @@ use miette::MietteHandlerOpts;
 use serde::Serialize;
 
 use self::args::*;
+use crate::base::features::{Feature, NotBuilt};
 use crate::communication::concept::ConceptName;
 use crate::console;
 use crate::edge::doctor;
@@ -57,6 +63,12 @@ enum Failure {
     No,
     /// Whoever read the output has read enough, as `head` does.
     Unread,
+}
+
+impl From<NotBuilt> for Failure {
+    fn from(missing: NotBuilt) -> Failure {
+        Failure::Wrong(miette::miette!(help = missing.remedy(), "{missing}"))
+    }
 }
 
 impl From<FileError> for Failure {
@@ -174,6 +186,9 @@ fn operate(args: &OperateArgs) -> Result<(), Failure> {
 
 /// Runs a session of this file; with wizard and assistants side by side, where that is asked for.
 fn new_session(session: Option<&Path>, flags: &OperateFlags, compare: Option<Request>) -> Result<Sitting, Failure> {
+    if flags.rerun_listen.is_some() {
+        Feature::Rerun.require()?;
+    }
     let mut files = options::session_or_default(session)?;
     let overrides = Overrides {
         participant: flags.participant.map(ParticipantKind::from),
@@ -188,6 +203,8 @@ fn new_session(session: Option<&Path>, flags: &OperateFlags, compare: Option<Req
         rerun_listen: flags.rerun_listen.clone(),
     };
     overrides.apply(&mut files).map_err(wrong_setting)?;
+    let name = session.unwrap_or(Path::new("sessions/default.toml"));
+    files.spec.require_built_live().map_err(|missing| FileError::not_built(name, missing))?;
     let out = flags.out.clone();
     match &files.spec.plan {
         None => Ok(series::operate(Beginning::New { files: Box::new(files), trial: 0, out }, compare)?),

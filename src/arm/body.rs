@@ -1,14 +1,15 @@
 //! The arm in the physics and the human's hand beside it, in time; and what is told of them.
 
-use super::controller::{Cycle, PhysicalArm, Report};
+use super::controller::{Cycle, PhysicalArm};
 use super::physics::CYCLE_S;
-use super::reach::Unreachable;
-use super::reaching::ReachingHand;
+use super::reaching::{Reaching, ReachingHand};
+use super::report::{CycleNews, Report};
+use crate::base::rng::stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::{ButtonId, Kitchen, State};
-use crate::robot::RobotDeed;
 use crate::robot::moment::{ArmMoment, ArmPhase};
 use crate::robot::safety::SafetyMode;
+use crate::robot::{AbortReason, RobotDeed};
 
 /// So often it is told where a moving arm is: some twelve times a second.
 const TOLD_EVERY: SessionTime = SessionTime(80_000_000);
@@ -31,15 +32,16 @@ struct Told {
 
 /// The arm, and when it was there.
 #[derive(Clone, Debug)]
-pub(super) struct Body {
+pub struct Body {
+    /// The arm.
     pub arm: PhysicalArm,
-    pub hand: ReachingHand,
+    hand: ReachingHand,
     /// The time of its last cycle.
     at: SessionTime,
     /// Where it goes when it stands still.
     next: Option<ButtonId>,
     /// There is nothing to do.
-    pub idle: bool,
+    idle: bool,
     told: Told,
     /// The state in which the press that it makes was last found useful.
     found_useful: Option<State>,
@@ -48,7 +50,9 @@ pub(super) struct Body {
 }
 
 impl Body {
-    pub fn new(kitchen: &Kitchen, hand: ReachingHand) -> Body {
+    /// An arm at rest beside a human's hand that moves so.
+    pub fn new(kitchen: &Kitchen, hand: Reaching, seed: u64, trial: u64) -> Body {
+        let hand = ReachingHand::new(kitchen, hand, stream(seed, "human's hand", trial));
         let arm = PhysicalArm::new(kitchen);
         Body {
             arm,
@@ -72,18 +76,18 @@ impl Body {
     }
 
     /// Sets out for a button, at once or when it stands still; how long that takes if nothing comes between, in seconds.
-    pub fn set_out(&mut self, now: SessionTime, button: ButtonId) -> Result<f64, Unreachable> {
+    pub fn set_out(&mut self, now: SessionTime, button: ButtonId) -> Result<f64, AbortReason> {
         (self.found_useful, self.idle) = (None, false);
         if self.arm.withdraws() {
             self.arm.give_up();
         }
         if self.arm.halts() {
             self.next = Some(button);
-            return self.arm.takes_s(button);
+            return Ok(self.arm.takes_s(button)?);
         }
         // While it was at rest nothing happened to it.
         self.at = self.at.max(now);
-        self.arm.set_out(button)
+        Ok(self.arm.set_out(button)?)
     }
 
     /// Gives up what it set out for, or was about to.
@@ -113,14 +117,14 @@ impl Body {
     }
 
     /// Sets out for where it was about to go, if it stands still by now; the button that it cannot reach from there, and why.
-    pub fn go_on(&mut self) -> Option<(ButtonId, Unreachable)> {
+    pub fn go_on(&mut self) -> Option<(ButtonId, AbortReason)> {
         let halts = self.arm.halts() || self.arm.mode.is_stopped();
         let button = self.next.take_if(|_| !halts)?;
-        self.arm.set_out(button).err().map(|why| (button, why))
+        self.arm.set_out(button).err().map(|why| (button, why.into()))
     }
 
     /// A cycle that ends now: what came of it, and what is to be told.
-    pub fn cycle(&mut self, now: SessionTime) -> (Cycle, Vec<RobotDeed>) {
+    pub fn cycle(&mut self, now: SessionTime) -> CycleNews {
         self.at = now;
         if self.idle && self.arm.is_out() {
             self.arm.go_home();
@@ -131,7 +135,7 @@ impl Body {
         if cycle.felt.human_n > 0.0 {
             self.hand.feels_the_arm();
         }
-        (cycle, self.news(now, &cycle))
+        CycleNews { clicked: cycle.clicked, report: cycle.report, news: self.news(now, &cycle) }
     }
 
     fn news(&mut self, now: SessionTime, cycle: &Cycle) -> Vec<RobotDeed> {
@@ -161,17 +165,39 @@ impl Body {
         news
     }
 
+    /// There is nothing to do until it sets out again.
+    pub fn has_nothing_to_do(&mut self) {
+        self.idle = true;
+    }
+
+    /// The wizard stops it.
+    pub fn stop(&mut self) -> Option<RobotDeed> {
+        self.arm.stop(SafetyMode::EmergencyStop);
+        self.safety(None, None)
+    }
+
+    /// The person means to press the button at this place of the table (metres) at `at`, as far as is known now.
+    pub fn human_means(&mut self, now: SessionTime, button_m: [f64; 2], at: SessionTime) {
+        self.hand.means(now, button_m, at);
+    }
+
+    /// The person has pressed the button at this place of the table (metres).
+    pub fn human_pressed(&mut self, now: SessionTime, button_m: [f64; 2]) {
+        self.hand.pressed(now, button_m);
+    }
+
     /// That it is safe in another way than was told, if it is.
-    pub fn safety(&mut self, force_n: Option<f64>, joint: Option<u8>) -> Option<RobotDeed> {
+    fn safety(&mut self, force_n: Option<f64>, joint: Option<u8>) -> Option<RobotDeed> {
         let mode = self.arm.mode;
         let changed = std::mem::replace(&mut self.told.mode, mode) != mode;
         changed.then_some(RobotDeed::Safety { mode, force_n, joint })
     }
 
     /// The wizard lets it go on.
-    pub fn resume(&mut self, now: SessionTime) {
+    pub fn resume(&mut self, now: SessionTime) -> Option<RobotDeed> {
         self.at = self.at.max(now);
         self.arm.resume();
+        self.safety(None, None)
     }
 
     /// A pause of this length is over.

@@ -10,6 +10,7 @@ use super::kinematics::Arm;
 use super::physics::hand::HandPlace;
 use super::physics::{CYCLE_S, Felt, World};
 use super::reach::{AtButton, Unreachable, resting_pose};
+use super::report::Report;
 use super::separation::{MARGIN_M, mode_near, speed_limit};
 use super::touch::Touch;
 use super::trajectory::{Leg, LegKind, way_over, way_to, way_up};
@@ -37,19 +38,6 @@ pub const STILL_RAD_S: f64 = 0.02;
 
 /// A hand further away than this matters to nothing, in metres.
 const FAR_M: f64 = SLOWS_M + MARGIN_M + 0.02;
-
-/// Why it did not press.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Report {
-    /// It gave up the press: a hand was in the way for too long.
-    Blocked(ButtonId),
-    /// It was down on the button, which did not click.
-    NoClick(ButtonId),
-    /// It felt somebody, with this force in newtons, and stops; the press is given up.
-    Contact(f64),
-    /// This joint, 0 the first, did not follow; the brakes hold, the press is given up.
-    Fault(usize),
-}
 
 /// A cycle, and what came of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

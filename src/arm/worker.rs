@@ -5,14 +5,14 @@
 use rand_distr::{Distribution, LogNormal};
 
 use super::body::Body;
-use super::controller::{PhysicalArm, Report};
-use super::reaching::{Reaching, ReachingHand};
+#[cfg(feature = "physics")]
+use super::controller::PhysicalArm;
+use super::report::Report;
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::{Care, CostToGo};
 use crate::kitchen::{ButtonId, Kitchen, State};
 use crate::robot::policy::{self, Decision};
-use crate::robot::safety::SafetyMode;
 use crate::robot::{AbortReason, IdleReason, RobotDeed};
 
 /// A press that was skipped is not decided for again within this time, in seconds.
@@ -66,14 +66,13 @@ impl Robot {
         }
     }
 
-    /// The same robot with an arm in the physics, which decides how long its presses take, beside a human's hand that moves
-    /// so.
-    pub fn with_arm(self, kitchen: &Kitchen, hand: Reaching, seed: u64, trial: u64) -> Robot {
-        let hand = ReachingHand::new(kitchen, hand, stream(seed, "human's hand", trial));
-        Robot { body: Some(Box::new(Body::new(kitchen, hand))), ..self }
+    /// The same robot with an arm in the physics, which decides how long its presses take.
+    pub fn with_body(self, body: Body) -> Robot {
+        Robot { body: Some(Box::new(body)), ..self }
     }
 
     /// The arm in the physics, for experiments with it.
+    #[cfg(feature = "physics")]
     pub fn arm(&mut self) -> Option<&mut PhysicalArm> {
         self.body.as_mut().map(|body| &mut body.arm)
     }
@@ -126,7 +125,7 @@ impl Robot {
             Decision::Press(button) => Some(self.set_out(now, button, false)),
             Decision::Idle(reason) => {
                 if let Some(body) = &mut self.body {
-                    body.idle = true;
+                    body.has_nothing_to_do();
                 }
                 let said = self.idle.replace((reason, state)).map(|(said, _)| said);
                 (said != Some(reason)).then_some(RobotDeed::Idle(reason))
@@ -141,7 +140,7 @@ impl Robot {
                 Ok(takes_s) => takes_s,
                 Err(why) => {
                     self.leave_out(now, button);
-                    return RobotDeed::Abort(button, why.into());
+                    return RobotDeed::Abort(button, why);
                 }
             },
         };
@@ -157,7 +156,7 @@ impl Robot {
         let Some(body) = &mut self.body else { return self.touch(kitchen, cost, state).into_iter().collect() };
         let mut deeds = Vec::new();
         if let Some((button, why)) = body.go_on() {
-            deeds.extend(self.go_without(now, button, why.into()));
+            deeds.extend(self.go_without(now, button, why));
             return deeds;
         }
         if let Some(errand) = self.busy.filter(|_| body.asks(may_press, state)) {
@@ -170,8 +169,8 @@ impl Robot {
                 }
             }
         }
-        let (cycle, news) = body.cycle(now);
-        deeds.extend(news);
+        let cycle = body.cycle(now);
+        deeds.extend(cycle.news);
         if let Some(button) = cycle.clicked {
             self.busy = None;
             deeds.push(RobotDeed::Press(button));
@@ -240,10 +239,7 @@ impl Robot {
 
     /// The wizard stops the robot; it gives up what it is on its way to.
     pub fn stop(&mut self) -> Vec<RobotDeed> {
-        let safety = self.body.as_mut().and_then(|body| {
-            body.arm.stop(SafetyMode::EmergencyStop);
-            body.safety(None, None)
-        });
+        let safety = self.body.as_mut().and_then(|body| body.stop());
         let given_up = self.halt(AbortReason::Stopped);
         safety.into_iter().chain(given_up).collect()
     }
@@ -272,22 +268,20 @@ impl Robot {
     /// The wizard lets the robot go on.
     pub fn resume(&mut self, now: SessionTime) -> Option<RobotDeed> {
         self.stopped = false;
-        let body = self.body.as_mut()?;
-        body.resume(now);
-        body.safety(None, None)
+        self.body.as_mut()?.resume(now)
     }
 
     /// The person means to press the button at this place of the table (metres) at `at`, as far as is known now.
     pub fn human_means(&mut self, now: SessionTime, button_m: [f64; 2], at: SessionTime) {
         if let Some(body) = &mut self.body {
-            body.hand.means(now, button_m, at);
+            body.human_means(now, button_m, at);
         }
     }
 
     /// The person has pressed the button at this place of the table (metres).
     pub fn human_pressed(&mut self, now: SessionTime, button_m: [f64; 2]) {
         if let Some(body) = &mut self.body {
-            body.hand.pressed(now, button_m);
+            body.human_pressed(now, button_m);
         }
     }
 

@@ -2,6 +2,7 @@
 
 pub mod ascent;
 pub mod bits;
+pub mod features;
 pub mod linear;
 pub mod minimise;
 pub mod rng;

@@ -1,13 +1,13 @@
 //! `tomcom review`.
 
-use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::Failure;
+use super::rerun::open;
+use crate::base::features::Feature;
 use crate::base::time::SessionTime;
-use crate::run::rerun::{RerunError, Review, Reviewed, Running, Saved, review as open, running, until_asked_to_end};
 
 /// Opens recordings in Rerun's viewer.
 ///
@@ -27,10 +27,10 @@ pub(super) struct ReviewArgs {
     save: Option<Option<PathBuf>>,
     /// Serve the viewer for a browser, even if there is another one.
     #[arg(long, conflicts_with = "save")]
-    web: bool,
+    pub(super) web: bool,
     /// Open at this moment of the trial's clock, as the console shows it: 1:34, or seconds.
     #[arg(long, value_name = "TIME", value_parser = moment, conflicts_with = "save")]
-    at: Option<SessionTime>,
+    pub(super) at: Option<SessionTime>,
 }
 
 /// A moment as the console shows it, or in seconds.
@@ -47,16 +47,9 @@ fn moment(text: &str) -> Result<SessionTime, String> {
     seconds.map(|seconds| SessionTime::from_secs_f64(minutes * 60.0 + seconds)).ok_or_else(wrong)
 }
 
-impl From<RerunError> for Failure {
-    fn from(error: RerunError) -> Failure {
-        match error {
-            RerunError::File(error) => Failure::from(*error),
-            error => Failure::Failed(miette::Report::new(error)),
-        }
-    }
-}
-
+/// `tomcom review RECORDING`.
 pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
+    Feature::Rerun.require()?;
     let (mut recordings, mut save) = (args.recordings.clone(), args.save.clone());
     // No recording is called that: it stands behind `--save`, where others have no `=`.
     let is_stream = |path: &mut PathBuf| path.extension().is_some_and(|extension| extension == "rrd");
@@ -74,37 +67,7 @@ pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
             recordings.len()
         )));
     }
-    let mut out = std::io::stdout();
-    for one in running(&recordings)? {
-        write!(out, "{}", still_running(&one))?;
-    }
-    let asked = Review { recordings, save, web: args.web, at: args.at };
-    match open(&asked)? {
-        Reviewed::Saved(file) => {
-            let how = if file.made { "made from the log" } else { "is there already" };
-            writeln!(out, "{} {how}{}", file.path.display(), because(&file))?;
-        }
-        Reviewed::Opened(file) => writeln!(out, "the viewer opens {}{}", file.path.display(), because(&file))?,
-        Reviewed::Served { url, because, _serving } => {
-            writeln!(out, "{because}: it is served here, for a browser on this machine, until ctrl+c\n{url}")?;
-            if let Some(at) = args.at {
-                writeln!(out, "what comes from {at} on is marked in its time line: a click there goes to it")?;
-            }
-            out.flush()?;
-            until_asked_to_end()?;
-        }
-    }
-    Ok(())
-}
-
-/// Why a file that was there had to be made anew.
-fn because(file: &Saved) -> String {
-    file.because.map_or(String::new(), |because| format!(", anew: {because}"))
-}
-
-fn still_running(one: &Running) -> String {
-    let live = one.viewers.as_ref().map_or(String::new(), |viewers| format!("; live: rerun {viewers}"));
-    format!("{}: this session is still running, and is shown up to now{live}\n", one.recording.display())
+    open(args, recordings, save)
 }
 
 #[cfg(test)]

@@ -1,19 +1,21 @@
 //! Whole trials without anybody at the console: what is simulated, and by which of the options.
 
-use std::path::Path;
-
 use super::args::SimulateArgs;
+use super::rerun::save_all;
 use super::{Failure, print, progress, wrong_argument};
+use crate::base::features::Feature;
 use crate::communication::concept::ConceptName;
 use crate::communication::settings::Shadow;
-use crate::edge::files;
-use crate::run::rerun::save as save_stream;
+use crate::edge::files::{self, FileError};
 use crate::run::{simulate, sweep};
 use crate::session::SessionSpec;
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 
 /// `tomcom simulate SESSION`.
 pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
+    if args.rerun {
+        Feature::Rerun.require()?;
+    }
     let mut files = files::read_session(&args.session)?;
     if files.spec.participant.kind != ParticipantKind::Simulated || files.spec.participant.gaze != GazeSource::Simulated
     {
@@ -49,6 +51,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     }
     files.spec.assistant.concept = args.concept.map_or(files.spec.assistant.concept, ConceptName::from);
     files.spec.robot.arm = args.arm.map_or(files.spec.robot.arm, ArmKind::from);
+    files.spec.require_built().map_err(|missing| FileError::not_built(&args.session, missing))?;
     files.spec.assistant.shadow = if args.shadow { Shadow::On } else { Shadow::Off };
     let simulation = simulate::Simulation { files, trials, shard: args.shard, out: args.out.clone() };
     if !args.sweep.is_empty() {
@@ -61,9 +64,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let figures = simulate::simulate(&simulation, || bar.inc(1))?;
     bar.finish_and_clear();
     if args.rerun {
-        for recording in &figures.recordings {
-            save_stream(Path::new(recording))?;
-        }
+        save_all(&figures.recordings)?;
     }
     print(args.format, &figures, || simulate::describe(&figures))
 }

@@ -16,7 +16,7 @@ use super::ask::ask;
 use super::clock::WallTime;
 use super::log::Lock;
 use super::terminal::theme;
-use super::viewer::{self, Viewer};
+use crate::base::features::Feature;
 use crate::console::view::theme::Ground;
 use crate::session::SessionSpec;
 use crate::session::preflight::{Check, Verdict, space};
@@ -45,7 +45,10 @@ pub fn examine(spec: &SessionSpec, out: &Path) -> Findings {
     let room = (place.verdict == Verdict::Ok).then(|| space(free_bytes(&existing(out)).ok()));
     checks.push(place);
     checks.extend(room);
-    checks.extend([wall_clock(), timer(), devices::display(spec), viewer()]);
+    checks.extend([wall_clock(), timer(), devices::display(spec)]);
+    #[cfg(feature = "rerun")]
+    checks.push(viewer());
+    checks.extend(left_out());
     checks.push(devices::gaze(spec));
     let healthy = checks.iter().all(|check| check.verdict != Verdict::Failed);
     Findings { healthy, checks }
@@ -189,15 +192,26 @@ fn wall_clock() -> Check {
 }
 
 /// Whether recordings can be looked at in a window; without it, in a browser.
+/// What this build leaves out.
+fn left_out() -> impl Iterator<Item = Check> {
+    Feature::ALL.into_iter().filter_map(|feature| {
+        let missing = feature.require().err()?;
+        Some(Check::new("build", Verdict::Warning, missing.to_string(), missing.remedy()))
+    })
+}
+
+/// The viewer of Rerun on this machine.
+#[cfg(feature = "rerun")]
 fn viewer() -> Check {
+    use super::viewer::{REMEDY, Viewer};
     let (verdict, found, remedy) = match Viewer::find() {
         Viewer::Ready(path) => (Verdict::Ok, format!("{} {}", path.display(), super::rerun::VERSION), ""),
         Viewer::NoScreen => {
             (Verdict::Ok, "there, but no screen: tomcom review serves it for a browser".to_string(), "")
         }
-        Viewer::Other(version) => (Verdict::Warning, format!("rerun {version}: another version"), viewer::REMEDY),
+        Viewer::Other(version) => (Verdict::Warning, format!("rerun {version}: another version"), REMEDY),
         Viewer::None => {
-            (Verdict::Warning, "no rerun in PATH: tomcom review serves it for a browser".to_string(), viewer::REMEDY)
+            (Verdict::Warning, "no rerun in PATH: tomcom review serves it for a browser".to_string(), REMEDY)
         }
     };
     Check::new("viewer", verdict, found, remedy)

@@ -11,13 +11,13 @@ use toml::Spanned;
 use super::language::read_words;
 use super::parse::parse;
 use super::place::place_of;
-use crate::arm::reach::out_of_reach;
+use crate::base::features::{Feature, NotBuilt};
 use crate::console::KeyMap;
 use crate::console::keys::{self, KeyError, KeyPlace, Layer};
+use crate::kitchen::Kitchen;
 use crate::kitchen::compile::{SpecError, SpecFile};
 use crate::kitchen::layout::{LayoutSpec, is_same_key};
 use crate::kitchen::recipe::RecipesSpec;
-use crate::kitchen::{Agent, Kitchen};
 use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
 use crate::session::header::FileText;
@@ -72,6 +72,13 @@ impl FileError {
     /// An error that has no place in a text: of a folder, an option, a file as a whole.
     pub fn of(what: &Path, found: String, remedy: String) -> FileError {
         FileError::Unfit { name: what.display().to_string(), found, remedy }
+    }
+
+    /// The error about a session or a recording that takes a part of the program which this build does not have.
+    pub fn not_built(what: &Path, missing: NotBuilt) -> FileError {
+        let instead = if missing.0 == Feature::Physics { "; or, for a new session, --arm timed" } else { "" };
+        let remedy = format!("{}{instead}", missing.remedy());
+        FileError::of(what, format!("a session for another build; this one is {missing}"), remedy)
     }
 
     /// An error of a file that cannot be read or written.
@@ -300,6 +307,7 @@ pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> Fil
     let recipes_spec: RecipesSpec = parse(recipes.0, &recipes.1)?;
     match Kitchen::compile(&layout_spec, &recipes_spec) {
         Ok(kitchen) => {
+            #[cfg(feature = "physics")]
             check_reach(layout.0, &layout.1, &layout_spec, &kitchen)?;
             let layout_text = FileText { path: layout.0.display().to_string(), text: layout.1 };
             let recipes_text = FileText { path: layout_spec.recipes.into_inner(), text: recipes.1 };
@@ -316,9 +324,10 @@ pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> Fil
 }
 
 /// Whether the robot's arm can press all its buttons.
+#[cfg(feature = "physics")]
 fn check_reach(path: &Path, text: &str, layout: &LayoutSpec, kitchen: &Kitchen) -> FileResult<()> {
-    let Some((button, why)) = out_of_reach(kitchen) else { return Ok(()) };
-    let button = kitchen.button(Agent::Robot, button);
+    let Some((button, why)) = crate::arm::reach::out_of_reach(kitchen) else { return Ok(()) };
+    let button = kitchen.button(crate::kitchen::Agent::Robot, button);
     let [x, y] = button.at_m;
     let place = layout.buttons().find(|spec| *spec.at_m.get_ref() == button.at_m).map(|spec| spec.at_m.span());
     let found = format!("the robot's button \"{}\" at x = {x} m, y = {y} m, {}", button.name, why.words());

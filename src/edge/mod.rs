@@ -2,6 +2,7 @@
 
 pub mod ask;
 pub mod clock;
+#[cfg(feature = "display")]
 pub mod display;
 pub mod doctor;
 pub mod export;
@@ -16,10 +17,14 @@ pub mod parse;
 mod place;
 pub mod pupil;
 pub mod recordings;
+#[cfg(feature = "rerun")]
 pub mod rerun;
+#[cfg(feature = "rerun")]
 pub mod rrd;
+#[cfg(feature = "rerun")]
 pub mod stream;
 pub mod terminal;
 pub mod training;
 mod type_error;
+#[cfg(feature = "rerun")]
 pub mod viewer;

@@ -15,8 +15,6 @@ use super::live::LiveError;
 use crate::console::Message;
 use crate::console::question::{Question, Reply};
 use crate::console::view::theme::Theme;
-use crate::display::words::Words;
-use crate::edge::display::{Display, PageInput};
 use crate::edge::gaze_file::{self, GazeFile};
 use crate::edge::gaze_input::GazeNews;
 use crate::edge::gaze_json;
@@ -27,13 +25,21 @@ use crate::gaze::tags::{TagError, Tags};
 use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
 use crate::session::calibration::Calibrated;
-use crate::session::display::DisplaySpec;
-use crate::session::settings::{GazeSource, ParticipantKind};
+use crate::session::settings::GazeSource;
 
 /// A question is drawn so often.
 const REDRAW: Duration = Duration::from_millis(100);
 /// So long Capture may take for what it was told last.
 const SETTLE: Duration = Duration::from_secs(1);
+
+#[cfg(feature = "display")]
+mod wall;
+#[cfg(not(feature = "display"))]
+#[path = "desk/without_display.rs"]
+mod wall;
+
+pub(super) use wall::PageInput;
+use wall::Wall;
 
 /// What the recordings of a series share.
 pub(super) struct Desk {
@@ -49,9 +55,6 @@ pub(super) struct Seat {
     hands: Hands,
     end: Pin<Box<dyn Future<Output = io::Result<()>>>>,
 }
-
-/// The participant's display, if the participant is at one.
-pub(super) struct Wall(Option<Display>);
 
 /// Where the gaze comes from, if it comes from outside.
 #[derive(Default)]
@@ -87,17 +90,11 @@ impl Desk {
     pub async fn take(spec: &SessionSpec, kitchen: &Kitchen) -> Result<Desk, LiveError> {
         outlive_file_limits().map_err(LiveError::Terminal)?;
         let tracker = Tracker::open(spec, kitchen).await?;
-        let wall = match (spec.participant.kind, &spec.display) {
-            (ParticipantKind::Display, DisplaySpec { listen, port, .. }) => {
-                let opened = Display::open(*listen, *port, &Words::of(&spec.display)).await;
-                Some(opened.map_err(|reason| LiveError::Display { address: *listen, port: *port, reason })?)
-            }
-            _ => None,
-        };
+        let wall = Wall::open(spec).await?;
         let screen = Screen::take().map_err(LiveError::Terminal)?;
         let theme = theme(&spec.console, screen.ground);
         let seat = Seat { hands: Hands::default(), end: Box::pin(asked_to_end()) };
-        Ok(Desk { screen, theme, seat, tracker, wall: Wall(wall) })
+        Ok(Desk { screen, theme, seat, tracker, wall })
     }
 
     /// Asks before a recording begins; the place of the answer, nothing if the program is to be left.
@@ -139,20 +136,6 @@ impl Seat {
             biased;
             _ = &mut self.end => None,
             message = self.hands.next() => message,
-        }
-    }
-}
-
-impl Wall {
-    pub fn display(&self) -> Option<&Display> {
-        self.0.as_ref()
-    }
-
-    /// The next input of the participant's page; never, if there is none.
-    pub async fn next(&mut self) -> Option<PageInput> {
-        match &mut self.0 {
-            Some(display) => display.next().await,
-            None => std::future::pending().await,
         }
     }
 }

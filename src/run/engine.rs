@@ -73,6 +73,9 @@ enum Source {
 impl Engine {
     /// A session before its first event. `cost` may be shared with other engines of the same kitchen: what it remembers
     /// never changes what it answers.
+    ///
+    /// # Panics
+    /// The settings ask for an arm in the physics, and this build has no physics: `SessionSpec::require_built` tells.
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64, cost: CostToGo) -> Engine {
         let orders = OrderList::new(kitchen.dishes.len(), &spec, trial);
         let robot = robot_of(&kitchen, &spec, trial);

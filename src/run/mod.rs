@@ -1,39 +1,74 @@
 //! The composers: they bring session, robot, participant, files and clock together. Nothing else does.
 
+#[cfg(feature = "cli")]
 pub mod accuracy;
 pub mod advisor;
+#[cfg(feature = "cli")]
+mod advisor_desk;
+#[cfg(feature = "cli")]
 mod begun;
+#[cfg(feature = "cli")]
 pub mod check_beliefs;
+#[cfg(feature = "cli")]
 pub mod codes;
+#[cfg(feature = "cli")]
 pub mod compare;
+#[cfg(feature = "cli")]
 mod desk;
 pub mod engine;
+#[cfg(feature = "cli")]
 pub mod error;
+#[cfg(feature = "cli")]
 pub mod figures;
+#[cfg(feature = "cli")]
 pub mod film;
+#[cfg(feature = "cli")]
 pub mod fit;
 pub mod follower;
+#[cfg(feature = "cli")]
 pub mod gaze_figures;
 pub mod headless;
+#[cfg(feature = "cli")]
 pub mod kitchen;
+#[cfg(feature = "cli")]
 pub mod leaving;
+#[cfg(feature = "cli")]
 pub mod lesson_report;
+#[cfg(feature = "cli")]
 pub mod live;
+#[cfg(feature = "cli")]
 pub mod options;
+#[cfg(feature = "cli")]
 pub mod parallel;
+#[cfg(feature = "cli")]
 pub mod plan;
+#[cfg(feature = "cli")]
 pub mod replay;
+#[cfg(all(feature = "cli", feature = "rerun"))]
 pub mod rerun;
+#[cfg(feature = "cli")]
 pub mod resume;
+#[cfg(feature = "cli")]
 pub mod review;
+#[cfg(feature = "cli")]
 pub mod series;
+#[cfg(feature = "cli")]
 pub mod similarity;
+#[cfg(feature = "cli")]
 pub mod simulate;
+#[cfg(feature = "cli")]
 pub mod standing;
+#[cfg(feature = "cli")]
 pub mod study;
+#[cfg(feature = "cli")]
 pub mod sweep;
+#[cfg(feature = "cli")]
 pub mod tell;
+#[cfg(feature = "cli")]
 pub mod timing;
+#[cfg(feature = "cli")]
 pub mod train;
+#[cfg(feature = "cli")]
 pub mod verify;
+#[cfg(feature = "cli")]
 pub mod wizard;

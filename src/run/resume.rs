@@ -64,6 +64,7 @@ pub fn resume(recording: &Path) -> Result<Resumed, ResumeError> {
     if log.header.started.is_none() {
         return Err(ResumeError::Simulated(folder));
     }
+    log.header.session.require_built_live().map_err(|missing| FileError::not_built(&folder, missing))?;
     let lock = Lock::take(&folder)?;
     check_continued(&folder)?;
     let Rerun { log, mut again, difference, .. } = Rerun::of(log)?;

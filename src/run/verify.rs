@@ -12,7 +12,7 @@ use super::engine::Engine;
 use super::follower::Follower;
 use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
-use crate::edge::files::FileResult;
+use crate::edge::files::{FileError, FileResult};
 use crate::edge::log::{Ending, LogLine, LogReader, at_line, event_line};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::admit::is_external;
@@ -76,6 +76,7 @@ impl Rerun {
     /// It cannot be read, or its events cannot be applied.
     pub fn of(mut log: LogReader) -> FileResult<Rerun> {
         let (kitchen, header) = (log.kitchen.clone(), log.header.clone());
+        header.session.require_built().map_err(|missing| FileError::not_built(log.path(), missing))?;
         let cost = CostToGo::new(kitchen.clone());
         let mut replayed = Follower::new(log.session(), cost.clone());
         let engine = Engine::new(kitchen, header.session, header.trial, cost);

@@ -1,26 +1,46 @@
 //! The robot in a running session: its deeds become events, and it is told what concerns it.
 
 use super::Engine;
+#[cfg(feature = "physics")]
+use crate::arm::body::Body;
+#[cfg(feature = "physics")]
 use crate::arm::reaching::Reaching;
 use crate::arm::worker::Robot;
+#[cfg(not(feature = "physics"))]
+use crate::base::features::{Feature, NotBuilt};
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, ButtonId, Kitchen};
 use crate::participant::SimulatedParticipant;
 use crate::robot::RobotDeed;
-use crate::session::settings::{ArmKind, ParticipantKind};
+use crate::session::settings::ArmKind;
+#[cfg(feature = "physics")]
+use crate::session::settings::ParticipantKind;
 use crate::session::{Event, SessionSpec, Stamped};
 
 /// The robot of a trial.
+///
+/// # Panics
+/// The arm is to be simulated, and this build has no physics.
 pub(super) fn robot_of(kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> Robot {
     let robot = Robot::new(spec.robot.press_s, spec.robot.press_spread, spec.seed, trial);
+    match spec.robot.arm {
+        ArmKind::Timed => robot,
+        ArmKind::Physics => with_physics(robot, kitchen, spec, trial),
+    }
+}
+
+#[cfg(feature = "physics")]
+fn with_physics(robot: Robot, kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> Robot {
     let hand = match spec.participant.kind {
         ParticipantKind::Simulated => Reaching::SIMULATED,
         ParticipantKind::Keyboard | ParticipantKind::Display => Reaching::UNSEEN,
     };
-    match spec.robot.arm {
-        ArmKind::Timed => robot,
-        ArmKind::Physics => robot.with_arm(kitchen, hand, spec.seed, trial),
-    }
+    robot.with_body(Body::new(kitchen, hand, spec.seed, trial))
+}
+
+#[cfg(not(feature = "physics"))]
+fn with_physics(_: Robot, _: &Kitchen, _: &SessionSpec, _: u64) -> Robot {
+    panic!("{}", NotBuilt(Feature::Physics))
 }
 
 impl Engine {

@@ -1,11 +1,19 @@
 //! A live session: real time, a wizard at the console, every event recorded as it happens.
 
 mod calibration;
+#[cfg(feature = "display")]
+mod display;
+#[cfg(not(feature = "display"))]
+#[path = "without_display.rs"]
 mod display;
 mod gaze;
 mod inputs;
 mod recording;
 mod showing;
+#[cfg(feature = "rerun")]
+mod viewing;
+#[cfg(not(feature = "rerun"))]
+#[path = "without_rerun.rs"]
 mod viewing;
 
 use std::io;
@@ -25,7 +33,7 @@ use crate::edge::files::{FileError, key_map};
 use crate::edge::log::{Lock, LogWriter, WriteError};
 use crate::edge::terminal::{Screen, theme};
 use crate::gaze::tags::TagError;
-use crate::run::advisor::{AdvisorDesk, next_advice};
+use crate::run::advisor_desk::{AdvisorDesk, next_advice};
 use crate::run::begun::{Begun, Place};
 use crate::run::compare::{WatchDesk, Watcher};
 use crate::run::desk::Desk;

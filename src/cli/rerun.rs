@@ -1,0 +1,60 @@
+//! Recordings in Rerun: what its viewers are shown, and what is told of it.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use super::Failure;
+use super::review::ReviewArgs;
+use crate::run::rerun::{RerunError, Review, Reviewed, Running, Saved, review, running, save, until_asked_to_end};
+
+impl From<RerunError> for Failure {
+    fn from(error: RerunError) -> Failure {
+        match error {
+            RerunError::File(error) => Failure::from(*error),
+            error => Failure::Failed(miette::Report::new(error)),
+        }
+    }
+}
+
+/// Writes the streams of these recordings beside their logs.
+pub(super) fn save_all(recordings: &[String]) -> Result<(), Failure> {
+    for recording in recordings {
+        save(Path::new(recording))?;
+    }
+    Ok(())
+}
+
+/// Opens recordings in a viewer, or writes their stream to a file.
+pub(super) fn open(args: &ReviewArgs, recordings: Vec<PathBuf>, save: Option<Option<PathBuf>>) -> Result<(), Failure> {
+    let mut out = std::io::stdout();
+    for one in running(&recordings)? {
+        write!(out, "{}", still_running(&one))?;
+    }
+    let asked = Review { recordings, save, web: args.web, at: args.at };
+    match review(&asked)? {
+        Reviewed::Saved(file) => {
+            let how = if file.made { "made from the log" } else { "is there already" };
+            writeln!(out, "{} {how}{}", file.path.display(), because(&file))?;
+        }
+        Reviewed::Opened(file) => writeln!(out, "the viewer opens {}{}", file.path.display(), because(&file))?,
+        Reviewed::Served { url, because, _serving } => {
+            writeln!(out, "{because}: it is served here, for a browser on this machine, until ctrl+c\n{url}")?;
+            if let Some(at) = args.at {
+                writeln!(out, "what comes from {at} on is marked in its time line: a click there goes to it")?;
+            }
+            out.flush()?;
+            until_asked_to_end()?;
+        }
+    }
+    Ok(())
+}
+
+/// Why a file that was there had to be made anew.
+fn because(file: &Saved) -> String {
+    file.because.map_or(String::new(), |because| format!(", anew: {because}"))
+}
+
+fn still_running(one: &Running) -> String {
+    let live = one.viewers.as_ref().map_or(String::new(), |viewers| format!("; live: rerun {viewers}"));
+    format!("{}: this session is still running, and is shown up to now{live}\n", one.recording.display())
+}

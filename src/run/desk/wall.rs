@@ -1,0 +1,39 @@
+//! The participant's display at the desk.
+
+use crate::display::words::Words;
+use crate::edge::display::Display;
+pub(in crate::run) use crate::edge::display::PageInput;
+use crate::run::live::LiveError;
+use crate::session::SessionSpec;
+use crate::session::settings::ParticipantKind;
+
+/// The participant's display, if the participant is at one.
+pub(in crate::run) struct Wall(Option<Display>);
+
+impl Wall {
+    /// Serves the display, where the participant is at one.
+    ///
+    /// # Errors
+    /// Nothing can listen at its address.
+    pub async fn open(spec: &SessionSpec) -> Result<Wall, LiveError> {
+        if spec.participant.kind != ParticipantKind::Display {
+            return Ok(Wall(None));
+        }
+        let (address, port) = (spec.display.listen, spec.display.port);
+        let opened = Display::open(address, port, &Words::of(&spec.display)).await;
+        opened.map(|display| Wall(Some(display))).map_err(|reason| LiveError::Display { address, port, reason })
+    }
+
+    /// The display.
+    pub fn display(&self) -> Option<&Display> {
+        self.0.as_ref()
+    }
+
+    /// The next input of the participant's page; never, if there is none.
+    pub async fn next(&mut self) -> Option<PageInput> {
+        match &mut self.0 {
+            Some(display) => display.next().await,
+            None => std::future::pending().await,
+        }
+    }
+}

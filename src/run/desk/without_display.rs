@@ -1,0 +1,25 @@
+//! The desk in a build without the feature `display`: no display, and nothing comes from one.
+
+use crate::run::live::LiveError;
+use crate::session::SessionSpec;
+
+/// What comes from a display: this type has no value.
+pub(in crate::run) enum PageInput {}
+
+/// No display.
+pub(in crate::run) struct Wall;
+
+impl Wall {
+    /// Sessions whose participant is at a display were refused before.
+    ///
+    /// # Errors
+    /// None.
+    pub async fn open(_: &SessionSpec) -> Result<Wall, LiveError> {
+        Ok(Wall)
+    }
+
+    /// Never.
+    pub async fn next(&mut self) -> Option<PageInput> {
+        std::future::pending().await
+    }
+}

@@ -7,7 +7,7 @@ use std::time::Instant;
 use nalgebra::Point3;
 use tomcom::arm::controller::PhysicalArm;
 use tomcom::arm::physics::CYCLE_S;
-use tomcom::arm::physics::hand::HandPlace;
+use tomcom::arm::physics::hand::HandPose;
 use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::{Agent, ButtonId};
 use tomcom::robot::moment::ArmPhase;
@@ -17,7 +17,7 @@ const SIMULATED_S: f64 = 300.0;
 
 fn main() {
     let kitchen = read_kitchen(Path::new("layouts/sushi.toml")).expect("the kitchen loads").kitchen;
-    let hand = HandPlace { at_m: Point3::new(0.72, 0.1, 0.1), elbow_m: Point3::new(1.0, 0.1, 0.1) };
+    let hand = HandPose { at_m: Point3::new(0.72, 0.1, 0.1), elbow_m: Point3::new(1.0, 0.1, 0.1) };
     for (what, hand) in [("alone", None), ("with a hand near", Some(hand))] {
         let mut arm = PhysicalArm::new(&kitchen);
         let buttons = kitchen.buttons[Agent::Robot.index()].len();

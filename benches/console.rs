@@ -11,10 +11,10 @@ use ratatui::backend::CrosstermBackend;
 use ratatui::layout::Rect;
 use ratatui::{Terminal, TerminalOptions, Viewport};
 use tomcom::base::time::SessionTime;
-use tomcom::console::belief::Moment;
-use tomcom::console::model::Recording;
-use tomcom::console::view::theme::{Ground, Theme};
-use tomcom::console::{KeyMap, Keys, Model, view};
+use tomcom::console::belief::BeliefSnapshot;
+use tomcom::console::model::RecordingStatus;
+use tomcom::console::view::theme::{TerminalBackground, Theme};
+use tomcom::console::{ConsoleModel, KeyBindings, KeyMap, view};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::Engine;
 use tomcom::run::options::session_or_default;
@@ -44,7 +44,7 @@ impl Write for Count {
 /// A session that runs, with its console.
 struct Stage {
     engine: Engine,
-    model: Model,
+    model: ConsoleModel,
     judged: usize,
 }
 
@@ -52,9 +52,10 @@ impl Stage {
     fn new(size: (u16, u16)) -> Stage {
         let files = session_or_default(None).expect("the default session");
         let kitchen = Arc::new(files.kitchen.kitchen);
-        let keys = Keys::live(&kitchen, &files.spec, &KeyMap::default()).expect("the keys are free");
-        let mut model = Model::new(keys, Theme { colour: true, unicode: true, ground: Ground::Dark }, size);
-        model.recording = Recording::On("sessions/2026-03-14-P01-1".to_string());
+        let keys = KeyBindings::live(&kitchen, &files.spec, &KeyMap::default()).expect("the keys are free");
+        let mut model =
+            ConsoleModel::new(keys, Theme { colour: true, unicode: true, ground: TerminalBackground::Dark }, size);
+        model.recording = RecordingStatus::On("sessions/2026-03-14-P01-1".to_string());
         let mut engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
         let _ = engine.input(SessionTime::ZERO, Event::TrialStarted);
         Stage { engine, model, judged: 0 }
@@ -73,7 +74,13 @@ impl Stage {
                 let by_gaze = matches!(last.event, Event::Gaze(_));
                 let session = self.engine.session();
                 let belief = self.engine.belief();
-                self.model.belief.note(Moment::new(&session.kitchen, session.state, belief, last.time, by_gaze));
+                self.model.belief.note(BeliefSnapshot::new(
+                    &session.kitchen,
+                    session.state,
+                    belief,
+                    last.time,
+                    by_gaze,
+                ));
             }
         }
         let judged = self.engine.judged();

@@ -10,7 +10,7 @@ use rand_distr::{Distribution, Gamma};
 use tomcom::base::rng::{Stream, stream};
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::cost_to_go::{CostToGo, Decision, MAX_BUTTONS};
+use tomcom::kitchen::cost_to_go::{CostToGo, DecisionCosts, MAX_BUTTONS};
 use tomcom::kitchen::{Agent, AspectKind, ButtonId, Kitchen, Recipes, State};
 use tomcom::mind::BeliefWitness;
 use tomcom::run::engine::Engine;
@@ -114,7 +114,7 @@ impl Tally {
         state: State,
         recipes: &Recipes,
         agent: Agent,
-    ) -> Decision {
+    ) -> DecisionCosts {
         let decision = *cost.decision(state, recipes, agent);
         let buttons = kitchen.buttons[agent.index()].len();
         self.sum += decision.after[..buttons].iter().map(|&cost| u64::from(cost)).sum::<u64>();

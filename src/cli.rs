@@ -32,15 +32,15 @@ use crate::console;
 use crate::edge::doctor;
 use crate::edge::files::{self, FileError};
 use crate::edge::log::{self, RulingError, WriteError};
-use crate::run::compare::Request;
+use crate::run::compare::CompareRequest;
 use crate::run::error::RunError;
 use crate::run::live::LiveError;
-use crate::run::options::{self, Beginning, Overrides, Series};
-use crate::run::plan::{self, Overview};
+use crate::run::options::{self, SessionStart, SettingOverrides, TrialSeries};
+use crate::run::plan::{self, StudyPlanSummary};
 use crate::run::replay::Replay;
 use crate::run::review::{self as console_over, ReviewError};
-use crate::run::series::{self, Sitting};
-use crate::run::standing::{self, Standing};
+use crate::run::series::{self, SeriesOutcome};
+use crate::run::standing::{self, ExclusionStatus};
 use crate::run::{kitchen, tell, timing, verify};
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, SettingError};
 
@@ -136,25 +136,25 @@ pub fn main() -> ExitCode {
     let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build())));
     let cli = Cli::parse();
     let command =
-        cli.command.unwrap_or(Command::Operate(OperateArgs { session: None, recording: None, flags: cli.operate }));
+        cli.command.unwrap_or(CliCommand::Operate(OperateArgs { session: None, recording: None, flags: cli.operate }));
     let done = match command {
-        Command::Operate(args) => operate(&args),
-        Command::Compare(args) => wizard::compare(&args),
-        Command::Train(args) => wizard::train(&args),
-        Command::Replay(args) => replay(&args),
-        Command::Review(args) => review::review(&args),
-        Command::Simulate(args) => simulation::simulate(&args),
-        Command::Study(args) => study::study(&args),
-        Command::Plan(args) => show_plan(&args),
-        Command::Fit(args) => estimates::fit(&args),
-        Command::Kitchen(args) => kitchen(&args),
-        Command::Keys(args) => keys(&args),
-        Command::Exclude(args) => exclude(&args),
-        Command::Codes(args) => data::codes(&args),
-        Command::Forget(args) => data::forget(&args),
-        Command::Doctor(args) => examine(&args),
-        Command::Completions(args) => completions(&args),
-        Command::Man(args) => man(&args),
+        CliCommand::Operate(args) => operate(&args),
+        CliCommand::Compare(args) => wizard::compare(&args),
+        CliCommand::Train(args) => wizard::train(&args),
+        CliCommand::Replay(args) => replay(&args),
+        CliCommand::Review(args) => review::review(&args),
+        CliCommand::Simulate(args) => simulation::simulate(&args),
+        CliCommand::Study(args) => study::study(&args),
+        CliCommand::Plan(args) => show_plan(&args),
+        CliCommand::Fit(args) => estimates::fit(&args),
+        CliCommand::Kitchen(args) => kitchen(&args),
+        CliCommand::Keys(args) => keys(&args),
+        CliCommand::Exclude(args) => exclude(&args),
+        CliCommand::Codes(args) => data::codes(&args),
+        CliCommand::Forget(args) => data::forget(&args),
+        CliCommand::Doctor(args) => examine(&args),
+        CliCommand::Completions(args) => completions(&args),
+        CliCommand::Man(args) => man(&args),
     };
     let (code, report) = match done {
         Ok(()) | Err(Failure::Unread) => return ExitCode::SUCCESS,
@@ -167,30 +167,36 @@ pub fn main() -> ExitCode {
 }
 
 /// Prints figures as one JSON object, or their text.
-fn print(format: Format, figures: &impl Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
+fn print(format: OutputFormat, figures: &impl Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match format {
-        Format::Json => writeln!(out, "{}", serde_json::to_string_pretty(figures).map_err(std::io::Error::other)?)?,
-        Format::Text => write!(out, "{}", text())?,
+        OutputFormat::Json => {
+            writeln!(out, "{}", serde_json::to_string_pretty(figures).map_err(std::io::Error::other)?)?
+        }
+        OutputFormat::Text => write!(out, "{}", text())?,
     }
     Ok(out.flush()?)
 }
 
 fn operate(args: &OperateArgs) -> Result<(), Failure> {
     let done = match &args.recording {
-        Some(recording) => series::operate(Beginning::Continued(recording.clone()), None)?,
+        Some(recording) => series::operate(SessionStart::Continued(recording.clone()), None)?,
         None => new_session(args.session.as_deref(), &args.flags, None)?,
     };
     Ok(write!(std::io::stdout(), "{}", series::describe(&done))?)
 }
 
 /// Runs a session of this file; with wizard and assistants side by side, where that is asked for.
-fn new_session(session: Option<&Path>, flags: &OperateFlags, compare: Option<Request>) -> Result<Sitting, Failure> {
+fn new_session(
+    session: Option<&Path>,
+    flags: &OperateFlags,
+    compare: Option<CompareRequest>,
+) -> Result<SeriesOutcome, Failure> {
     if flags.rerun_listen.is_some() {
         Feature::Rerun.require()?;
     }
     let mut files = options::session_or_default(session)?;
-    let overrides = Overrides {
+    let overrides = SettingOverrides {
         participant: flags.participant.map(ParticipantKind::from),
         arm: flags.arm.map(ArmKind::from),
         gaze: flags.gaze.map(GazeSource::from),
@@ -207,11 +213,11 @@ fn new_session(session: Option<&Path>, flags: &OperateFlags, compare: Option<Req
     files.spec.require_built_live().map_err(|missing| FileError::not_built(name, missing))?;
     let out = flags.out.clone();
     match &files.spec.plan {
-        None => Ok(series::operate(Beginning::New { files: Box::new(files), trial: 0, out }, compare)?),
+        None => Ok(series::operate(SessionStart::New { files: Box::new(files), trial: 0, out }, compare)?),
         Some(plan) => {
             let participant = options::participant_of_plan(plan, flags.code.as_deref());
             let participant = participant.map_err(wrong_setting)?;
-            Ok(series::operate_series(Series { files, participant, out, compare })?)
+            Ok(series::operate_series(TrialSeries { files, participant, out, compare })?)
         }
     }
 }
@@ -227,7 +233,7 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
         let found = "a session without a plan".to_string();
         return Err(wrong_argument(&args.session, found, "a session file with a [plan], like sessions/study.toml"));
     };
-    let figures = Overview::of(&study, &args.out)?;
+    let figures = StudyPlanSummary::of(&study, &args.out)?;
     print(args.format, &figures, || plan::describe(&figures))
 }
 
@@ -254,18 +260,18 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     if let Some(rater) = &args.rater {
         return data::rate(recording, rater);
     }
-    if args.format == Format::Text && std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
+    if args.format == OutputFormat::Text && std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
         return Ok(console_over::review(recording, args.follow, None)?);
     }
     let mut replay = Replay::open(recording)?;
     let mut events = 0;
-    if args.format == Format::Text {
+    if args.format == OutputFormat::Text {
         writeln!(std::io::stdout(), "{}", tell::HEADING)?;
     }
     loop {
         while let Some(event) = replay.step()? {
             events += 1;
-            if let (Format::Text, Some(line)) = (args.format, tell::line(&event.stamped, &replay.follower)) {
+            if let (OutputFormat::Text, Some(line)) = (args.format, tell::line(&event.stamped, &replay.follower)) {
                 writeln!(std::io::stdout(), "{line}")?;
             }
         }
@@ -274,8 +280,8 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         }
         std::thread::sleep(FOLLOW_INTERVAL);
     }
-    let standing = Standing::of(replay.session(), replay.log())?;
-    let figures = tell::RecordingFigures::of(&replay.follower, events, replay.log().ending(), standing);
+    let standing = ExclusionStatus::of(replay.session(), replay.log())?;
+    let figures = tell::RecordingSummary::of(&replay.follower, events, replay.log().ending(), standing);
     print(args.format, &figures, || figures.describe())
 }
 
@@ -292,7 +298,7 @@ fn progress(of: u64, what: &str) -> ProgressBar {
 
 fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
     let kitchen = Arc::new(files::read_kitchen(&args.layout)?.kitchen);
-    let figures = kitchen::KitchenFigures::of(&kitchen);
+    let figures = kitchen::KitchenSummary::of(&kitchen);
     print(args.format, &figures, || kitchen::describe(&kitchen, &figures))
 }
 

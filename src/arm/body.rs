@@ -1,15 +1,15 @@
 //! The arm in the physics and the human's hand beside it, in time; and what is told of them.
 
-use super::controller::{Cycle, PhysicalArm};
+use super::controller::{ControlCycle, PhysicalArm};
 use super::physics::CYCLE_S;
-use super::reaching::{Reaching, ReachingHand};
-use super::report::{CycleNews, Report};
+use super::reaching::{ReachingBehaviour, ReachingHand};
+use super::report::{CycleNews, PressFailure};
 use crate::base::rng::stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::{ButtonId, Kitchen, State};
-use crate::robot::moment::{ArmMoment, ArmPhase};
+use crate::robot::moment::{ArmPhase, ArmSample};
 use crate::robot::safety::SafetyMode;
-use crate::robot::{AbortReason, RobotDeed};
+use crate::robot::{AbortReason, RobotActivity};
 
 /// So often it is told where a moving arm is: some twelve times a second.
 const TOLD_EVERY: SessionTime = SessionTime(80_000_000);
@@ -32,7 +32,7 @@ struct Told {
 
 /// The arm, and when it was there.
 #[derive(Clone, Debug)]
-pub struct Body {
+pub struct SteppedArm {
     /// The arm.
     pub arm: PhysicalArm,
     hand: ReachingHand,
@@ -49,12 +49,12 @@ pub struct Body {
     on_button: bool,
 }
 
-impl Body {
+impl SteppedArm {
     /// An arm at rest beside a human's hand that moves so.
-    pub fn new(kitchen: &Kitchen, hand: Reaching, seed: u64, trial: u64) -> Body {
+    pub fn new(kitchen: &Kitchen, hand: ReachingBehaviour, seed: u64, trial: u64) -> SteppedArm {
         let hand = ReachingHand::new(kitchen, hand, stream(seed, "human's hand", trial));
         let arm = PhysicalArm::new(kitchen);
-        Body {
+        SteppedArm {
             arm,
             hand,
             at: SessionTime::ZERO,
@@ -138,21 +138,21 @@ impl Body {
         CycleNews { clicked: cycle.clicked, report: cycle.report, news: self.news(now, &cycle) }
     }
 
-    fn news(&mut self, now: SessionTime, cycle: &Cycle) -> Vec<RobotDeed> {
+    fn news(&mut self, now: SessionTime, cycle: &ControlCycle) -> Vec<RobotActivity> {
         self.told.force_n = self.told.force_n.max(cycle.felt.human_n).max(cycle.felt.button_n);
         let (force_n, joint) = match cycle.report {
-            Some(Report::Contact(force_n)) => (Some(rounded(force_n, 10.0)), None),
-            Some(Report::Fault(joint)) => (None, Some(joint as u8 + 1)),
+            Some(PressFailure::Contact(force_n)) => (Some(rounded(force_n, 10.0)), None),
+            Some(PressFailure::Fault(joint)) => (None, Some(joint as u8 + 1)),
             _ => (None, None),
         };
-        let mut news: Vec<RobotDeed> = self.safety(force_n, joint).into_iter().collect();
+        let mut news: Vec<RobotActivity> = self.safety(force_n, joint).into_iter().collect();
         let told = &mut self.told;
         let (phase, moving) = (self.arm.phase(), self.arm.moves());
         let comes_to_rest = told.moving && !moving;
         let is_old = moving && now >= told.at + TOLD_EVERY;
         if !news.is_empty() || phase != told.phase || comes_to_rest || is_old {
             let place = self.hand.place();
-            news.push(RobotDeed::Move(ArmMoment {
+            news.push(RobotActivity::Move(ArmSample {
                 phase,
                 joints: self.arm.joints().map(|angle| rounded(angle, 1e4)),
                 force_n: rounded(told.force_n, 10.0),
@@ -161,7 +161,7 @@ impl Body {
             }));
             (told.at, told.phase, told.moving, told.force_n) = (now, phase, moving, 0.0);
         }
-        news.extend(cycle.touched_n.map(|force_n| RobotDeed::Touched { force_n: rounded(force_n, 10.0) }));
+        news.extend(cycle.touched_n.map(|force_n| RobotActivity::Touched { force_n: rounded(force_n, 10.0) }));
         news
     }
 
@@ -171,7 +171,7 @@ impl Body {
     }
 
     /// The wizard stops it.
-    pub fn stop(&mut self) -> Option<RobotDeed> {
+    pub fn stop(&mut self) -> Option<RobotActivity> {
         self.arm.stop(SafetyMode::EmergencyStop);
         self.safety(None, None)
     }
@@ -187,14 +187,14 @@ impl Body {
     }
 
     /// That it is safe in another way than was told, if it is.
-    fn safety(&mut self, force_n: Option<f64>, joint: Option<u8>) -> Option<RobotDeed> {
+    fn safety(&mut self, force_n: Option<f64>, joint: Option<u8>) -> Option<RobotActivity> {
         let mode = self.arm.mode;
         let changed = std::mem::replace(&mut self.told.mode, mode) != mode;
-        changed.then_some(RobotDeed::Safety { mode, force_n, joint })
+        changed.then_some(RobotActivity::Safety { mode, force_n, joint })
     }
 
     /// The wizard lets it go on.
-    pub fn resume(&mut self, now: SessionTime) -> Option<RobotDeed> {
+    pub fn resume(&mut self, now: SessionTime) -> Option<RobotActivity> {
         self.at = self.at.max(now);
         self.arm.resume();
         self.safety(None, None)

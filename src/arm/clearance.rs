@@ -5,8 +5,8 @@ use rapier3d::math::Vector;
 use rapier3d::parry::query::details::closest_points_segment_segment_with_locations_nD;
 
 use super::kinematics::Arm;
-use super::link::{Shape, Solid};
-use crate::robot::moment::{JOINTS, Joints};
+use super::link::{CollisionSolid, LinkShape};
+use crate::robot::moment::{JOINTS, JointAngles};
 
 /// Its links keep at least so far from each other and from the table, in metres.
 pub const KEPT_M: f64 = 0.02;
@@ -20,7 +20,7 @@ pub struct Capsule {
 
 /// Where two capsules are nearest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest {
+pub struct CapsuleDistance {
     /// Between the surfaces; below 0 where they overlap.
     pub distance_m: f64,
     /// On the axis of each.
@@ -29,11 +29,11 @@ pub struct Nearest {
 
 impl Capsule {
     /// The capsule in a solid; of a box the one along its longest side.
-    fn of(solid: &Solid, base_from_link: &Isometry3<f64>) -> Capsule {
+    fn of(solid: &CollisionSolid, base_from_link: &Isometry3<f64>) -> Capsule {
         let (half_m, radius_m, axis) = match solid.shape {
-            Shape::Cylinder { radius_m, length_m } => ((length_m / 2.0 - radius_m).max(0.0), radius_m, 2),
-            Shape::Sphere { radius_m } => (0.0, radius_m, 2),
-            Shape::Box { half_m } => {
+            LinkShape::Cylinder { radius_m, length_m } => ((length_m / 2.0 - radius_m).max(0.0), radius_m, 2),
+            LinkShape::Sphere { radius_m } => (0.0, radius_m, 2),
+            LinkShape::Box { half_m } => {
                 let axis = (0..3).fold(0, |best, axis| if half_m[axis] > half_m[best] { axis } else { best });
                 let radius_m = half_m[(axis + 1) % 3].max(half_m[(axis + 2) % 3]);
                 ((half_m[axis] - radius_m).max(0.0), radius_m, axis)
@@ -49,14 +49,14 @@ impl Capsule {
     }
 
     /// Where it is nearest to another one.
-    pub fn nearest(&self, other: &Capsule) -> Nearest {
+    pub fn nearest(&self, other: &Capsule) -> CapsuleDistance {
         let single = |point: Point3<f64>| Vector::new(point.x as f32, point.y as f32, point.z as f32);
         let [a, b] = self.ends_m.map(single);
         let [c, d] = other.ends_m.map(single);
         let (one, two) = closest_points_segment_segment_with_locations_nD((&a, &b), (&c, &d));
         let along = |of: &Capsule, share: f32| of.ends_m[0] + (of.ends_m[1] - of.ends_m[0]) * f64::from(share);
         let at_m = [along(self, one.barycentric_coordinates()[1]), along(other, two.barycentric_coordinates()[1])];
-        Nearest { distance_m: (at_m[0] - at_m[1]).norm() - self.radius_m - other.radius_m, at_m }
+        CapsuleDistance { distance_m: (at_m[0] - at_m[1]).norm() - self.radius_m - other.radius_m, at_m }
     }
 
     fn lowest_m(&self) -> f64 {
@@ -66,7 +66,7 @@ impl Capsule {
 
 /// What an arm is too near to, or in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum InTheWay {
+pub enum Obstruction {
     Table,
     ItsOwnLinks,
     /// Something that is known to stand there.
@@ -75,14 +75,14 @@ pub enum InTheWay {
 
 /// What is around an arm.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Surroundings {
+pub struct ArmSurroundings {
     pub table_m: f64,
     pub obstacles: Vec<Capsule>,
 }
 
 impl Arm {
     /// The capsules in its solids, with the numbers of their links, in the frame of the base.
-    pub fn capsules(&self, joints: &Joints) -> Vec<(usize, Capsule)> {
+    pub fn capsules(&self, joints: &JointAngles) -> Vec<(usize, Capsule)> {
         let places = self.forward(joints);
         let links = self.links.iter().zip(&places).enumerate();
         links
@@ -91,7 +91,7 @@ impl Arm {
     }
 
     /// What it is nearer to than [`KEPT_M`]. The stick alone may come down to the table.
-    pub fn in_the_way(&self, joints: &Joints, around: &Surroundings) -> Option<InTheWay> {
+    pub fn in_the_way(&self, joints: &JointAngles, around: &ArmSurroundings) -> Option<Obstruction> {
         let capsules = self.capsules(joints);
         let stick = self.links.len() - 1;
         let is_low = |(link, capsule): &(usize, Capsule)| {
@@ -100,17 +100,17 @@ impl Arm {
             *link > 1 && capsule.lowest_m() < around.table_m + kept_m
         };
         if capsules.iter().any(is_low) {
-            return Some(InTheWay::Table);
+            return Some(Obstruction::Table);
         }
         let is_near = |one: &Capsule, two: &Capsule| one.nearest(two).distance_m < KEPT_M;
         let meets_itself = |(link, one): &(usize, Capsule)| {
             capsules.iter().any(|(other, two)| can_meet(*link, *other) && is_near(one, two))
         };
         if capsules.iter().any(meets_itself) {
-            return Some(InTheWay::ItsOwnLinks);
+            return Some(Obstruction::ItsOwnLinks);
         }
         let meets = |(_, one): &(usize, Capsule)| around.obstacles.iter().any(|two| is_near(one, two));
-        capsules.iter().any(meets).then_some(InTheWay::Obstacle)
+        capsules.iter().any(meets).then_some(Obstruction::Obstacle)
     }
 }
 
@@ -126,22 +126,22 @@ mod tests {
 
     use super::*;
 
-    const BENT: Joints = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
+    const BENT: JointAngles = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
 
-    fn check(joints: Joints, expected: Option<InTheWay>) {
-        assert_eq!(Arm::ur5().in_the_way(&joints, &Surroundings::default()), expected, "{joints:?}");
+    fn check(joints: JointAngles, expected: Option<Obstruction>) {
+        assert_eq!(Arm::ur5().in_the_way(&joints, &ArmSurroundings::default()), expected, "{joints:?}");
     }
 
     #[test]
     fn an_arm_is_told_what_it_is_too_near_to() {
         check(BENT, None);
-        check([0.0, 0.3, 0.0, 0.0, 0.0, 0.0], Some(InTheWay::Table));
+        check([0.0, 0.3, 0.0, 0.0, 0.0, 0.0], Some(Obstruction::Table));
         // The forearm folded back onto the upper arm.
-        check([0.0, -FRAC_PI_2, 3.1, 0.0, 0.0, 0.0], Some(InTheWay::ItsOwnLinks));
+        check([0.0, -FRAC_PI_2, 3.1, 0.0, 0.0, 0.0], Some(Obstruction::ItsOwnLinks));
         let at = Arm::ur5().tip(&BENT).translation.vector;
         let obstacles = vec![Capsule { ends_m: [Point3::from(at); 2], radius_m: 0.03 }];
-        let around = Surroundings { table_m: 0.0, obstacles };
-        assert_eq!(Arm::ur5().in_the_way(&BENT, &around), Some(InTheWay::Obstacle));
+        let around = ArmSurroundings { table_m: 0.0, obstacles };
+        assert_eq!(Arm::ur5().in_the_way(&BENT, &around), Some(Obstruction::Obstacle));
     }
 
     #[test]

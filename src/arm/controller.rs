@@ -5,17 +5,17 @@
 
 use std::collections::VecDeque;
 
-use super::clearance::Surroundings;
+use super::clearance::ArmSurroundings;
 use super::kinematics::Arm;
-use super::physics::hand::HandPlace;
-use super::physics::{CYCLE_S, Felt, World};
-use super::reach::{AtButton, Unreachable, resting_pose};
-use super::report::Report;
+use super::physics::hand::HandPose;
+use super::physics::{CYCLE_S, CycleForces, PhysicsWorld};
+use super::reach::{ButtonPoses, Unreachable, resting_pose};
+use super::report::PressFailure;
 use super::separation::{MARGIN_M, mode_near, speed_limit};
-use super::touch::Touch;
-use super::trajectory::{Leg, LegKind, way_over, way_to, way_up};
+use super::touch::ContactTracker;
+use super::trajectory::{LegKind, TrajectoryLeg, way_over, way_to, way_up};
 use crate::kitchen::{Agent, ButtonId, Kitchen};
-use crate::robot::moment::{ArmPhase, JOINTS, Joints};
+use crate::robot::moment::{ArmPhase, JOINTS, JointAngles};
 use crate::robot::safety::{SLOWS_M, SafetyMode};
 
 /// How fast it slows and speeds up again: changes of its share of the speed planned for, a second; the second for stops.
@@ -41,13 +41,13 @@ const FAR_M: f64 = SLOWS_M + MARGIN_M + 0.02;
 
 /// A cycle, and what came of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Cycle {
+pub struct ControlCycle {
     /// This button clicked: it is pressed, also where the arm was about to give that up.
     pub clicked: Option<ButtonId>,
-    pub report: Option<Report>,
-    pub felt: Felt,
+    pub report: Option<PressFailure>,
+    pub felt: CycleForces,
     /// Somebody touched it a moment ago, with this force in newtons at most so far. Every contact is told so, once; one of
-    /// more force than [`SafetyMode::threshold_n`] has stopped it by then ([`Report::Contact`]).
+    /// more force than [`SafetyMode::threshold_n`] has stopped it by then ([`PressFailure::Contact`]).
     pub touched_n: Option<f64>,
 }
 
@@ -55,18 +55,18 @@ pub struct Cycle {
 #[derive(Clone, Debug)]
 pub struct PhysicalArm {
     arm: Arm,
-    world: World,
-    around: Surroundings,
+    world: PhysicsWorld,
+    around: ArmSurroundings,
     /// Where it stands while there is nothing to do.
-    home: Joints,
-    buttons: Vec<Result<AtButton, Unreachable>>,
-    way: VecDeque<Leg>,
+    home: JointAngles,
+    buttons: Vec<Result<ButtonPoses, Unreachable>>,
+    way: VecDeque<TrajectoryLeg>,
     /// How far it is on the first leg, in seconds of that leg.
     since_s: f64,
     /// Share of the planned speed.
     rate: f64,
     /// The last command.
-    here: Joints,
+    here: JointAngles,
     goal: Option<ButtonId>,
     may_press: bool,
     /// It gave its press up, and slows down to go up.
@@ -79,14 +79,14 @@ pub struct PhysicalArm {
     /// How long no hand is in its way.
     free_s: f64,
     astray: u32,
-    touch: Touch,
+    touch: ContactTracker,
 }
 
 impl PhysicalArm {
     /// An arm at rest above the middle of its buttons.
     pub fn new(kitchen: &Kitchen) -> PhysicalArm {
         let arm = Arm::ur5();
-        let around = Surroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
+        let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
         let places: Vec<[f64; 2]> = kitchen.buttons[Agent::Robot.index()].iter().map(|button| button.at_m).collect();
         let buttons: Vec<_> = places.iter().map(|&place| arm.at_button(place, &around)).collect();
         // Over those that are its alone it is out of the human's way.
@@ -94,7 +94,7 @@ impl PhysicalArm {
         let own =
             places.iter().zip(&buttons).filter(|(place, _)| !is_shared(place)).filter_map(|(_, at)| at.as_ref().ok());
         let here = resting_pose(&own.collect::<Vec<_>>());
-        let world = World::new(&arm, &here, &places, around.table_m);
+        let world = PhysicsWorld::new(&arm, &here, &places, around.table_m);
         let mode = SafetyMode::default();
         let (way, since_s, rate) = (VecDeque::new(), 0.0, 0.0);
         let (goal, may_press, halts, watches_hands, waited_s, astray) = (None, false, false, true, 0.0, 0);
@@ -116,7 +116,7 @@ impl PhysicalArm {
             waited_s,
             free_s: 0.0,
             astray,
-            touch: Touch::default(),
+            touch: ContactTracker::default(),
         }
     }
 
@@ -140,18 +140,18 @@ impl PhysicalArm {
         Ok(self.way_to(button)?.iter().map(|leg| leg.takes_s).sum())
     }
 
-    fn way_to(&self, button: ButtonId) -> Result<Vec<Leg>, Unreachable> {
+    fn way_to(&self, button: ButtonId) -> Result<Vec<TrajectoryLeg>, Unreachable> {
         let at = (*self.buttons.get(button.index()).unwrap_or(&Err(Unreachable::TooFar)))?;
         way_to(&self.arm, &self.here, &at, &self.around)
     }
 
     /// Puts something in its surroundings that it plans its ways around.
-    pub fn around(&mut self) -> &mut Surroundings {
+    pub fn around(&mut self) -> &mut ArmSurroundings {
         &mut self.around
     }
 
     /// The bodies.
-    pub fn world(&mut self) -> &mut World {
+    pub fn world(&mut self) -> &mut PhysicsWorld {
         &mut self.world
     }
 
@@ -240,22 +240,22 @@ impl PhysicalArm {
     }
 
     /// The joint angles, in radians.
-    pub fn joints(&self) -> Joints {
+    pub fn joints(&self) -> JointAngles {
         self.world.joints().0
     }
 
     /// How far a hand is from it, in metres.
-    pub fn distance(&self, hand: &HandPlace) -> f64 {
+    pub fn distance(&self, hand: &HandPose) -> f64 {
         self.world.distance(hand)
     }
 
     /// One cycle, with the human's hand where the person holds it, if there is one. With nothing to do and nobody near
     /// nothing is computed.
-    pub fn cycle(&mut self, hand: Option<HandPlace>) -> Cycle {
+    pub fn cycle(&mut self, hand: Option<HandPose>) -> ControlCycle {
         let hand = hand.filter(|hand| self.distance(hand) < FAR_M);
         let share = self.share_allowed(hand);
         if hand.is_none() && !self.is_busy() && self.world.hand().is_none() {
-            return Cycle::default();
+            return ControlCycle::default();
         }
         let slope = match (share < self.rate, self.mode.is_stopped()) {
             (true, true) => STOPS,
@@ -272,11 +272,11 @@ impl PhysicalArm {
         if clicked.is_some() && !self.mode.is_stopped() {
             self.give_up();
         }
-        Cycle { clicked, report, felt, touched_n }
+        ControlCycle { clicked, report, felt, touched_n }
     }
 
     /// The share of the planned speed that it may go now.
-    fn share_allowed(&mut self, hand: Option<HandPlace>) -> f64 {
+    fn share_allowed(&mut self, hand: Option<HandPose>) -> f64 {
         if self.mode.is_stopped() {
             return 0.0;
         }
@@ -301,12 +301,12 @@ impl PhysicalArm {
         if waits { 0.0 } else { share }
     }
 
-    fn share_near(&self, hand: &HandPlace, distance_m: f64) -> f64 {
+    fn share_near(&self, hand: &HandPose, distance_m: f64) -> f64 {
         let Some(leg) = self.way.front().filter(|_| distance_m < SLOWS_M) else { return 1.0 };
         let ahead = leg.at(self.since_s + AHEAD_S);
         let comes_nearer = self.arm.distance(&ahead, hand) < distance_m;
         let limit_m_s = speed_limit(distance_m, comes_nearer);
-        let tip = |joints: &Joints| self.arm.tip(joints).translation.vector;
+        let tip = |joints: &JointAngles| self.arm.tip(joints).translation.vector;
         let planned_m_s = (tip(&ahead) - tip(&leg.at(self.since_s))).norm() / AHEAD_S;
         // Also where a leg begins or ends slowly, a hand at the arm stops it.
         let share = limit_m_s / planned_m_s.max(limit_m_s).max(1e-3);
@@ -346,13 +346,13 @@ impl PhysicalArm {
     }
 
     /// What follows from what was felt.
-    fn judge(&mut self, felt: &Felt) -> Option<Report> {
+    fn judge(&mut self, felt: &CycleForces) -> Option<PressFailure> {
         if self.mode.is_stopped() {
             return None;
         }
         if felt.human_n > self.mode.threshold_n() {
             self.stop(SafetyMode::ProtectiveStop);
-            return Some(Report::Contact(felt.human_n));
+            return Some(PressFailure::Contact(felt.human_n));
         }
         if let Some(joint) = self.joint_astray() {
             self.stop(SafetyMode::Fault);
@@ -360,19 +360,19 @@ impl PhysicalArm {
             self.here = self.world.joints().0;
             self.way.clear();
             self.world.brake();
-            return Some(Report::Fault(joint));
+            return Some(PressFailure::Fault(joint));
         }
         let button = self.goal.filter(|_| !felt.clicked)?;
         if self.waited_s > BLOCKED_S {
             self.give_up();
-            return Some(Report::Blocked(button));
+            return Some(PressFailure::Blocked(button));
         }
         let is_down = self.way.front().is_some_and(|leg| leg.kind == LegKind::Down && self.since_s >= leg.takes_s);
         if is_down && self.mode != SafetyMode::Safeguard {
             self.waited_s += CYCLE_S;
             if self.waited_s > CLICKS_WITHIN_S {
                 self.give_up();
-                return Some(Report::NoClick(button));
+                return Some(PressFailure::NoClick(button));
             }
         }
         None

@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector6};
 
 use super::kinematics::Arm;
-use crate::robot::moment::{JOINTS, Joints};
+use crate::robot::moment::{JOINTS, JointAngles};
 
 /// The maker's table (Denavit and Hartenberg), in metres.
 const D1: f64 = 0.089159;
@@ -30,7 +30,7 @@ const DAMPING: f64 = 1e-6;
 
 impl Arm {
     /// All joint angles, between -pi and pi, at which the tip is at this pose in the frame of the base; in a fixed order.
-    pub fn inverse(&self, base_from_tip: &Isometry3<f64>) -> Vec<Joints> {
+    pub fn inverse(&self, base_from_tip: &Isometry3<f64>) -> Vec<JointAngles> {
         let stick = self.links.last().map_or_else(Isometry3::identity, |link| link.parent_from_joint);
         // The last frame of the table is on the flange, that of the last turning link in the joint.
         let flange = Translation3::new(0.0, 0.0, D6);
@@ -41,7 +41,7 @@ impl Arm {
     }
 
     /// Newton's method on the URDF's kinematics; how far it is away then.
-    fn polished(&self, target: &Isometry3<f64>, mut joints: Joints) -> (Joints, f64) {
+    fn polished(&self, target: &Isometry3<f64>, mut joints: JointAngles) -> (JointAngles, f64) {
         let mut best = (joints, f64::INFINITY);
         for _ in 0..POLISHES {
             let (tip, jacobian) = self.tip_and_jacobian(&joints);
@@ -71,7 +71,7 @@ pub fn wrapped(angle: f64) -> f64 {
 }
 
 /// The same pose with every joint turned as near to another one's as whole turns bring it.
-pub fn turned_towards(joints: &Joints, other: &Joints) -> Joints {
+pub fn turned_towards(joints: &JointAngles, other: &JointAngles) -> JointAngles {
     std::array::from_fn::<f64, JOINTS, _>(|joint| other[joint] + wrapped(joints[joint] - other[joint]))
 }
 
@@ -81,7 +81,7 @@ fn angle_of_cosine(cosine: f64) -> Option<f64> {
 }
 
 /// The flange in the frame of the controller's base.
-fn closed_form(flange: &Isometry3<f64>) -> Vec<Joints> {
+fn closed_form(flange: &Isometry3<f64>) -> Vec<JointAngles> {
     let at = flange.translation.vector;
     let turn = flange.rotation.to_rotation_matrix();
     let wrist = at - turn * Vector3::z() * D6;
@@ -102,7 +102,7 @@ fn closed_form(flange: &Isometry3<f64>) -> Vec<Joints> {
 }
 
 /// The two ways to bend the elbow, which are a plane arm's, for what the other joints are.
-fn elbows(flange: &Isometry3<f64>, [q1, q5, q6]: [f64; 3]) -> Vec<Joints> {
+fn elbows(flange: &Isometry3<f64>, [q1, q5, q6]: [f64; 3]) -> Vec<JointAngles> {
     let fourth = link(q1, D1, FRAC_PI_2).inverse() * flange * (link(q5, D5, -FRAC_PI_2) * link(q6, D6, 0.0)).inverse();
     let x_axis = fourth.rotation * Vector3::x();
     let q234 = x_axis.y.atan2(x_axis.x);

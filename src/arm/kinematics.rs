@@ -5,9 +5,9 @@
 
 use nalgebra::{Isometry3, Matrix6, UnitQuaternion, Vector6};
 
-use super::link::{Link, Turn};
+use super::link::{ArmLink, RevoluteJoint};
 use super::urdf::{UrdfError, read_links};
-use crate::robot::moment::Joints;
+use crate::robot::moment::JointAngles;
 
 /// The UR5 as a URDF.
 pub const UR5: &str = include_str!("ur5.urdf");
@@ -15,7 +15,7 @@ pub const UR5: &str = include_str!("ur5.urdf");
 /// A serial arm, from its base to its tip.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
-    pub links: Vec<Link>,
+    pub links: Vec<ArmLink>,
 }
 
 impl Arm {
@@ -33,10 +33,10 @@ impl Arm {
     }
 
     /// Where the links are, in the frame of the base (metres).
-    pub fn forward(&self, joints: &Joints) -> Vec<Isometry3<f64>> {
+    pub fn forward(&self, joints: &JointAngles) -> Vec<Isometry3<f64>> {
         let mut angles = joints.iter();
         let mut base_from_link = Isometry3::identity();
-        let place = |link: &Link| {
+        let place = |link: &ArmLink| {
             base_from_link *= link.parent_from_joint;
             if let Some(turn) = &link.turns {
                 let angle = angles.next().copied().unwrap_or_default();
@@ -48,22 +48,22 @@ impl Arm {
     }
 
     /// The tip in the frame of the base (metres).
-    pub fn tip(&self, joints: &Joints) -> Isometry3<f64> {
+    pub fn tip(&self, joints: &JointAngles) -> Isometry3<f64> {
         self.forward(joints).last().copied().unwrap_or_else(Isometry3::identity)
     }
 
     /// The joints, from the base on.
-    pub fn turns(&self) -> impl Iterator<Item = &Turn> {
+    pub fn turns(&self) -> impl Iterator<Item = &RevoluteJoint> {
         self.links.iter().filter_map(|link| link.turns.as_ref())
     }
 
     /// Whether all joints are within their ranges.
-    pub fn is_within_limits(&self, joints: &Joints) -> bool {
+    pub fn is_within_limits(&self, joints: &JointAngles) -> bool {
         self.turns().zip(joints).all(|(turn, angle)| (turn.range_rad[0]..=turn.range_rad[1]).contains(angle))
     }
 
     /// The tip in the frame of the base, and its geometric Jacobian: metres, then radians, a radian of each joint.
-    pub fn tip_and_jacobian(&self, joints: &Joints) -> (Isometry3<f64>, Matrix6<f64>) {
+    pub fn tip_and_jacobian(&self, joints: &JointAngles) -> (Isometry3<f64>, Matrix6<f64>) {
         let places = self.forward(joints);
         let tip = places.last().copied().unwrap_or_else(Isometry3::identity);
         let mut jacobian = Matrix6::zeros();
@@ -97,7 +97,7 @@ mod tests {
     ];
 
     /// The flange in the frame of `base_link`, from the table alone.
-    fn flange_by_dh(joints: &Joints) -> Matrix4<f64> {
+    fn flange_by_dh(joints: &JointAngles) -> Matrix4<f64> {
         let mut base_from_flange = Matrix4::new_rotation(Vector3::z() * PI);
         for ([d, a, alpha], angle) in DH.iter().zip(joints) {
             let ((st, ct), (sa, ca)) = (angle.sin_cos(), alpha.sin_cos());
@@ -128,7 +128,7 @@ mod tests {
         let arm = Arm::ur5();
         let stick = Matrix4::new_translation(&Vector3::new(0.0, 0.0, 0.12));
         for n in 0..500 {
-            let joints: Joints = std::array::from_fn(|joint| ((n * 37 + joint * 101) as f64 * 0.7).sin() * PI);
+            let joints: JointAngles = std::array::from_fn(|joint| ((n * 37 + joint * 101) as f64 * 0.7).sin() * PI);
             let tip = arm.forward(&joints)[7].to_homogeneous();
             let away = (tip - flange_by_dh(&joints) * stick).amax();
             assert!(away < 1e-9, "{joints:?}: {away}");

@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Point3, Unit, Vector3};
 
 /// A plain shape of a link, about its own centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
+pub enum LinkShape {
     Box {
         half_m: [f64; 3],
     },
@@ -20,14 +20,14 @@ pub enum Shape {
 
 /// A shape and its place on its link.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solid {
-    pub shape: Shape,
+pub struct CollisionSolid {
+    pub shape: LinkShape,
     pub link_from_solid: Isometry3<f64>,
 }
 
 /// A joint that turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn {
+pub struct RevoluteJoint {
     pub axis: Unit<Vector3<f64>>,
     /// Between these angles, in radians.
     pub range_rad: [f64; 2],
@@ -38,7 +38,7 @@ pub struct Turn {
 
 /// What a link weighs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Weight {
+pub struct LinkInertia {
     pub mass_kg: f64,
     pub centre_m: Point3<f64>,
     /// Moments of inertia about the centre, along the link's axes, in kg m².
@@ -47,13 +47,13 @@ pub struct Weight {
 
 /// A link, with the joint that carries it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Link {
+pub struct ArmLink {
     pub name: String,
     /// From the link before, while the joint is at 0.
     pub parent_from_joint: Isometry3<f64>,
     /// How its joint turns; none: it is fixed.
-    pub turns: Option<Turn>,
+    pub turns: Option<RevoluteJoint>,
     /// None: it weighs nothing.
-    pub weight: Option<Weight>,
-    pub solids: Vec<Solid>,
+    pub weight: Option<LinkInertia>,
+    pub solids: Vec<CollisionSolid>,
 }

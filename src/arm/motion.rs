@@ -3,12 +3,12 @@
 //! From pose to pose the joints go together, slowly at both ends (a quintic; Craig, Introduction to Robotics): up from the
 //! last button, above the next one, down on it.
 
-use super::clearance::Surroundings;
+use super::clearance::ArmSurroundings;
 use super::kinematics::Arm;
-use super::reach::{AtButton, BENT};
+use super::reach::{BENT, ButtonPoses};
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, Button, ButtonId, Kitchen};
-use crate::robot::moment::{JOINTS, Joints};
+use crate::robot::moment::{JOINTS, JointAngles};
 
 /// Of the time until it touches, the arm goes up for the first part, and down for the last.
 const UP: f64 = 0.15;
@@ -17,29 +17,29 @@ const DOWN: f64 = 0.2;
 const UP_S: f64 = 0.4;
 /// Where the joints of an arm are from moment to moment.
 #[derive(Clone, Debug)]
-pub struct ArmMotion {
+pub struct JointMotion {
     /// By button of the robot; none for one out of reach, over which the arm stays where it is.
-    buttons: Vec<Option<AtButton>>,
+    buttons: Vec<Option<ButtonPoses>>,
     /// Poses with the times at which they are taken; never empty.
-    way: Vec<(SessionTime, Joints)>,
+    way: Vec<(SessionTime, JointAngles)>,
     /// The button that the tip touches, goes down on or comes up from, so that it has to go up first.
     down_on: Option<ButtonId>,
 }
 
-impl ArmMotion {
+impl JointMotion {
     /// An arm at rest above the middle of its buttons.
-    pub fn new(kitchen: &Kitchen, arm: &Arm) -> ArmMotion {
-        let around = Surroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
+    pub fn new(kitchen: &Kitchen, arm: &Arm) -> JointMotion {
+        let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
         let at_button = |button: &Button| arm.at_button(button.at_m, &around).ok();
-        let buttons: Vec<Option<AtButton>> = kitchen.buttons[Agent::Robot.index()].iter().map(at_button).collect();
-        let above: Vec<&Joints> = buttons.iter().flatten().map(|poses| &poses.above).collect();
+        let buttons: Vec<Option<ButtonPoses>> = kitchen.buttons[Agent::Robot.index()].iter().map(at_button).collect();
+        let above: Vec<&JointAngles> = buttons.iter().flatten().map(|poses| &poses.above).collect();
         let mean = |joint: usize| above.iter().map(|pose| pose[joint]).sum::<f64>() / above.len() as f64;
         let rest = if above.is_empty() { BENT } else { std::array::from_fn(mean) };
-        ArmMotion { buttons, way: vec![(SessionTime::ZERO, rest)], down_on: None }
+        JointMotion { buttons, way: vec![(SessionTime::ZERO, rest)], down_on: None }
     }
 
     /// The joint angles at a moment.
-    pub fn at(&self, now: SessionTime) -> Joints {
+    pub fn at(&self, now: SessionTime) -> JointAngles {
         let next = self.way.partition_point(|(time, _)| *time <= now);
         let ((since, from), Some((until, to))) = (self.way[next.saturating_sub(1)], self.way.get(next)) else {
             return self.way[next - 1].1;
@@ -62,7 +62,7 @@ impl ArmMotion {
         let after = |share: f64| now + SessionTime::from_secs_f64(takes_s * share);
         let here = self.at(now);
         let mut way = vec![(now, here)];
-        if let Some(AtButton { above, .. }) = self.poses_below().filter(|poses| poses.above != here) {
+        if let Some(ButtonPoses { above, .. }) = self.poses_below().filter(|poses| poses.above != here) {
             way.push((after(UP), above));
         }
         way.extend([(after(1.0 - DOWN), goal.above), (until.max(now), goal.touching)]);
@@ -75,7 +75,7 @@ impl ArmMotion {
         let here = self.at(now);
         let goes_down = self.way.iter().rev().nth(1).is_none_or(|(since, _)| *since <= now);
         match self.poses_below().filter(|_| goes_down) {
-            Some(AtButton { above, .. }) => {
+            Some(ButtonPoses { above, .. }) => {
                 self.way = vec![(now, here), (now + SessionTime::from_secs_f64(UP_S), above)];
             }
             None => {
@@ -90,7 +90,7 @@ impl ArmMotion {
         self.way = vec![(now, self.at(now))];
     }
 
-    fn poses_below(&self) -> Option<AtButton> {
+    fn poses_below(&self) -> Option<ButtonPoses> {
         self.down_on.and_then(|button| self.buttons[button.index()])
     }
 }

@@ -4,19 +4,19 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
-use super::clearance::{InTheWay, Surroundings};
+use super::clearance::{ArmSurroundings, Obstruction};
 use super::inverse::turned_towards;
 use super::kinematics::Arm;
 use crate::kitchen::{Agent, ButtonId, Kitchen};
 use crate::robot::AbortReason;
-use crate::robot::moment::{JOINTS, Joints};
+use crate::robot::moment::{JOINTS, JointAngles};
 
 /// The height of a button above the table, in metres.
 pub const BUTTON_M: f64 = 0.02;
 /// The tip goes from button to button so high above them, in metres.
 pub const ABOVE_M: f64 = 0.08;
 /// The arm's usual posture: elbow up, stick down. Of all ways to stand at a button the nearest to it is taken.
-pub const BENT: Joints = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
+pub const BENT: JointAngles = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
 /// The elbow does not bend further, in radians.
 const ELBOW: usize = 2;
 const ELBOW_RAD: f64 = PI;
@@ -31,7 +31,7 @@ pub enum Unreachable {
     JointLimit,
     /// The arm could not go on from there in every direction.
     Singular,
-    Blocked(InTheWay),
+    Blocked(Obstruction),
 }
 
 impl Unreachable {
@@ -41,9 +41,9 @@ impl Unreachable {
             Unreachable::TooFar => "out of reach of its arm",
             Unreachable::JointLimit => "where its arm's joints do not turn to",
             Unreachable::Singular => "where its arm is stretched, or in line with itself (singular)",
-            Unreachable::Blocked(InTheWay::Table) => "where its arm would be on the table",
-            Unreachable::Blocked(InTheWay::ItsOwnLinks) => "where its arm would be in its own way",
-            Unreachable::Blocked(InTheWay::Obstacle) => "where something stands in its arm's way",
+            Unreachable::Blocked(Obstruction::Table) => "where its arm would be on the table",
+            Unreachable::Blocked(Obstruction::ItsOwnLinks) => "where its arm would be in its own way",
+            Unreachable::Blocked(Obstruction::Obstacle) => "where something stands in its arm's way",
         }
     }
 }
@@ -60,9 +60,9 @@ impl From<Unreachable> for AbortReason {
 
 /// How the arm stands at a button.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AtButton {
-    pub above: Joints,
-    pub touching: Joints,
+pub struct ButtonPoses {
+    pub above: JointAngles,
+    pub touching: JointAngles,
 }
 
 /// The tip at this place in the frame of the base (metres), stick down.
@@ -71,8 +71,8 @@ pub fn stick_down(at_m: [f64; 3]) -> Isometry3<f64> {
 }
 
 /// The middle of the poses above the buttons.
-pub(super) fn resting_pose(buttons: &[&AtButton]) -> Joints {
-    let above: Vec<&Joints> = buttons.iter().map(|poses| &poses.above).collect();
+pub(super) fn resting_pose(buttons: &[&ButtonPoses]) -> JointAngles {
+    let above: Vec<&JointAngles> = buttons.iter().map(|poses| &poses.above).collect();
     let mean = |joint: usize| above.iter().map(|pose| pose[joint]).sum::<f64>() / above.len() as f64;
     if above.is_empty() { BENT } else { std::array::from_fn(mean) }
 }
@@ -83,13 +83,18 @@ impl Arm {
     ///
     /// # Errors
     /// Why it cannot: for the way that came furthest.
-    pub fn standing_at(&self, at_m: [f64; 3], like: &Joints, around: &Surroundings) -> Result<Joints, Unreachable> {
-        let spun = |joints: Joints| {
+    pub fn standing_at(
+        &self,
+        at_m: [f64; 3],
+        like: &JointAngles,
+        around: &ArmSurroundings,
+    ) -> Result<JointAngles, Unreachable> {
+        let spun = |joints: JointAngles| {
             let [q1, q2, q3, q4, q5, _] = turned_towards(&joints, like);
             [q1, q2, q3, q4, q5, like[JOINTS - 1]]
         };
-        let mut ways: Vec<Joints> = self.inverse(&stick_down(at_m)).into_iter().map(spun).collect();
-        let far = |joints: &Joints| (0..JOINTS).map(|i| (joints[i] - like[i]).powi(2)).sum::<f64>();
+        let mut ways: Vec<JointAngles> = self.inverse(&stick_down(at_m)).into_iter().map(spun).collect();
+        let far = |joints: &JointAngles| (0..JOINTS).map(|i| (joints[i] - like[i]).powi(2)).sum::<f64>();
         ways.sort_by(|one, two| far(one).total_cmp(&far(two)));
         let mut why = Unreachable::TooFar;
         for way in ways {
@@ -103,7 +108,7 @@ impl Arm {
     }
 
     /// Why it should not stand so.
-    pub fn fault(&self, joints: &Joints, around: &Surroundings) -> Option<Unreachable> {
+    pub fn fault(&self, joints: &JointAngles, around: &ArmSurroundings) -> Option<Unreachable> {
         if !self.is_within_limits(joints) || joints[ELBOW].abs() > ELBOW_RAD {
             return Some(Unreachable::JointLimit);
         }
@@ -117,18 +122,18 @@ impl Arm {
     ///
     /// # Errors
     /// Why it cannot press it.
-    pub fn at_button(&self, [x, y]: [f64; 2], around: &Surroundings) -> Result<AtButton, Unreachable> {
+    pub fn at_button(&self, [x, y]: [f64; 2], around: &ArmSurroundings) -> Result<ButtonPoses, Unreachable> {
         let top_m = around.table_m + BUTTON_M;
         let like = [y.atan2(x), BENT[1], BENT[2], BENT[3], BENT[4], BENT[5]];
         let above = self.standing_at([x, y, top_m + ABOVE_M], &like, around)?;
-        Ok(AtButton { above, touching: self.standing_at([x, y, top_m], &above, around)? })
+        Ok(ButtonPoses { above, touching: self.standing_at([x, y, top_m], &above, around)? })
     }
 }
 
 /// The first of the robot's buttons that its arm cannot press with clearance, and why.
 pub fn out_of_reach(kitchen: &Kitchen) -> Option<(ButtonId, Unreachable)> {
     let arm = Arm::ur5();
-    let around = Surroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
+    let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
     let mut buttons = kitchen.buttons[Agent::Robot.index()].iter().enumerate();
     buttons.find_map(|(index, button)| Some((ButtonId(index as u8), arm.at_button(button.at_m, &around).err()?)))
 }

@@ -7,7 +7,7 @@ use nalgebra::Point3;
 use rand::RngExt;
 
 use super::physics::CYCLE_S;
-use super::physics::hand::HandPlace;
+use super::physics::hand::HandPose;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, Kitchen};
@@ -30,19 +30,19 @@ const GIVES_UP_S: f64 = 1.5;
 
 /// How a person moves the hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reaching {
+pub struct ReachingBehaviour {
     /// After a press the hand stays for so long, in seconds.
     pub lingers_s: f64,
     /// Share of reaches without an eye on the arm.
     pub heedless: f64,
 }
 
-impl Reaching {
+impl ReachingBehaviour {
     /// Of simulated participants; how often they do not mind the arm is an estimate.
-    pub const SIMULATED: Reaching = Reaching { lingers_s: 0.3, heedless: 0.005 };
+    pub const SIMULATED: ReachingBehaviour = ReachingBehaviour { lingers_s: 0.3, heedless: 0.005 };
     /// Of people, whose hands nobody sees: it is taken to be for a while where the last press was, and never to go into an
     /// arm that is not there.
-    pub const UNSEEN: Reaching = Reaching { lingers_s: 1.5, heedless: 0.0 };
+    pub const UNSEEN: ReachingBehaviour = ReachingBehaviour { lingers_s: 1.5, heedless: 0.0 };
 }
 
 /// A movement that is under way.
@@ -67,7 +67,7 @@ struct Planned {
 /// The hand.
 #[derive(Clone, Debug)]
 pub struct ReachingHand {
-    how: Reaching,
+    how: ReachingBehaviour,
     random: Stream,
     table_m: f64,
     rests_m: Point3<f64>,
@@ -90,7 +90,7 @@ pub fn resting_place(kitchen: &Kitchen) -> Point3<f64> {
 
 impl ReachingHand {
     /// A hand at rest before the human's buttons.
-    pub fn new(kitchen: &Kitchen, how: Reaching, random: Stream) -> ReachingHand {
+    pub fn new(kitchen: &Kitchen, how: ReachingBehaviour, random: Stream) -> ReachingHand {
         let (table_m, rests_m) = (kitchen.table_height_m, resting_place(kitchen));
         ReachingHand {
             how,
@@ -163,12 +163,12 @@ impl ReachingHand {
     }
 
     /// Where it is.
-    pub fn place(&self) -> HandPlace {
+    pub fn place(&self) -> HandPose {
         self.at(self.at_m)
     }
 
-    fn at(&self, at_m: Point3<f64>) -> HandPlace {
-        HandPlace::reaching(at_m, self.table_m)
+    fn at(&self, at_m: Point3<f64>) -> HandPose {
+        HandPose::reaching(at_m, self.table_m)
     }
 
     /// When it moves next, if it was looked at until `since`.
@@ -182,7 +182,7 @@ impl ReachingHand {
     }
 
     /// Moves on for a cycle that ends now; `distance_m`: how far a hand somewhere would be from the arm.
-    pub fn cycle(&mut self, now: SessionTime, distance_m: impl Fn(&HandPlace) -> f64) {
+    pub fn cycle(&mut self, now: SessionTime, distance_m: impl Fn(&HandPose) -> f64) {
         if let Some(planned) = self.planned.take_if(|planned| planned.begins <= now) {
             self.reach(planned.to_m);
         }

@@ -1,11 +1,11 @@
 //! What the arm in the physics reports of a press, and of a cycle of its controller: plain data, without the physics.
 
 use crate::kitchen::ButtonId;
-use crate::robot::RobotDeed;
+use crate::robot::RobotActivity;
 
 /// Why the arm did not press.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Report {
+pub enum PressFailure {
     /// The arm gave up the press: a hand was in the way for too long.
     Blocked(ButtonId),
     /// It was down on the button, which did not click.
@@ -22,7 +22,7 @@ pub struct CycleNews {
     /// This button clicked: it is pressed, also where the arm was about to give that up.
     pub clicked: Option<ButtonId>,
     /// Why the arm did not press.
-    pub report: Option<Report>,
+    pub report: Option<PressFailure>,
     /// To be recorded, in order.
-    pub news: Vec<RobotDeed>,
+    pub news: Vec<RobotActivity>,
 }

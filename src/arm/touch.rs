@@ -5,7 +5,7 @@ const CYCLES: u32 = 12;
 
 /// A contact that goes on, if there is one.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Touch(Option<Contact>);
+pub(super) struct ContactTracker(Option<Contact>);
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Contact {
@@ -15,7 +15,7 @@ struct Contact {
     quiet: u32,
 }
 
-impl Touch {
+impl ContactTracker {
     /// A cycle with this force in newtons; the greatest force of a contact that is to be told now.
     pub fn feel(&mut self, force_n: f64) -> Option<f64> {
         if force_n > 0.0 {

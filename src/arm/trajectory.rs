@@ -4,10 +4,10 @@
 //! acceleration begin and end at 0 and never jump. How long a leg takes follows from the limits of its kind, which are
 //! those that the maker's `movej` and `movel` have if nothing else is said.
 
-use super::clearance::Surroundings;
+use super::clearance::ArmSurroundings;
 use super::kinematics::Arm;
-use super::reach::{ABOVE_M, AtButton, BUTTON_M, Unreachable};
-use crate::robot::moment::{JOINTS, Joints};
+use super::reach::{ABOVE_M, BUTTON_M, ButtonPoses, Unreachable};
+use crate::robot::moment::{JOINTS, JointAngles};
 
 /// Limits of a leg from pose to pose: radians a second (squared).
 pub const JOINT_SPEED_RAD_S: f64 = 1.05;
@@ -38,25 +38,31 @@ pub enum LegKind {
 
 /// A part of the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Leg {
+pub struct TrajectoryLeg {
     pub kind: LegKind,
     /// Poses at equal distances.
-    poses: [Joints; 4],
+    poses: [JointAngles; 4],
     pub takes_s: f64,
 }
 
-impl Leg {
+impl TrajectoryLeg {
     /// From pose to pose, all joints together.
-    fn over(from: &Joints, to: &Joints) -> Leg {
+    fn over(from: &JointAngles, to: &JointAngles) -> TrajectoryLeg {
         let between = |share: f64| std::array::from_fn(|joint| from[joint] + (to[joint] - from[joint]) * share);
         let furthest = (0..JOINTS).map(|joint| (to[joint] - from[joint]).abs()).fold(0.0, f64::max);
         let takes_s = (QUINTIC_SPEED * furthest / JOINT_SPEED_RAD_S)
             .max((QUINTIC_ACCELERATION * furthest / JOINT_ACCELERATION_RAD_S2).sqrt());
-        Leg { kind: LegKind::Over, poses: [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(between), takes_s }
+        TrajectoryLeg { kind: LegKind::Over, poses: [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(between), takes_s }
     }
 
     /// The tip straight up or down from `from` to `to_m` above the base.
-    fn straight(arm: &Arm, kind: LegKind, from: &Joints, to_m: f64, around: &Surroundings) -> Result<Leg, Unreachable> {
+    fn straight(
+        arm: &Arm,
+        kind: LegKind,
+        from: &JointAngles,
+        to_m: f64,
+        around: &ArmSurroundings,
+    ) -> Result<TrajectoryLeg, Unreachable> {
         let at = arm.tip(from).translation.vector;
         let mut poses = [*from; 4];
         for part in 1..4 {
@@ -66,11 +72,11 @@ impl Leg {
         let length_m = (to_m - at.z).abs();
         let by_tip_s = (QUINTIC_SPEED * length_m / TIP_SPEED_M_S)
             .max((QUINTIC_ACCELERATION * length_m / TIP_ACCELERATION_M_S2).sqrt());
-        let leg = Leg { kind, poses, takes_s: by_tip_s.max(0.05) };
+        let leg = TrajectoryLeg { kind, poses, takes_s: by_tip_s.max(0.05) };
         // Near the base a short way of the tip is a long way of the joints.
         let steepest = (0..=LOOKS).map(|look| leg.slope(look as f64 / LOOKS as f64)).fold(0.0, f64::max);
         let fastest = arm.turns().map(|turn| turn.speed_rad_s).fold(f64::INFINITY, f64::min);
-        Ok(Leg { takes_s: leg.takes_s.max(QUINTIC_SPEED * steepest / fastest), ..leg })
+        Ok(TrajectoryLeg { takes_s: leg.takes_s.max(QUINTIC_SPEED * steepest / fastest), ..leg })
     }
 
     /// The greatest slope of a joint along the leg, in radians for the whole of it.
@@ -81,7 +87,7 @@ impl Leg {
     }
 
     /// The pose after this share of the way.
-    fn pose(&self, share: f64) -> Joints {
+    fn pose(&self, share: f64) -> JointAngles {
         let t = 3.0 * share;
         // Lagrange's polynomials over 0, 1, 2, 3.
         let weights = [
@@ -94,18 +100,18 @@ impl Leg {
     }
 
     /// The pose so many seconds after its start.
-    pub fn at(&self, since_s: f64) -> Joints {
+    pub fn at(&self, since_s: f64) -> JointAngles {
         let t = if self.takes_s > 0.0 { (since_s / self.takes_s).clamp(0.0, 1.0) } else { 1.0 };
         self.pose(t.powi(3) * (10.0 - 15.0 * t + 6.0 * t * t))
     }
 
     /// Where it leads to.
-    pub fn end(&self) -> &Joints {
+    pub fn end(&self) -> &JointAngles {
         &self.poses[3]
     }
 
     /// The first reason not to go along it.
-    fn fault(&self, arm: &Arm, around: &Surroundings) -> Option<Unreachable> {
+    fn fault(&self, arm: &Arm, around: &ArmSurroundings) -> Option<Unreachable> {
         (0..=LOOKS).find_map(|look| arm.fault(&self.pose(look as f64 / LOOKS as f64), around))
     }
 }
@@ -114,11 +120,16 @@ impl Leg {
 ///
 /// # Errors
 /// What is in the way, after ways over it were tried.
-pub fn way_to(arm: &Arm, from: &Joints, to: &AtButton, around: &Surroundings) -> Result<Vec<Leg>, Unreachable> {
+pub fn way_to(
+    arm: &Arm,
+    from: &JointAngles,
+    to: &ButtonPoses,
+    around: &ArmSurroundings,
+) -> Result<Vec<TrajectoryLeg>, Unreachable> {
     let mut legs = way_up(arm, from, around)?;
     let here = legs.last().map_or(*from, |leg| *leg.end());
     legs.extend(way_over(arm, &here, &to.above, around)?);
-    let down = Leg::straight(arm, LegKind::Down, &to.above, around.table_m + BUTTON_M - BELOW_M, around)?;
+    let down = TrajectoryLeg::straight(arm, LegKind::Down, &to.above, around.table_m + BUTTON_M - BELOW_M, around)?;
     match down.fault(arm, around) {
         None => legs.push(down),
         Some(fault) => return Err(fault),
@@ -130,32 +141,37 @@ pub fn way_to(arm: &Arm, from: &Joints, to: &AtButton, around: &Surroundings) ->
 ///
 /// # Errors
 /// What is in the way.
-pub fn way_up(arm: &Arm, from: &Joints, around: &Surroundings) -> Result<Vec<Leg>, Unreachable> {
+pub fn way_up(arm: &Arm, from: &JointAngles, around: &ArmSurroundings) -> Result<Vec<TrajectoryLeg>, Unreachable> {
     let free_m = around.table_m + BUTTON_M + ABOVE_M;
     if arm.tip(from).translation.z > free_m - 1e-3 {
         return Ok(Vec::new());
     }
-    Ok(vec![Leg::straight(arm, LegKind::Up, from, free_m, around)?])
+    Ok(vec![TrajectoryLeg::straight(arm, LegKind::Up, from, free_m, around)?])
 }
 
 /// From one pose above the table to another: at once, or higher up if something is in the way.
 ///
 /// # Errors
 /// What is in the way of all that was tried.
-pub fn way_over(arm: &Arm, from: &Joints, to: &Joints, around: &Surroundings) -> Result<Vec<Leg>, Unreachable> {
-    let direct = Leg::over(from, to);
+pub fn way_over(
+    arm: &Arm,
+    from: &JointAngles,
+    to: &JointAngles,
+    around: &ArmSurroundings,
+) -> Result<Vec<TrajectoryLeg>, Unreachable> {
+    let direct = TrajectoryLeg::over(from, to);
     let Some(fault) = direct.fault(arm, around) else {
         return Ok(if from == to { Vec::new() } else { vec![direct] });
     };
     for higher_m in HIGHER_M {
-        let raised = |pose: &Joints| {
+        let raised = |pose: &JointAngles| {
             let z = arm.tip(pose).translation.z;
-            let leg = Leg::straight(arm, LegKind::Up, pose, z + higher_m, around)?;
+            let leg = TrajectoryLeg::straight(arm, LegKind::Up, pose, z + higher_m, around)?;
             leg.fault(arm, around).map_or(Ok(leg), Err)
         };
         let (Ok(up), Ok(above)) = (raised(from), raised(to)) else { continue };
-        let over = Leg::over(up.end(), above.end());
-        let down = Leg::over(above.end(), to);
+        let over = TrajectoryLeg::over(up.end(), above.end());
+        let down = TrajectoryLeg::over(above.end(), to);
         if over.fault(arm, around).is_none() && down.fault(arm, around).is_none() {
             return Ok(vec![up, over, down]);
         }

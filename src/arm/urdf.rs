@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use urdf_rs::{Geometry, JointType, Pose};
 
-use super::link::{Link, Shape, Solid, Turn, Weight};
+use super::link::{ArmLink, CollisionSolid, LinkInertia, LinkShape, RevoluteJoint};
 use crate::robot::moment::JOINTS;
 
 /// Why a URDF is no arm that the program can move.
@@ -18,13 +18,13 @@ pub struct UrdfError {
 ///
 /// # Errors
 /// The text is no URDF, or not of such an arm.
-pub fn read_links(text: &str) -> Result<Vec<Link>, UrdfError> {
+pub fn read_links(text: &str) -> Result<Vec<ArmLink>, UrdfError> {
     let wrong = |found: String, remedy| UrdfError { found, remedy };
     let robot = urdf_rs::read_from_string(text).map_err(|error| wrong(error.to_string(), "a URDF"))?;
     let is_root = |link: &&urdf_rs::Link| robot.joints.iter().all(|joint| joint.child.link != link.name);
     let root = robot.links.iter().find(is_root);
     let root = root.ok_or_else(|| wrong("links in a ring".to_string(), "a link that no joint carries"))?;
-    let base = Link {
+    let base = ArmLink {
         name: root.name.clone(),
         parent_from_joint: Isometry3::identity(),
         turns: None,
@@ -54,7 +54,7 @@ fn isometry(pose: &Pose) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(roll, pitch, yaw))
 }
 
-fn carried(joint: &urdf_rs::Joint, link: &urdf_rs::Link) -> Result<Link, UrdfError> {
+fn carried(joint: &urdf_rs::Joint, link: &urdf_rs::Link) -> Result<ArmLink, UrdfError> {
     let turns = match joint.joint_type {
         JointType::Fixed => None,
         JointType::Revolute => {
@@ -63,7 +63,7 @@ fn carried(joint: &urdf_rs::Joint, link: &urdf_rs::Link) -> Result<Link, UrdfErr
                 axis.ok_or(UrdfError { found: format!("joint {} without an axis", joint.name), remedy: "one" })?;
             let limit = &joint.limit;
             let range_rad = [limit.lower, limit.upper];
-            Some(Turn { axis, range_rad, torque_nm: limit.effort, speed_rad_s: limit.velocity })
+            Some(RevoluteJoint { axis, range_rad, torque_nm: limit.effort, speed_rad_s: limit.velocity })
         }
         _ => {
             let found = format!("joint {}, which neither turns nor is fixed", joint.name);
@@ -71,11 +71,11 @@ fn carried(joint: &urdf_rs::Joint, link: &urdf_rs::Link) -> Result<Link, UrdfErr
         }
     };
     let parent_from_joint = isometry(&joint.origin);
-    Ok(Link { name: link.name.clone(), parent_from_joint, turns, weight: weight(link)?, solids: solids(link)? })
+    Ok(ArmLink { name: link.name.clone(), parent_from_joint, turns, weight: weight(link)?, solids: solids(link)? })
 }
 
 /// The weight of a link; moments of inertia are along its axes.
-fn weight(link: &urdf_rs::Link) -> Result<Option<Weight>, UrdfError> {
+fn weight(link: &urdf_rs::Link) -> Result<Option<LinkInertia>, UrdfError> {
     let (mass_kg, inertia, origin) = (link.inertial.mass.value, &link.inertial.inertia, &link.inertial.origin);
     if mass_kg == 0.0 {
         return Ok(None);
@@ -86,21 +86,21 @@ fn weight(link: &urdf_rs::Link) -> Result<Option<Weight>, UrdfError> {
         let found = format!("link {} with moments of inertia that are not along its axes, or not above 0", link.name);
         return Err(UrdfError { found, remedy: "a mass and ixx, iyy, izz above 0, and no others" });
     }
-    Ok(Some(Weight { mass_kg, centre_m: Point3::from(Vector3::from(origin.xyz.0)), inertia_kg_m2 }))
+    Ok(Some(LinkInertia { mass_kg, centre_m: Point3::from(Vector3::from(origin.xyz.0)), inertia_kg_m2 }))
 }
 
-fn solids(link: &urdf_rs::Link) -> Result<Vec<Solid>, UrdfError> {
+fn solids(link: &urdf_rs::Link) -> Result<Vec<CollisionSolid>, UrdfError> {
     let solid = |collision: &urdf_rs::Collision| {
         let shape = match &collision.geometry {
-            Geometry::Box { size } => Shape::Box { half_m: size.0.map(|length| length / 2.0) },
-            Geometry::Cylinder { radius, length } => Shape::Cylinder { radius_m: *radius, length_m: *length },
-            Geometry::Sphere { radius } => Shape::Sphere { radius_m: *radius },
+            Geometry::Box { size } => LinkShape::Box { half_m: size.0.map(|length| length / 2.0) },
+            Geometry::Cylinder { radius, length } => LinkShape::Cylinder { radius_m: *radius, length_m: *length },
+            Geometry::Sphere { radius } => LinkShape::Sphere { radius_m: *radius },
             _ => {
                 let found = format!("link {}, which is no plain shape", link.name);
                 return Err(UrdfError { found, remedy: "boxes, cylinders and spheres" });
             }
         };
-        Ok(Solid { shape, link_from_solid: isometry(&collision.origin) })
+        Ok(CollisionSolid { shape, link_from_solid: isometry(&collision.origin) })
     };
     link.collision.iter().map(solid).collect()
 }

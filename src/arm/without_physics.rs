@@ -3,14 +3,14 @@
 use super::report::CycleNews;
 use crate::base::time::SessionTime;
 use crate::kitchen::{ButtonId, State};
-use crate::robot::{AbortReason, RobotDeed};
+use crate::robot::{AbortReason, RobotActivity};
 
 /// No arm: this type has no value.
 #[derive(Clone, Debug)]
-pub enum Body {}
+pub enum SteppedArm {}
 
 #[allow(missing_docs, reason = "the functions of the arm that is not there")]
-impl Body {
+impl SteppedArm {
     pub fn next_due(&self, _: bool) -> Option<SessionTime> {
         match *self {}
     }
@@ -43,11 +43,11 @@ impl Body {
         match *self {}
     }
 
-    pub fn stop(&mut self) -> Option<RobotDeed> {
+    pub fn stop(&mut self) -> Option<RobotActivity> {
         match *self {}
     }
 
-    pub fn resume(&mut self, _: SessionTime) -> Option<RobotDeed> {
+    pub fn resume(&mut self, _: SessionTime) -> Option<RobotActivity> {
         match *self {}
     }
 

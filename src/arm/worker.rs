@@ -4,23 +4,23 @@
 
 use rand_distr::{Distribution, LogNormal};
 
-use super::body::Body;
+use super::body::SteppedArm;
 #[cfg(feature = "physics")]
 use super::controller::PhysicalArm;
-use super::report::Report;
+use super::report::PressFailure;
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::{Care, CostToGo};
 use crate::kitchen::{ButtonId, Kitchen, State};
-use crate::robot::policy::{self, Decision};
-use crate::robot::{AbortReason, IdleReason, RobotDeed};
+use crate::robot::policy::{self, PolicyDecision};
+use crate::robot::{AbortReason, IdleReason, RobotActivity};
 
 /// A press that was skipped is not decided for again within this time, in seconds.
 pub const SKIP_S: f64 = 5.0;
 
 /// A press that the arm is on its way to.
 #[derive(Clone, Copy, Debug)]
-struct Errand {
+struct OngoingPress {
     button: ButtonId,
     /// When the arm touches the button.
     until: SessionTime,
@@ -33,7 +33,7 @@ struct Errand {
 pub struct Robot {
     random: Stream,
     duration_s: LogNormal<f64>,
-    busy: Option<Errand>,
+    busy: Option<OngoingPress>,
     stopped: bool,
     /// It sets out for nothing by itself and waits before the button that it has set out for.
     held: bool,
@@ -44,7 +44,7 @@ pub struct Robot {
     /// Why it was said to be idle, and the state that it last decided for.
     idle: Option<(IdleReason, State)>,
     /// The arm in the physics; none: presses take a while by chance.
-    body: Option<Box<Body>>,
+    body: Option<Box<SteppedArm>>,
 }
 
 impl Robot {
@@ -67,7 +67,7 @@ impl Robot {
     }
 
     /// The same robot with an arm in the physics, which decides how long its presses take.
-    pub fn with_body(self, body: Body) -> Robot {
+    pub fn with_body(self, body: SteppedArm) -> Robot {
         Robot { body: Some(Box::new(body)), ..self }
     }
 
@@ -105,7 +105,7 @@ impl Robot {
         cost: &mut CostToGo,
         now: SessionTime,
         state: State,
-    ) -> Option<RobotDeed> {
+    ) -> Option<RobotActivity> {
         if self.stopped || self.busy.is_some() {
             return None;
         }
@@ -122,36 +122,42 @@ impl Robot {
         }
         let skipped: Vec<ButtonId> = self.skipped.iter().map(|(button, _)| *button).collect();
         match policy::decide(kitchen, cost, state, &skipped, &mut self.random) {
-            Decision::Press(button) => Some(self.set_out(now, button, false)),
-            Decision::Idle(reason) => {
+            PolicyDecision::Press(button) => Some(self.set_out(now, button, false)),
+            PolicyDecision::Idle(reason) => {
                 if let Some(body) = &mut self.body {
                     body.has_nothing_to_do();
                 }
                 let said = self.idle.replace((reason, state)).map(|(said, _)| said);
-                (said != Some(reason)).then_some(RobotDeed::Idle(reason))
+                (said != Some(reason)).then_some(RobotActivity::Idle(reason))
             }
         }
     }
 
-    fn set_out(&mut self, now: SessionTime, button: ButtonId, driven: bool) -> RobotDeed {
+    fn set_out(&mut self, now: SessionTime, button: ButtonId, driven: bool) -> RobotActivity {
         let takes_s = match &mut self.body {
             None => self.duration_s.sample(&mut self.random),
             Some(body) => match body.set_out(now, button) {
                 Ok(takes_s) => takes_s,
                 Err(why) => {
                     self.leave_out(now, button);
-                    return RobotDeed::Abort(button, why);
+                    return RobotActivity::Abort(button, why);
                 }
             },
         };
         let until = now + SessionTime::from_secs_f64(takes_s);
-        self.busy = Some(Errand { button, until, driven });
+        self.busy = Some(OngoingPress { button, until, driven });
         self.idle = None;
-        RobotDeed::Intend { button, until }
+        RobotActivity::Intend { button, until }
     }
 
     /// What is due now: the timed arm touches its button, that in the physics goes on for a cycle.
-    pub fn act(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, now: SessionTime, state: State) -> Vec<RobotDeed> {
+    pub fn act(
+        &mut self,
+        kitchen: &Kitchen,
+        cost: &mut CostToGo,
+        now: SessionTime,
+        state: State,
+    ) -> Vec<RobotActivity> {
         let may_press = !self.waits();
         let Some(body) = &mut self.body else { return self.touch(kitchen, cost, state).into_iter().collect() };
         let mut deeds = Vec::new();
@@ -165,7 +171,7 @@ impl Robot {
                 false => {
                     body.give_up();
                     self.busy = None;
-                    deeds.push(RobotDeed::Abort(errand.button, AbortReason::NoLongerUseful));
+                    deeds.push(RobotActivity::Abort(errand.button, AbortReason::NoLongerUseful));
                 }
             }
         }
@@ -173,31 +179,31 @@ impl Robot {
         deeds.extend(cycle.news);
         if let Some(button) = cycle.clicked {
             self.busy = None;
-            deeds.push(RobotDeed::Press(button));
+            deeds.push(RobotActivity::Press(button));
         }
         deeds.extend(cycle.report.and_then(|report| self.follow(now, report)));
         deeds
     }
 
     /// What follows for the press that it was on its way to.
-    fn follow(&mut self, now: SessionTime, report: Report) -> Option<RobotDeed> {
+    fn follow(&mut self, now: SessionTime, report: PressFailure) -> Option<RobotActivity> {
         let (button, reason) = match report {
-            Report::Contact(_) => return self.halt(AbortReason::Contact),
-            Report::Fault(_) => return self.halt(AbortReason::Fault),
-            Report::Blocked(button) => (button, AbortReason::HandInTheWay),
-            Report::NoClick(button) => (button, AbortReason::NoClick),
+            PressFailure::Contact(_) => return self.halt(AbortReason::Contact),
+            PressFailure::Fault(_) => return self.halt(AbortReason::Fault),
+            PressFailure::Blocked(button) => (button, AbortReason::HandInTheWay),
+            PressFailure::NoClick(button) => (button, AbortReason::NoClick),
         };
         self.go_without(now, button, reason)
     }
 
     /// Gives a press up that went wrong, and leaves it out for a while.
-    fn go_without(&mut self, now: SessionTime, button: ButtonId, reason: AbortReason) -> Option<RobotDeed> {
+    fn go_without(&mut self, now: SessionTime, button: ButtonId, reason: AbortReason) -> Option<RobotActivity> {
         self.leave_out(now, button);
         self.give_up(reason)
     }
 
     /// Stopped until the wizard lets it go on; it gives up what it is on its way to.
-    fn halt(&mut self, reason: AbortReason) -> Option<RobotDeed> {
+    fn halt(&mut self, reason: AbortReason) -> Option<RobotActivity> {
         self.stopped = true;
         self.idle = None;
         self.driven = None;
@@ -212,16 +218,16 @@ impl Robot {
 
     /// The timed arm touches the button: presses it if that is still one of the best presses or the wizard chose it, else
     /// gives it up.
-    fn touch(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotDeed> {
+    fn touch(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotActivity> {
         let errand = self.busy.take()?;
         match is_useful(kitchen, cost, state, errand) {
-            true => Some(RobotDeed::Press(errand.button)),
-            false => Some(RobotDeed::Abort(errand.button, AbortReason::NoLongerUseful)),
+            true => Some(RobotActivity::Press(errand.button)),
+            false => Some(RobotActivity::Abort(errand.button, AbortReason::NoLongerUseful)),
         }
     }
 
     /// Something else than a press changed the state: what is no longer useful is given up at once.
-    pub fn reconsider(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotDeed> {
+    pub fn reconsider(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotActivity> {
         let errand = self.busy?;
         match is_useful(kitchen, cost, state, errand) {
             true => None,
@@ -229,16 +235,16 @@ impl Robot {
         }
     }
 
-    fn give_up(&mut self, reason: AbortReason) -> Option<RobotDeed> {
+    fn give_up(&mut self, reason: AbortReason) -> Option<RobotActivity> {
         let errand = self.busy.take()?;
         if let Some(body) = &mut self.body {
             body.give_up();
         }
-        Some(RobotDeed::Abort(errand.button, reason))
+        Some(RobotActivity::Abort(errand.button, reason))
     }
 
     /// The wizard stops the robot; it gives up what it is on its way to.
-    pub fn stop(&mut self) -> Vec<RobotDeed> {
+    pub fn stop(&mut self) -> Vec<RobotActivity> {
         let safety = self.body.as_mut().and_then(|body| body.stop());
         let given_up = self.halt(AbortReason::Stopped);
         safety.into_iter().chain(given_up).collect()
@@ -252,7 +258,7 @@ impl Robot {
 
     /// The wizard skips the press that the arm is on its way to, instead of what was left out before; it is not decided for
     /// again for a while.
-    pub fn skip(&mut self, now: SessionTime) -> Option<RobotDeed> {
+    pub fn skip(&mut self, now: SessionTime) -> Option<RobotActivity> {
         let errand = self.busy?;
         self.skipped.clear();
         self.leave_out(now, errand.button);
@@ -260,13 +266,13 @@ impl Robot {
     }
 
     /// The wizard chooses the next press; the arm gives up what it is on its way to.
-    pub fn drive(&mut self, button: ButtonId) -> Option<RobotDeed> {
+    pub fn drive(&mut self, button: ButtonId) -> Option<RobotActivity> {
         self.driven = Some(button);
         self.give_up(AbortReason::Driven)
     }
 
     /// The wizard lets the robot go on.
-    pub fn resume(&mut self, now: SessionTime) -> Option<RobotDeed> {
+    pub fn resume(&mut self, now: SessionTime) -> Option<RobotActivity> {
         self.stopped = false;
         self.body.as_mut()?.resume(now)
     }
@@ -308,7 +314,7 @@ impl Robot {
 }
 
 /// Whether a press is still one of the best, or the wizard chose it.
-fn is_useful(kitchen: &Kitchen, cost: &mut CostToGo, state: State, errand: Errand) -> bool {
+fn is_useful(kitchen: &Kitchen, cost: &mut CostToGo, state: State, errand: OngoingPress) -> bool {
     let best = |cost: &mut CostToGo| policy::best_presses(kitchen, cost, Care::Exact, state, &kitchen.true_recipes());
     errand.driven || best(cost).contains(&errand.button)
 }

@@ -5,7 +5,7 @@
 //! A variable that is best at one of its bounds, or whose bound is not rejected beside the best, is held there, and gets the
 //! end of a profile likelihood interval instead of a standard error (Venzon and Moolgavkar 1988).
 
-use super::surface::{REACH, Surface, points, surface};
+use super::surface::{QuadraticSurface, REACH, points, surface};
 
 /// The first steps.
 const FIRST_STEP: f64 = 0.4;
@@ -27,19 +27,19 @@ const CLOSE: f64 = 1e-9;
 
 /// A bound at which a variable is best.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum BoundReached {
     Low,
     High,
 }
 
 /// What is known of a variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Variable {
+pub struct FittedVariable {
     pub at: f64,
     /// None at a bound, and where the likelihood is not curved in every direction.
     pub standard_error: Option<f64>,
     /// The bound at which it is best, if it is at one, …
-    pub end: Option<End>,
+    pub end: Option<BoundReached>,
     /// … and how far from there it may be (95 %); nothing if that was not found.
     pub limit: Option<f64>,
 }
@@ -47,7 +47,7 @@ pub struct Variable {
 /// A maximum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Maximum {
-    pub variables: Vec<Variable>,
+    pub variables: Vec<FittedVariable>,
     /// How often the likelihood was asked for.
     pub evaluations: usize,
     /// It came to rest before the evaluations were used up.
@@ -66,7 +66,8 @@ pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]
     let last = loop {
         let free: Vec<usize> = (0..count).filter(|&index| held[index].is_none()).collect();
         let Some(last) = search.climb(&free) else { break None };
-        let mut ends: Vec<(usize, End)> = free.iter().filter_map(|&index| Some((index, search.end(index)?))).collect();
+        let mut ends: Vec<(usize, BoundReached)> =
+            free.iter().filter_map(|&index| Some((index, search.end(index)?))).collect();
         if ends.is_empty() {
             ends.extend(last.as_ref().and_then(|last| search.open_end(&free, last)));
         }
@@ -89,7 +90,7 @@ pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]
     let limits: Vec<Option<f64>> = (0..count)
         .map(|index| held[index].filter(|_| converged).and_then(|end| search.limit(index, end, &held)))
         .collect();
-    let variable = |index: usize| Variable {
+    let variable = |index: usize| FittedVariable {
         at: search.at[index],
         standard_error: errors[index],
         end: held[index].filter(|_| converged),
@@ -111,7 +112,7 @@ struct Search<'a, F> {
 impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
     /// Goes to the maximum over some of the variables. Gives the surface around it (none of no variables); nothing if it did not
     /// come to rest.
-    fn climb(&mut self, free: &[usize]) -> Option<Option<Surface>> {
+    fn climb(&mut self, free: &[usize]) -> Option<Option<QuadraticSurface>> {
         if free.is_empty() {
             return Some(None);
         }
@@ -140,7 +141,7 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
 
     /// A surface over some of the variables around the best so far, all of it between the bounds, and its centre; nothing if
     /// there are no evaluations left for it.
-    fn survey(&mut self, free: &[usize]) -> Option<(Vec<f64>, Surface)> {
+    fn survey(&mut self, free: &[usize]) -> Option<(Vec<f64>, QuadraticSurface)> {
         if self.evaluations + points(free.len()) > self.most {
             return None;
         }
@@ -164,7 +165,7 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         surface(of_free, &centre, &steps).map(|surface| (centre, surface))
     }
 
-    fn least(&self, free: &[usize], centre: &[f64], surface: &Surface) -> Vec<f64> {
+    fn least(&self, free: &[usize], centre: &[f64], surface: &QuadraticSurface) -> Vec<f64> {
         let in_steps = |end: usize, reach: f64| -> Vec<f64> {
             let of = |(&index, centre): (&usize, &f64)| (self.bounds[index][end] - centre) / self.steps[index];
             free.iter()
@@ -177,7 +178,7 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
     }
 
     /// Steps that cost enough to stand out from chance, and no more.
-    fn wanted_steps(&self, free: &[usize], surface: &Surface) -> Vec<f64> {
+    fn wanted_steps(&self, free: &[usize], surface: &QuadraticSurface) -> Vec<f64> {
         let [least, most] = STEP_NATS.map(|nats| nats + STEP_NOISE * surface.noise);
         let wanted = |(place, &index): (usize, &usize)| {
             let rise = surface.curvature[place][place] / 2.0;
@@ -194,26 +195,26 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
     }
 
     /// The bound that a variable is at.
-    fn end(&self, index: usize) -> Option<End> {
+    fn end(&self, index: usize) -> Option<BoundReached> {
         let [low, high] = self.bounds[index];
         match self.at[index] {
-            at if at <= low + CLOSE => Some(End::Low),
-            at if at >= high - CLOSE => Some(End::High),
+            at if at <= low + CLOSE => Some(BoundReached::Low),
+            at if at >= high - CLOSE => Some(BoundReached::High),
             _ => None,
         }
     }
 
-    fn bound(&self, index: usize, end: End) -> f64 {
+    fn bound(&self, index: usize, end: BoundReached) -> f64 {
         self.bounds[index][end as usize]
     }
 
     /// A bound that is not rejected beside the best.
-    fn open_end(&mut self, free: &[usize], last: &Surface) -> Option<(usize, End)> {
+    fn open_end(&mut self, free: &[usize], last: &QuadraticSurface) -> Option<(usize, BoundReached)> {
         let best = self.at.clone();
         let value = last.at(&last.least(&vec![-REACH; free.len()], &vec![REACH; free.len()]));
         for &index in free {
             let others: Vec<usize> = free.iter().copied().filter(|&other| other != index).collect();
-            for end in [End::Low, End::High] {
+            for end in [BoundReached::Low, BoundReached::High] {
                 self.at[index] = self.bound(index, end);
                 self.evaluations += 1;
                 let hopeless = (self.loss)(&self.at) - value > HOPELESS_NATS + 3.0 * last.noise;
@@ -229,12 +230,12 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
 
     /// How far from its bound a variable may be: where the likelihood, the others at their best, is rejected beside that at the
     /// bound, and beyond its noise.
-    fn limit(&mut self, index: usize, end: End, held: &[Option<End>]) -> Option<f64> {
+    fn limit(&mut self, index: usize, end: BoundReached, held: &[Option<BoundReached>]) -> Option<f64> {
         let others: Vec<usize> = (0..held.len()).filter(|&other| other != index && held[other].is_none()).collect();
         let best = self.at.clone();
         let (at_bound, _) = self.profile(&others)?;
         let [low, high] = self.bounds[index];
-        let away = if end == End::Low { 1.0 } else { -1.0 };
+        let away = if end == BoundReached::Low { 1.0 } else { -1.0 };
         let (mut near, mut far, mut step) = (0.0, None, PROFILE_STEP);
         let found = loop {
             let by = match far {
@@ -306,7 +307,7 @@ mod tests {
         let found = ascend(plateau, &[0.0, 0.0], &[[-5.0, 5.0], [-3.0, 3.0]], 600);
         let [first, second] = &found.variables[..] else { panic!("{found:?}") };
         assert!(found.converged && (first.at - 0.7).abs() < 0.05 && first.standard_error.is_some(), "{found:?}");
-        assert_eq!((second.end, second.standard_error), (Some(End::High), None), "{found:?}");
+        assert_eq!((second.end, second.standard_error), (Some(BoundReached::High), None), "{found:?}");
         // 40 (1 - x)^2 + 0.1 (3 - x) = 1.92 at x = 0.79.
         assert!((second.limit.expect("a limit") - 0.79).abs() < 0.1, "{found:?}");
     }

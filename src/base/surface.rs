@@ -10,7 +10,7 @@ const SWEEPS: usize = 60;
 
 /// What a surface says of the function that it goes through; in steps from its centre.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Surface {
+pub struct QuadraticSurface {
     /// Its value at the centre.
     pub value: f64,
     pub slope: Vec<f64>,
@@ -29,7 +29,7 @@ pub fn points(variables: usize) -> usize {
 
 /// The surface through values around `centre`, up to a step of these sizes along each variable and each pair of them.
 /// Values that are not finite are left out; `None` if too few are left.
-pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &[f64]) -> Option<Surface> {
+pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &[f64]) -> Option<QuadraticSurface> {
     let n = centre.len();
     let count = 1 + n + n * (n + 1) / 2;
     let mut squares = vec![vec![0.0; count]; count];
@@ -57,7 +57,7 @@ pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &
     let off: f64 = values.iter().map(|(terms, value)| (value - product(terms, &found)).powi(2)).sum();
     let variance = off / values.len().saturating_sub(count).max(1) as f64;
     let of_slope = |row: &Vec<f64>| row[1..=n].iter().map(|one| variance * one).collect();
-    Some(Surface {
+    Some(QuadraticSurface {
         value: found[0],
         slope: found[1..=n].to_vec(),
         curvature,
@@ -66,7 +66,7 @@ pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &
     })
 }
 
-impl Surface {
+impl QuadraticSurface {
     /// Its value so many steps from the centre.
     pub fn at(&self, by: &[f64]) -> f64 {
         let bend: f64 = self.curvature.iter().zip(by).map(|(row, one)| one * product(row, by)).sum();

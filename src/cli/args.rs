@@ -5,14 +5,14 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::choices::{ArmArg, ConceptArg, ConditionArg, Gaze, Participant, SimulatedCondition};
+use super::choices::{ArmArg, ConceptArg, ConditionArg, GazeArg, ParticipantArg, SimulatedCondition};
 use super::data::{CodesArgs, ForgetArgs};
 use super::review::ReviewArgs;
 use super::study::StudyArgs;
 use super::wizard::{CompareArgs, TrainArgs};
 use crate::mind::fitting::Parameter;
 use crate::run::simulate::Shard;
-use crate::run::sweep::Axis;
+use crate::run::sweep::SweepAxis;
 
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
 #[derive(Debug, Parser)]
@@ -22,13 +22,13 @@ use crate::run::sweep::Axis;
 )]
 pub(super) struct Cli {
     #[command(subcommand)]
-    pub(super) command: Option<Command>,
+    pub(super) command: Option<CliCommand>,
     #[command(flatten)]
     pub(super) operate: OperateFlags,
 }
 
 #[derive(Debug, Subcommand)]
-pub(super) enum Command {
+pub(super) enum CliCommand {
     Operate(OperateArgs),
     Compare(CompareArgs),
     Train(TrainArgs),
@@ -50,7 +50,7 @@ pub(super) enum Command {
 
 /// How figures are printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Format {
+pub(super) enum OutputFormat {
     /// For people.
     Text,
     /// One JSON object.
@@ -80,10 +80,10 @@ pub(super) struct OperateFlags {
     pub(super) code: Option<String>,
     /// Who plays the human's part, instead of the session file's.
     #[arg(long, value_enum)]
-    pub(super) participant: Option<Participant>,
+    pub(super) participant: Option<ParticipantArg>,
     /// Where gaze samples come from, instead of the session file's.
     #[arg(long, value_enum)]
-    pub(super) gaze: Option<Gaze>,
+    pub(super) gaze: Option<GazeArg>,
     /// Replay gaze from this file: Pupil Player's gaze_positions_on_surface_NAME.csv, or the folder of a recording.
     #[arg(long, value_name = "PATH")]
     pub(super) gaze_file: Option<PathBuf>,
@@ -147,7 +147,7 @@ pub(super) struct ReplayArgs {
     pub(super) rater: Option<String>,
     /// How to print the result.
     #[arg(long, value_enum, default_value = "text")]
-    pub(super) format: Format,
+    pub(super) format: OutputFormat,
 }
 
 /// Prints how far a study is.
@@ -163,7 +163,7 @@ pub(super) struct PlanArgs {
     pub(super) out: PathBuf,
     /// How to print it.
     #[arg(long, value_enum, default_value = "text")]
-    pub(super) format: Format,
+    pub(super) format: OutputFormat,
 }
 
 /// Simulates whole trials, faster than real time.
@@ -202,7 +202,7 @@ pub(super) struct SimulateArgs {
     /// signals, unless --condition says otherwise; of a session with a plan its settings count, and each trial is of
     /// another participant.
     #[arg(long, value_name = "SETTING=VALUES", conflicts_with_all = ["shadow", "rerun"])]
-    pub(super) sweep: Vec<Axis>,
+    pub(super) sweep: Vec<SweepAxis>,
     /// Let the assistant advise in unassisted trials too; its advice is recorded and shown to nobody.
     #[arg(long)]
     pub(super) shadow: bool,
@@ -214,7 +214,7 @@ pub(super) struct SimulateArgs {
     pub(super) out: PathBuf,
     /// How to print the figures.
     #[arg(long, value_enum, default_value = "text")]
-    pub(super) format: Format,
+    pub(super) format: OutputFormat,
 }
 
 /// Fits the human model to recordings.
@@ -243,7 +243,7 @@ pub(super) struct FitArgs {
     pub(super) out: Option<PathBuf>,
     /// How to print the figures.
     #[arg(long, value_enum, default_value = "text")]
-    pub(super) format: Format,
+    pub(super) format: OutputFormat,
 }
 
 /// A parameter of the human model.
@@ -288,7 +288,7 @@ pub(super) struct KitchenArgs {
     pub(super) layout: PathBuf,
     /// How to print it.
     #[arg(long, value_enum, default_value = "text")]
-    pub(super) format: Format,
+    pub(super) format: OutputFormat,
 }
 
 /// Prints the keys of the console as a key file that can be changed.
@@ -319,7 +319,7 @@ pub(super) struct ExcludeArgs {
     pub(super) back: bool,
     /// How to print what holds now.
     #[arg(long, value_enum, default_value = "text")]
-    pub(super) format: Format,
+    pub(super) format: OutputFormat,
 }
 
 /// Checks whether this machine is fit for a session.
@@ -339,7 +339,7 @@ pub(super) struct DoctorArgs {
     pub(super) out: PathBuf,
     /// How to print what was found.
     #[arg(long, value_enum, default_value = "text")]
-    pub(super) format: Format,
+    pub(super) format: OutputFormat,
 }
 
 /// Prints the completions of a shell.

@@ -6,7 +6,7 @@ use crate::communication::concept::ConceptName;
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum Participant {
+pub(super) enum ParticipantArg {
     /// A simulated person.
     Simulated,
     /// Somebody at this keyboard: tab switches between the wizard's and the participant's keys.
@@ -16,7 +16,7 @@ pub(super) enum Participant {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum Gaze {
+pub(super) enum GazeArg {
     /// The simulated person's.
     Simulated,
     /// The mouse pointer over the kitchen, at the console or on the wall display.
@@ -82,25 +82,25 @@ impl From<ConceptArg> for ConceptName {
     }
 }
 
-impl From<Participant> for ParticipantKind {
-    fn from(participant: Participant) -> ParticipantKind {
+impl From<ParticipantArg> for ParticipantKind {
+    fn from(participant: ParticipantArg) -> ParticipantKind {
         match participant {
-            Participant::Simulated => ParticipantKind::Simulated,
-            Participant::Keyboard => ParticipantKind::Keyboard,
-            Participant::Display => ParticipantKind::Display,
+            ParticipantArg::Simulated => ParticipantKind::Simulated,
+            ParticipantArg::Keyboard => ParticipantKind::Keyboard,
+            ParticipantArg::Display => ParticipantKind::Display,
         }
     }
 }
 
-impl From<Gaze> for GazeSource {
-    fn from(gaze: Gaze) -> GazeSource {
+impl From<GazeArg> for GazeSource {
+    fn from(gaze: GazeArg) -> GazeSource {
         match gaze {
-            Gaze::Simulated => GazeSource::Simulated,
-            Gaze::Mouse => GazeSource::Mouse,
-            Gaze::Pupil => GazeSource::Pupil,
-            Gaze::File => GazeSource::File,
-            Gaze::Json => GazeSource::Json,
-            Gaze::None => GazeSource::None,
+            GazeArg::Simulated => GazeSource::Simulated,
+            GazeArg::Mouse => GazeSource::Mouse,
+            GazeArg::Pupil => GazeSource::Pupil,
+            GazeArg::File => GazeSource::File,
+            GazeArg::Json => GazeSource::Json,
+            GazeArg::None => GazeSource::None,
         }
     }
 }

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::args::Format;
+use super::args::OutputFormat;
 use super::{Failure, print, progress};
 use crate::base::words::count;
 use crate::edge::forget::{self, Found};
-use crate::run::codes::{self, Coded, CodesFigures};
+use crate::run::codes::{self, CodedRecording, CodesSummary};
 use crate::run::review;
 use crate::session::settings::is_code;
 
@@ -33,21 +33,21 @@ pub(super) struct CodesArgs {
     export: Option<PathBuf>,
     /// How to print the figures.
     #[arg(long, value_enum, default_value = "text")]
-    format: Format,
+    format: OutputFormat,
 }
 
 pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
     let bar = progress(args.recordings.len() as u64, "recordings");
-    let read = crate::run::parallel::each(&args.recordings, |recording| Coded::open(recording), || bar.inc(1));
+    let read = crate::run::parallel::each(&args.recordings, |recording| CodedRecording::open(recording), || bar.inc(1));
     bar.finish_and_clear();
-    let mut recordings = read.into_iter().collect::<Result<Vec<Coded>, _>>()?;
+    let mut recordings = read.into_iter().collect::<Result<Vec<CodedRecording>, _>>()?;
     if let Some(file) = &args.import {
         codes::import(&mut recordings, file)?;
     }
     if let Some(file) = &args.export {
         codes::export(&recordings, file)?;
     }
-    let figures = CodesFigures::of(&recordings);
+    let figures = CodesSummary::of(&recordings);
     print(args.format, &figures, || codes::describe(&figures))
 }
 
@@ -83,7 +83,7 @@ pub(super) struct ForgetArgs {
     yes: bool,
     /// How to print what was deleted.
     #[arg(long, value_enum, default_value = "text")]
-    format: Format,
+    format: OutputFormat,
 }
 
 /// What was deleted, as JSON.

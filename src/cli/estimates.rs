@@ -3,7 +3,7 @@
 use super::args::{FitArgs, ReplayArgs};
 use super::{Failure, print, progress};
 use crate::edge::files;
-use crate::run::accuracy::Extent;
+use crate::run::accuracy::AccuracySample;
 use crate::run::{accuracy, check_beliefs, fit};
 
 /// `tomcom replay RECORDING... --check-beliefs`.
@@ -16,7 +16,8 @@ pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
 
 /// `tomcom replay RECORDING... --accuracy`.
 pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
-    let extent = Extent { steps: args.steps as usize, reference_steps: args.reference_steps.min(args.steps) as usize };
+    let extent =
+        AccuracySample { steps: args.steps as usize, reference_steps: args.reference_steps.min(args.steps) as usize };
     // Each step is planned twice.
     let bar = progress(2 * args.steps + args.reference_steps, "answers at most");
     let found = accuracy::measure(&args.recordings, extent, || bar.inc(1))?;
@@ -30,8 +31,8 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
     let mut parameters: Vec<_> = args.parameters.iter().map(|one| one.parameter()).collect();
     parameters.sort_unstable();
     parameters.dedup();
-    let trials = fit::Trials::read(&args.recordings)?;
-    let plan = fit::Plan { parameters, start, most_tries: args.tries as usize };
+    let trials = fit::FitTrials::read(&args.recordings)?;
+    let plan = fit::FitPlan { parameters, start, most_tries: args.tries as usize };
     let bar = progress(plan.most_tries as u64, "tries at most");
     let found = fit::fit(&trials, &plan, || bar.inc(1));
     bar.finish_and_clear();

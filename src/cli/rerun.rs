@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::Failure;
 use super::review::ReviewArgs;
-use crate::run::rerun::{RerunError, Review, Reviewed, Running, Saved, review, running, save, until_asked_to_end};
+use crate::run::rerun::{
+    OngoingRecording, RerunError, ReviewOutcome, ReviewRequest, SavedStream, review, running, save, until_asked_to_end,
+};
 
 impl From<RerunError> for Failure {
     fn from(error: RerunError) -> Failure {
@@ -30,14 +32,14 @@ pub(super) fn open(args: &ReviewArgs, recordings: Vec<PathBuf>, save: Option<Opt
     for one in running(&recordings)? {
         write!(out, "{}", still_running(&one))?;
     }
-    let asked = Review { recordings, save, web: args.web, at: args.at };
+    let asked = ReviewRequest { recordings, save, web: args.web, at: args.at };
     match review(&asked)? {
-        Reviewed::Saved(file) => {
+        ReviewOutcome::Saved(file) => {
             let how = if file.made { "made from the log" } else { "is there already" };
             writeln!(out, "{} {how}{}", file.path.display(), because(&file))?;
         }
-        Reviewed::Opened(file) => writeln!(out, "the viewer opens {}{}", file.path.display(), because(&file))?,
-        Reviewed::Served { url, because, _serving } => {
+        ReviewOutcome::Opened(file) => writeln!(out, "the viewer opens {}{}", file.path.display(), because(&file))?,
+        ReviewOutcome::Served { url, because, _serving } => {
             writeln!(out, "{because}: it is served here, for a browser on this machine, until ctrl+c\n{url}")?;
             if let Some(at) = args.at {
                 writeln!(out, "what comes from {at} on is marked in its time line: a click there goes to it")?;
@@ -50,11 +52,11 @@ pub(super) fn open(args: &ReviewArgs, recordings: Vec<PathBuf>, save: Option<Opt
 }
 
 /// Why a file that was there had to be made anew.
-fn because(file: &Saved) -> String {
+fn because(file: &SavedStream) -> String {
     file.because.map_or(String::new(), |because| format!(", anew: {because}"))
 }
 
-fn still_running(one: &Running) -> String {
+fn still_running(one: &OngoingRecording) -> String {
     let live = one.viewers.as_ref().map_or(String::new(), |viewers| format!("; live: rerun {viewers}"));
     format!("{}: this session is still running, and is shown up to now{live}\n", one.recording.display())
 }

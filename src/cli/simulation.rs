@@ -53,7 +53,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     files.spec.robot.arm = args.arm.map_or(files.spec.robot.arm, ArmKind::from);
     files.spec.require_built().map_err(|missing| FileError::not_built(&args.session, missing))?;
     files.spec.assistant.shadow = if args.shadow { Shadow::On } else { Shadow::Off };
-    let simulation = simulate::Simulation { files, trials, shard: args.shard, out: args.out.clone() };
+    let simulation = simulate::SimulationRequest { files, trials, shard: args.shard, out: args.out.clone() };
     if !args.sweep.is_empty() {
         let bar = progress(sweep::trials(&simulation, &args.sweep), "trials");
         let figures = sweep::sweep(&simulation, &args.sweep, || bar.inc(1))?;

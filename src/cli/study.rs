@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::args::Format;
+use super::args::OutputFormat;
 use super::{Failure, print, progress};
-use crate::run::study::reading::Extent;
-use crate::run::study::{self, Analysis, Recordings, StudyError};
+use crate::run::study::reading::AnalysisScope;
+use crate::run::study::{self, AnalysisRequest, NamedRecordings, StudyError};
 
 /// Analyses the recordings of a study: report and tables.
 ///
@@ -29,7 +29,7 @@ pub(super) struct StudyArgs {
     skip: Vec<Skip>,
     /// How to print the figures.
     #[arg(long, value_enum, default_value = "text")]
-    format: Format,
+    format: OutputFormat,
 }
 
 /// What takes time or room.
@@ -51,12 +51,13 @@ impl From<StudyError> for Failure {
 }
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
-    let recordings = Recordings::find(&args.paths)?;
-    let extent = Extent { concepts: !args.skip.contains(&Skip::Concepts), events: !args.skip.contains(&Skip::Events) };
+    let recordings = NamedRecordings::find(&args.paths)?;
+    let extent =
+        AnalysisScope { concepts: !args.skip.contains(&Skip::Concepts), events: !args.skip.contains(&Skip::Events) };
     let out = args.out.clone().unwrap_or_else(|| args.paths[0].join("study"));
     let bar = progress(recordings.number() as u64, "recordings");
     let (figures, report) =
-        study::study(&Analysis { paths: args.paths.clone(), out, extent }, &recordings, || bar.inc(1))?;
+        study::study(&AnalysisRequest { paths: args.paths.clone(), out, extent }, &recordings, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &figures, || format!("{}report: {}\n", study::describe(&figures), report.display()))
 }

@@ -5,17 +5,17 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::{Format, OperateFlags};
+use super::args::{OperateFlags, OutputFormat};
 use super::choices::ConceptArg;
 use super::{Failure, new_session, print, progress};
 use crate::communication::concept::ConceptName;
 use crate::console::playback::SPEEDS;
 use crate::measures::matching::WINDOW;
 use crate::measures::wizard::TrainingCriterion;
-use crate::run::compare::Request;
-use crate::run::lesson_report::TrainingFigures;
-use crate::run::similarity::{self, CompareFigures};
-use crate::run::train::{self, Lesson};
+use crate::run::compare::CompareRequest;
+use crate::run::lesson_report::TrainingSummary;
+use crate::run::similarity::{self, ComparisonSummary};
+use crate::run::train::{self, TrainingRequest};
 use crate::run::{lesson_report, review, series, simulate};
 use crate::session::settings::is_code;
 
@@ -57,7 +57,7 @@ pub(super) struct CompareArgs {
     training: PathBuf,
     /// How to print the figures.
     #[arg(long, value_enum, default_value = "text")]
-    format: Format,
+    format: OutputFormat,
     #[command(flatten, next_help_heading = "To operate a session")]
     flags: OperateFlags,
 }
@@ -96,7 +96,7 @@ pub(super) struct TrainArgs {
 
 pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let with: Vec<ConceptName> = args.with.iter().chain(&args.only).map(|&concept| concept.into()).collect();
-    let request = |window: u32| Request { with: with.clone(), window };
+    let request = |window: u32| CompareRequest { with: with.clone(), window };
     let session = match &args.paths[..] {
         [] => Some(None),
         [path] => Some(Some(path.as_path())).filter(|_| path.extension().is_some_and(|extension| extension == "toml")),
@@ -118,16 +118,16 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let bar = progress((args.paths.len() * windows.len()) as u64, "recordings");
     let watch = |window: u32| similarity::watch(&args.paths, &request(window), || bar.inc(1));
     let first = watch(windows[0])?;
-    let mut figures = CompareFigures::of(&first);
+    let mut figures = ComparisonSummary::of(&first);
     for &window in &windows[1..] {
-        figures.pairs.extend(CompareFigures::of(&watch(window)?).pairs);
+        figures.pairs.extend(ComparisonSummary::of(&watch(window)?).pairs);
     }
     if !args.only.is_empty() {
         let only: Vec<ConceptName> = args.only.iter().map(|&concept| concept.into()).collect();
         figures = figures.only(&only);
     }
     if let Some(wizard) = &args.wizard {
-        figures.training = Some(TrainingFigures::read(&args.training, &code_of(wizard)?)?);
+        figures.training = Some(TrainingSummary::read(&args.training, &code_of(wizard)?)?);
     }
     bar.finish_and_clear();
     match args.open {
@@ -176,7 +176,7 @@ pub(super) fn train(args: &TrainArgs) -> Result<(), Failure> {
         [] => simulate::for_training(args.seed, args.seconds, &args.out.join("recordings"))?,
         given => given.to_vec(),
     };
-    let lesson = Lesson {
+    let lesson = TrainingRequest {
         recordings,
         wizard: code_of(&args.wizard)?,
         out: args.out.clone(),

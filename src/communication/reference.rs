@@ -17,7 +17,7 @@ use super::situation::RobotOutlook;
 use super::{Signal, unavailable};
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::{Care, CostToGo};
-use crate::kitchen::{Action, Agent, AspectId, ButtonId, Kitchen, LocationId, State};
+use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, LocationId, State};
 use crate::mind::model::HumanModel;
 use crate::mind::reference::person::{Person, pick, press_chances};
 use crate::robot::policy;
@@ -165,7 +165,7 @@ impl ReferencePlanner {
         let mut deed = self.deed(cost, &future.person, draw, random);
         if let Some(button) = deed {
             // The robot may be bringing what is about to be fetched.
-            let fetches = matches!(kitchen.button(Agent::Human, button).action, Action::Take(_));
+            let fetches = matches!(kitchen.button(Agent::Human, button).action, ButtonAction::Take(_));
             let robots_hand = fetches.then_some(kitchen.hands[Agent::Robot.index()]);
             let places = kitchen.involved(Agent::Human, button).into_iter().chain(robots_hand);
             let seen: Vec<LocationId> = places.filter(|place| glances[place.index()] < looks).collect();

@@ -6,12 +6,12 @@
 
 use ratatui::layout::Rect;
 
-use crate::kitchen::layout::Area;
+use crate::kitchen::layout::DisplayArea;
 use crate::kitchen::{Agent, Kitchen, LocationId, LocationKind};
 
 /// What stands at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Thing {
+pub enum MapElement {
     Location(LocationId),
     /// An index into [`Kitchen::storages`].
     Storage(usize),
@@ -19,10 +19,10 @@ pub enum Thing {
 
 /// A thing with its box on the screen.
 #[derive(Clone, Debug)]
-pub struct Spot {
-    pub thing: Thing,
+pub struct MapBox {
+    pub thing: MapElement,
     pub cells: Rect,
-    area: Area,
+    area: DisplayArea,
     /// The part of the display, and of the screen, that belongs to it: together they cover everything.
     display: Bounds,
     screen: Bounds,
@@ -30,17 +30,17 @@ pub struct Spot {
 
 /// Columns of the kitchen that belong to one agent, or to both.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Zone {
+pub struct AgentZone {
     pub owner: Option<Agent>,
     pub cells: Rect,
 }
 
 /// The whole arrangement.
 #[derive(Clone, Debug)]
-pub struct Plan {
-    pub spots: Vec<Spot>,
+pub struct KitchenMap {
+    pub spots: Vec<MapBox>,
     /// The line above the columns where the agents' names stand.
-    pub zones: Vec<Zone>,
+    pub zones: Vec<AgentZone>,
 }
 
 /// A rectangle as low and high end along each axis: 0 is x, 1 is y.
@@ -48,8 +48,8 @@ pub struct Plan {
 struct Bounds([[f64; 2]; 2]);
 
 struct Item {
-    thing: Thing,
-    area: Area,
+    thing: MapElement,
+    area: DisplayArea,
     owner: Option<Agent>,
     min_columns: u16,
 }
@@ -57,9 +57,9 @@ struct Item {
 const MIN_CARD: u16 = 12;
 const MAX_ORDER: u16 = 44;
 
-impl Plan {
+impl KitchenMap {
     /// Arranges a kitchen in these cells, with room for the keys of the human's storage where somebody has them.
-    pub fn new(kitchen: &Kitchen, cells: Rect, with_keys: bool) -> Plan {
+    pub fn new(kitchen: &Kitchen, cells: Rect, with_keys: bool) -> KitchenMap {
         let items = items(kitchen, with_keys);
         let (strip, body): (Vec<&Item>, Vec<&Item>) = items.iter().partition(|item| is_order(kitchen, item.thing));
         let lowest = |items: &[&Item]| items.iter().map(|item| item.area.y + item.area.h).fold(0.0, f64::max);
@@ -68,7 +68,7 @@ impl Plan {
         let below = lowest(&body) <= highest(&strip);
         if strip.is_empty() || body.is_empty() || !(above || below) {
             let all: Vec<&Item> = items.iter().collect();
-            return Plan::columns(&all, cells, [0.0, 1.0]);
+            return KitchenMap::columns(&all, cells, [0.0, 1.0]);
         }
         // An order is one line where there is little room; else name, dish, recipe, and air.
         let strip_rows = if cells.height >= 18 { 4 } else { 1 };
@@ -84,28 +84,28 @@ impl Plan {
             false => (lowest(&body) + highest(&strip)) / 2.0,
         };
         let (strip_y, body_y) = if above { ([0.0, cut], [cut, 1.0]) } else { ([cut, 1.0], [0.0, cut]) };
-        let mut plan = Plan::columns(&body, body_cells, body_y);
+        let mut plan = KitchenMap::columns(&body, body_cells, body_y);
         plan.spots.extend(row_of_orders(&strip, strip_cells, strip_y));
         plan
     }
 
     /// Items in columns that share rows; the line of the zones goes on top.
-    fn columns(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Plan {
+    fn columns(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> KitchenMap {
         let (line, cells) = split_rows(cells, 1);
         let columns = clusters(items, 0);
-        let is_store = |column: &[&Item]| column.iter().all(|item| matches!(item.thing, Thing::Storage(_)));
+        let is_store = |column: &[&Item]| column.iter().all(|item| matches!(item.thing, MapElement::Storage(_)));
         let in_rows: Vec<&Item> = columns.iter().filter(|c| !is_store(c)).flatten().copied().collect();
         let rows = clusters(&in_rows, 1);
         let widths = widths(&columns, cells.width);
         let mut spots = Vec::new();
-        let mut zones: Vec<Zone> = Vec::new();
+        let mut zones: Vec<AgentZone> = Vec::new();
         let mut x = cells.x;
         for (index, column) in columns.iter().enumerate() {
             let width = widths[index];
             let slot = Rect { x, width, ..cells };
             x += width;
             let display_x = ends(&columns, index, 0, [0.0, 1.0]);
-            let shares_rows = column.iter().all(|item| matches!(item.thing, Thing::Location(_)))
+            let shares_rows = column.iter().all(|item| matches!(item.thing, MapElement::Location(_)))
                 && rows
                     .iter()
                     .all(|row| row.iter().filter(|item| column.iter().any(|c| c.thing == item.thing)).count() <= 1);
@@ -122,10 +122,10 @@ impl Plan {
             let owner = owner(column);
             match zones.last_mut() {
                 Some(zone) if zone.owner == owner => zone.cells.width += width,
-                _ => zones.push(Zone { owner, cells: Rect { x: slot.x, width, ..line } }),
+                _ => zones.push(AgentZone { owner, cells: Rect { x: slot.x, width, ..line } }),
             }
         }
-        Plan { spots: cover(spots), zones }
+        KitchenMap { spots: cover(spots), zones }
     }
 
     /// The display point (fractions) under the centre of a cell, continued beyond the panel.
@@ -145,8 +145,8 @@ impl Plan {
     }
 
     /// The spot whose bounds hold the point, or the nearest to it.
-    fn nearest(&self, point: [f64; 2], bounds: impl Fn(&Spot) -> Bounds) -> Option<&Spot> {
-        let distance = |spot: &Spot| {
+    fn nearest(&self, point: [f64; 2], bounds: impl Fn(&MapBox) -> Bounds) -> Option<&MapBox> {
+        let distance = |spot: &MapBox| {
             let outside = |axis: usize| {
                 let [low, high] = bounds(spot).0[axis];
                 (low - point[axis]).max(point[axis] - high).max(0.0)
@@ -157,7 +157,7 @@ impl Plan {
     }
 }
 
-impl Spot {
+impl MapBox {
     /// Pairs of display value and screen value along an axis.
     fn knots(&self, axis: usize) -> [(f64, f64); 4] {
         let (area, cells) = match axis {
@@ -198,7 +198,7 @@ fn along(value: f64, knots: &[(f64, f64); 4], order: impl Fn((f64, f64)) -> (f64
 fn items(kitchen: &Kitchen, with_keys: bool) -> Vec<Item> {
     let location = |(index, location): (usize, &crate::kitchen::Location)| {
         let owner = if let LocationKind::Hand(agent) = location.kind { Some(agent) } else { None };
-        let thing = Thing::Location(LocationId(index as u8));
+        let thing = MapElement::Location(LocationId(index as u8));
         // Rule, key and gap beside the name (the own hand is seldom highlighted); orders stand in a strip of their own.
         let beside = match location.kind {
             LocationKind::Hand(Agent::Human) => 2,
@@ -210,7 +210,7 @@ fn items(kitchen: &Kitchen, with_keys: bool) -> Vec<Item> {
         Item { thing, area: location.display, owner, min_columns }
     };
     let storage = |(index, storage): (usize, &crate::kitchen::layout::Storage)| Item {
-        thing: Thing::Storage(index),
+        thing: MapElement::Storage(index),
         area: storage.display,
         owner: Some(storage.agent),
         // A space before the name, and room for the key; the robot's keeps away from what is right of it.
@@ -225,8 +225,8 @@ fn items(kitchen: &Kitchen, with_keys: bool) -> Vec<Item> {
     locations.chain(kitchen.storages.iter().enumerate().map(storage)).collect()
 }
 
-fn is_order(kitchen: &Kitchen, thing: Thing) -> bool {
-    matches!(thing, Thing::Location(id) if kitchen.location(id).kind == LocationKind::Order)
+fn is_order(kitchen: &Kitchen, thing: MapElement) -> bool {
+    matches!(thing, MapElement::Location(id) if kitchen.location(id).kind == LocationKind::Order)
 }
 
 fn split_rows(cells: Rect, rows: u16) -> (Rect, Rect) {
@@ -278,7 +278,7 @@ fn ends(groups: &[Vec<&Item>], index: usize, axis: usize, whole: [f64; 2]) -> [f
 /// The widths of the columns: what they need, and the rest among those with locations.
 fn widths(columns: &[Vec<&Item>], total: u16) -> Vec<u16> {
     let need: Vec<u16> = columns.iter().map(|c| c.iter().map(|item| item.min_columns).max().unwrap_or(0)).collect();
-    let grows = |column: &[&Item]| column.iter().any(|item| matches!(item.thing, Thing::Location(_)));
+    let grows = |column: &[&Item]| column.iter().any(|item| matches!(item.thing, MapElement::Location(_)));
     let growing = columns.iter().filter(|c| grows(c)).count().max(1) as u16;
     let sum: u16 = need.iter().sum();
     let spare = total.saturating_sub(sum);
@@ -312,9 +312,9 @@ fn owner(column: &[&Item]) -> Option<Agent> {
     if column.iter().all(|item| item.owner == first) { first } else { None }
 }
 
-fn spot(item: &Item, region: Rect, display: Bounds) -> Spot {
+fn spot(item: &Item, region: Rect, display: Bounds) -> MapBox {
     let cells = match item.thing {
-        Thing::Location(_) => {
+        MapElement::Location(_) => {
             // Low cards leave air between them; where there is much room, they grow with it.
             let height = match region.height {
                 rows @ 0..=4 => rows.min(3),
@@ -323,16 +323,16 @@ fn spot(item: &Item, region: Rect, display: Bounds) -> Spot {
             let width = region.width.saturating_sub(u16::from(region.width > MIN_CARD));
             Rect { y: region.y + (region.height - height) / 2, width, height, ..region }
         }
-        Thing::Storage(_) => Rect { y: region.y + region.height / 2, height: region.height.min(1), ..region },
+        MapElement::Storage(_) => Rect { y: region.y + region.height / 2, height: region.height.min(1), ..region },
     };
-    Spot { thing: item.thing, cells, area: item.area, display, screen: bounds(region) }
+    MapBox { thing: item.thing, cells, area: item.area, display, screen: bounds(region) }
 }
 
 fn bounds(cells: Rect) -> Bounds {
     Bounds([[cells.x, cells.right()].map(f64::from), [cells.y, cells.bottom()].map(f64::from)])
 }
 
-fn row_of_orders(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Vec<Spot> {
+fn row_of_orders(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Vec<MapBox> {
     let groups: Vec<Vec<&Item>> = {
         let mut sorted = items.to_vec();
         sorted.sort_by(|a, b| a.area.x.total_cmp(&b.area.x));
@@ -345,13 +345,13 @@ fn row_of_orders(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Vec<Spot>
         let height = region.height.min(3);
         let cells = Rect { x: region.x + (region.width - width) / 2, width, height, ..region };
         let display = Bounds([ends(&groups, index, 0, [0.0, 1.0]), display_y]);
-        Spot { thing: group[0].thing, cells, area: group[0].area, display, screen: bounds(region) }
+        MapBox { thing: group[0].thing, cells, area: group[0].area, display, screen: bounds(region) }
     };
     groups.iter().enumerate().map(place).collect()
 }
 
 /// Lets nothing end before it begins, whatever a layout says.
-fn cover(mut spots: Vec<Spot>) -> Vec<Spot> {
+fn cover(mut spots: Vec<MapBox>) -> Vec<MapBox> {
     for spot in &mut spots {
         for axis in 0..2 {
             let [low, high] = spot.display.0[axis];
@@ -362,6 +362,6 @@ fn cover(mut spots: Vec<Spot>) -> Vec<Spot> {
     spots
 }
 
-fn extent_of(area: Area, axis: usize) -> [f64; 2] {
+fn extent_of(area: DisplayArea, axis: usize) -> [f64; 2] {
     if axis == 0 { [area.x, area.x + area.w] } else { [area.y, area.y + area.h] }
 }

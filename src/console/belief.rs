@@ -18,7 +18,7 @@ pub const SHOWN_S: f64 = 60.0;
 
 /// What is estimated of one aspect at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Held {
+pub struct AspectSnapshot {
     /// The value that is expected to be believed most, by index, and how much.
     pub believes: u8,
     pub p: f32,
@@ -26,7 +26,7 @@ pub struct Held {
     pub p_truth: f32,
 }
 
-impl Held {
+impl AspectSnapshot {
     /// Whether it is believed wrong.
     pub fn is_false(self) -> bool {
         f64::from(self.p_truth) < FALSE_BELOW
@@ -35,51 +35,57 @@ impl Held {
 
 /// The estimate at a moment.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Moment {
+pub struct BeliefSnapshot {
     pub time: SessionTime,
     /// Nothing but gaze came since the moment before.
     by_gaze: bool,
     /// By aspect.
-    pub held: Vec<Held>,
+    pub held: Vec<AspectSnapshot>,
     /// By aspect, since when it is believed wrong, if it is.
     wrong_since: Vec<Option<SessionTime>>,
 }
 
-impl Moment {
+impl BeliefSnapshot {
     /// The estimate as it is at this time, while the kitchen is in `state`.
-    pub fn new(kitchen: &Kitchen, state: State, belief: &DirichletBelief, time: SessionTime, by_gaze: bool) -> Moment {
+    pub fn new(
+        kitchen: &Kitchen,
+        state: State,
+        belief: &DirichletBelief,
+        time: SessionTime,
+        by_gaze: bool,
+    ) -> BeliefSnapshot {
         let held = |index: usize| {
             let of_aspect = &belief.aspects[index];
             let believes = of_aspect.most_likely();
-            Held {
+            AspectSnapshot {
                 believes: believes as u8,
                 p: of_aspect.mean()[believes] as f32,
                 p_truth: belief.p_truth(kitchen, state, AspectId(index as u8)) as f32,
             }
         };
-        let held: Vec<Held> = (0..kitchen.aspects.len()).map(held).collect();
+        let held: Vec<AspectSnapshot> = (0..kitchen.aspects.len()).map(held).collect();
         let wrong_since = held.iter().map(|held| held.is_false().then_some(time)).collect();
-        Moment { time, by_gaze, held, wrong_since }
+        BeliefSnapshot { time, by_gaze, held, wrong_since }
     }
 }
 
 /// The estimate from moment to moment, and the aspect that is looked at more closely.
 #[derive(Clone, Debug, Default)]
-pub struct BeliefTrack {
-    moments: Vec<Moment>,
+pub struct BeliefHistory {
+    moments: Vec<BeliefSnapshot>,
     /// Shown over time.
     pub focus: Option<AspectId>,
 }
 
-impl BeliefTrack {
+impl BeliefHistory {
     /// The moments from which on something is believed wrong that was not before.
     pub fn newly_false(&self) -> impl Iterator<Item = SessionTime> {
-        let begins = |moment: &&Moment| moment.wrong_since.contains(&Some(moment.time));
+        let begins = |moment: &&BeliefSnapshot| moment.wrong_since.contains(&Some(moment.time));
         self.moments.iter().filter(begins).map(|moment| moment.time)
     }
 
     /// Keeps a moment, unless it is one of many gaze samples that change little.
-    pub fn note(&mut self, mut moment: Moment) {
+    pub fn note(&mut self, mut moment: BeliefSnapshot) {
         if let Some(last) = self.moments.last().filter(|_| moment.by_gaze) {
             let pairs = || last.held.iter().zip(&moment.held);
             let is_news = pairs().any(|(then, now)| f64::from((now.p_truth - then.p_truth).abs()) >= JUMP);
@@ -106,7 +112,7 @@ impl BeliefTrack {
     }
 
     /// Takes over what another track of the same session has beyond this one.
-    pub fn catch_up(&mut self, other: &BeliefTrack) {
+    pub fn catch_up(&mut self, other: &BeliefHistory) {
         let known = self.moments.len().min(other.moments.len());
         self.moments.extend_from_slice(&other.moments[known..]);
     }
@@ -122,14 +128,14 @@ impl BeliefTrack {
     }
 
     /// The moments until and with this time.
-    pub fn until(&self, time: SessionTime) -> &[Moment] {
+    pub fn until(&self, time: SessionTime) -> &[BeliefSnapshot] {
         &self.moments[..self.moments.partition_point(|moment| moment.time <= time)]
     }
 }
 
 /// The aspects in the order in which they matter at the last of these moments: those believed wrong, the longest first,
 /// then the others as they come.
-pub fn ranked(moments: &[Moment]) -> Vec<usize> {
+pub fn ranked(moments: &[BeliefSnapshot]) -> Vec<usize> {
     let Some(last) = moments.last() else { return Vec::new() };
     let mut wrong: Vec<(SessionTime, usize)> =
         (0..last.held.len()).filter_map(|aspect| Some((wrong_since(moments, aspect)?, aspect))).collect();
@@ -139,14 +145,14 @@ pub fn ranked(moments: &[Moment]) -> Vec<usize> {
 }
 
 /// Since when an aspect is believed wrong; `None` if it is not.
-pub fn wrong_since(moments: &[Moment], aspect: usize) -> Option<SessionTime> {
+pub fn wrong_since(moments: &[BeliefSnapshot], aspect: usize) -> Option<SessionTime> {
     moments.last()?.wrong_since[aspect]
 }
 
 /// When the gaze last changed what is believed of an aspect, if that was a moment ago.
-pub fn read_at(moments: &[Moment], aspect: usize, now: SessionTime) -> Option<SessionTime> {
+pub fn read_at(moments: &[BeliefSnapshot], aspect: usize, now: SessionTime) -> Option<SessionTime> {
     let recent = moments.windows(2).rev().take_while(|pair| now.secs_since(pair[1].time) <= NEWS_S);
-    let is_news = |pair: &&[Moment]| {
+    let is_news = |pair: &&[BeliefSnapshot]| {
         let [then, at] = [&pair[0].held[aspect], &pair[1].held[aspect]];
         pair[1].by_gaze && (then.believes != at.believes || f64::from((at.p_truth - then.p_truth).abs()) >= NEWS)
     };
@@ -154,7 +160,13 @@ pub fn read_at(moments: &[Moment], aspect: usize, now: SessionTime) -> Option<Se
 }
 
 /// P(truth) of an aspect at so many times, evenly spread over the last `seconds`; nothing before the first moment.
-pub fn course(moments: &[Moment], aspect: usize, now: SessionTime, seconds: f64, columns: usize) -> Vec<Option<f64>> {
+pub fn course(
+    moments: &[BeliefSnapshot],
+    aspect: usize,
+    now: SessionTime,
+    seconds: f64,
+    columns: usize,
+) -> Vec<Option<f64>> {
     let at = |column: usize| {
         let back_s = seconds * (columns - 1 - column) as f64 / columns.max(2) as f64;
         let time = now - SessionTime::from_secs_f64(back_s);

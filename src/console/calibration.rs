@@ -3,10 +3,10 @@
 
 use crossterm::event::KeyCode;
 
-use super::message::Command;
-use super::model::{Dialog, Level, Model};
+use super::message::ConsoleCommand;
+use super::model::{ConsoleModel, Dialog, NoticeLevel};
 use super::update::send;
-use crate::gaze::calibration::{Found, USABLE_DEG};
+use crate::gaze::calibration::{GazeAccuracy, USABLE_DEG};
 use crate::session::calibration::CalibrationEvent;
 use crate::session::{Event, Session};
 
@@ -18,9 +18,10 @@ pub const CORRECTED: char = 'o';
 pub const REPEAT: char = 'r';
 
 /// Begins a check, or begins it again.
-pub(super) fn begin(model: &mut Model, session: &Session) -> Option<Command> {
+pub(super) fn begin(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     let event = Event::Calibration(CalibrationEvent::begin());
-    let begun = send(model, session, event, Level::Done, "the participant looks at the targets; esc ends the check");
+    let begun =
+        send(model, session, event, NoticeLevel::Done, "the participant looks at the targets; esc ends the check");
     if begun.is_some() {
         model.dialog = Some(Dialog::Calibration);
     }
@@ -29,38 +30,43 @@ pub(super) fn begin(model: &mut Model, session: &Session) -> Option<Command> {
 
 /// What enter does with a result: what is best for the gaze.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Best {
+pub enum CalibrationAdvice {
     Corrected,
     AsItIs,
     /// Both are too far off, or nothing was found.
     Repeat,
 }
 
-impl Best {
+impl CalibrationAdvice {
     /// Of what was found.
-    pub fn of(found: Option<&Found>) -> Best {
+    pub fn of(found: Option<&GazeAccuracy>) -> CalibrationAdvice {
         match found {
-            Some(found) if found.accuracy_deg.min(found.corrected_deg) > USABLE_DEG => Best::Repeat,
-            Some(found) if found.corrected_deg < found.accuracy_deg => Best::Corrected,
-            Some(_) => Best::AsItIs,
-            None => Best::Repeat,
+            Some(found) if found.accuracy_deg.min(found.corrected_deg) > USABLE_DEG => CalibrationAdvice::Repeat,
+            Some(found) if found.corrected_deg < found.accuracy_deg => CalibrationAdvice::Corrected,
+            Some(_) => CalibrationAdvice::AsItIs,
+            None => CalibrationAdvice::Repeat,
         }
     }
 }
 
 /// A key while a check goes on, or its result is shown.
-pub(super) fn answer(model: &mut Model, session: &Session, code: KeyCode, is_press: bool) -> Option<Command> {
+pub(super) fn answer(
+    model: &mut ConsoleModel,
+    session: &Session,
+    code: KeyCode,
+    is_press: bool,
+) -> Option<ConsoleCommand> {
     let outcome = session.calibration.as_ref().and_then(|check| check.result.as_ref());
     let found = outcome.and_then(|outcome| outcome.found.as_ref());
-    let code = match (code, Best::of(found)) {
-        (KeyCode::Enter, Best::Corrected) => KeyCode::Char(CORRECTED),
-        (KeyCode::Enter, Best::AsItIs) => KeyCode::Char(AS_IT_IS),
-        (KeyCode::Enter, Best::Repeat) => KeyCode::Char(REPEAT),
+    let code = match (code, CalibrationAdvice::of(found)) {
+        (KeyCode::Enter, CalibrationAdvice::Corrected) => KeyCode::Char(CORRECTED),
+        (KeyCode::Enter, CalibrationAdvice::AsItIs) => KeyCode::Char(AS_IT_IS),
+        (KeyCode::Enter, CalibrationAdvice::Repeat) => KeyCode::Char(REPEAT),
         (code, _) => code,
     };
     let mut decide = |event: CalibrationEvent, words: &str| {
         model.dialog = None;
-        send(model, session, Event::Calibration(event), Level::Done, words)
+        send(model, session, Event::Calibration(event), NoticeLevel::Done, words)
     };
     match code {
         KeyCode::Esc if session.calibration.is_none() => {

@@ -33,45 +33,45 @@ const REMEDY: &str = "a character such as \"k\", a letter with ctrl such as \"ct
 
 /// A key, with or without control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Chord {
+pub struct KeyChord {
     pub code: KeyCode,
     pub ctrl: bool,
 }
 
-impl Chord {
-    pub const SPACE: Chord = Chord::plain(KeyCode::Char(' '));
+impl KeyChord {
+    pub const SPACE: KeyChord = KeyChord::plain(KeyCode::Char(' '));
 
-    pub const fn plain(code: KeyCode) -> Chord {
-        Chord { code, ctrl: false }
+    pub const fn plain(code: KeyCode) -> KeyChord {
+        KeyChord { code, ctrl: false }
     }
 
-    pub const fn char(key: char) -> Chord {
-        Chord::plain(KeyCode::Char(key))
+    pub const fn char(key: char) -> KeyChord {
+        KeyChord::plain(KeyCode::Char(key))
     }
 
-    pub const fn ctrl(key: char) -> Chord {
-        Chord { code: KeyCode::Char(key), ctrl: true }
+    pub const fn ctrl(key: char) -> KeyChord {
+        KeyChord { code: KeyCode::Char(key), ctrl: true }
     }
 
     /// The chord of a key event. Capitals count as their small letters, so that caps lock does no harm.
-    pub fn of(key: &KeyEvent) -> Chord {
+    pub fn of(key: &KeyEvent) -> KeyChord {
         let code = match key.code {
             KeyCode::Char(letter) => KeyCode::Char(small(letter)),
             other => other,
         };
-        Chord { code, ctrl: key.modifiers.contains(KeyModifiers::CONTROL) }
+        KeyChord { code, ctrl: key.modifiers.contains(KeyModifiers::CONTROL) }
     }
 
     /// The key of a letter in a layout.
-    pub fn of_letter(letter: char) -> Chord {
-        Chord::char(small(letter))
+    pub fn of_letter(letter: char) -> KeyChord {
+        KeyChord::char(small(letter))
     }
 
     /// Reads a name as key files have it.
     ///
     /// # Errors
     /// What was found and what would be right.
-    pub fn parse(name: &str) -> Result<Chord, (String, String)> {
+    pub fn parse(name: &str) -> Result<KeyChord, (String, String)> {
         let wrong = |found: String| Err((found, REMEDY.to_string()));
         if let Some(rest) = name.strip_prefix("ctrl+") {
             let letter = single(rest).map(small).filter(char::is_ascii_lowercase);
@@ -80,22 +80,22 @@ impl Chord {
             };
             return match SENT_AS.iter().find(|(other, _)| *other == letter) {
                 Some((_, other)) => wrong(format!("\"{name}\", which most terminals send as {other}")),
-                None => Ok(Chord::ctrl(letter)),
+                None => Ok(KeyChord::ctrl(letter)),
             };
         }
         if let Some((_, _, code)) = NAMED.iter().find(|(known, _, _)| *known == name) {
-            return Ok(Chord::plain(*code));
+            return Ok(KeyChord::plain(*code));
         }
         let function = name.strip_prefix('f').and_then(|number| number.parse::<u8>().ok());
         if let Some(number @ 1..=12) = function.filter(|number| name == format!("f{number}")) {
-            return Ok(Chord::plain(KeyCode::F(number)));
+            return Ok(KeyChord::plain(KeyCode::F(number)));
         }
         match single(name) {
             Some(' ') => wrong("\" \"".to_string()),
             Some(letter) if small(letter) != letter => {
                 wrong(format!("\"{name}\": a capital counts as its small letter, for the sake of caps lock"))
             }
-            Some(letter) if !letter.is_control() => Ok(Chord::char(letter)),
+            Some(letter) if !letter.is_control() => Ok(KeyChord::char(letter)),
             _ => wrong(format!("\"{name}\", which is no key")),
         }
     }
@@ -116,7 +116,7 @@ impl Chord {
 }
 
 /// The name on the screen: "^r", "bksp".
-impl fmt::Display for Chord {
+impl fmt::Display for KeyChord {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.ctrl {
             f.write_str("^")?;

@@ -1,8 +1,8 @@
 //! Coding the errors of a recording: which error one stands at, and what the rater says about it.
 
-use super::message::Command;
-use super::model::{Level, Model};
-use super::playback::Move;
+use super::message::ConsoleCommand;
+use super::model::{ConsoleModel, NoticeLevel};
+use super::playback::ReplayKey;
 use super::words;
 use crate::kitchen::{Kitchen, LocationId};
 use crate::measures::coding::{Code, Codes, Kind};
@@ -10,7 +10,7 @@ use crate::session::{Happening, Session};
 
 /// What a key asks of a rater's console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rate {
+pub enum RaterKey {
     /// To the next error, or the one before.
     Next,
     Last,
@@ -24,14 +24,14 @@ pub enum Rate {
 
 /// What one rater has said about a recording so far.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Coding {
+pub struct RaterSession {
     pub rater: String,
     /// The numbers of the presses that were errors, in order.
     pub errors: Vec<u64>,
     pub codes: Codes,
 }
 
-impl Coding {
+impl RaterSession {
     /// The error at which a replay stands that has applied so many events: the last one until then.
     pub fn at(&self, events: usize) -> Option<usize> {
         self.errors.partition_point(|&press| press < events as u64).checked_sub(1)
@@ -72,29 +72,29 @@ fn describe(kitchen: &Kitchen, code: &Code) -> String {
 }
 
 /// Does what a key asks for.
-pub fn act(model: &mut Model, session: &Session, rate: Rate) -> Option<Command> {
+pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterKey) -> Option<ConsoleCommand> {
     let events = model.playback.as_ref().map_or(0, |playback| playback.event);
     let coding = model.coding.as_mut()?;
     let at = coding.at(events);
     let kitchen = &session.kitchen;
     let code = match rate {
-        Rate::Next | Rate::Last => {
+        RaterKey::Next | RaterKey::Last => {
             let to = match rate {
-                Rate::Next => Some(at.map_or(0, |at| at + 1)),
+                RaterKey::Next => Some(at.map_or(0, |at| at + 1)),
                 _ => at.and_then(|at| at.checked_sub(1)),
             };
             let Some(&press) = to.and_then(|to| coding.errors.get(to)) else {
-                model.say(Level::Refused, "there is no other error");
+                model.say(NoticeLevel::Refused, "there is no other error");
                 return None;
             };
-            return Some(Command::Move(Move::ToEvent(press)));
+            return Some(ConsoleCommand::Move(ReplayKey::ToEvent(press)));
         }
-        Rate::Belief(location) => Some(Code::Belief(kitchen.location(location).name.clone())),
-        Rate::Cause(kind) => Code::new(kind, None),
-        Rate::Clear => None,
+        RaterKey::Belief(location) => Some(Code::Belief(kitchen.location(location).name.clone())),
+        RaterKey::Cause(kind) => Code::new(kind, None),
+        RaterKey::Clear => None,
     };
     let Some(&press) = at.and_then(|at| coding.errors.get(at)) else {
-        model.say(Level::Refused, "there is no error yet that could be coded");
+        model.say(NoticeLevel::Refused, "there is no error yet that could be coded");
         return None;
     };
     match code {
@@ -103,5 +103,5 @@ pub fn act(model: &mut Model, session: &Session, rate: Rate) -> Option<Command> 
     };
     // What was said stands beside the error, where an older notice would hide it.
     model.notice = None;
-    Some(Command::Code)
+    Some(ConsoleCommand::Code)
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::belief::Held;
+use super::belief::AspectSnapshot;
 use super::words;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
@@ -19,12 +19,12 @@ const SURE: f64 = 0.9;
 
 /// What was known when something could be said.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Known {
+pub struct CommunicationContext {
     /// The number of the event that brought it about.
     pub seq: u64,
     pub state: State,
     /// By aspect; the estimate leaves out what was sent within the window.
-    pub held: Vec<Held>,
+    pub held: Vec<AspectSnapshot>,
     /// Of each assistant, in the order of their lanes.
     pub advice: Vec<Recommendation>,
     /// What was on the wizard's screen; none before the first frame, and without a wizard.
@@ -33,35 +33,35 @@ pub struct Known {
 
 /// What was said.
 #[derive(Clone, Debug, PartialEq)]
-pub enum What {
+pub enum CommunicationContent {
     Signal(Signal),
     /// Presses by the names of their buttons.
     Proposal(Vec<String>),
 }
 
-impl What {
+impl CommunicationContent {
     /// For the matching.
     pub fn content(&self, kitchen: &Kitchen) -> Content {
         let kind = match self {
-            What::Signal(Signal::ShowRecipe(_)) => Kind::Recipe,
-            What::Signal(Signal::Highlight(_)) => Kind::Highlight,
-            What::Proposal(_) => Kind::Proposal,
+            CommunicationContent::Signal(Signal::ShowRecipe(_)) => Kind::Recipe,
+            CommunicationContent::Signal(Signal::Highlight(_)) => Kind::Highlight,
+            CommunicationContent::Proposal(_) => Kind::Proposal,
         };
         Content { kind, target: self.target(kitchen) }
     }
 
     fn target(&self, kitchen: &Kitchen) -> Option<LocationId> {
         match self {
-            What::Signal(signal) => kitchen.location_named(signal.target()),
-            What::Proposal(_) => None,
+            CommunicationContent::Signal(signal) => kitchen.location_named(signal.target()),
+            CommunicationContent::Proposal(_) => None,
         }
     }
 
     /// In words.
     pub fn words(&self) -> String {
         match self {
-            What::Signal(signal) => words::signal(signal),
-            What::Proposal(presses) => {
+            CommunicationContent::Signal(signal) => words::signal(signal),
+            CommunicationContent::Proposal(presses) => {
                 let presses: Vec<String> = presses.iter().map(|press| words::location(press)).collect();
                 format!("press {}", presses.join(", then "))
             }
@@ -71,26 +71,26 @@ impl What {
 
 /// A communication in its lane.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Spoken {
+pub struct Communication {
     pub said: Said,
     /// In the session's time.
     pub time: SessionTime,
-    pub what: What,
+    pub what: CommunicationContent,
     /// The last moment until then at which the assistants were asked.
-    pub known: Option<Arc<Known>>,
+    pub known: Option<Arc<CommunicationContext>>,
 }
 
 /// Everything that one side said in a trial.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lane {
+pub struct CommunicationLane {
     /// "wizard", "tom-com".
     pub name: String,
     /// What decides; none: who sent the signals that the participant saw.
     pub concept: Option<ConceptName>,
-    pub spoken: Vec<Spoken>,
+    pub spoken: Vec<Communication>,
 }
 
-impl Lane {
+impl CommunicationLane {
     pub fn said(&self) -> Vec<Said> {
         self.spoken.iter().map(|spoken| spoken.said).collect()
     }
@@ -98,7 +98,7 @@ impl Lane {
 
 /// A communication that has no match in another lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Difference {
+pub struct UnmatchedCommunication {
     /// The lane and its communication.
     pub lane: usize,
     pub index: usize,
@@ -108,7 +108,7 @@ pub struct Difference {
 
 /// The first lane against another one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pair {
+pub struct LanePair {
     /// Strict pairs, as indices into both lanes.
     pub matched: Vec<(usize, usize)>,
     pub similarity: Similarity,
@@ -116,28 +116,28 @@ pub struct Pair {
 
 /// A comparison, as far as it has come.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Comparison {
+pub struct LaneComparison {
     /// Presses of the human within which communications match.
     pub window: u32,
     /// The first is what the participant was shown.
-    pub lanes: Vec<Lane>,
+    pub lanes: Vec<CommunicationLane>,
     /// The first lane with each of the others.
-    pub pairs: Vec<Pair>,
+    pub pairs: Vec<LanePair>,
     /// In the order of time. What may still be matched is none.
-    pub differences: Vec<Difference>,
+    pub differences: Vec<UnmatchedCommunication>,
 }
 
-impl Comparison {
+impl LaneComparison {
     /// Compares lanes of a trial that has had so many presses of the human; `over`: there will be no more.
-    pub fn new(lanes: Vec<Lane>, window: u32, presses: u32, over: bool) -> Comparison {
-        let said: Vec<Vec<Said>> = lanes.iter().map(Lane::said).collect();
+    pub fn new(lanes: Vec<CommunicationLane>, window: u32, presses: u32, over: bool) -> LaneComparison {
+        let said: Vec<Vec<Said>> = lanes.iter().map(CommunicationLane::said).collect();
         let pair = |with: &Vec<Said>| {
             let mut tally = Tally::default();
             tally.add(&said[0], with, presses, window);
             let matched = matched(&said[0], with, window, Likeness::Strict);
-            Pair { matched, similarity: tally.similarity() }
+            LanePair { matched, similarity: tally.similarity() }
         };
-        let pairs: Vec<Pair> = said.iter().skip(1).map(pair).collect();
+        let pairs: Vec<LanePair> = said.iter().skip(1).map(pair).collect();
         let mut differences = Vec::new();
         for (not, pair) in pairs.iter().enumerate() {
             let other = not + 1;
@@ -147,31 +147,31 @@ impl Comparison {
             for (lane, not) in [(0, other), (other, 0)] {
                 let settled = |index: &usize| over || said[lane][*index].press + window < presses;
                 let indices = (0..said[lane].len()).filter(|&index| alone(lane, index)).filter(settled);
-                differences.extend(indices.map(|index| Difference { lane, index, not }));
+                differences.extend(indices.map(|index| UnmatchedCommunication { lane, index, not }));
             }
         }
-        let time = |one: &Difference| lanes[one.lane].spoken[one.index].time;
+        let time = |one: &UnmatchedCommunication| lanes[one.lane].spoken[one.index].time;
         differences.sort_by_key(|one| (time(one), one.lane, one.not));
-        Comparison { window, lanes, pairs, differences }
+        LaneComparison { window, lanes, pairs, differences }
     }
 
     /// What was said in a difference.
-    pub fn spoken(&self, difference: &Difference) -> &Spoken {
+    pub fn spoken(&self, difference: &UnmatchedCommunication) -> &Communication {
         &self.lanes[difference.lane].spoken[difference.index]
     }
 
     /// The assistant's lane that a difference is about.
-    fn assistant(&self, difference: &Difference) -> usize {
+    fn assistant(&self, difference: &UnmatchedCommunication) -> usize {
         difference.lane.max(difference.not)
     }
 
     /// What that assistant thought then.
-    pub fn advice(&self, difference: &Difference) -> Option<&Recommendation> {
+    pub fn advice(&self, difference: &UnmatchedCommunication) -> Option<&Recommendation> {
         self.spoken(difference).known.as_ref()?.advice.get(self.assistant(difference) - 1)
     }
 
     /// A difference in one line: "4:32  only tom-com: recipe of order 1".
-    pub fn headline(&self, difference: &Difference) -> String {
+    pub fn headline(&self, difference: &UnmatchedCommunication) -> String {
         let (spoken, by) = (self.spoken(difference), &self.lanes[difference.lane].name);
         let not = match self.lanes.len() {
             0..=2 => String::new(),
@@ -182,10 +182,10 @@ impl Comparison {
     }
 
     /// What each knew then, in lines.
-    pub fn opened(&self, kitchen: &Kitchen, difference: &Difference) -> Vec<String> {
+    pub fn opened(&self, kitchen: &Kitchen, difference: &UnmatchedCommunication) -> Vec<String> {
         let spoken = self.spoken(difference);
         let other = &self.lanes[difference.not];
-        let apart = |near: &&Spoken| near.said.press.abs_diff(spoken.said.press);
+        let apart = |near: &&Communication| near.said.press.abs_diff(spoken.said.press);
         let near = match other.spoken.iter().min_by_key(apart) {
             Some(near) => {
                 let presses = count(apart(&near), "press", "presses");
@@ -214,7 +214,7 @@ impl Comparison {
 
 /// What a key asks of the list of differences.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum ComparisonKey {
     Next,
     Last,
     /// Shows what each knew then.
@@ -223,35 +223,35 @@ pub enum Step {
 
 /// The comparison at the console, and the difference that is looked at.
 #[derive(Clone, Debug, Default)]
-pub struct Compared {
+pub struct ComparisonView {
     /// None until the first press or order.
-    pub seen: Option<Comparison>,
+    pub seen: Option<LaneComparison>,
     /// None: the newest.
-    chosen: Option<Difference>,
+    chosen: Option<UnmatchedCommunication>,
 }
 
-impl Compared {
+impl ComparisonView {
     /// Takes over what was compared meanwhile; what was chosen stays chosen.
-    pub fn show(&mut self, newest: Comparison) {
+    pub fn show(&mut self, newest: LaneComparison) {
         self.chosen = self.chosen.filter(|chosen| newest.differences.contains(chosen));
         self.seen = Some(newest);
     }
 
     /// The difference that is looked at: its place in the list, and the comparison.
-    pub fn chosen(&self) -> Option<(usize, &Comparison)> {
+    pub fn chosen(&self) -> Option<(usize, &LaneComparison)> {
         let seen = self.seen.as_ref()?;
         let newest = seen.differences.len().checked_sub(1)?;
-        let is_it = |chosen: Difference| seen.differences.iter().position(|one| *one == chosen);
+        let is_it = |chosen: UnmatchedCommunication| seen.differences.iter().position(|one| *one == chosen);
         Some((self.chosen.and_then(is_it).unwrap_or(newest), seen))
     }
 
     /// Goes on to the next difference, or back to the last; at the newest the newest is followed.
-    pub fn choose(&mut self, step: Step) {
+    pub fn choose(&mut self, step: ComparisonKey) {
         let Some((at, seen)) = self.chosen() else { return };
         let to = match step {
-            Step::Next => at + 1,
-            Step::Last => at.saturating_sub(1),
-            Step::Open => at,
+            ComparisonKey::Next => at + 1,
+            ComparisonKey::Last => at.saturating_sub(1),
+            ComparisonKey::Open => at,
         };
         self.chosen = seen.differences.get(to).copied().filter(|_| to + 1 < seen.differences.len());
     }
@@ -260,7 +260,7 @@ impl Compared {
 /// What an assistant thought, in words; ToM thinks of deviations.
 fn thought(advice: &Recommendation, is_tom: bool) -> String {
     if let Some(proposal) = &advice.proposal {
-        return What::Proposal(proposal.presses.clone()).words();
+        return CommunicationContent::Proposal(proposal.presses.clone()).words();
     }
     let option = |option: &SignalOption| {
         let (signal, SignalOption { benefit, standard_error, net, .. }) = (words::signal(&option.signal), option);
@@ -280,13 +280,13 @@ fn thought(advice: &Recommendation, is_tom: bool) -> String {
 }
 
 /// What is believed wrong, the wrongest first, and what is right but not sure.
-fn believed(kitchen: &Kitchen, known: &Known) -> [String; 2] {
-    let mut doubtful: Vec<(usize, &Held)> =
+fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
+    let mut doubtful: Vec<(usize, &AspectSnapshot)> =
         known.held.iter().enumerate().filter(|(_, held)| f64::from(held.p_truth) < SURE).collect();
     doubtful.sort_by(|a, b| a.1.p_truth.total_cmp(&b.1.p_truth));
     let (wrong, unsure): (Vec<_>, Vec<_>) =
         doubtful.into_iter().partition(|(_, held)| f64::from(held.p_truth) < FALSE_BELOW);
-    let told = |&(index, held): &(usize, &Held)| {
+    let told = |&(index, held): &(usize, &AspectSnapshot)| {
         let aspect = &kitchen.aspects[index];
         let truth = kitchen.true_value(known.state, AspectId(index as u8));
         let name = words::location(&aspect.name);
@@ -296,7 +296,7 @@ fn believed(kitchen: &Kitchen, known: &Known) -> [String; 2] {
             false => format!("{name}: {believes} {:.2}, truly {truth_label} {:.2}", held.p, held.p_truth),
         }
     };
-    let doubted = |&(index, held): &(usize, &Held)| {
+    let doubted = |&(index, held): &(usize, &AspectSnapshot)| {
         format!("{} {:.2}", words::location(&kitchen.aspects[index].name), held.p_truth)
     };
     let list = |told: Vec<String>| if told.is_empty() { "nothing".to_string() } else { told.join("; ") };

@@ -3,8 +3,8 @@
 
 use crossterm::event::KeyCode;
 
-use super::message::Command;
-use super::model::{Level, Model};
+use super::message::ConsoleCommand;
+use super::model::{ConsoleModel, NoticeLevel};
 use super::update::send;
 use crate::session::plan::{PhaseSpec, Questionnaire};
 use crate::session::protocol::{Protocol, ProtocolEvent};
@@ -16,7 +16,7 @@ pub const WAIVERS: [&str; 4] =
 
 /// What stands on the sheet in front of the console.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sheet<'a> {
+pub enum SheetContent<'a> {
     /// Steps to be ticked one after another.
     Steps {
         title: &'static str,
@@ -27,27 +27,29 @@ pub enum Sheet<'a> {
     Failed,
 }
 
-impl Sheet<'_> {
+impl SheetContent<'_> {
     /// As it stands in the log, where it says what the wizard sees.
     pub fn name(&self) -> &'static str {
         match self {
-            Sheet::Steps { .. } => "steps",
-            Sheet::Questions(_) => "questionnaire",
-            Sheet::Failed => "criterion",
+            SheetContent::Steps { .. } => "steps",
+            SheetContent::Questions(_) => "questionnaire",
+            SheetContent::Failed => "criterion",
         }
     }
 }
 
 /// The sheet of the running phase, if it has one.
-pub fn sheet(session: &Session) -> Option<Sheet<'_>> {
+pub fn sheet(session: &Session) -> Option<SheetContent<'_>> {
     let (_, protocol) = session.step()?;
     match session.study_phase()? {
-        PhaseSpec::Instruction { steps } => Some(Sheet::Steps { title: "Instruction of the participant", steps }),
-        PhaseSpec::Debriefing { steps } => Some(Sheet::Steps { title: "Debriefing of the wizard", steps }),
-        PhaseSpec::Questionnaire { questionnaire } => Some(Sheet::Questions(questionnaire)),
+        PhaseSpec::Instruction { steps } => {
+            Some(SheetContent::Steps { title: "Instruction of the participant", steps })
+        }
+        PhaseSpec::Debriefing { steps } => Some(SheetContent::Steps { title: "Debriefing of the wizard", steps }),
+        PhaseSpec::Questionnaire { questionnaire } => Some(SheetContent::Questions(questionnaire)),
         PhaseSpec::Familiarisation => {
             let failed = protocol.practice.as_ref().is_some_and(|practice| !practice.met && practice.waived.is_none());
-            failed.then_some(Sheet::Failed)
+            failed.then_some(SheetContent::Failed)
         }
         PhaseSpec::Trial => None,
     }
@@ -55,7 +57,7 @@ pub fn sheet(session: &Session) -> Option<Sheet<'_>> {
 
 /// What a key on the sheet asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Stroke {
+pub(super) enum SheetKey {
     /// On: the next step, item or phase.
     On,
     Back,
@@ -63,64 +65,64 @@ pub(super) enum Stroke {
 }
 
 /// What a key means on a sheet, if it means anything there; `advances`: it is the key that starts and pauses trials.
-pub(super) fn stroke(code: KeyCode, advances: bool) -> Option<Stroke> {
+pub(super) fn stroke(code: KeyCode, advances: bool) -> Option<SheetKey> {
     match code {
-        _ if advances => Some(Stroke::On),
-        KeyCode::Enter | KeyCode::Right | KeyCode::Down => Some(Stroke::On),
-        KeyCode::Left | KeyCode::Up | KeyCode::Backspace => Some(Stroke::Back),
-        KeyCode::Char(digit @ '0'..='9') => Some(Stroke::Digit(digit as u8 - b'0')),
+        _ if advances => Some(SheetKey::On),
+        KeyCode::Enter | KeyCode::Right | KeyCode::Down => Some(SheetKey::On),
+        KeyCode::Left | KeyCode::Up | KeyCode::Backspace => Some(SheetKey::Back),
+        KeyCode::Char(digit @ '0'..='9') => Some(SheetKey::Digit(digit as u8 - b'0')),
         _ => None,
     }
 }
 
 /// Does what the key on the sheet asks for.
-pub(super) fn write(model: &mut Model, session: &Session, stroke: Stroke) -> Option<Command> {
+pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKey) -> Option<ConsoleCommand> {
     let (sheet, protocol) = (sheet(session)?, session.protocol.as_ref()?);
     match (sheet, stroke) {
-        (Sheet::Steps { .. }, Stroke::On) => match protocol.ticks.iter().position(|done| !done) {
+        (SheetContent::Steps { .. }, SheetKey::On) => match protocol.ticks.iter().position(|done| !done) {
             Some(open) => tell(model, session, ProtocolEvent::Ticked { step: open + 1, done: true }),
             None => leave(model, session),
         },
-        (Sheet::Steps { .. }, Stroke::Back) => {
+        (SheetContent::Steps { .. }, SheetKey::Back) => {
             let last = protocol.ticks.iter().rposition(|done| *done)?;
             tell(model, session, ProtocolEvent::Ticked { step: last + 1, done: false })
         }
-        (Sheet::Questions(_), _) if protocol.confirmed => match stroke {
-            Stroke::On => leave(model, session),
+        (SheetContent::Questions(_), _) if protocol.confirmed => match stroke {
+            SheetKey::On => leave(model, session),
             _ => refuse(model, "the answers are confirmed"),
         },
-        (Sheet::Questions(questionnaire), stroke) => ask(model, session, questionnaire, protocol, stroke),
-        (Sheet::Failed, Stroke::On) => Some(Command::Next),
-        (Sheet::Failed, Stroke::Digit(digit)) => {
+        (SheetContent::Questions(questionnaire), stroke) => ask(model, session, questionnaire, protocol, stroke),
+        (SheetContent::Failed, SheetKey::On) => Some(ConsoleCommand::Next),
+        (SheetContent::Failed, SheetKey::Digit(digit)) => {
             let reason = usize::from(digit).checked_sub(1).and_then(|index| WAIVERS.get(index))?;
             tell(model, session, ProtocolEvent::CriterionWaived { reason: reason.to_string() })
         }
-        (Sheet::Steps { .. }, Stroke::Digit(_)) | (Sheet::Failed, Stroke::Back) => None,
+        (SheetContent::Steps { .. }, SheetKey::Digit(_)) | (SheetContent::Failed, SheetKey::Back) => None,
     }
 }
 
 fn ask(
-    model: &mut Model,
+    model: &mut ConsoleModel,
     session: &Session,
     questionnaire: &Questionnaire,
     protocol: &Protocol,
-    stroke: Stroke,
-) -> Option<Command> {
+    stroke: SheetKey,
+) -> Option<ConsoleCommand> {
     let id = |index: usize| questionnaire.items.get(index).map(|item| item.id.clone());
     let shown = id(protocol.item);
     match (stroke, shown) {
-        (Stroke::Digit(0), Some(item)) => tell(model, session, ProtocolEvent::ItemSkipped { item }),
-        (Stroke::Digit(answer), Some(item)) => tell(model, session, ProtocolEvent::ItemAnswered { item, answer }),
-        (Stroke::Digit(_), None) => refuse(model, "go back to the item first"),
-        (Stroke::Back, _) => {
+        (SheetKey::Digit(0), Some(item)) => tell(model, session, ProtocolEvent::ItemSkipped { item }),
+        (SheetKey::Digit(answer), Some(item)) => tell(model, session, ProtocolEvent::ItemAnswered { item, answer }),
+        (SheetKey::Digit(_), None) => refuse(model, "go back to the item first"),
+        (SheetKey::Back, _) => {
             let item = id(protocol.item.checked_sub(1)?)?;
             tell(model, session, ProtocolEvent::ItemShown { item })
         }
-        (Stroke::On, Some(_)) => match id(protocol.item + 1) {
+        (SheetKey::On, Some(_)) => match id(protocol.item + 1) {
             Some(item) => tell(model, session, ProtocolEvent::ItemShown { item }),
             None => tell(model, session, ProtocolEvent::AnswersShown),
         },
-        (Stroke::On, None) => match protocol.open_item().and_then(id) {
+        (SheetKey::On, None) => match protocol.open_item().and_then(id) {
             Some(item) => tell(model, session, ProtocolEvent::ItemShown { item }),
             None => tell(model, session, ProtocolEvent::AnswersConfirmed),
         },
@@ -128,9 +130,9 @@ fn ask(
 }
 
 /// From a phase that is done to the next one, or to the next recording.
-pub(super) fn leave(model: &mut Model, session: &Session) -> Option<Command> {
+pub(super) fn leave(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     if session.protocol.is_some() && session.aborted.is_some() {
-        return Some(Command::Redo);
+        return Some(ConsoleCommand::Redo);
     }
     if let Some(lacks) = session.phase_lacks() {
         return refuse(model, lacks);
@@ -140,15 +142,15 @@ pub(super) fn leave(model: &mut Model, session: &Session) -> Option<Command> {
     };
     match session.next_phase() {
         Some(phase) => tell(model, session, ProtocolEvent::PhaseStarted { phase, number }),
-        None => Some(Command::Next),
+        None => Some(ConsoleCommand::Next),
     }
 }
 
-fn tell(model: &mut Model, session: &Session, event: ProtocolEvent) -> Option<Command> {
-    send(model, session, Event::Protocol(event), Level::Done, "")
+fn tell(model: &mut ConsoleModel, session: &Session, event: ProtocolEvent) -> Option<ConsoleCommand> {
+    send(model, session, Event::Protocol(event), NoticeLevel::Done, "")
 }
 
-fn refuse(model: &mut Model, reason: &str) -> Option<Command> {
-    model.say(Level::Refused, reason);
+fn refuse(model: &mut ConsoleModel, reason: &str) -> Option<ConsoleCommand> {
+    model.say(NoticeLevel::Refused, reason);
     None
 }

@@ -8,8 +8,8 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use toml::Spanned;
 
-use super::chord::Chord;
-use super::keys::{Action, Binding, KeyError, KeyPlace, Section};
+use super::chord::KeyChord;
+use super::keys::{KeyAction, KeyBinding, KeyError, KeyPlace, KeySection};
 
 /// A key file as it is written: for each table, names with their keys. What is not there stays as it is.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -54,27 +54,27 @@ impl<'de> Deserialize<'de> for Names {
 }
 
 impl KeyMap {
-    fn table(&self, section: Section) -> &Table {
+    fn table(&self, section: KeySection) -> &Table {
         match section {
-            Section::Console => &self.console,
-            Section::Replay => &self.replay,
-            Section::Signals => &self.signals,
-            Section::Buttons => &self.buttons,
+            KeySection::Console => &self.console,
+            KeySection::Replay => &self.replay,
+            KeySection::Signals => &self.signals,
+            KeySection::Buttons => &self.buttons,
         }
     }
 
-    fn entry(&self, line: &Binding) -> Option<(&Spanned<String>, &Spanned<Names>)> {
+    fn entry(&self, line: &KeyBinding) -> Option<(&Spanned<String>, &Spanned<Names>)> {
         self.table(line.section).iter().find(|(name, _)| *name.get_ref() == line.name)
     }
 
     /// Where the file says something about this line.
-    pub(super) fn place(&self, line: &Binding) -> Option<Range<usize>> {
+    pub(super) fn place(&self, line: &KeyBinding) -> Option<Range<usize>> {
         self.entry(line).map(|(name, keys)| name.span().start..keys.span().end)
     }
 
     /// Gives the lines of the live console and of the replay the keys of this file.
-    pub(super) fn apply(&self, live: &mut [Binding], replay: &mut [Binding]) -> Result<(), KeyError> {
-        for section in [Section::Console, Section::Replay, Section::Signals, Section::Buttons] {
+    pub(super) fn apply(&self, live: &mut [KeyBinding], replay: &mut [KeyBinding]) -> Result<(), KeyError> {
+        for section in [KeySection::Console, KeySection::Replay, KeySection::Signals, KeySection::Buttons] {
             let known = || live.iter().chain(replay.iter()).filter(move |line| line.section == section);
             for name in self.table(section).keys() {
                 if !known().any(|line| line.name == *name.get_ref()) {
@@ -97,15 +97,15 @@ impl KeyMap {
 }
 
 /// The keys that the file gives a line.
-fn chords(line: &Binding, names: &Spanned<Names>) -> Result<Vec<Chord>, KeyError> {
+fn chords(line: &KeyBinding, names: &Spanned<Names>) -> Result<Vec<KeyChord>, KeyError> {
     let wrong = |found: String, remedy: &str| {
         let place = KeyPlace::File(names.span());
         Err(KeyError { place, found: format!("{} = {found}", line.name), remedy: remedy.to_string() })
     };
     let mut chords = Vec::new();
     for name in &names.get_ref().0 {
-        match Chord::parse(name) {
-            Ok(chord) if chord == Chord::SPACE && line.action != Action::StopRobot => {
+        match KeyChord::parse(name) {
+            Ok(chord) if chord == KeyChord::SPACE && line.action != KeyAction::StopRobot => {
                 return wrong(
                     "\"space\", which is the robot stop, always".to_string(),
                     "another key: nothing may stand between the space bar and the robot stop",
@@ -119,17 +119,17 @@ fn chords(line: &Binding, names: &Spanned<Names>) -> Result<Vec<Chord>, KeyError
         }
     }
     match line.action {
-        Action::StopRobot if !chords.contains(&Chord::SPACE) => wrong(
+        KeyAction::StopRobot if !chords.contains(&KeyChord::SPACE) => wrong(
             format!("{:?}, without the space bar", names.get_ref().0),
             "\"space\", or a list with \"space\" and other keys: the space bar is the robot stop, always",
         ),
-        Action::Quit if chords.is_empty() => wrong("[]".to_string(), "a key: without one nobody gets out"),
+        KeyAction::Quit if chords.is_empty() => wrong("[]".to_string(), "a key: without one nobody gets out"),
         _ => Ok(chords),
     }
 }
 
 /// The whole table as a key file, with a comment for each line: what it reads back to is the table again.
-pub fn write(lines: &[Binding]) -> String {
+pub fn write(lines: &[KeyBinding]) -> String {
     let mut text = String::from(
         "# The keys of tomcom's console, ready to be changed. A session file names this file (relative to itself):\n\
          #\n#     [console]\n#     keys = \"keys.toml\"\n#\n\
@@ -138,13 +138,13 @@ pub fn write(lines: &[Binding]) -> String {
          # Several keys for one thing: [\"f1\", \"?\"]; none: []. What is left out stays as it is.\n",
     );
     let tables = [
-        (Section::Console, "the console of a live session; \"space\" belongs to stop_robot alone"),
-        (Section::Replay, "the console over a recording"),
-        (Section::Signals, "the wizard's signals, by location; what is left out is as the layout says"),
-        (Section::Buttons, "the participant's buttons, for a person at the keyboard; else as the layout says"),
+        (KeySection::Console, "the console of a live session; \"space\" belongs to stop_robot alone"),
+        (KeySection::Replay, "the console over a recording"),
+        (KeySection::Signals, "the wizard's signals, by location; what is left out is as the layout says"),
+        (KeySection::Buttons, "the participant's buttons, for a person at the keyboard; else as the layout says"),
     ];
     for (section, about) in tables {
-        let own: Vec<&Binding> = lines.iter().filter(|line| line.section == section).collect();
+        let own: Vec<&KeyBinding> = lines.iter().filter(|line| line.section == section).collect();
         let entries: Vec<String> = own.iter().map(|line| entry(line)).collect();
         let widest = entries.iter().map(|entry| entry.chars().count()).max().unwrap_or(0);
         // Writing to a string cannot fail.
@@ -156,7 +156,7 @@ pub fn write(lines: &[Binding]) -> String {
     text
 }
 
-fn entry(line: &Binding) -> String {
+fn entry(line: &KeyBinding) -> String {
     let quoted = |text: &str| toml::Value::from(text).to_string();
     let is_bare = line.name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-');
     let name = if is_bare { line.name.clone() } else { quoted(&line.name) };

@@ -6,13 +6,13 @@
 use std::fmt;
 use std::ops::Range;
 
-use super::chord::Chord;
-use super::coding::Rate;
-use super::comparison::Step;
-use super::hands::Hand;
+use super::chord::KeyChord;
+use super::coding::RaterKey;
+use super::comparison::ComparisonKey;
+use super::hands::ManualAction;
 use super::keymap::KeyMap;
-use super::panels::Look;
-use super::playback::Move;
+use super::panels::PanelKey;
+use super::playback::ReplayKey;
 use super::table;
 use crate::communication::Signal;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, LocationKind};
@@ -20,14 +20,14 @@ use crate::session::settings::{ParticipantKind, SessionSpec};
 
 /// Which hand plays: the wizard's keys, or the buttons of a person who plays the participant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Layer {
+pub enum KeyLayer {
     Wizard,
     Participant,
 }
 
 /// What a key does.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Action {
+pub enum KeyAction {
     Signal(LocationId, Signal),
     Press(ButtonId),
     /// Send the signal that is recommended most.
@@ -41,22 +41,22 @@ pub enum Action {
     StopRobot,
     ResumeRobot,
     SwitchLayer,
-    Hand(Hand),
-    Move(Move),
-    Look(Look),
+    Hand(ManualAction),
+    Move(ReplayKey),
+    Look(PanelKey),
     /// One aspect of the belief over time, then the next one.
     Belief,
     /// Where wizard and assistant differ.
-    Differ(Step),
+    Differ(ComparisonKey),
     /// Code an error.
-    Rate(Rate),
+    Rate(RaterKey),
     Help,
     Quit,
 }
 
 /// The tables of a key file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Section {
+pub enum KeySection {
     /// What the console of a live session does.
     Console,
     /// What the console over a recording does.
@@ -68,38 +68,38 @@ pub enum Section {
 }
 
 /// The name of the table.
-impl fmt::Display for Section {
+impl fmt::Display for KeySection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Section::Console => "console",
-            Section::Replay => "replay",
-            Section::Signals => "signals",
-            Section::Buttons => "buttons",
+            KeySection::Console => "console",
+            KeySection::Replay => "replay",
+            KeySection::Signals => "signals",
+            KeySection::Buttons => "buttons",
         })
     }
 }
 
 /// One line of the table.
 #[derive(Clone, Debug)]
-pub struct Binding {
+pub struct KeyBinding {
     /// Where it stands in a key file, and its name there.
-    pub section: Section,
+    pub section: KeySection,
     pub name: String,
     /// Its keys; the first is the one that is shown.
-    pub chords: Vec<Chord>,
-    pub action: Action,
+    pub chords: Vec<KeyChord>,
+    pub action: KeyAction,
     /// The heading that it stands under in the help.
     pub group: &'static str,
     pub help: String,
     /// What the footer says, if it is in the footer.
     pub footer: Option<&'static str>,
     /// The layer that it works in; `None`: in every layer.
-    pub layer: Option<Layer>,
+    pub layer: Option<KeyLayer>,
 }
 
-impl Binding {
+impl KeyBinding {
     /// Whether two lines can act at the same time, so that they need different keys.
-    fn meets(&self, other: &Binding) -> bool {
+    fn meets(&self, other: &KeyBinding) -> bool {
         self.layer.is_none() || other.layer.is_none() || self.layer == other.layer
     }
 
@@ -117,7 +117,7 @@ pub enum KeyPlace {
     /// In the key file, at these bytes.
     File(Range<usize>),
     /// In the layout, as the key of a signal (the wizard's) or of a button (the participant's).
-    Layout(Layer, char),
+    Layout(KeyLayer, char),
 }
 
 /// A key that cannot be.
@@ -131,51 +131,54 @@ pub struct KeyError {
 
 /// The table.
 #[derive(Clone, Debug)]
-pub struct Keys {
-    pub bindings: Vec<Binding>,
+pub struct KeyBindings {
+    pub bindings: Vec<KeyBinding>,
     /// How the signal about each location is written in the timeline: its key.
-    marks: Vec<Option<Chord>>,
+    marks: Vec<Option<KeyChord>>,
     /// The lines that act only where wizard and assistant are compared.
-    comparing: Vec<Binding>,
+    comparing: Vec<KeyBinding>,
     /// The lines that act only where errors are coded.
-    coding: Vec<Binding>,
+    coding: Vec<KeyBinding>,
 }
 
-impl Keys {
+impl KeyBindings {
     /// The table of a live session.
     ///
     /// # Errors
     /// A key with two meanings, or a line of the key file that cannot be.
-    pub fn live(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyMap) -> Result<Keys, KeyError> {
-        let Consoles { comparing, mut bindings, .. } = Consoles::of(lines(kitchen, map)?, Section::Console);
+    pub fn live(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyMap) -> Result<KeyBindings, KeyError> {
+        let Consoles { comparing, mut bindings, .. } = Consoles::of(lines(kitchen, map)?, KeySection::Console);
         let marks = marks(kitchen, &bindings);
         let at_keyboard = spec.participant.kind == ParticipantKind::Keyboard;
         bindings.retain(|line| match &line.action {
-            Action::Signal(id, _) => {
+            KeyAction::Signal(id, _) => {
                 spec.signals.own_hand || kitchen.location(*id).kind != LocationKind::Hand(Agent::Human)
             }
-            Action::Press(_) | Action::SwitchLayer => at_keyboard,
-            Action::Move(_) => false,
-            Action::Note(index) => *index < spec.console.notes.len(),
-            _ => line.section != Section::Replay,
+            KeyAction::Press(_) | KeyAction::SwitchLayer => at_keyboard,
+            KeyAction::Move(_) => false,
+            KeyAction::Note(index) => *index < spec.console.notes.len(),
+            _ => line.section != KeySection::Replay,
         });
         bindings.retain(|line| !line.chords.is_empty());
         for line in &mut bindings {
-            if let Action::Note(index) = line.action {
+            if let KeyAction::Note(index) = line.action {
                 line.help.clone_from(&spec.console.notes[index]);
             }
         }
-        Ok(Keys { bindings, marks, comparing, coding: Vec::new() })
+        Ok(KeyBindings { bindings, marks, comparing, coding: Vec::new() })
     }
 
     /// The table of a training: the signals, and what the console itself needs.
     ///
     /// # Errors
-    /// As of [`Keys::live`].
-    pub fn training(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyMap) -> Result<Keys, KeyError> {
-        let mut keys = Keys::live(kitchen, spec, map)?;
+    /// As of [`KeyBindings::live`].
+    pub fn training(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyMap) -> Result<KeyBindings, KeyError> {
+        let mut keys = KeyBindings::live(kitchen, spec, map)?;
         keys.bindings.retain(|line| {
-            matches!(line.action, Action::Signal(..) | Action::Advance | Action::Look(_) | Action::Help | Action::Quit)
+            matches!(
+                line.action,
+                KeyAction::Signal(..) | KeyAction::Advance | KeyAction::Look(_) | KeyAction::Help | KeyAction::Quit
+            )
         });
         Ok(keys)
     }
@@ -183,22 +186,22 @@ impl Keys {
     /// The table of a replay.
     ///
     /// # Errors
-    /// As of [`Keys::live`].
-    pub fn replay(kitchen: &Kitchen, map: &KeyMap) -> Result<Keys, KeyError> {
-        let Consoles { comparing, coding, mut bindings } = Consoles::of(lines(kitchen, map)?, Section::Replay);
+    /// As of [`KeyBindings::live`].
+    pub fn replay(kitchen: &Kitchen, map: &KeyMap) -> Result<KeyBindings, KeyError> {
+        let Consoles { comparing, coding, mut bindings } = Consoles::of(lines(kitchen, map)?, KeySection::Replay);
         let marks = marks(kitchen, &bindings);
-        bindings.retain(|line| line.section == Section::Replay && !line.chords.is_empty());
-        Ok(Keys { bindings, marks, comparing, coding })
+        bindings.retain(|line| line.section == KeySection::Replay && !line.chords.is_empty());
+        Ok(KeyBindings { bindings, marks, comparing, coding })
     }
 
     /// The same with the keys of the comparison.
-    pub fn with_comparison(mut self) -> Keys {
+    pub fn with_comparison(mut self) -> KeyBindings {
         self.bindings.append(&mut self.comparing);
         self
     }
 
     /// The same with the keys of a rater: the letters of the signals say what was believed wrong, and so no letter quits.
-    pub fn with_coding(mut self, kitchen: &Kitchen) -> Keys {
+    pub fn with_coding(mut self, kitchen: &Kitchen) -> KeyBindings {
         for line in &mut self.bindings {
             let marks = &self.marks;
             line.chords.retain(|chord| !marks.contains(&Some(*chord)));
@@ -210,51 +213,51 @@ impl Keys {
     }
 
     /// What a key means in a layer.
-    pub fn find(&self, layer: Layer, chord: Chord) -> Option<&Binding> {
-        let acts = |line: &&Binding| line.chords.contains(&chord) && line.layer.is_none_or(|only| only == layer);
+    pub fn find(&self, layer: KeyLayer, chord: KeyChord) -> Option<&KeyBinding> {
+        let acts = |line: &&KeyBinding| line.chords.contains(&chord) && line.layer.is_none_or(|only| only == layer);
         self.bindings.iter().find(acts)
     }
 
     /// The key of the signal about a location.
-    pub fn of_signal(&self, location: LocationId) -> Option<Chord> {
-        let is_it = |line: &&Binding| matches!(line.action, Action::Signal(about, _) if about == location);
+    pub fn of_signal(&self, location: LocationId) -> Option<KeyChord> {
+        let is_it = |line: &&KeyBinding| matches!(line.action, KeyAction::Signal(about, _) if about == location);
         self.bindings.iter().find(is_it).and_then(|line| line.chords.first().copied())
     }
 
     /// The key with which a rater says that something was believed wrong about a location.
-    pub fn of_belief(&self, location: LocationId) -> Option<Chord> {
-        self.of(&Action::Rate(Rate::Belief(location)))
+    pub fn of_belief(&self, location: LocationId) -> Option<KeyChord> {
+        self.of(&KeyAction::Rate(RaterKey::Belief(location)))
     }
 
     /// How the signal about a location is written in the timeline, also in a replay, where no key sends it.
-    pub fn mark(&self, location: LocationId) -> Option<Chord> {
+    pub fn mark(&self, location: LocationId) -> Option<KeyChord> {
         self.marks.get(location.index()).copied().flatten()
     }
 
     /// The participant's key of a button.
-    pub fn of_button(&self, button: ButtonId) -> Option<Chord> {
-        self.of(&Action::Press(button))
+    pub fn of_button(&self, button: ButtonId) -> Option<KeyChord> {
+        self.of(&KeyAction::Press(button))
     }
 
     /// The key of an action of the console.
-    pub fn of(&self, action: &Action) -> Option<Chord> {
+    pub fn of(&self, action: &KeyAction) -> Option<KeyChord> {
         self.bindings.iter().find(|line| line.action == *action).and_then(|line| line.chords.first().copied())
     }
 }
 
 /// The lines of a console: those that compare, those that code errors, and all the others.
 struct Consoles {
-    comparing: Vec<Binding>,
-    coding: Vec<Binding>,
-    bindings: Vec<Binding>,
+    comparing: Vec<KeyBinding>,
+    coding: Vec<KeyBinding>,
+    bindings: Vec<KeyBinding>,
 }
 
 impl Consoles {
-    fn of(lines: Vec<Binding>, section: Section) -> Consoles {
-        let (mut comparing, others): (Vec<Binding>, Vec<Binding>) =
-            lines.into_iter().partition(|line| matches!(line.action, Action::Differ(_)));
-        let (mut coding, bindings): (Vec<Binding>, Vec<Binding>) =
-            others.into_iter().partition(|line| matches!(line.action, Action::Rate(_)));
+    fn of(lines: Vec<KeyBinding>, section: KeySection) -> Consoles {
+        let (mut comparing, others): (Vec<KeyBinding>, Vec<KeyBinding>) =
+            lines.into_iter().partition(|line| matches!(line.action, KeyAction::Differ(_)));
+        let (mut coding, bindings): (Vec<KeyBinding>, Vec<KeyBinding>) =
+            others.into_iter().partition(|line| matches!(line.action, KeyAction::Rate(_)));
         for some in [&mut comparing, &mut coding] {
             some.retain(|line| line.section == section && !line.chords.is_empty());
         }
@@ -267,15 +270,15 @@ impl Consoles {
 ///
 /// # Errors
 /// A key with two meanings, or a line of the key file that cannot be.
-pub fn lines(kitchen: &Kitchen, map: &KeyMap) -> Result<Vec<Binding>, KeyError> {
+pub fn lines(kitchen: &Kitchen, map: &KeyMap) -> Result<Vec<KeyBinding>, KeyError> {
     let mut live = table::live(kitchen);
     let mut replay = table::replay();
     map.apply(&mut live, &mut replay)?;
     for lines in [&live, &replay] {
         // The keys of the layout are checked last, so that they are what a message is about.
-        let (ours, letters): (Vec<&Binding>, Vec<&Binding>) =
-            lines.iter().partition(|line| matches!(line.section, Section::Console | Section::Replay));
-        let ordered: Vec<&Binding> = ours.into_iter().chain(letters).collect();
+        let (ours, letters): (Vec<&KeyBinding>, Vec<&KeyBinding>) =
+            lines.iter().partition(|line| matches!(line.section, KeySection::Console | KeySection::Replay));
+        let ordered: Vec<&KeyBinding> = ours.into_iter().chain(letters).collect();
         for (index, line) in ordered.iter().enumerate() {
             for earlier in ordered[..index].iter().filter(|earlier| earlier.meets(line)) {
                 if let Some(chord) = line.chords.iter().find(|chord| earlier.chords.contains(chord)) {
@@ -289,8 +292,8 @@ pub fn lines(kitchen: &Kitchen, map: &KeyMap) -> Result<Vec<Binding>, KeyError> 
 }
 
 /// The message about a key with two meanings, at the line of the key file that is to blame, or else of the layout.
-fn clash(map: &KeyMap, earlier: &Binding, line: &Binding, chord: Chord) -> KeyError {
-    let (name, layer) = (chord.name(), line.layer.unwrap_or(Layer::Wizard));
+fn clash(map: &KeyMap, earlier: &KeyBinding, line: &KeyBinding, chord: KeyChord) -> KeyError {
+    let (name, layer) = (chord.name(), line.layer.unwrap_or(KeyLayer::Wizard));
     let in_file = map.place(line).map(|place| (place, line, earlier));
     let in_file = in_file.or_else(|| map.place(earlier).map(|place| (place, earlier, line)));
     match in_file {
@@ -307,9 +310,9 @@ fn clash(map: &KeyMap, earlier: &Binding, line: &Binding, chord: Chord) -> KeyEr
     }
 }
 
-fn marks(kitchen: &Kitchen, lines: &[Binding]) -> Vec<Option<Chord>> {
+fn marks(kitchen: &Kitchen, lines: &[KeyBinding]) -> Vec<Option<KeyChord>> {
     let key = |index: usize| {
-        let is_it = |line: &&Binding| matches!(line.action, Action::Signal(about, _) if about.index() == index);
+        let is_it = |line: &&KeyBinding| matches!(line.action, KeyAction::Signal(about, _) if about.index() == index);
         lines.iter().find(is_it).and_then(|line| line.chords.first().copied())
     };
     (0..kitchen.locations.len()).map(key).collect()

@@ -2,12 +2,12 @@
 
 use crossterm::event::KeyEvent;
 
-use super::playback::Move;
+use super::playback::ReplayKey;
 use crate::session::Event;
 
 /// Something that the console has to know.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Message {
+pub enum ConsoleMessage {
     Key(KeyEvent),
     /// The mouse pointer is over this cell, column and row.
     Pointer(u16, u16),
@@ -25,13 +25,13 @@ pub enum Message {
 
 /// What the console asks of whoever runs it.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Command {
+pub enum ConsoleCommand {
     /// An input of the session.
     Input(Event),
     /// Record what was found before the trial, and start it.
     Start(Event),
     /// Another place in a recording.
-    Move(Move),
+    Move(ReplayKey),
     /// What the rater says has changed: it is to be kept.
     Code,
     /// Close this recording and do its trial again in another one.

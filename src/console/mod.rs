@@ -1,5 +1,5 @@
 //! The wizard's console, as in the Elm architecture: `key -> Message -> update -> Option<Command>`, and a
-//! [`view`] that only reads. What affects participant, robot or analysis leaves as an event; the rest stays in the [`Model`].
+//! [`view`] that only reads. What affects participant, robot or analysis leaves as an event; the rest stays in the [`ConsoleModel`].
 
 pub mod arrange;
 pub mod belief;
@@ -28,8 +28,8 @@ pub mod view;
 pub mod words;
 
 pub use keymap::KeyMap;
-pub use keys::Keys;
-pub use message::{Command, Message};
-pub use model::Model;
+pub use keys::KeyBindings;
+pub use message::{ConsoleCommand, ConsoleMessage};
+pub use model::ConsoleModel;
 pub use update::update;
 pub use view::view;

@@ -4,13 +4,13 @@ use std::collections::VecDeque;
 
 use crossterm::event::KeyCode;
 
-use super::belief::BeliefTrack;
-use super::coding::Coding;
-use super::comparison::Compared;
+use super::belief::BeliefHistory;
+use super::coding::RaterSession;
+use super::comparison::ComparisonView;
 use super::display::DisplayHealth;
-use super::keys::{Keys, Layer};
-use super::lesson::Lesson;
-use super::note::Line;
+use super::keys::{KeyBindings, KeyLayer};
+use super::lesson::TrainingPanel;
+use super::note::TextInput;
 use super::panels::Panel;
 use super::picker::Picker;
 use super::playback::Playback;
@@ -39,7 +39,7 @@ pub enum Dialog {
     /// Targets are looked at, or what came of it is shown.
     Calibration,
     /// A line for a note in words.
-    Note(Line),
+    Note(TextInput),
     /// What each knew where wizard and assistant differ, in lines.
     Difference(Vec<String>),
     /// What came of a training, in lines; it stays until enter.
@@ -48,7 +48,7 @@ pub enum Dialog {
 
 /// How much a notice matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
+pub enum NoticeLevel {
     /// Something was done.
     Done,
     /// Something was not done.
@@ -61,14 +61,14 @@ pub enum Level {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
     pub text: String,
-    pub level: Level,
-    /// On [`Model::clock`].
+    pub level: NoticeLevel,
+    /// On [`ConsoleModel::clock`].
     pub at: SessionTime,
 }
 
 /// Whether what happens is kept.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Recording {
+pub enum RecordingStatus {
     /// Nothing is recorded.
     Off,
     /// Written to this folder.
@@ -79,7 +79,7 @@ pub enum Recording {
 
 /// How the stream to Rerun's viewers fares.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Viewers {
+pub struct ViewerStreamStatus {
     /// Where they connect; none: the stream is only written to its file.
     pub address: Option<String>,
     /// Rows that were written, and that were dropped because it was too slow.
@@ -87,9 +87,9 @@ pub struct Viewers {
     pub dropped: u64,
 }
 
-/// A key that went down, with times on [`Model::clock`].
+/// A key that went down, with times on [`ConsoleModel::clock`].
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pressed {
+pub(super) struct PressedKey {
     pub code: KeyCode,
     /// When the terminal reported it last.
     pub reported: SessionTime,
@@ -99,7 +99,7 @@ pub(super) struct Pressed {
 
 /// Everything that only concerns the screen and the hands at the keyboard.
 #[derive(Clone, Debug)]
-pub struct Model {
+pub struct ConsoleModel {
     /// The moment that is drawn.
     pub now: SessionTime,
     /// A clock that always runs, also while a replay stands or races: for keys and notices.
@@ -107,13 +107,13 @@ pub struct Model {
     /// Columns and rows of the terminal.
     pub size: (u16, u16),
     pub theme: Theme,
-    pub keys: Keys,
-    pub layer: Layer,
+    pub keys: KeyBindings,
+    pub layer: KeyLayer,
     pub dialog: Option<Dialog>,
     pub notice: Option<Notice>,
-    pub recording: Recording,
+    pub recording: RecordingStatus,
     /// The stream to Rerun's viewers, if there is one.
-    pub viewers: Option<Viewers>,
+    pub viewers: Option<ViewerStreamStatus>,
     /// Bytes that are free where the recording is; none: not known.
     pub free_bytes: Option<u64>,
     /// The panel that is shown alone, if one is.
@@ -134,34 +134,34 @@ pub struct Model {
     /// The times of the human presses that were errors, in order.
     pub errors: Vec<SessionTime>,
     /// What is estimated of the participant's belief.
-    pub belief: BeliefTrack,
+    pub belief: BeliefHistory,
     /// Wizard and assistants side by side, where that is asked for.
-    pub comparison: Option<Compared>,
+    pub comparison: Option<ComparisonView>,
     /// Set when a wizard is trained.
-    pub lesson: Option<Lesson>,
+    pub lesson: Option<TrainingPanel>,
     /// Set when the errors of a recording are coded.
-    pub coding: Option<Coding>,
+    pub coding: Option<RaterSession>,
     /// Set when a recording is replayed.
     pub playback: Option<Playback>,
     /// The terminal tells key repeat from key press.
     pub(super) exact_keys: bool,
     /// The key that was pressed last: against key repeat.
-    pub(super) pressed: Option<Pressed>,
+    pub(super) pressed: Option<PressedKey>,
 }
 
-impl Model {
+impl ConsoleModel {
     /// A console before its first frame.
-    pub fn new(keys: Keys, theme: Theme, size: (u16, u16)) -> Model {
-        Model {
+    pub fn new(keys: KeyBindings, theme: Theme, size: (u16, u16)) -> ConsoleModel {
+        ConsoleModel {
             now: SessionTime::ZERO,
             clock: SessionTime::ZERO,
             size,
             theme,
             keys,
-            layer: Layer::Wizard,
+            layer: KeyLayer::Wizard,
             dialog: None,
             notice: None,
-            recording: Recording::Off,
+            recording: RecordingStatus::Off,
             viewers: None,
             free_bytes: None,
             alone: None,
@@ -173,7 +173,7 @@ impl Model {
             trail: VecDeque::with_capacity(TRAIL),
             display: None,
             errors: Vec::new(),
-            belief: BeliefTrack::default(),
+            belief: BeliefHistory::default(),
             comparison: None,
             lesson: None,
             coding: None,
@@ -184,7 +184,7 @@ impl Model {
     }
 
     /// Says something to the wizard.
-    pub fn say(&mut self, level: Level, text: impl Into<String>) {
+    pub fn say(&mut self, level: NoticeLevel, text: impl Into<String>) {
         self.notice = Some(Notice { text: text.into(), level, at: self.clock });
     }
 

@@ -8,12 +8,12 @@ const MOST: usize = 200;
 
 /// A line of text with a cursor.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Line {
+pub struct TextInput {
     letters: Vec<char>,
     at: usize,
 }
 
-impl Line {
+impl TextInput {
     /// Takes a key that edits.
     pub fn key(&mut self, code: KeyCode) {
         match code {

@@ -1,12 +1,12 @@
 //! Looking at one panel alone, and further back than fits: by keys or with the mouse. Nothing here reaches the
 //! participant; what was on the wizard's screen is recorded by [`super::screen`].
 
-use super::arrange::{Plan, Thing};
-use super::keys::Layer;
-use super::model::{Dialog, Level, Model};
+use super::arrange::{KitchenMap, MapElement};
+use super::keys::KeyLayer;
+use super::model::{ConsoleModel, Dialog, NoticeLevel};
 use super::view::dialog::help_pages;
 use super::view::regions::Regions;
-use crate::kitchen::{Action as Use, Agent, ButtonId, LocationId};
+use crate::kitchen::{Agent, ButtonAction as Use, ButtonId, LocationId};
 use crate::session::Session;
 use crate::session::settings::{ParticipantKind, Visibility};
 
@@ -52,7 +52,7 @@ impl Panel {
 
 /// What a key asks of the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Look {
+pub enum PanelKey {
     /// The next panel alone; after the last all of them.
     Next,
     Last,
@@ -66,26 +66,26 @@ pub enum Look {
 const STEP: (u32, usize) = (5, 1);
 
 /// Looks at what a key asks for.
-pub fn look(model: &mut Model, session: &Session, look: Look) {
+pub fn look(model: &mut ConsoleModel, session: &Session, look: PanelKey) {
     let visibility = session.spec.console.visibility;
     let may_be_seen = |panel: &Panel| panel.may_be_seen(visibility, model.comparison.is_some());
     let seen: Vec<Panel> = Panel::ALL.into_iter().filter(may_be_seen).collect();
     let at = model.alone.and_then(|alone| seen.iter().position(|panel| *panel == alone));
     match look {
-        Look::All => (model.alone, model.events_back, model.timeline_back_s) = (None, 0, 0),
-        Look::Next => model.alone = seen.get(at.map_or(0, |at| at + 1)).copied(),
-        Look::Last => {
+        PanelKey::All => (model.alone, model.events_back, model.timeline_back_s) = (None, 0, 0),
+        PanelKey::Next => model.alone = seen.get(at.map_or(0, |at| at + 1)).copied(),
+        PanelKey::Last => {
             let before = at.map_or(Some(seen.len() - 1), |at| at.checked_sub(1));
             model.alone = before.and_then(|before| seen.get(before)).copied();
         }
-        Look::Back => scroll(model, session, model.alone, 1),
-        Look::Forward => scroll(model, session, model.alone, -1),
+        PanelKey::Back => scroll(model, session, model.alone, 1),
+        PanelKey::Forward => scroll(model, session, model.alone, -1),
     }
 }
 
 /// Leafs through the help.
-pub fn leaf(model: &mut Model, look: Look) {
-    let is_forward = matches!(look, Look::Next | Look::Forward);
+pub fn leaf(model: &mut ConsoleModel, look: PanelKey) {
+    let is_forward = matches!(look, PanelKey::Next | PanelKey::Forward);
     model.help_from = match is_forward {
         true => (model.help_from + 1).min(help_pages(model)),
         false => model.help_from.saturating_sub(1),
@@ -94,7 +94,7 @@ pub fn leaf(model: &mut Model, look: Look) {
 
 /// Goes further back: the time of a panel that has an axis of it, or else the list of events, unless another panel alone
 /// hides that.
-fn scroll(model: &mut Model, session: &Session, panel: Option<Panel>, steps: i64) {
+fn scroll(model: &mut ConsoleModel, session: &Session, panel: Option<Panel>, steps: i64) {
     if matches!(panel, Some(Panel::Timeline | Panel::Comparison)) {
         let back_s = i64::from(model.timeline_back_s) + steps * i64::from(STEP.0);
         let most_s = model.now.secs_since(session.trial_start).max(0.0) as i64;
@@ -106,9 +106,9 @@ fn scroll(model: &mut Model, session: &Session, panel: Option<Panel>, steps: i64
 }
 
 /// The wheel was turned over a cell.
-pub fn wheel(model: &mut Model, session: &Session, cell: (u16, u16), steps: i64) {
+pub fn wheel(model: &mut ConsoleModel, session: &Session, cell: (u16, u16), steps: i64) {
     if model.dialog == Some(Dialog::Help) {
-        leaf(model, if steps > 0 { Look::Back } else { Look::Forward });
+        leaf(model, if steps > 0 { PanelKey::Back } else { PanelKey::Forward });
         return;
     }
     let regions = Regions::showing(model.size, session, model);
@@ -117,16 +117,16 @@ pub fn wheel(model: &mut Model, session: &Session, cell: (u16, u16), steps: i64)
 
 /// A click tells what a place's key does, since a signal sent by mistake cannot be unseen; beside the places it shows the
 /// panel alone, or all of them again.
-pub fn click(model: &mut Model, session: &Session, cell: (u16, u16)) {
+pub fn click(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) {
     if model.dialog.is_some() {
         return;
     }
     let regions = Regions::showing(model.size, session, model);
     if regions.kitchen_inside().contains(cell.into()) {
         let with_keys = session.spec.participant.kind == ParticipantKind::Keyboard;
-        let plan = Plan::new(&session.kitchen, regions.kitchen_inside(), with_keys);
+        let plan = KitchenMap::new(&session.kitchen, regions.kitchen_inside(), with_keys);
         let thing = plan.spots.iter().find(|spot| spot.cells.contains(cell.into())).map(|spot| spot.thing);
-        if let Some(Thing::Location(location)) = thing {
+        if let Some(MapElement::Location(location)) = thing {
             return tell(model, session, location);
         }
     }
@@ -137,17 +137,17 @@ pub fn click(model: &mut Model, session: &Session, cell: (u16, u16)) {
 }
 
 /// Says which key is about a location, and what it does.
-fn tell(model: &mut Model, session: &Session, location: LocationId) {
+fn tell(model: &mut ConsoleModel, session: &Session, location: LocationId) {
     let is_main = |action| matches!(action, Use::Use(at) | Use::Serve(at) if at == location);
     let buttons = &session.kitchen.buttons[Agent::Human.index()];
     let line = model.keys.bindings.iter().find(|line| match (&line.action, model.layer) {
-        (super::keys::Action::Signal(about, _), Layer::Wizard) => *about == location,
-        (super::keys::Action::Press(ButtonId(button)), Layer::Participant) => {
+        (super::keys::KeyAction::Signal(about, _), KeyLayer::Wizard) => *about == location,
+        (super::keys::KeyAction::Press(ButtonId(button)), KeyLayer::Participant) => {
             is_main(buttons[usize::from(*button)].action)
         }
         _ => false,
     });
     let told = line.and_then(|line| Some(format!("{}: {}", line.chords.first()?, line.help)));
     let label = session.kitchen.location(location).label();
-    model.say(Level::Done, told.unwrap_or_else(|| format!("{label}: no key is about it")));
+    model.say(NoticeLevel::Done, told.unwrap_or_else(|| format!("{label}: no key is about it")));
 }

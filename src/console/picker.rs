@@ -12,7 +12,7 @@ const PAGE: usize = 10;
 
 /// What is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Question {
+pub enum PickerQuestion {
     /// Which location holds something else than the program thinks?
     Place,
     /// What does this location hold?
@@ -27,7 +27,7 @@ pub enum Question {
 
 /// What can be answered.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Answer {
+pub enum PickerAnswer {
     Place(LocationId),
     Content(ContentId),
     Button(ButtonId),
@@ -36,8 +36,8 @@ pub enum Answer {
 
 /// A line of the list.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Choice {
-    pub answer: Answer,
+pub struct PickerEntry {
+    pub answer: PickerAnswer,
     pub label: String,
     /// What else there is to know, at the right.
     pub remark: String,
@@ -46,7 +46,7 @@ pub struct Choice {
 /// An open list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picker {
-    pub question: Question,
+    pub question: PickerQuestion,
     /// What was typed.
     pub filter: String,
     /// The line under the cursor, of those that are left.
@@ -55,32 +55,32 @@ pub struct Picker {
 
 /// What came of a key.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Picked {
+pub enum PickerOutcome {
     /// The list stays open.
     Nothing,
     /// It was left without an answer.
     Left,
-    This(Answer),
+    This(PickerAnswer),
 }
 
 impl Picker {
-    pub fn new(question: Question) -> Picker {
+    pub fn new(question: PickerQuestion) -> Picker {
         Picker { question, filter: String::new(), at: 0 }
     }
 
     /// The question in words.
     pub fn title(&self, session: &Session) -> String {
         match self.question {
-            Question::Place => "Correct the kitchen: which place?".to_string(),
-            Question::Content(place) => format!("What is at {}?", session.kitchen.location(place).label()),
-            Question::Button => "The robot's next press".to_string(),
-            Question::Abort => "Abort the trial: why?".to_string(),
-            Question::Exclude => "Leave the trial out: why?".to_string(),
+            PickerQuestion::Place => "Correct the kitchen: which place?".to_string(),
+            PickerQuestion::Content(place) => format!("What is at {}?", session.kitchen.location(place).label()),
+            PickerQuestion::Button => "The robot's next press".to_string(),
+            PickerQuestion::Abort => "Abort the trial: why?".to_string(),
+            PickerQuestion::Exclude => "Leave the trial out: why?".to_string(),
         }
     }
 
     /// The lines that are left of the list.
-    pub fn choices(&self, session: &Session) -> Vec<Choice> {
+    pub fn choices(&self, session: &Session) -> Vec<PickerEntry> {
         let squeezed = |text: &str| text.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
         let wanted = squeezed(&self.filter);
         let mut choices = self.all(session);
@@ -88,17 +88,17 @@ impl Picker {
         choices
     }
 
-    fn all(&self, session: &Session) -> Vec<Choice> {
+    fn all(&self, session: &Session) -> Vec<PickerEntry> {
         match self.question {
-            Question::Place => places(session),
-            Question::Content(place) => contents(session, place),
-            Question::Button => buttons(session),
-            Question::Abort | Question::Exclude => reasons(session),
+            PickerQuestion::Place => places(session),
+            PickerQuestion::Content(place) => contents(session, place),
+            PickerQuestion::Button => buttons(session),
+            PickerQuestion::Abort | PickerQuestion::Exclude => reasons(session),
         }
     }
 
     /// Takes a key.
-    pub fn key(&mut self, session: &Session, code: KeyCode) -> Picked {
+    pub fn key(&mut self, session: &Session, code: KeyCode) -> PickerOutcome {
         let last = self.choices(session).len().saturating_sub(1);
         self.at = match code {
             KeyCode::Up => self.at.saturating_sub(1),
@@ -116,58 +116,58 @@ impl Picker {
                 self.at = 0;
             }
             KeyCode::Backspace if self.filter.pop().is_some() => self.at = 0,
-            KeyCode::Backspace | KeyCode::Esc => return Picked::Left,
+            KeyCode::Backspace | KeyCode::Esc => return PickerOutcome::Left,
             KeyCode::Enter => {
                 let choice = self.choices(session).into_iter().nth(self.at);
-                return choice.map_or(Picked::Nothing, |choice| Picked::This(choice.answer));
+                return choice.map_or(PickerOutcome::Nothing, |choice| PickerOutcome::This(choice.answer));
             }
             _ => {}
         }
-        Picked::Nothing
+        PickerOutcome::Nothing
     }
 }
 
-fn places(session: &Session) -> Vec<Choice> {
+fn places(session: &Session) -> Vec<PickerEntry> {
     let kitchen = &session.kitchen;
     let places = kitchen.locations.iter().enumerate().filter(|(_, location)| location.kind != LocationKind::Order);
     let choice = |(index, location): (usize, &crate::kitchen::Location)| {
         let id = LocationId(index as u8);
         let remark = kitchen.content_label(session.state, id).to_string();
-        Choice { answer: Answer::Place(id), label: location.label().to_string(), remark }
+        PickerEntry { answer: PickerAnswer::Place(id), label: location.label().to_string(), remark }
     };
     places.map(choice).collect()
 }
 
 /// What the place can hold, but for what the program thinks it holds.
-fn contents(session: &Session, place: LocationId) -> Vec<Choice> {
+fn contents(session: &Session, place: LocationId) -> Vec<PickerEntry> {
     let kitchen = &session.kitchen;
     let can_be = |id: ContentId| id.is_empty() || kitchen.accepts(place, id);
     let ids = (0..kitchen.contents.len()).map(|index| ContentId(index as u8));
     let left = ids.filter(|&id| can_be(id) && id != session.state.content(place));
     let choice = |id: ContentId| {
         let label = kitchen.content(id).name.clone();
-        Choice { answer: Answer::Content(id), label, remark: String::new() }
+        PickerEntry { answer: PickerAnswer::Content(id), label, remark: String::new() }
     };
     left.map(choice).collect()
 }
 
-fn buttons(session: &Session) -> Vec<Choice> {
+fn buttons(session: &Session) -> Vec<PickerEntry> {
     let (kitchen, recipes) = (&session.kitchen, session.kitchen.true_recipes());
     let ids = (0..kitchen.buttons[Agent::Robot.index()].len()).map(|index| ButtonId(index as u8));
     let choice = |id: ButtonId| {
         let does = kitchen.press(session.state, &recipes, Agent::Robot, id).is_some();
         let remark = if does { "" } else { "no effect now" }.to_string();
-        Choice { answer: Answer::Button(id), label: words::button(kitchen, Agent::Robot, id), remark }
+        PickerEntry { answer: PickerAnswer::Button(id), label: words::button(kitchen, Agent::Robot, id), remark }
     };
-    let mut choices: Vec<Choice> = ids.map(choice).collect();
+    let mut choices: Vec<PickerEntry> = ids.map(choice).collect();
     // What does something comes first.
     choices.sort_by_key(|choice| !choice.remark.is_empty());
     choices
 }
 
-fn reasons(session: &Session) -> Vec<Choice> {
-    let choice = |reason: &String| Choice {
-        answer: Answer::Reason(reason.clone()),
+fn reasons(session: &Session) -> Vec<PickerEntry> {
+    let choice = |reason: &String| PickerEntry {
+        answer: PickerAnswer::Reason(reason.clone()),
         label: reason.clone(),
         remark: String::new(),
     };

@@ -7,7 +7,7 @@ pub const SPEEDS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, f64::INFINIT
 
 /// What is looked for in a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Landmark {
+pub enum ReplayLandmark {
     /// A press that was an error.
     Error,
     Signal,
@@ -18,14 +18,14 @@ pub enum Landmark {
 
 /// What a key asks of a replay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Move {
+pub enum ReplayKey {
     PlayPause,
     /// To the next or the last event that is no gaze sample.
     StepForward,
     StepBack,
     /// To the next or the last moment of this kind.
-    On(Landmark),
-    BackTo(Landmark),
+    On(ReplayLandmark),
+    BackTo(ReplayLandmark),
     /// Ten seconds on or back.
     SeekForward,
     SeekBack,

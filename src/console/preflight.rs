@@ -4,10 +4,10 @@
 use crossterm::event::KeyCode;
 
 use super::display::DisplayHealth;
-use super::hands::Hand;
-use super::keys::Action;
-use super::message::Command;
-use super::model::{Dialog, Level, Model, Recording, Viewers};
+use super::hands::ManualAction;
+use super::keys::KeyAction;
+use super::message::ConsoleCommand;
+use super::model::{ConsoleModel, Dialog, NoticeLevel, RecordingStatus, ViewerStreamStatus};
 use crate::session::admit::admit;
 use crate::session::preflight::{Check, Verdict, participant, space};
 use crate::session::{Event, Session};
@@ -16,8 +16,8 @@ use crate::session::{Event, Session};
 pub const OVERRIDE: char = 'o';
 
 /// Looks at everything.
-pub fn checks(session: &Session, model: &Model) -> Vec<Check> {
-    let mut checks = participant(session, model.now, &key(model, &Action::Hand(Hand::Calibrate)));
+pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<Check> {
+    let mut checks = participant(session, model.now, &key(model, &KeyAction::Hand(ManualAction::Calibrate)));
     checks.extend(model.display.as_ref().map(DisplayHealth::check));
     checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);
     checks.extend(model.viewers.as_ref().map(viewers));
@@ -30,34 +30,38 @@ pub fn all_ok(checks: &[Check]) -> bool {
 }
 
 /// The key of an action.
-fn key(model: &Model, action: &Action) -> String {
+fn key(model: &ConsoleModel, action: &KeyAction) -> String {
     model.keys.of(action).map(|key| key.to_string()).unwrap_or_default()
 }
 
-fn robot(session: &Session, model: &Model) -> Check {
+fn robot(session: &Session, model: &ConsoleModel) -> Check {
     match (session.robot.stopped, session.robot.held) {
         (true, _) => {
-            let resume = key(model, &Action::ResumeRobot);
+            let resume = key(model, &KeyAction::ResumeRobot);
             Check::new("robot", Verdict::Failed, "stopped", format!("{resume} lets it go on"))
         }
         (false, true) => {
-            let release = key(model, &Action::Hand(Hand::HoldRobot));
+            let release = key(model, &KeyAction::Hand(ManualAction::HoldRobot));
             Check::new("robot", Verdict::Warning, "held before its first press", format!("{release} releases it"))
         }
         (false, false) => Check::ok("robot", "ready"),
     }
 }
 
-fn recording(model: &Model) -> Check {
+fn recording(model: &ConsoleModel) -> Check {
     match &model.recording {
-        Recording::On(folder) => Check::ok("recording", folder.clone()),
-        Recording::Off => Check::new("recording", Verdict::Failed, "nothing is recorded", "start the program anew"),
-        Recording::Lost => Check::new("recording", Verdict::Failed, "it cannot be written", "start the program anew"),
+        RecordingStatus::On(folder) => Check::ok("recording", folder.clone()),
+        RecordingStatus::Off => {
+            Check::new("recording", Verdict::Failed, "nothing is recorded", "start the program anew")
+        }
+        RecordingStatus::Lost => {
+            Check::new("recording", Verdict::Failed, "it cannot be written", "start the program anew")
+        }
     }
 }
 
-fn viewers(viewers: &Viewers) -> Check {
-    let Viewers { address, dropped, .. } = viewers;
+fn viewers(viewers: &ViewerStreamStatus) -> Check {
+    let ViewerStreamStatus { address, dropped, .. } = viewers;
     let found = match address {
         Some(address) => format!("viewers connect at {address}"),
         None => "recorded, no viewer can connect".to_string(),
@@ -71,7 +75,7 @@ fn viewers(viewers: &Viewers) -> Check {
     }
 }
 
-fn keyboard(model: &Model) -> Check {
+fn keyboard(model: &ConsoleModel) -> Check {
     match model.focused {
         true => Check::ok("keyboard", "keys arrive here"),
         false => Check::new("keyboard", Verdict::Failed, "keys go elsewhere", "click into this window"),
@@ -79,12 +83,12 @@ fn keyboard(model: &Model) -> Check {
 }
 
 /// Starts the trial if all is ok; else shows what is not.
-pub(super) fn start(model: &mut Model, session: &Session) -> Option<Command> {
+pub(super) fn start(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     match all_ok(&checks(session, model)) {
         true => go(model, session, false),
         false => {
             if let Err(reason) = admit(session, &Event::TrialStarted) {
-                model.say(Level::Refused, reason);
+                model.say(NoticeLevel::Refused, reason);
                 return None;
             }
             model.dialog = Some(Dialog::Preflight);
@@ -93,26 +97,26 @@ pub(super) fn start(model: &mut Model, session: &Session) -> Option<Command> {
     }
 }
 
-fn go(model: &mut Model, session: &Session, overridden: bool) -> Option<Command> {
+fn go(model: &mut ConsoleModel, session: &Session, overridden: bool) -> Option<ConsoleCommand> {
     let checks = checks(session, model);
     if let Err(reason) = admit(session, &Event::TrialStarted) {
-        model.say(Level::Refused, reason);
+        model.say(NoticeLevel::Refused, reason);
         return None;
     }
     model.dialog = None;
     let words = if overridden { "the trial runs, although not all was ok" } else { "all is ok: the trial runs" };
-    model.say(Level::Done, words);
-    Some(Command::Start(Event::Preflight { checks, overridden }))
+    model.say(NoticeLevel::Done, words);
+    Some(ConsoleCommand::Start(Event::Preflight { checks, overridden }))
 }
 
 /// A key while the list is open.
 pub(super) fn answer(
-    model: &mut Model,
+    model: &mut ConsoleModel,
     session: &Session,
     code: KeyCode,
-    action: Option<Action>,
+    action: Option<KeyAction>,
     is_press: bool,
-) -> Option<Command> {
+) -> Option<ConsoleCommand> {
     let is_ok = all_ok(&checks(session, model));
     match (code, action) {
         (KeyCode::Esc, _) => {
@@ -120,9 +124,11 @@ pub(super) fn answer(
             None
         }
         // What mends it works here, too.
-        (_, Some(Action::ResumeRobot)) => super::update::act(model, session, Action::ResumeRobot),
-        (_, Some(Action::Hand(Hand::HoldRobot))) if is_press => super::hands::act(model, session, Hand::HoldRobot),
-        (_, Some(Action::Advance)) if is_press && is_ok => go(model, session, false),
+        (_, Some(KeyAction::ResumeRobot)) => super::update::act(model, session, KeyAction::ResumeRobot),
+        (_, Some(KeyAction::Hand(ManualAction::HoldRobot))) if is_press => {
+            super::hands::act(model, session, ManualAction::HoldRobot)
+        }
+        (_, Some(KeyAction::Advance)) if is_press && is_ok => go(model, session, false),
         // What was wrong may have been mended a moment ago.
         (KeyCode::Char(OVERRIDE), _) if is_press => go(model, session, !is_ok),
         _ => None,

@@ -1,22 +1,22 @@
 //! What the wizard can see now, for the record.
 
 use super::form::sheet;
-use super::model::{Dialog, Model};
-use super::picker::Question;
-use super::view::regions::{LEAST, Regions, Room};
+use super::model::{ConsoleModel, Dialog};
+use super::picker::PickerQuestion;
+use super::view::regions::{LEAST, Regions, ScreenSize};
 use crate::session::Session;
 use crate::session::screen::Screen;
 
 /// What is on the screen.
-pub fn screen(session: &Session, model: &Model) -> Screen {
+pub fn screen(session: &Session, model: &ConsoleModel) -> Screen {
     let visibility = session.spec.console.visibility;
     let fits = model.size.0 >= LEAST.0 && model.size.1 >= LEAST.1;
     let regions = Regions::showing(model.size, session, model);
     let room = match regions.room {
         _ if !fits => "too_small",
-        Room::Small => "small",
-        Room::Medium => "medium",
-        Room::Large => "large",
+        ScreenSize::Small => "small",
+        ScreenSize::Medium => "medium",
+        ScreenSize::Large => "large",
     };
     let dialog = model.dialog.as_ref().map(name);
     let sheet = sheet(session).map(|sheet| sheet.name());
@@ -40,11 +40,11 @@ fn name(dialog: &Dialog) -> &'static str {
         Dialog::Difference(_) => "difference",
         Dialog::Report(_) => "report",
         Dialog::Pick(list) => match list.question {
-            Question::Place => "correct_place",
-            Question::Content(_) => "correct_content",
-            Question::Button => "drive_robot",
-            Question::Abort => "abort_trial",
-            Question::Exclude => "exclude_trial",
+            PickerQuestion::Place => "correct_place",
+            PickerQuestion::Content(_) => "correct_content",
+            PickerQuestion::Button => "drive_robot",
+            PickerQuestion::Abort => "abort_trial",
+            PickerQuestion::Exclude => "exclude_trial",
         },
     }
 }

@@ -2,17 +2,17 @@
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
-use super::arrange::Plan;
+use super::arrange::KitchenMap;
 use super::belief;
-use super::chord::Chord;
+use super::chord::KeyChord;
 use super::coding;
-use super::comparison::Step;
+use super::comparison::ComparisonKey;
 use super::form::{self, sheet};
-use super::hands::{self, Hand};
-use super::keys::{Action, Layer};
-use super::message::{Command, Message};
-use super::model::{Dialog, Level, Model, Pressed};
-use super::panels::{self, Look};
+use super::hands::{self, ManualAction};
+use super::keys::{KeyAction, KeyLayer};
+use super::message::{ConsoleCommand, ConsoleMessage};
+use super::model::{ConsoleModel, Dialog, NoticeLevel, PressedKey};
+use super::panels::{self, PanelKey};
 use super::preflight;
 use super::view::dialog::{help_pages, report_rest};
 use super::view::regions::Regions;
@@ -32,12 +32,12 @@ const REPEAT_S: f64 = 0.15;
 const ANSWER_S: f64 = 0.7;
 
 /// Takes a message at the time `model.now`.
-pub fn update(model: &mut Model, session: &Session, message: Message) -> Option<Command> {
+pub fn update(model: &mut ConsoleModel, session: &Session, message: ConsoleMessage) -> Option<ConsoleCommand> {
     match message {
-        Message::Key(key) => pressed(model, session, &key),
-        Message::Pointer(column, row) => {
+        ConsoleMessage::Key(key) => pressed(model, session, &key),
+        ConsoleMessage::Pointer(column, row) => {
             let regions = Regions::showing(model.size, session, model);
-            let plan = Plan::new(
+            let plan = KitchenMap::new(
                 &session.kitchen,
                 regions.kitchen_inside(),
                 session.spec.participant.kind == ParticipantKind::Keyboard,
@@ -45,37 +45,37 @@ pub fn update(model: &mut Model, session: &Session, message: Message) -> Option<
             model.pointer = Some(plan.display_point(column, row));
             None
         }
-        Message::Click(column, row) => {
+        ConsoleMessage::Click(column, row) => {
             panels::click(model, session, (column, row));
             None
         }
-        Message::Wheel(column, row, steps) => {
+        ConsoleMessage::Wheel(column, row, steps) => {
             panels::wheel(model, session, (column, row), i64::from(steps));
             None
         }
-        Message::Resized(columns, rows) => {
+        ConsoleMessage::Resized(columns, rows) => {
             model.size = (columns, rows);
             None
         }
-        Message::Focus(focused) => {
+        ConsoleMessage::Focus(focused) => {
             let changed = std::mem::replace(&mut model.focused, focused) != focused;
             model.pressed = None;
             let event = if focused { Event::FocusRegained } else { Event::FocusLost };
-            (changed && session.phase != Phase::Closed).then_some(Command::Input(event))
+            (changed && session.phase != Phase::Closed).then_some(ConsoleCommand::Input(event))
         }
-        Message::Refused(reason) => {
-            model.say(Level::Refused, reason);
+        ConsoleMessage::Refused(reason) => {
+            model.say(NoticeLevel::Refused, reason);
             None
         }
     }
 }
 
-fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Command> {
+fn pressed(model: &mut ConsoleModel, session: &Session, key: &KeyEvent) -> Option<ConsoleCommand> {
     let touch = touch(model, key);
     if touch == Touch::Release {
         return None;
     }
-    let chord = Chord::of(key);
+    let chord = KeyChord::of(key);
     let action = model.keys.find(model.layer, chord).map(|line| line.action.clone());
     match action {
         // Only where the trial is paused, and the robot stands, does the space bar type a space.
@@ -84,11 +84,11 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
             let counts = !chord.ctrl && (key.code != KeyCode::Enter || touch == Touch::Press);
             if counts { hands::write(model, session, line, key.code) } else { None }
         }
-        Some(Action::StopRobot) => stop_robot(model, session),
-        Some(Action::Quit) if chord.ctrl && touch == Touch::Press && may_leave_for_quit(model) => {
-            act(model, session, Action::Quit)
+        Some(KeyAction::StopRobot) => stop_robot(model, session),
+        Some(KeyAction::Quit) if chord.ctrl && touch == Touch::Press && may_leave_for_quit(model) => {
+            act(model, session, KeyAction::Quit)
         }
-        Some(Action::Move(to)) if model.dialog.is_none() => Some(Command::Move(to)),
+        Some(KeyAction::Move(to)) if model.dialog.is_none() => Some(ConsoleCommand::Move(to)),
         _ if let Some(Dialog::Pick(picker)) = &model.dialog => {
             let picker = picker.clone();
             // A list takes quick typing and held arrows; the key that opened it, and a held enter, answer nothing.
@@ -103,7 +103,7 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
         }
         _ if touch == Touch::Held => {
             if model.dialog.is_none() {
-                model.say(Level::Refused, format!("\"{chord}\" is held down: it counts once"));
+                model.say(NoticeLevel::Refused, format!("\"{chord}\" is held down: it counts once"));
             }
             None
         }
@@ -111,7 +111,7 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
             on_sheet(model, session, key.code, action, touch)
         }
         Some(action) if touch == Touch::Again && model.dialog.is_none() && !may_follow_at_once(&action) => {
-            model.say(Level::Refused, format!("\"{chord}\" may be held down: press again"));
+            model.say(NoticeLevel::Refused, format!("\"{chord}\" may be held down: press again"));
             None
         }
         action if model.dialog.is_some() => answer(model, session, chord, action, touch),
@@ -125,32 +125,38 @@ fn pressed(model: &mut Model, session: &Session, key: &KeyEvent) -> Option<Comma
 
 /// Whether the question of quitting takes the place of the dialog: of those that wait for something else. A check of the
 /// gaze is ended first.
-fn may_leave_for_quit(model: &Model) -> bool {
+fn may_leave_for_quit(model: &ConsoleModel) -> bool {
     matches!(model.dialog, Some(Dialog::Pick(_) | Dialog::Preflight | Dialog::Help | Dialog::Difference(_)))
 }
 
 /// A key while a sheet lies in front of the console: of the others, those that help and leave still work.
 fn on_sheet(
-    model: &mut Model,
+    model: &mut ConsoleModel,
     session: &Session,
     code: KeyCode,
-    action: Option<Action>,
+    action: Option<KeyAction>,
     touch: Touch,
-) -> Option<Command> {
-    match (form::stroke(code, action == Some(Action::Advance)), action) {
+) -> Option<ConsoleCommand> {
+    match (form::stroke(code, action == Some(KeyAction::Advance)), action) {
         // Nobody reads a step so fast: the key is still down from the last one. An answer is always taken: one that is lost
         // would put those after it at the wrong items, one too many is seen.
-        (Some(form::Stroke::On), _) if touch == Touch::Again && code != KeyCode::Right => {
-            model.say(Level::Refused, "not yet: read it, then press the key again");
+        (Some(form::SheetKey::On), _) if touch == Touch::Again && code != KeyCode::Right => {
+            model.say(NoticeLevel::Refused, "not yet: read it, then press the key again");
             None
         }
         (Some(stroke), _) => form::write(model, session, stroke),
-        (None, Some(action @ (Action::Help | Action::Quit | Action::ResumeRobot | Action::Hand(Hand::Calibrate)))) => {
-            act(model, session, action)
-        }
+        (
+            None,
+            Some(
+                action @ (KeyAction::Help
+                | KeyAction::Quit
+                | KeyAction::ResumeRobot
+                | KeyAction::Hand(ManualAction::Calibrate)),
+            ),
+        ) => act(model, session, action),
         (None, _) => {
             model.say(
-                Level::Refused,
+                NoticeLevel::Refused,
                 "this key has no meaning before the trial: the last line of the sheet says what has",
             );
             None
@@ -170,7 +176,7 @@ enum Touch {
     Release,
 }
 
-fn touch(model: &mut Model, key: &KeyEvent) -> Touch {
+fn touch(model: &mut ConsoleModel, key: &KeyEvent) -> Touch {
     match key.kind {
         KeyEventKind::Press if model.exact_keys => return Touch::Press,
         KeyEventKind::Press => {}
@@ -189,37 +195,45 @@ fn touch(model: &mut Model, key: &KeyEvent) -> Touch {
         _ => Touch::Press,
     };
     let counted = last.filter(|_| touch != Touch::Press).map_or(now, |last| last.counted);
-    model.pressed = Some(Pressed { code: key.code, reported: now, counted });
+    model.pressed = Some(PressedKey { code: key.code, reported: now, counted });
     touch
 }
 
 /// Whether a second press within the delay of key repeat counts where the terminal does not tell it from a held key. What
 /// does the opposite the second time does not, nor does what is written down each time.
-fn may_follow_at_once(action: &Action) -> bool {
-    let once = [Hand::HoldRobot, Hand::SkipPress].map(Action::Hand);
-    !matches!(action, Action::Advance | Action::SwitchLayer | Action::Note(_)) && !once.contains(action)
+fn may_follow_at_once(action: &KeyAction) -> bool {
+    let once = [ManualAction::HoldRobot, ManualAction::SkipPress].map(KeyAction::Hand);
+    !matches!(action, KeyAction::Advance | KeyAction::SwitchLayer | KeyAction::Note(_)) && !once.contains(action)
 }
 
 /// The space bar: works in every view, and does nothing twice.
-fn stop_robot(model: &mut Model, session: &Session) -> Option<Command> {
+fn stop_robot(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     if session.robot.is_stopped_by_wizard() {
         return None;
     }
-    send(model, session, Event::RobotStopped, Level::Alarm, "the robot is stopped")
+    send(model, session, Event::RobotStopped, NoticeLevel::Alarm, "the robot is stopped")
 }
 
-fn answer(model: &mut Model, session: &Session, chord: Chord, action: Option<Action>, touch: Touch) -> Option<Command> {
+fn answer(
+    model: &mut ConsoleModel,
+    session: &Session,
+    chord: KeyChord,
+    action: Option<KeyAction>,
+    touch: Touch,
+) -> Option<ConsoleCommand> {
     let dialog = model.dialog.clone()?;
-    if let (Dialog::Help, Some(Action::Look(look))) = (&dialog, &action)
-        && *look != Look::All
+    if let (Dialog::Help, Some(KeyAction::Look(look))) = (&dialog, &action)
+        && *look != PanelKey::All
         && help_pages(model) > 0
     {
         panels::leaf(model, *look);
         return None;
     }
-    if let (Dialog::Difference(_), Some(Action::Differ(step @ (Step::Next | Step::Last)))) = (&dialog, &action) {
+    if let (Dialog::Difference(_), Some(KeyAction::Differ(step @ (ComparisonKey::Next | ComparisonKey::Last)))) =
+        (&dialog, &action)
+    {
         differ(model, session, *step);
-        differ(model, session, Step::Open);
+        differ(model, session, ComparisonKey::Open);
         return None;
     }
     if matches!(dialog, Dialog::Report(_)) {
@@ -227,8 +241,8 @@ fn answer(model: &mut Model, session: &Session, chord: Chord, action: Option<Act
         return None;
     }
     let again = match dialog {
-        Dialog::Quit => action == Some(Action::Quit),
-        Dialog::EndTrial => action == Some(Action::EndTrial),
+        Dialog::Quit => action == Some(KeyAction::Quit),
+        Dialog::EndTrial => action == Some(KeyAction::EndTrial),
         _ => false,
     };
     // A nervous second press ends no trial.
@@ -237,20 +251,22 @@ fn answer(model: &mut Model, session: &Session, chord: Chord, action: Option<Act
         return None;
     }
     model.dialog = None;
-    let yes = chord == Chord::char('y') || again;
+    let yes = chord == KeyChord::char('y') || again;
     match dialog {
-        Dialog::Quit if yes => Some(Command::Quit),
-        Dialog::EndTrial if yes => Some(Command::Input(Event::TrialEnded { reason: EndReason::Wizard })),
+        Dialog::Quit if yes => Some(ConsoleCommand::Quit),
+        Dialog::EndTrial if yes => Some(ConsoleCommand::Input(Event::TrialEnded { reason: EndReason::Wizard })),
         _ => None,
     }
 }
 
 /// A report is not closed by a key that was meant for what went before: only by enter, and by the key that quits.
-fn report(model: &mut Model, code: KeyCode, action: Option<Action>) {
+fn report(model: &mut ConsoleModel, code: KeyCode, action: Option<KeyAction>) {
     match (code, action) {
-        (KeyCode::Enter, _) | (_, Some(Action::Quit)) => model.dialog = None,
-        (_, Some(Action::Look(Look::Back | Look::Last))) => model.help_from = model.help_from.saturating_sub(1),
-        (_, Some(Action::Look(Look::Forward | Look::Next))) => {
+        (KeyCode::Enter, _) | (_, Some(KeyAction::Quit)) => model.dialog = None,
+        (_, Some(KeyAction::Look(PanelKey::Back | PanelKey::Last))) => {
+            model.help_from = model.help_from.saturating_sub(1)
+        }
+        (_, Some(KeyAction::Look(PanelKey::Forward | PanelKey::Next))) => {
             model.help_from = (model.help_from + 1).min(report_rest(model));
         }
         _ => {}
@@ -258,149 +274,161 @@ fn report(model: &mut Model, code: KeyCode, action: Option<Action>) {
 }
 
 /// Sends the signal that the assistant recommends, if the wizard sees it.
-fn accept(model: &mut Model, session: &Session) -> Option<Command> {
+fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     if session.spec.console.visibility != Visibility::Recommendation {
-        model.say(Level::Refused, "not accepted: recommendations are not shown in this session");
+        model.say(NoticeLevel::Refused, "not accepted: recommendations are not shown in this session");
         return None;
     }
     if let Err(reason) = may_send(session, Sender::Wizard) {
-        model.say(Level::Refused, format!("not accepted: {reason}"));
+        model.say(NoticeLevel::Refused, format!("not accepted: {reason}"));
         return None;
     }
     let best = session.advice.as_ref().and_then(|advice| Some((advice, advice.best.clone()?)));
     let Some((advice, signal)) = best else {
-        model.say(Level::Refused, "not accepted: nothing is recommended");
+        model.say(NoticeLevel::Refused, "not accepted: nothing is recommended");
         return None;
     };
     let words = format!("accepted: {}", words::signal(&signal));
     let event = Event::SignalShown { by: Sender::Wizard, signal, accepted: Some(advice.for_seq) };
-    send(model, session, event, Level::Done, &words)
+    send(model, session, event, NoticeLevel::Done, &words)
 }
 
-pub(super) fn act(model: &mut Model, session: &Session, action: Action) -> Option<Command> {
+pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option<ConsoleCommand> {
     match action {
-        Action::Signal(_, signal) => {
+        KeyAction::Signal(_, signal) => {
             let words = format!("shown: {}", words::signal(&signal));
-            send(model, session, Event::SignalShown { by: Sender::Wizard, signal, accepted: None }, Level::Done, &words)
+            send(
+                model,
+                session,
+                Event::SignalShown { by: Sender::Wizard, signal, accepted: None },
+                NoticeLevel::Done,
+                &words,
+            )
         }
-        Action::Accept => accept(model, session),
-        Action::Press(button) => {
+        KeyAction::Accept => accept(model, session),
+        KeyAction::Press(button) => {
             let button = session.kitchen.button(Agent::Human, button).name.clone();
-            send(model, session, Event::Press { agent: Agent::Human, button, at_ns: None }, Level::Done, "")
+            send(model, session, Event::Press { agent: Agent::Human, button, at_ns: None }, NoticeLevel::Done, "")
         }
-        Action::TakeBack => {
-            send(model, session, Event::SignalEnded { reason: SignalEnd::TakenBack }, Level::Done, "taken back")
+        KeyAction::TakeBack => {
+            send(model, session, Event::SignalEnded { reason: SignalEnd::TakenBack }, NoticeLevel::Done, "taken back")
         }
-        Action::Note(index) => {
+        KeyAction::Note(index) => {
             let note = session.spec.console.notes.get(index)?.clone();
             let words = format!("marked: {note}");
-            send(model, session, Event::Marker { note }, Level::Done, &words)
+            send(model, session, Event::Marker { note }, NoticeLevel::Done, &words)
         }
-        Action::Advance => advance(model, session),
-        Action::ResumeRobot => {
+        KeyAction::Advance => advance(model, session),
+        KeyAction::ResumeRobot => {
             let words = if session.robot.held { "no longer stopped, still held" } else { "the robot goes on" };
-            send(model, session, Event::RobotResumed, Level::Done, words)
+            send(model, session, Event::RobotResumed, NoticeLevel::Done, words)
         }
-        Action::EndTrial => match session.phase {
+        KeyAction::EndTrial => match session.phase {
             Phase::Running | Phase::Paused => {
                 model.dialog = Some(Dialog::EndTrial);
                 None
             }
             _ => {
-                model.say(Level::Refused, "there is no trial to end");
+                model.say(NoticeLevel::Refused, "there is no trial to end");
                 None
             }
         },
-        Action::Hand(hand) => hands::act(model, session, hand),
-        Action::SwitchLayer => {
-            model.layer = if model.layer == Layer::Wizard { Layer::Participant } else { Layer::Wizard };
+        KeyAction::Hand(hand) => hands::act(model, session, hand),
+        KeyAction::SwitchLayer => {
+            model.layer = if model.layer == KeyLayer::Wizard { KeyLayer::Participant } else { KeyLayer::Wizard };
             None
         }
-        Action::Look(at) => {
+        KeyAction::Look(at) => {
             panels::look(model, session, at);
             None
         }
-        Action::Belief if Regions::showing(model.size, session, model).belief.area() == 0 => {
+        KeyAction::Belief if Regions::showing(model.size, session, model).belief.area() == 0 => {
             let words = match session.spec.console.visibility >= Visibility::Belief {
                 true => "the belief is not on the screen: esc shows all panels",
                 false => "the belief is not shown in this session",
             };
-            model.say(Level::Refused, words);
+            model.say(NoticeLevel::Refused, words);
             None
         }
-        Action::Belief => {
+        KeyAction::Belief => {
             let ranked = belief::ranked(model.belief.until(model.now));
             model.belief.focus_next(&ranked);
             None
         }
-        Action::Differ(step) => {
+        KeyAction::Differ(step) => {
             differ(model, session, step);
             None
         }
-        Action::Rate(rate) => coding::act(model, session, rate),
-        Action::Help => {
+        KeyAction::Rate(rate) => coding::act(model, session, rate),
+        KeyAction::Help => {
             (model.dialog, model.help_from) = (Some(Dialog::Help), 0);
             None
         }
-        Action::Quit if model.playback.is_some() || session.phase == Phase::Closed => Some(Command::Quit),
-        Action::Quit => {
+        KeyAction::Quit if model.playback.is_some() || session.phase == Phase::Closed => Some(ConsoleCommand::Quit),
+        KeyAction::Quit => {
             model.dialog = Some(Dialog::Quit);
             None
         }
-        Action::StopRobot | Action::Move(_) => None,
+        KeyAction::StopRobot | KeyAction::Move(_) => None,
     }
 }
 
 /// Another difference between wizard and assistant, or what each knew at this one.
-fn differ(model: &mut Model, session: &Session, step: Step) {
+fn differ(model: &mut ConsoleModel, session: &Session, step: ComparisonKey) {
     let Some(compared) = &mut model.comparison else { return };
     compared.choose(step);
     match compared.chosen() {
-        None => model.say(Level::Refused, "they do not differ yet"),
-        Some((at, seen)) if step == Step::Open => {
+        None => model.say(NoticeLevel::Refused, "they do not differ yet"),
+        Some((at, seen)) if step == ComparisonKey::Open => {
             model.dialog = Some(Dialog::Difference(seen.opened(&session.kitchen, &seen.differences[at])));
         }
         Some(_) => {}
     }
 }
 
-fn advance(model: &mut Model, session: &Session) -> Option<Command> {
+fn advance(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     let (event, words) = match session.phase {
         Phase::Ready => return preflight::start(model, session),
         Phase::Running => (Event::TrialPaused, "paused"),
         Phase::Paused => (Event::TrialResumed, "the trial runs"),
         Phase::Over(_) => return form::leave(model, session),
         Phase::Closed => {
-            model.say(Level::Refused, "the session is over");
+            model.say(NoticeLevel::Refused, "the session is over");
             return None;
         }
     };
-    send(model, session, event, Level::Done, words)
+    send(model, session, event, NoticeLevel::Done, words)
 }
 
 /// Sends an input if the session takes it now; else says why not.
-pub(super) fn send(model: &mut Model, session: &Session, event: Event, level: Level, words: &str) -> Option<Command> {
+pub(super) fn send(
+    model: &mut ConsoleModel,
+    session: &Session,
+    event: Event,
+    level: NoticeLevel,
+    words: &str,
+) -> Option<ConsoleCommand> {
     let refused = admit(session, &event).map_err(str::to_string).and_then(|()| hygiene(session, model.now, &event));
     if let Err(reason) = refused {
-        model.say(Level::Refused, reason);
+        model.say(NoticeLevel::Refused, reason);
         return None;
     }
     match words {
         "" => model.notice = None,
         words => model.say(level, words),
     }
-    Some(Command::Input(event))
+    Some(ConsoleCommand::Input(event))
 }
 
 /// A key without a meaning here: says so if it has one in the other layer.
-fn unknown(model: &mut Model, session: &Session, code: KeyCode) {
+fn unknown(model: &mut ConsoleModel, session: &Session, code: KeyCode) {
     let KeyCode::Char(key) = code else { return };
-    let other = if model.layer == Layer::Wizard { Layer::Participant } else { Layer::Wizard };
-    let chord = Chord { code, ctrl: false };
+    let other = if model.layer == KeyLayer::Wizard { KeyLayer::Participant } else { KeyLayer::Wizard };
+    let chord = KeyChord { code, ctrl: false };
     if model.keys.find(other, chord).is_some() {
-        let whose = if other == Layer::Wizard { "wizard" } else { "participant" };
-        model.say(Level::Refused, format!("\"{key}\" is a key of the {whose}: switch with tab"));
+        let whose = if other == KeyLayer::Wizard { "wizard" } else { "participant" };
+        model.say(NoticeLevel::Refused, format!("\"{key}\" is a key of the {whose}: switch with tab"));
     } else if (model.playback.is_none() || model.coding.is_some()) && session.phase != Phase::Closed {
-        model.say(Level::Refused, format!("\"{key}\" has no meaning: ? shows the keys"));
+        model.say(NoticeLevel::Refused, format!("\"{key}\" has no meaning: ? shows the keys"));
     }
 }

@@ -4,7 +4,7 @@ use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::{Sender, Signal};
 use crate::gaze::quality::DropCounts;
-use crate::kitchen::{Action, Agent, Kitchen, LocationId, OrderContent};
+use crate::kitchen::{Agent, ButtonAction, Kitchen, LocationId, OrderContent};
 use crate::robot::moment::ArmPhase;
 use crate::robot::safety::SafetyMode;
 use crate::session::calibration::CalibrationEvent;
@@ -28,9 +28,9 @@ pub fn location(name: &str) -> String {
 pub fn place(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> LocationId {
     let hand = kitchen.hands[agent.index()];
     match kitchen.button(agent, id).action {
-        Action::Use(location) | Action::Serve(location) => location,
-        Action::Process(process) => kitchen.processes[usize::from(process)].place.unwrap_or(hand),
-        Action::Take(_) | Action::Trash => hand,
+        ButtonAction::Use(location) | ButtonAction::Serve(location) => location,
+        ButtonAction::Process(process) => kitchen.processes[usize::from(process)].place.unwrap_or(hand),
+        ButtonAction::Take(_) | ButtonAction::Trash => hand,
     }
 }
 

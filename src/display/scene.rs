@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::words::Words;
-use crate::gaze::tags::Tags;
-use crate::kitchen::{Action, Agent, Kitchen, LocationKind, Look};
+use crate::gaze::tags::DisplayTags;
+use crate::kitchen::{Agent, Appearance, ButtonAction, Kitchen, LocationKind};
 use crate::session::display::Names;
 use crate::session::settings::GazeSource;
 use crate::session::{Session, SessionSpec};
@@ -56,7 +56,7 @@ pub struct Spot {
     /// "order", "human_hand", "robot_hand", "place".
     pub kind: &'static str,
     pub area: Rect,
-    pub look: Option<Look>,
+    pub look: Option<Appearance>,
 }
 
 /// A storage.
@@ -85,14 +85,14 @@ pub struct Knob {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Picture {
     pub label: String,
-    pub look: Option<Look>,
+    pub look: Option<Appearance>,
 }
 
 /// The scene of a session.
 pub fn scene(session: &Session) -> Scene {
     let (kitchen, spec) = (&session.kitchen, &session.spec);
     let words = Words::of(&spec.display);
-    let rect = |area: crate::kitchen::Area| [area.x, area.y, area.w, area.h];
+    let rect = |area: crate::kitchen::DisplayArea| [area.x, area.y, area.w, area.h];
     let spot = |location: &crate::kitchen::Location| Spot {
         name: location.name.clone(),
         label: words.of_name(&location.name),
@@ -107,7 +107,7 @@ pub fn scene(session: &Session) -> Scene {
         area: rect(storage.display),
     };
     let items = kitchen.contents.iter().filter(|content| content.items.len() == 1);
-    let picture = |name: &str, look: &Option<Look>| {
+    let picture = |name: &str, look: &Option<Appearance>| {
         (name.to_string(), Picture { label: words.of_name(name), look: look.clone() })
     };
     Scene {
@@ -142,9 +142,9 @@ fn kind(kind: LocationKind) -> &'static str {
 }
 
 fn marks(kitchen: &Kitchen) -> Vec<Mark> {
-    let Ok(tags) = Tags::place(kitchen) else { return Vec::new() };
+    let Ok(tags) = DisplayTags::place(kitchen) else { return Vec::new() };
     let row = |cells: &[bool]| cells.iter().map(|is_black| if *is_black { '#' } else { ' ' }).collect();
-    let mark = |tag: &crate::gaze::tags::Tag| Mark {
+    let mark = |tag: &crate::gaze::tags::DisplayTag| Mark {
         area: [tag.area.x, tag.area.y, tag.area.w, tag.area.h],
         rows: tag.cells().iter().map(|cells| row(cells)).collect(),
     };
@@ -159,13 +159,13 @@ fn knobs(kitchen: &Kitchen, words: &Words) -> Vec<Knob> {
     };
     let knob = |button: &crate::kitchen::Button| {
         let (does, at) = match button.action {
-            Action::Take(item) => ("take", shelf(item)),
-            Action::Use(location) => ("use", location.index()),
-            Action::Process(process) => {
+            ButtonAction::Take(item) => ("take", shelf(item)),
+            ButtonAction::Use(location) => ("use", location.index()),
+            ButtonAction::Process(process) => {
                 ("process", kitchen.processes[usize::from(process)].place.map_or(hand, |place| place.index()))
             }
-            Action::Trash => ("trash", hand),
-            Action::Serve(order) => ("serve", order.index()),
+            ButtonAction::Trash => ("trash", hand),
+            ButtonAction::Serve(order) => ("serve", order.index()),
         };
         let label = match does {
             "serve" => words.of_name("serve"),

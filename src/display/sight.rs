@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::words::Words;
 use crate::communication::Signal;
-use crate::kitchen::{Action, Agent, ContentId, Kitchen, LocationId, LocationKind, OrderContent};
+use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind, OrderContent};
 use crate::session::calibration::Check;
 use crate::session::display::Answering;
 use crate::session::plan::PhaseSpec;
@@ -196,17 +196,17 @@ fn pressed(session: &Session, agent: Agent) -> Option<Pressed> {
 }
 
 /// Where a press of an agent happens.
-fn spot(kitchen: &Kitchen, agent: Agent, action: Action) -> Spot {
+fn spot(kitchen: &Kitchen, agent: Agent, action: ButtonAction) -> Spot {
     let hand = kitchen.hands[agent.index()];
     let location = match action {
-        Action::Take(item) => {
+        ButtonAction::Take(item) => {
             let is_it = |storage: &crate::kitchen::layout::Storage| storage.agent == agent && storage.item == item;
             return Spot::Storage(kitchen.storages.iter().position(is_it).unwrap_or_default());
         }
-        Action::Use(location) => location,
-        Action::Process(process) => kitchen.processes[usize::from(process)].place.unwrap_or(hand),
-        Action::Trash => hand,
-        Action::Serve(order) => order,
+        ButtonAction::Use(location) => location,
+        ButtonAction::Process(process) => kitchen.processes[usize::from(process)].place.unwrap_or(hand),
+        ButtonAction::Trash => hand,
+        ButtonAction::Serve(order) => order,
     };
     Spot::Location(location.index())
 }

@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::console::view::theme::Ground;
+use crate::console::view::theme::TerminalBackground;
 
 /// A terminal answers within milliseconds, over a network within a second.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -48,7 +48,7 @@ fn is_whole(answer: &[u8]) -> bool {
 }
 
 /// The terminal's background, if it tells (OSC 11).
-pub fn ground() -> Option<Ground> {
+pub fn ground() -> Option<TerminalBackground> {
     let answer = ask("\x1b]11;?\x1b\\")?;
     let colour = answer.split("]11;rgb:").nth(1)?;
     let mut parts = colour.split('/').map(|part| {
@@ -59,5 +59,5 @@ pub fn ground() -> Option<Ground> {
     let [red, green, blue] = [parts.next()??, parts.next()??, parts.next()??];
     // Perceived brightness (ITU-R BT.601) of the values as they are.
     let brightness = 0.299 * red + 0.587 * green + 0.114 * blue;
-    Some(if brightness > 0.5 { Ground::Light } else { Ground::Dark })
+    Some(if brightness > 0.5 { TerminalBackground::Light } else { TerminalBackground::Dark })
 }

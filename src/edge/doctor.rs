@@ -17,7 +17,7 @@ use super::clock::WallTime;
 use super::log::Lock;
 use super::terminal::theme;
 use crate::base::features::Feature;
-use crate::console::view::theme::Ground;
+use crate::console::view::theme::TerminalBackground;
 use crate::session::SessionSpec;
 use crate::session::preflight::{Check, Verdict, space};
 use crate::session::settings::ConsoleSpec;
@@ -111,7 +111,7 @@ fn screen_size() -> Check {
 }
 
 fn colours(spec: &ConsoleSpec) -> Check {
-    let (theme, count) = (theme(spec, Ground::Dark), available_color_count());
+    let (theme, count) = (theme(spec, TerminalBackground::Dark), available_color_count());
     let signs = if theme.unicode { "Unicode signs" } else { "ASCII signs" };
     let remedy =
         "TERM=xterm-256color, no NO_COLOR, and a UTF-8 locale such as LC_ALL=C.UTF-8, if the terminal has them";

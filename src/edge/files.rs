@@ -13,7 +13,7 @@ use super::parse::parse;
 use super::place::place_of;
 use crate::base::features::{Feature, NotBuilt};
 use crate::console::KeyMap;
-use crate::console::keys::{self, KeyError, KeyPlace, Layer};
+use crate::console::keys::{self, KeyError, KeyLayer, KeyPlace};
 use crate::kitchen::Kitchen;
 use crate::kitchen::compile::{SpecError, SpecFile};
 use crate::kitchen::layout::{LayoutSpec, is_same_key};
@@ -284,8 +284,8 @@ fn check_keys(path: &Path, layout: &LayoutSpec, files: &KitchenFiles, keys: Opti
         (KeyPlace::Layout(layer, letter), _) => {
             let is_it = |key: &&Spanned<char>| is_same_key(*key.get_ref(), letter);
             let key = match layer {
-                Layer::Wizard => layout.signal_keys().map(|(_, key)| key).find(is_it),
-                Layer::Participant => layout.button_keys().find(is_it),
+                KeyLayer::Wizard => layout.signal_keys().map(|(_, key)| key).find(is_it),
+                KeyLayer::Participant => layout.button_keys().find(is_it),
             };
             Err(FileError::at(path, &files.layout.text, key.map(Spanned::span), found, remedy))
         }

@@ -22,7 +22,7 @@ use re_sdk_types::components::{Color, FillMode, InterpolationMode, MarkerShape, 
 use re_sdk_types::datatypes::Quaternion;
 
 use self::layout::{Layout, Opens};
-use crate::arm::link::{Shape, Solid};
+use crate::arm::link::{CollisionSolid, LinkShape};
 use crate::base::time::SessionTime;
 use crate::scene::shown::{Area, Disc, Level, Point, Series};
 use crate::scene::{Moment, Row, Shown};
@@ -276,14 +276,14 @@ fn transform(place: &Isometry3<f64>) -> archetypes::Transform3D {
 }
 
 /// Shapes of one kind are one archetype.
-fn solids_in_3d(solids: &[Solid], colour: Color) -> Vec<Part> {
+fn solids_in_3d(solids: &[CollisionSolid], colour: Color) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     let (mut cylinders, mut boxes, mut balls) = (Vec::new(), Vec::new(), Vec::new());
-    for Solid { shape, link_from_solid: place } in solids {
+    for CollisionSolid { shape, link_from_solid: place } in solids {
         match shape {
-            Shape::Cylinder { radius_m, length_m } => cylinders.push((place, *radius_m as f32, *length_m as f32)),
-            Shape::Box { half_m } => boxes.push((place, half_m.map(|length| length as f32))),
-            Shape::Sphere { radius_m } => balls.push((place, *radius_m as f32)),
+            LinkShape::Cylinder { radius_m, length_m } => cylinders.push((place, *radius_m as f32, *length_m as f32)),
+            LinkShape::Box { half_m } => boxes.push((place, half_m.map(|length| length as f32))),
+            LinkShape::Sphere { radius_m } => balls.push((place, *radius_m as f32)),
         }
     }
     if !cylinders.is_empty() {

@@ -22,10 +22,10 @@ use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 
 use super::ask::ground;
-use crate::console::question::Question;
+use crate::console::question::QuestionPage;
 use crate::console::view::sheet::draw_question;
-use crate::console::view::theme::{Ground, Theme};
-use crate::console::{Message, Model, view};
+use crate::console::view::theme::{TerminalBackground, Theme};
+use crate::console::{ConsoleMessage, ConsoleModel, view};
 use crate::session::Session;
 use crate::session::settings::{ConsoleSpec, ThemeChoice};
 
@@ -38,7 +38,7 @@ static HOOK: Once = Once::new();
 pub struct Screen {
     terminal: Terminal<CrosstermBackend<Frame>>,
     /// The terminal's background; dark, if it does not say.
-    pub ground: Ground,
+    pub ground: TerminalBackground,
     composed: Frame,
     frames: SyncSender<Vec<u8>>,
     /// The last frame is still being written.
@@ -86,7 +86,7 @@ impl Screen {
         });
         enable_raw_mode()?;
         *TAKEN.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = true;
-        let ground = ground().unwrap_or(Ground::Dark);
+        let ground = ground().unwrap_or(TerminalBackground::Dark);
         let mut out = io::stdout();
         // All keys as escape codes: only then terminals report repeats and releases of letters, too.
         let keys = KeyboardEnhancementFlags::DISAMBIGUATE_ESCAPE_CODES
@@ -124,7 +124,7 @@ impl Screen {
     ///
     /// # Errors
     /// The terminal's size cannot be found out.
-    pub fn draw(&mut self, session: &Session, model: &Model) -> io::Result<()> {
+    pub fn draw(&mut self, session: &Session, model: &ConsoleModel) -> io::Result<()> {
         self.compose(|frame| view(session, model, frame))
     }
 
@@ -132,7 +132,7 @@ impl Screen {
     ///
     /// # Errors
     /// The terminal's size cannot be found out.
-    pub fn ask(&mut self, question: &Question, theme: Theme) -> io::Result<()> {
+    pub fn ask(&mut self, question: &QuestionPage, theme: Theme) -> io::Result<()> {
         self.compose(|frame| draw_question(question, theme, frame))
     }
 
@@ -220,19 +220,19 @@ pub struct Hands {
 
 impl Hands {
     /// The next message; `None` when the terminal is gone.
-    pub async fn next(&mut self) -> Option<Message> {
+    pub async fn next(&mut self) -> Option<ConsoleMessage> {
         loop {
             let message = match self.events.next().await?.ok()? {
-                Event::Key(key) => Message::Key(key),
+                Event::Key(key) => ConsoleMessage::Key(key),
                 Event::Mouse(MouseEvent { kind, column, row, .. }) => match kind {
-                    MouseEventKind::Down(MouseButton::Left) => Message::Click(column, row),
-                    MouseEventKind::ScrollUp => Message::Wheel(column, row, 1),
-                    MouseEventKind::ScrollDown => Message::Wheel(column, row, -1),
-                    _ => Message::Pointer(column, row),
+                    MouseEventKind::Down(MouseButton::Left) => ConsoleMessage::Click(column, row),
+                    MouseEventKind::ScrollUp => ConsoleMessage::Wheel(column, row, 1),
+                    MouseEventKind::ScrollDown => ConsoleMessage::Wheel(column, row, -1),
+                    _ => ConsoleMessage::Pointer(column, row),
                 },
-                Event::Resize(columns, rows) => Message::Resized(columns, rows),
-                Event::FocusGained => Message::Focus(true),
-                Event::FocusLost => Message::Focus(false),
+                Event::Resize(columns, rows) => ConsoleMessage::Resized(columns, rows),
+                Event::FocusGained => ConsoleMessage::Focus(true),
+                Event::FocusLost => ConsoleMessage::Focus(false),
                 Event::Paste(_) => continue,
             };
             return Some(message);
@@ -242,14 +242,14 @@ impl Hands {
 
 /// Colours unless `NO_COLOR` is set (no-color.org), for this background unless the settings say another; Unicode unless
 /// the settings ask for ASCII signs or the locale is one of another character set.
-pub fn theme(console: &ConsoleSpec, ground: Ground) -> Theme {
+pub fn theme(console: &ConsoleSpec, ground: TerminalBackground) -> Theme {
     let value = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
     let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(value).map(|locale| locale.to_lowercase());
     let is_utf8 = locale.is_none_or(|locale| locale.contains("utf-8") || locale.contains("utf8"));
     let ground = match console.theme {
         ThemeChoice::Auto => ground,
-        ThemeChoice::Dark => Ground::Dark,
-        ThemeChoice::Light => Ground::Light,
+        ThemeChoice::Dark => TerminalBackground::Dark,
+        ThemeChoice::Light => TerminalBackground::Light,
     };
     Theme { colour: value("NO_COLOR").is_none(), unicode: is_utf8 && !console.ascii, ground }
 }

@@ -20,7 +20,7 @@ pub const USABLE_DEG: f64 = 3.0;
 /// What a check found. Degrees are of visual angle, seen from the set distance in front of the display's centre.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Found {
+pub struct GazeAccuracy {
     /// Mean angle from target to gaze, over the targets (accuracy).
     pub accuracy_deg: f64,
     /// The same after the offset is taken off.
@@ -31,13 +31,13 @@ pub struct Found {
     /// from them.
     pub offset: [f64; 2],
     /// By target, in the order in which they were shown.
-    pub targets: Vec<FoundTarget>,
+    pub targets: Vec<TargetAccuracy>,
 }
 
 /// What was found at a target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct FoundTarget {
+pub struct TargetAccuracy {
     /// Samples with enough confidence.
     pub samples: usize,
     /// Nothing: too few samples.
@@ -47,14 +47,14 @@ pub struct FoundTarget {
 
 /// The geometry of a display and who looks at it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Viewing {
+pub struct ViewingGeometry {
     /// Width and height of the display in metres.
     pub display_m: [f64; 2],
     /// From the eyes to the display, in metres.
     pub distance_m: f64,
 }
 
-impl Viewing {
+impl ViewingGeometry {
     /// The angle in degrees between two display points (fractions).
     pub fn angle_deg(&self, a: [f64; 2], b: [f64; 2]) -> f64 {
         let ray = |point: [f64; 2]| {
@@ -71,7 +71,7 @@ impl Viewing {
 
 /// What samples say that were taken while targets were looked at; `samples` by target, of each with enough confidence, in
 /// the order in which they were taken. Nothing if too few targets have enough of them.
-pub fn measure(viewing: &Viewing, targets: &[[f64; 2]], samples: &[Vec<GazeSample>]) -> Option<Found> {
+pub fn measure(viewing: &ViewingGeometry, targets: &[[f64; 2]], samples: &[Vec<GazeSample>]) -> Option<GazeAccuracy> {
     let looked: Vec<([f64; 2], &Vec<GazeSample>)> =
         targets.iter().copied().zip(samples).filter(|(_, samples)| samples.len() >= LEAST_SAMPLES).collect();
     if looked.len() < LEAST_TARGETS.min(targets.len()) {
@@ -96,11 +96,11 @@ pub fn measure(viewing: &Viewing, targets: &[[f64; 2]], samples: &[Vec<GazeSampl
     let steps = steps.map(|pair| viewing.angle_deg([pair[0].x, pair[0].y], [pair[1].x, pair[1].y]).powi(2));
     let precision_deg = mean(&mut { steps }).sqrt();
     let of_targets = |by: [f64; 2]| mean(&mut looked.iter().map(|(target, samples)| off(*target, by, samples)));
-    let found = targets.iter().zip(samples).map(|(target, samples)| FoundTarget {
+    let found = targets.iter().zip(samples).map(|(target, samples)| TargetAccuracy {
         samples: samples.len(),
         accuracy_deg: (samples.len() >= LEAST_SAMPLES).then(|| thousandths(off(*target, [0.0; 2], samples))),
     });
-    Some(Found {
+    Some(GazeAccuracy {
         accuracy_deg: thousandths(of_targets([0.0; 2])),
         corrected_deg: thousandths(of_targets(offset)),
         precision_deg: thousandths(precision_deg),

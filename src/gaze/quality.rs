@@ -62,14 +62,14 @@ impl DropCounts {
 
 /// Finds the faults of a stream, sample by sample. Only samples of which the tracker says when they were taken are judged.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Judge {
+pub struct SampleChecker {
     newest: Option<SessionTime>,
     recent: Vec<(Option<u64>, [u64; 2])>,
     next: usize,
     pub counts: FaultCounts,
 }
 
-impl Judge {
+impl SampleChecker {
     /// What is wrong with a sample that arrived now; nothing if it can be read.
     pub fn judge(&mut self, sample: &GazeSample, arrived: SessionTime) -> Option<GazeFault> {
         let taken = sample.taken_ns?.min(arrived);

@@ -3,7 +3,7 @@
 //! Pupil Labs asks for at least four tags with unique ids, a black edge of at least 8 cm at 2 m, and a white border of one
 //! cell around it.
 
-use crate::kitchen::{Area, Kitchen};
+use crate::kitchen::{DisplayArea, Kitchen};
 
 /// The ids of the corners' tags: top left, top right, bottom right, bottom left.
 pub const IDS: [u16; 4] = [0, 1, 2, 3];
@@ -19,20 +19,20 @@ const DATA: [u64; 4] = [0xd_5d62_8584, 0xd_97f1_8b49, 0xd_d280_910e, 0xe_479e_9c
 
 /// A tag on the wall display.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tag {
+pub struct DisplayTag {
     /// In the family tag36h11.
     pub id: u16,
     /// With its white border, in fractions of the display.
-    pub area: Area,
+    pub area: DisplayArea,
     /// The black square, in fractions of the display.
-    pub black: Area,
+    pub black: DisplayArea,
 }
 
 /// The tags of a wall display.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tags {
+pub struct DisplayTags {
     /// Top left, top right, bottom right, bottom left.
-    pub corners: [Tag; 4],
+    pub corners: [DisplayTag; 4],
     /// The length of the black edges, in metres.
     pub edge_m: f64,
 }
@@ -46,31 +46,33 @@ pub struct TagError {
     pub remedy: String,
 }
 
-impl Tags {
+impl DisplayTags {
     /// The largest tags that the corners of a kitchen's display have room for beside locations and storages.
     ///
     /// # Errors
     /// Something lies where the smallest tags would be.
-    pub fn place(kitchen: &Kitchen) -> Result<Tags, TagError> {
+    pub fn place(kitchen: &Kitchen) -> Result<DisplayTags, TagError> {
         let locations = kitchen.locations.iter().map(|location| (location.label(), location.display));
         let storage = |storage: &crate::kitchen::layout::Storage| {
             (format!("{} of the {}", storage.label, storage.agent.name()), storage.display)
         };
-        let taken: Vec<(String, Area)> = locations.chain(kitchen.storages.iter().map(storage)).collect();
-        let in_the_way = |tags: &Tags| {
-            let hidden =
-                |tag: &Tag| taken.iter().find(|(_, area)| overlap(tag.area, *area)).map(|(name, _)| name.clone());
+        let taken: Vec<(String, DisplayArea)> = locations.chain(kitchen.storages.iter().map(storage)).collect();
+        let in_the_way = |tags: &DisplayTags| {
+            let hidden = |tag: &DisplayTag| {
+                taken.iter().find(|(_, area)| overlap(tag.area, *area)).map(|(name, _)| name.clone())
+            };
             let corners = ["top left", "top right", "bottom right", "bottom left"];
             tags.corners.iter().zip(corners).find_map(|(tag, corner)| Some((corner, hidden(tag)?)))
         };
         let (least, most) = EDGE_MM;
-        let sizes = (least..=most).rev().map(|edge_mm| Tags::of_edge(f64::from(edge_mm) / 1000.0, kitchen.display_m));
+        let sizes =
+            (least..=most).rev().map(|edge_mm| DisplayTags::of_edge(f64::from(edge_mm) / 1000.0, kitchen.display_m));
         for tags in sizes {
             if in_the_way(&tags).is_none() {
                 return Ok(tags);
             }
         }
-        let smallest = Tags::of_edge(f64::from(least) / 1000.0, kitchen.display_m);
+        let smallest = DisplayTags::of_edge(f64::from(least) / 1000.0, kitchen.display_m);
         let (corner, name) = in_the_way(&smallest).unwrap_or_default();
         let side_m = smallest.edge_m * CELLS as f64 / BLACK_CELLS as f64;
         Err(TagError {
@@ -79,14 +81,14 @@ impl Tags {
         })
     }
 
-    fn of_edge(edge_m: f64, display_m: [f64; 2]) -> Tags {
+    fn of_edge(edge_m: f64, display_m: [f64; 2]) -> DisplayTags {
         let cell_m = edge_m / BLACK_CELLS as f64;
         let [cell_x, cell_y] = display_m.map(|length_m| cell_m / length_m);
         let (w, h) = (cell_x * CELLS as f64, cell_y * CELLS as f64);
         let tag = |id: u16, x: f64, y: f64| {
             let (black_w, black_h) = (cell_x * BLACK_CELLS as f64, cell_y * BLACK_CELLS as f64);
-            let black = Area { x: x + cell_x, y: y + cell_y, w: black_w, h: black_h };
-            Tag { id, area: Area { x, y, w, h }, black }
+            let black = DisplayArea { x: x + cell_x, y: y + cell_y, w: black_w, h: black_h };
+            DisplayTag { id, area: DisplayArea { x, y, w, h }, black }
         };
         let (right, bottom) = (1.0 - w, 1.0 - h);
         let places = [(0.0, 0.0), (right, 0.0), (right, bottom), (0.0, bottom)];
@@ -94,7 +96,7 @@ impl Tags {
         for ((corner, id), (x, y)) in corners.iter_mut().zip(IDS).zip(places) {
             *corner = tag(id, x, y);
         }
-        Tags { corners, edge_m }
+        DisplayTags { corners, edge_m }
     }
 
     /// The corners of Pupil's default surface, the hull of the black corners of all tags, in fractions of the display: top
@@ -110,7 +112,7 @@ impl Tags {
     }
 }
 
-impl Tag {
+impl DisplayTag {
     /// What is to be drawn: rows from the top, cells from the left; true for black.
     pub fn cells(&self) -> [[bool; CELLS]; CELLS] {
         let data = IDS.iter().position(|id| *id == self.id).map_or(0, |index| DATA[index]);
@@ -126,7 +128,7 @@ impl Tag {
     }
 }
 
-fn overlap(a: Area, b: Area) -> bool {
+fn overlap(a: DisplayArea, b: DisplayArea) -> bool {
     let meet = |a: f64, a_len: f64, b: f64, b_len: f64| a + a_len > b && b + b_len > a;
     meet(a.x, a.w, b.x, b.w) && meet(a.y, a.h, b.y, b.h)
 }

@@ -50,7 +50,7 @@ impl ButtonId {
 
 /// What a press does, if it is available.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Action {
+pub enum ButtonAction {
     /// Take this item from the own storage into the empty hand.
     Take(ContentId),
     /// Pick up, put down or stack at a location.
@@ -68,7 +68,7 @@ pub enum Action {
 pub struct Button {
     /// "take rice", "cutting_board", "cut", "trash", "serve 1".
     pub name: String,
-    pub action: Action,
+    pub action: ButtonAction,
     /// Its place on the table in metres, in the frame of the robot's base.
     pub at_m: [f64; 2],
     /// The human's key for it.
@@ -82,10 +82,10 @@ impl Kitchen {
     pub fn involved(&self, agent: Agent, button: ButtonId) -> Vec<LocationId> {
         let hand = self.hands[agent.index()];
         match self.button(agent, button).action {
-            Action::Take(_) | Action::Trash => vec![hand],
-            Action::Use(location) => vec![location, hand],
-            Action::Process(process) => vec![self.processes[usize::from(process)].place.unwrap_or(hand)],
-            Action::Serve(order) => vec![self.plate, order],
+            ButtonAction::Take(_) | ButtonAction::Trash => vec![hand],
+            ButtonAction::Use(location) => vec![location, hand],
+            ButtonAction::Process(process) => vec![self.processes[usize::from(process)].place.unwrap_or(hand)],
+            ButtonAction::Serve(order) => vec![self.plate, order],
         }
     }
 
@@ -100,9 +100,9 @@ impl Kitchen {
 
     /// The agent's storage button whose symbol looks like that of another one.
     pub fn look_alike_button(&self, agent: Agent, button: ButtonId) -> Option<ButtonId> {
-        let Action::Take(item) = self.button(agent, button).action else { return None };
+        let ButtonAction::Take(item) = self.button(agent, button).action else { return None };
         let alike = &self.content(item).look_alikes;
-        let is_alike = |action| matches!(action, Action::Take(other) if alike.contains(&other));
+        let is_alike = |action| matches!(action, ButtonAction::Take(other) if alike.contains(&other));
         let buttons = &self.buttons[agent.index()];
         buttons.iter().position(|other| is_alike(other.action)).map(|index| ButtonId(index as u8))
     }

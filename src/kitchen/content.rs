@@ -1,6 +1,6 @@
 //! What can lie at a location: nothing, an ingredient item, or a stack of items.
 
-use super::look::Look;
+use super::look::Appearance;
 
 /// An index into [`super::Kitchen::contents`]; 0 is "empty".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -32,7 +32,7 @@ pub struct Content {
     /// The contents that look like it: the same with one ingredient exchanged for a look-alike.
     pub look_alikes: Vec<ContentId>,
     /// How the display draws it, if it is an item and its file says so.
-    pub look: Option<Look>,
+    pub look: Option<Appearance>,
 }
 
 impl Content {

@@ -5,7 +5,7 @@ use toml::Spanned;
 
 use super::action::Agent;
 use super::content::ContentId;
-use super::look::Look;
+use super::look::Appearance;
 
 /// An index into [`super::Kitchen::locations`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -21,14 +21,14 @@ impl LocationId {
 /// An area of the wall display, as fractions of its width and height; the origin is at the top left, y points down.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Area {
+pub struct DisplayArea {
     pub x: f64,
     pub y: f64,
     pub w: f64,
     pub h: f64,
 }
 
-impl Area {
+impl DisplayArea {
     /// The centre, in the same fractions.
     pub fn centre(self) -> [f64; 2] {
         [self.x + self.w / 2.0, self.y + self.h / 2.0]
@@ -43,7 +43,7 @@ impl Area {
     }
 
     /// The least distance in metres between two areas, 0 if they touch.
-    pub fn gap_m(self, other: Area, display_m: [f64; 2]) -> f64 {
+    pub fn gap_m(self, other: DisplayArea, display_m: [f64; 2]) -> f64 {
         let gap = |a: f64, a_len: f64, b: f64, b_len: f64| (b - a - a_len).max(a - b - b_len).max(0.0);
         let dx = gap(self.x, self.w, other.x, other.w) * display_m[0];
         let dy = gap(self.y, self.h, other.y, other.h) * display_m[1];
@@ -68,11 +68,11 @@ pub struct Location {
     pub name: String,
     pub kind: LocationKind,
     /// Its area on the wall display.
-    pub display: Area,
+    pub display: DisplayArea,
     /// The wizard's key for the signal about it.
     pub signal_key: Option<char>,
     /// How the display draws it, if its file says so.
-    pub look: Option<Look>,
+    pub look: Option<Appearance>,
 }
 
 impl Location {
@@ -89,7 +89,7 @@ pub struct Storage {
     pub item: ContentId,
     /// The ingredient's name.
     pub label: String,
-    pub display: Area,
+    pub display: DisplayArea,
 }
 
 /// The layout file as written.
@@ -100,7 +100,7 @@ pub struct LayoutSpec {
     pub title: String,
     /// The recipe file, relative to the layout file.
     pub recipes: Spanned<String>,
-    pub display: DisplaySpec,
+    pub display: WallDisplaySpec,
     pub table: TableSpec,
     pub order: Vec<OrderSpec>,
     pub hand: Vec<HandSpec>,
@@ -143,7 +143,7 @@ pub fn is_same_key(a: char, b: char) -> bool {
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct DisplaySpec {
+pub struct WallDisplaySpec {
     pub width_m: Spanned<f64>,
     pub height_m: Spanned<f64>,
 }
@@ -172,7 +172,7 @@ pub struct ButtonSpec {
 #[serde(deny_unknown_fields)]
 pub struct OrderSpec {
     pub name: Spanned<String>,
-    pub display: Spanned<Area>,
+    pub display: Spanned<DisplayArea>,
     #[serde(default)]
     pub signal: Option<Spanned<char>>,
     pub serve: ButtonSpec,
@@ -183,7 +183,7 @@ pub struct OrderSpec {
 pub struct HandSpec {
     pub name: Spanned<String>,
     pub agent: Spanned<Agent>,
-    pub display: Spanned<Area>,
+    pub display: Spanned<DisplayArea>,
     #[serde(default)]
     pub signal: Option<Spanned<char>>,
     pub trash: ButtonSpec,
@@ -199,7 +199,7 @@ pub struct PlaceSpec {
     pub serves: bool,
     /// "anything", "ingredients", "dishes", or a group of the recipe file.
     pub accepts: Vec<Spanned<String>>,
-    pub display: Spanned<Area>,
+    pub display: Spanned<DisplayArea>,
     #[serde(default)]
     pub signal: Option<Spanned<char>>,
     pub button: ButtonSpec,
@@ -220,6 +220,6 @@ pub struct ProcessButtonSpec {
 pub struct StorageSpec {
     pub agent: Agent,
     pub ingredient: Spanned<String>,
-    pub display: Spanned<Area>,
+    pub display: Spanned<DisplayArea>,
     pub button: ButtonSpec,
 }

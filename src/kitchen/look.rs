@@ -11,19 +11,19 @@ pub const SHAPES: [&str; 32] = [
 
 /// How something looks: "fillet #f58a5f".
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Look {
+pub struct Appearance {
     /// One of [`SHAPES`].
     pub shape: String,
     /// "#rrggbb"; without any, the shape has its own.
     pub colours: Vec<String>,
 }
 
-impl Look {
+impl Appearance {
     /// Reads a shape and up to four colours.
     ///
     /// # Errors
     /// What would be right.
-    pub fn read(text: &str) -> Result<Look, String> {
+    pub fn read(text: &str) -> Result<Appearance, String> {
         let mut words = text.split_whitespace();
         let shape = words.next().unwrap_or_default().to_string();
         let colours: Vec<String> = words.map(str::to_string).collect();
@@ -35,7 +35,7 @@ impl Look {
             digits.len() == 6 && digits.bytes().all(|byte| byte.is_ascii_hexdigit())
         };
         match colours.len() <= 4 && colours.iter().all(is_colour) {
-            true => Ok(Look { shape, colours }),
+            true => Ok(Appearance { shape, colours }),
             false => Err("up to four colours of six hexadecimal digits: \"fillet #f58a5f\"".to_string()),
         }
     }

@@ -14,11 +14,11 @@ pub mod rules;
 pub mod state;
 
 use crate::base::rng::mix;
-pub use action::{Action, Agent, Button, ButtonId};
+pub use action::{Agent, Button, ButtonAction, ButtonId};
 pub use aspect::{Aspect, AspectId, AspectKind};
 pub use content::{Content, ContentId};
-pub use layout::{Area, Location, LocationId, LocationKind};
-pub use look::Look;
+pub use layout::{DisplayArea, Location, LocationId, LocationKind};
+pub use look::Appearance;
 pub use recipe::{Dish, DishId};
 pub use state::{OrderContent, Recipes, State};
 
@@ -59,7 +59,7 @@ pub struct Kitchen {
     pub board: LocationId,
     /// The location from which orders are served.
     pub plate: LocationId,
-    tables: rules::Tables,
+    tables: rules::TransitionTables,
 }
 
 impl Kitchen {

@@ -6,7 +6,7 @@ use toml::Spanned;
 
 use super::content::ContentId;
 use super::layout::LocationId;
-use super::look::Look;
+use super::look::Appearance;
 
 /// An index into [`super::Kitchen::dishes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -27,7 +27,7 @@ pub struct Dish {
     /// What may be taken for its recipe: full stacks, the true one first.
     pub variants: Vec<ContentId>,
     /// How the display draws the final product, if its file says so.
-    pub look: Option<Look>,
+    pub look: Option<Appearance>,
 }
 
 impl Dish {
@@ -86,12 +86,12 @@ pub struct ProcessSpec {
     /// A place of the layout, or "hand".
     pub at: Spanned<String>,
     pub agents: Vec<super::Agent>,
-    pub steps: Vec<StepSpec>,
+    pub steps: Vec<ProcessStepSpec>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct StepSpec {
+pub struct ProcessStepSpec {
     pub from: Spanned<String>,
     pub to: Spanned<String>,
 }
@@ -125,7 +125,7 @@ pub struct DishSpec {
 pub struct DeviationSpec {
     /// Which dishes it is about: those with at least one of these items.
     pub dishes_with: Vec<Spanned<String>>,
-    pub combine: Combine,
+    pub combine: DeviationCombination,
     pub slots: Vec<DeviationSlotSpec>,
 }
 
@@ -138,7 +138,7 @@ pub struct DeviationSlotSpec {
 
 /// How deviations of several slots go together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-pub enum Combine {
+pub enum DeviationCombination {
     /// At most one slot deviates from the true recipe.
     #[serde(rename = "one at a time")]
     OneAtATime,

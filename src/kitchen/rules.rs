@@ -1,6 +1,6 @@
 //! What a press does: the transition of the task, as table look-ups.
 
-use super::action::{Action, Agent, ButtonId};
+use super::action::{Agent, ButtonAction, ButtonId};
 use super::content::ContentId;
 use super::layout::LocationId;
 use super::recipe::DishId;
@@ -9,7 +9,7 @@ use super::{Kitchen, LocationKind};
 
 /// Transition tables over contents, computed once.
 #[derive(Clone, Debug, Default)]
-pub struct Tables {
+pub struct TransitionTables {
     /// Number of contents.
     pub(super) width: usize,
     /// `accepts[location * width + content]`: whether the location takes the content when it is empty.
@@ -48,33 +48,33 @@ impl Kitchen {
     }
 
     /// The state after an action of an agent; `None` if it is not available. `recipes` decides what can be served.
-    pub fn act(&self, state: State, recipes: &Recipes, agent: Agent, action: Action) -> Option<State> {
+    pub fn act(&self, state: State, recipes: &Recipes, agent: Agent, action: ButtonAction) -> Option<State> {
         let hand = self.hands[agent.index()];
         let held = state.content(hand);
         let mut next = state;
         match action {
-            Action::Take(item) => {
+            ButtonAction::Take(item) => {
                 if !held.is_empty() {
                     return None;
                 }
                 next.set_content(hand, item);
             }
-            Action::Use(location) => {
+            ButtonAction::Use(location) => {
                 let (in_hand, at_location) = self.exchanged(location, held, state.content(location))?;
                 next.set_content(hand, in_hand);
                 next.set_content(location, at_location);
             }
-            Action::Process(process) => {
+            ButtonAction::Process(process) => {
                 let place = self.processes[usize::from(process)].place.unwrap_or(hand);
                 next.set_content(place, self.processed(process, state.content(place))?);
             }
-            Action::Trash => {
+            ButtonAction::Trash => {
                 if held.is_empty() {
                     return None;
                 }
                 next.set_content(hand, ContentId::EMPTY);
             }
-            Action::Serve(order) => {
+            ButtonAction::Serve(order) => {
                 let OrderContent::Dish(dish) = state.order(order) else { return None };
                 if state.content(self.plate) != recipes.get(dish) {
                     return None;

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{Action, Agent, ButtonId, Kitchen, State};
+use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, State};
 
 /// A press so soon after a change by the robot, or by nobody, at the same place cannot have taken the change into account.
 pub const RACE_S: f64 = 0.3;
@@ -90,10 +90,10 @@ impl Judge {
         let kitchen = &self.kitchen;
         let hand = kitchen.hands[Agent::Human.index()];
         let places = match kitchen.button(Agent::Human, button).action {
-            Action::Use(location) => [location, hand],
-            Action::Serve(order) => [order, kitchen.plate],
-            Action::Process(process) => [kitchen.processes[usize::from(process)].place.unwrap_or(hand), hand],
-            Action::Take(_) | Action::Trash => [hand, hand],
+            ButtonAction::Use(location) => [location, hand],
+            ButtonAction::Serve(order) => [order, kitchen.plate],
+            ButtonAction::Process(process) => [kitchen.processes[usize::from(process)].place.unwrap_or(hand), hand],
+            ButtonAction::Take(_) | ButtonAction::Trash => [hand, hand],
         };
         let recent = |time: SessionTime| now.secs_since(time) <= RACE_S;
         places.iter().any(|place| self.others_changed_at[place.index()].is_some_and(recent))

@@ -9,7 +9,7 @@ use super::population::chance;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Action, Agent, ButtonId, Kitchen, LocationId, Recipes, State};
+use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, Recipes, State};
 
 /// Presses that are thought out ahead: until the hand is free again, but not more than this.
 const FORESIGHT: usize = 5;
@@ -136,7 +136,7 @@ pub fn try_something(
 ) -> Option<ButtonId> {
     let mut presses = effective_presses(kitchen, state, recipes);
     if presses.len() > 1 {
-        presses.retain(|(button, _)| kitchen.button(Agent::Human, *button).action != Action::Trash);
+        presses.retain(|(button, _)| kitchen.button(Agent::Human, *button).action != ButtonAction::Trash);
     }
     let least = presses.iter().map(|(_, next)| cost.all_orders(*next, recipes)).min()?;
     presses.retain(|(_, next)| cost.all_orders(*next, recipes) == least);

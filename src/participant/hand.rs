@@ -7,7 +7,7 @@ use super::population::{chance, normal};
 use super::{Deed, SimulatedParticipant, decision, witness};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Action, Agent, AspectId, ButtonId, DishId, LocationId, State};
+use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, DishId, LocationId, State};
 
 /// Below this certainty of a place one looks before using it.
 const UNSURE: f64 = 0.6;
@@ -59,7 +59,7 @@ impl SimulatedParticipant {
         if unsure.is_some() {
             return unsure.copied();
         }
-        if let Action::Take(_) = kitchen.button(Agent::Human, button).action {
+        if let ButtonAction::Take(_) = kitchen.button(Agent::Human, button).action {
             places.push(kitchen.hands[Agent::Robot.index()]);
         }
         let is_old = |place: LocationId| now.secs_since(self.attention.read_at[place.index()]) > FRESH_S;

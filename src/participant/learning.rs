@@ -1,7 +1,7 @@
 //! What the participant learns from its own presses, whether they had an effect or not.
 
 use super::beliefs::Beliefs;
-use crate::kitchen::{Action, Agent, AspectId, ButtonId, Kitchen, LocationId, State};
+use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, LocationId, State};
 
 /// Belief in what one has done oneself.
 const DONE: f64 = 0.97;
@@ -44,21 +44,21 @@ fn make_sense(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId) {
     let hand = kitchen.hands[Agent::Human.index()];
     let (mut state, _) = beliefs.point(kitchen);
     match kitchen.button(Agent::Human, button).action {
-        Action::Take(item) => {
+        ButtonAction::Take(item) => {
             state.set_content(hand, item);
             settle(kitchen, beliefs, hand, state, DONE);
         }
-        Action::Trash => {
+        ButtonAction::Trash => {
             state.set_content(hand, crate::kitchen::ContentId::EMPTY);
             settle(kitchen, beliefs, hand, state, DONE);
         }
-        Action::Serve(order) => {
+        ButtonAction::Serve(order) => {
             state.set_content(kitchen.plate, crate::kitchen::ContentId::EMPTY);
             state.set_order(order, crate::kitchen::OrderContent::Served);
             settle(kitchen, beliefs, kitchen.plate, state, DONE);
             settle(kitchen, beliefs, order, state, DONE);
         }
-        Action::Use(_) | Action::Process(_) => {
+        ButtonAction::Use(_) | ButtonAction::Process(_) => {
             for place in kitchen.involved(Agent::Human, button) {
                 let aspect = AspectId::of_location(place);
                 let open = vec![1.0; beliefs.distribution(aspect).len()];
@@ -70,7 +70,7 @@ fn make_sense(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId) {
 
 /// Nothing happened though something should have: the least certain of the places involved must be otherwise.
 fn blame(kitchen: &Kitchen, beliefs: &mut Beliefs, state: State, button: ButtonId) {
-    if matches!(kitchen.button(Agent::Human, button).action, Action::Serve(_)) {
+    if matches!(kitchen.button(Agent::Human, button).action, ButtonAction::Serve(_)) {
         // What stands on the plate is plain to see: it is the recipe that comes into doubt, see `Memory::doubt`.
         return;
     }

@@ -23,7 +23,7 @@ use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Action, Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, LocationKind};
+use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId, LocationKind};
 use crate::kitchen::{OrderContent, State};
 use crate::mind::BeliefWitness;
 use attention::Attention;
@@ -296,7 +296,7 @@ impl SimulatedParticipant {
                 self.attention.later(place);
             }
         }
-        if let (Action::Serve(order), OrderContent::Dish(dish)) = (action, serve_of(action, state)) {
+        if let (ButtonAction::Serve(order), OrderContent::Dish(dish)) = (action, serve_of(action, state)) {
             match effective {
                 true => {
                     let variant = kitchen.dish(dish).variants.iter().position(|&v| v == recipes.get(dish));
@@ -361,9 +361,9 @@ impl SimulatedParticipant {
 }
 
 /// What a serve button would serve.
-fn serve_of(action: Action, state: State) -> OrderContent {
+fn serve_of(action: ButtonAction, state: State) -> OrderContent {
     match action {
-        Action::Serve(order) => state.order(order),
+        ButtonAction::Serve(order) => state.order(order),
         _ => OrderContent::None,
     }
 }

@@ -6,7 +6,7 @@ pub mod safety;
 
 use serde::{Deserialize, Serialize};
 
-use self::moment::ArmMoment;
+use self::moment::ArmSample;
 use self::safety::SafetyMode;
 use crate::base::time::SessionTime;
 use crate::kitchen::ButtonId;
@@ -92,7 +92,7 @@ pub enum IdleReason {
 
 /// What the robot does at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RobotDeed {
+pub enum RobotActivity {
     /// Sets out to press a button, which it will touch at `until`.
     Intend { button: ButtonId, until: SessionTime },
     /// Presses the button that it set out for.
@@ -102,7 +102,7 @@ pub enum RobotDeed {
     /// Begins to do nothing, or goes on doing nothing for another reason.
     Idle(IdleReason),
     /// The arm moves, or begins to do something else.
-    Move(ArmMoment),
+    Move(ArmSample),
     /// The arm is safe in another way: slower, waiting, or stopped. With what it felt in newtons where that is why, and with
     /// the joint at fault, 1 the first.
     Safety { mode: SafetyMode, force_n: Option<f64>, joint: Option<u8> },

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The number of joints that move.
 pub const JOINTS: usize = 6;
 /// Angles of the joints, from the base on, in radians.
-pub type Joints = [f64; JOINTS];
+pub type JointAngles = [f64; JOINTS];
 
 /// What the arm does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -26,10 +26,10 @@ pub enum ArmPhase {
 
 /// How the arm stands, as it is recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ArmMoment {
+pub struct ArmSample {
     pub phase: ArmPhase,
     /// Joint angles in radians, from the base on, to a ten thousandth.
-    pub joints: Joints,
+    pub joints: JointAngles,
     /// The greatest force that it felt since it was told last, from a button or from somebody, in newtons.
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub force_n: f64,

@@ -5,11 +5,11 @@ use rand::RngExt;
 use super::IdleReason;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{Care, CostToGo};
-use crate::kitchen::{Action, Agent, ButtonId, Kitchen, LocationId, Recipes, State};
+use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, Recipes, State};
 
 /// What the robot does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Decision {
+pub enum PolicyDecision {
     Press(ButtonId),
     Idle(IdleReason),
 }
@@ -73,7 +73,7 @@ pub fn chosen(
 ) -> Vec<ButtonId> {
     let best = for_the_nearer_order(kitchen, cost, care, state, recipes, best);
     // What serves no order is thrown away: put down somewhere, it would soon be in the way again.
-    let trash = best.iter().copied().find(|&button| kitchen.button(Agent::Robot, button).action == Action::Trash);
+    let trash = best.iter().copied().find(|&button| kitchen.button(Agent::Robot, button).action == ButtonAction::Trash);
     trash.map_or(best, |trash| vec![trash])
 }
 
@@ -85,20 +85,20 @@ pub fn decide(
     state: State,
     skipped: &[ButtonId],
     random: &mut Stream,
-) -> Decision {
+) -> PolicyDecision {
     if kitchen.wanted(state).next().is_none() {
-        return Decision::Idle(IdleReason::NoOrder);
+        return PolicyDecision::Idle(IdleReason::NoOrder);
     }
     let recipes = kitchen.true_recipes();
     let all = best_presses(kitchen, cost, Care::Exact, state, &recipes);
     let best: Vec<ButtonId> = all.iter().copied().filter(|button| !skipped.contains(button)).collect();
     if best.len() < all.len() && best.is_empty() {
-        return Decision::Idle(IdleReason::Skipped);
+        return PolicyDecision::Idle(IdleReason::Skipped);
     }
     match chosen(kitchen, cost, Care::Exact, state, &recipes, best)[..] {
-        [] => Decision::Idle(IdleReason::HumanTurn),
+        [] => PolicyDecision::Idle(IdleReason::HumanTurn),
         // What is thrown away is no choice, and draws nothing.
-        [only] if kitchen.button(Agent::Robot, only).action == Action::Trash => Decision::Press(only),
-        ref choices => Decision::Press(choices[random.random_range(0..choices.len())]),
+        [only] if kitchen.button(Agent::Robot, only).action == ButtonAction::Trash => PolicyDecision::Press(only),
+        ref choices => PolicyDecision::Press(choices[random.random_range(0..choices.len())]),
     }
 }

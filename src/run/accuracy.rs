@@ -11,9 +11,9 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::advisor::{Advisor, Question};
+use super::advisor::{AdviceRequest, Advisor};
 use super::parallel;
-use super::replay::{OneKitchen, Replay, each_once};
+use super::replay::{Replay, SameKitchen, each_once};
 use crate::base::words::count;
 use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
@@ -34,7 +34,7 @@ const MATTERS: f64 = 0.3;
 
 /// How many steps are looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Extent {
+pub struct AccuracySample {
     /// By the converged planner.
     pub steps: usize,
     /// By the plain reference, among them.
@@ -43,7 +43,7 @@ pub struct Extent {
 
 /// What `--accuracy` prints. Null is what there were no steps for.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct AccuracyFigures {
+pub struct AccuracySummary {
     /// Steps at which the planner was held against the converged one.
     pub steps: u64,
     /// Those at which the best option, silence included, leads by more than 0.2 presses.
@@ -71,7 +71,7 @@ pub struct AccuracyFigures {
 /// What was asked in a recording.
 struct Asked {
     session: Session,
-    questions: Vec<Question>,
+    questions: Vec<AdviceRequest>,
 }
 
 /// A step: of which recording, which question, and the benefits that were answered.
@@ -89,9 +89,9 @@ struct Step {
 ///
 /// # Errors
 /// A recording that cannot be read or applied, or one of another kitchen.
-pub fn measure(recordings: &[PathBuf], extent: Extent, done: impl Fn() + Sync) -> FileResult<AccuracyFigures> {
+pub fn measure(recordings: &[PathBuf], extent: AccuracySample, done: impl Fn() + Sync) -> FileResult<AccuracySummary> {
     each_once(recordings)?;
-    let (mut one_kitchen, mut asked) = (OneKitchen::default(), Vec::new());
+    let (mut one_kitchen, mut asked) = (SameKitchen::default(), Vec::new());
     for recording in recordings {
         let mut replay = Replay::open(recording)?;
         one_kitchen.admit(recording, &replay.session().kitchen)?;
@@ -149,7 +149,7 @@ fn spread(asked: &[Asked], most: usize) -> Vec<Step> {
     (0..chosen).map(|index| all[index * all.len() / chosen].clone()).collect()
 }
 
-fn benefits(advisor: &mut Advisor, question: &Question) -> Vec<(Signal, f64)> {
+fn benefits(advisor: &mut Advisor, question: &AdviceRequest) -> Vec<(Signal, f64)> {
     let options = advisor.answer(question).options;
     options.into_iter().map(|option| (option.signal, option.benefit)).collect()
 }
@@ -161,7 +161,7 @@ struct Bench {
 }
 
 impl Bench {
-    fn question(&self, step: &Step) -> &Question {
+    fn question(&self, step: &Step) -> &AdviceRequest {
         &self.asked[step.recording].questions[step.question]
     }
 
@@ -244,7 +244,7 @@ impl Agreement {
     }
 }
 
-fn figures(steps: &[Step], price: f64) -> AccuracyFigures {
+fn figures(steps: &[Step], price: f64) -> AccuracySummary {
     let (mut ours, mut plain) = (Agreement::default(), Agreement::default());
     let (mut of_errors, mut plain_s, mut ours_s, mut reference_steps) = (0.0, 0.0, 0.0, 0u64);
     for step in steps {
@@ -259,7 +259,7 @@ fn figures(steps: &[Step], price: f64) -> AccuracyFigures {
         (plain_s, ours_s, reference_steps) = (plain_s + took_s, ours_s + step.took_s, reference_steps + 1);
     }
     let each = |total_s: f64| (reference_steps > 0).then(|| 1e3 * total_s / reference_steps as f64);
-    AccuracyFigures {
+    AccuracySummary {
         steps: steps.len() as u64,
         clear_steps: ours.clear,
         same_decision: ours.same_decision(),
@@ -277,7 +277,7 @@ fn figures(steps: &[Step], price: f64) -> AccuracyFigures {
 }
 
 /// The figures for people.
-pub fn describe(figures: &AccuracyFigures) -> String {
+pub fn describe(figures: &AccuracySummary) -> String {
     if figures.benefit_pairs == 0 {
         return format!(
             "{}: at none a signal was worth more than {MATTERS} presses, so nothing can be held against the answer with \

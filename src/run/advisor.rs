@@ -13,7 +13,7 @@ use crate::session::Session;
 
 /// What the assistant is asked: the session as it was after an event and all that followed from it at once.
 #[derive(Clone, Debug)]
-pub struct Question {
+pub struct AdviceRequest {
     /// The number and the time of the event.
     pub seq: u64,
     pub time: SessionTime,
@@ -29,9 +29,9 @@ pub struct Question {
     error: Option<u64>,
 }
 
-impl Question {
+impl AdviceRequest {
     /// The question after an event of this number and time.
-    pub fn of(follower: &Follower, seq: u64, time: SessionTime) -> Question {
+    pub fn of(follower: &Follower, seq: u64, time: SessionTime) -> AdviceRequest {
         let session = &follower.session;
         let robot = match session.robot.intention {
             _ if session.robot.stopped || session.robot.held && !session.robot.driven => RobotOutlook::Still,
@@ -47,20 +47,30 @@ impl Question {
         let error = follower.judged.last().filter(|press| press.verdict.error).map(|press| press.seq);
         let changed = session.changed_at(time).map(AspectId::of_location).collect();
         let presses = session.all_presses();
-        Question { seq, time, presses, state, belief, changed, robot, robot_press_s, signals, error }
+        AdviceRequest { seq, time, presses, state, belief, changed, robot, robot_press_s, signals, error }
     }
 
     /// What there is to decide about.
     pub fn moment(&self) -> Moment<'_> {
-        let Question { seq, time, presses, state, ref belief, ref changed, robot, robot_press_s, ref signals, error } =
-            *self;
+        let AdviceRequest {
+            seq,
+            time,
+            presses,
+            state,
+            ref belief,
+            ref changed,
+            robot,
+            robot_press_s,
+            ref signals,
+            error,
+        } = *self;
         let situation = Situation { state, belief, changed, robot, robot_press_s };
         Moment { seq, time, presses, situation, signals, error }
     }
 
     /// The same question about another estimate, and with other things that may be said.
-    pub fn about(&self, belief: &DirichletBelief, signals: Vec<Signal>) -> Question {
-        Question { belief: belief.clone(), signals, ..self.clone() }
+    pub fn about(&self, belief: &DirichletBelief, signals: Vec<Signal>) -> AdviceRequest {
+        AdviceRequest { belief: belief.clone(), signals, ..self.clone() }
     }
 }
 
@@ -84,7 +94,7 @@ impl Advisor {
     }
 
     /// What the assistant recommends.
-    pub fn answer(&mut self, question: &Question) -> Recommendation {
+    pub fn answer(&mut self, question: &AdviceRequest) -> Recommendation {
         self.concept.advise(&mut self.cost, &question.moment())
     }
 }

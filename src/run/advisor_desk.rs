@@ -5,13 +5,13 @@ use std::thread;
 
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
-use super::advisor::{Advisor, Question};
+use super::advisor::{AdviceRequest, Advisor};
 use crate::communication::recommendation::Recommendation;
 
 impl Advisor {
     /// Answers on a thread of its own, which ends with the desk that asks.
     pub fn on_thread(mut self) -> AdvisorDesk {
-        let (ask, questions) = channel::<Question>();
+        let (ask, questions) = channel::<AdviceRequest>();
         let (answer, answers) = unbounded_channel();
         thread::spawn(move || {
             while let Ok(question) = questions.recv() {
@@ -29,13 +29,13 @@ impl Advisor {
 /// Where a live session asks, and where the answers come.
 #[derive(Debug)]
 pub struct AdvisorDesk {
-    ask: Sender<Question>,
+    ask: Sender<AdviceRequest>,
     pub answers: UnboundedReceiver<Recommendation>,
 }
 
 impl AdvisorDesk {
     /// Asks; the answer comes when it is there, or is overtaken by a newer question.
-    pub fn ask(&self, question: Question) {
+    pub fn ask(&self, question: AdviceRequest) {
         // A thread that is gone answers nothing more, and the session goes on without advice.
         let _ = self.ask.send(question);
     }

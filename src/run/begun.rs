@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::compare::Request;
+use super::compare::CompareRequest;
 use super::engine::Engine;
 use super::live::LiveError;
-use super::options::Beginning;
+use super::options::SessionStart;
 use super::resume::resume;
 use crate::base::time::SessionTime;
 use crate::edge::log::Lock;
@@ -15,7 +15,7 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::{Header, SessionSpec, Stamped};
 
 /// A session that is about to be run and recorded.
-pub(super) struct Begun {
+pub(super) struct PreparedSession {
     pub engine: Engine,
     pub header: Header,
     /// What belongs at the beginning of the recording.
@@ -25,37 +25,37 @@ pub(super) struct Begun {
     /// When it begins.
     pub time: SessionTime,
     /// Wizard and assistants are compared at the console.
-    pub compare: Option<Request>,
-    pub place: Place,
+    pub compare: Option<CompareRequest>,
+    pub place: RecordingPlace,
 }
 
 /// Where the recording goes.
-pub(super) enum Place {
+pub(super) enum RecordingPlace {
     In(PathBuf),
     /// Beside the part before, which stays locked.
     After(PathBuf, Lock),
 }
 
-impl Begun {
+impl PreparedSession {
     /// Gets a session ready; nothing is recorded yet.
     ///
     /// # Errors
     /// The recording that is to go on cannot.
-    pub fn new(beginning: Beginning) -> Result<Begun, LiveError> {
+    pub fn new(beginning: SessionStart) -> Result<PreparedSession, LiveError> {
         match beginning {
-            Beginning::New { files, trial, out } => {
+            SessionStart::New { files, trial, out } => {
                 let kitchen = Arc::new(files.kitchen.kitchen);
                 let mut header = Header::new(files.spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
                 header.keys = files.keys;
                 let engine = Engine::new(kitchen.clone(), files.spec, trial, CostToGo::new(kitchen)).without_causes();
-                let (first, time, place) = (Vec::new(), SessionTime::ZERO, Place::In(out));
-                Ok(Begun { engine, header, first, consent: false, time, compare: None, place })
+                let (first, time, place) = (Vec::new(), SessionTime::ZERO, RecordingPlace::In(out));
+                Ok(PreparedSession { engine, header, first, consent: false, time, compare: None, place })
             }
-            Beginning::Again { header, kitchen, out } => {
+            SessionStart::Again { header, kitchen, out } => {
                 let engine = Engine::new(kitchen.clone(), header.session.clone(), header.trial, CostToGo::new(kitchen))
                     .without_causes();
-                let (header, place) = (*header, Place::In(out));
-                Ok(Begun {
+                let (header, place) = (*header, RecordingPlace::In(out));
+                Ok(PreparedSession {
                     engine,
                     header,
                     first: Vec::new(),
@@ -65,11 +65,11 @@ impl Begun {
                     place,
                 })
             }
-            Beginning::Continued(recording) => {
+            SessionStart::Continued(recording) => {
                 let resumed = resume(&recording)?;
-                let place = Place::After(resumed.folder, resumed.lock);
+                let place = RecordingPlace::After(resumed.folder, resumed.lock);
                 let (header, first, time) = (resumed.header, resumed.first, resumed.time);
-                Ok(Begun {
+                Ok(PreparedSession {
                     engine: resumed.engine.without_causes(),
                     header,
                     first,
@@ -83,13 +83,13 @@ impl Begun {
     }
 
     /// The participant has just agreed to be recorded.
-    pub fn with_consent(self) -> Begun {
-        Begun { consent: true, ..self }
+    pub fn with_consent(self) -> PreparedSession {
+        PreparedSession { consent: true, ..self }
     }
 
     /// With wizard and assistants side by side, where that is asked for.
-    pub fn comparing(self, compare: Option<Request>) -> Begun {
-        Begun { compare, ..self }
+    pub fn comparing(self, compare: Option<CompareRequest>) -> PreparedSession {
+        PreparedSession { compare, ..self }
     }
 
     /// The kitchen that is worked in.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::parallel;
-use super::replay::{OneKitchen, Replay, each_once};
+use super::replay::{Replay, SameKitchen, each_once};
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::edge::files::FileResult;
@@ -51,7 +51,7 @@ pub fn check(
     thresholds: Option<Thresholds>,
     done: impl Fn() + Sync,
 ) -> FileResult<BeliefCheck> {
-    let Views { kitchen, trials } = views(recordings, done)?;
+    let BeliefCheckTrials { kitchen, trials } = views(recordings, done)?;
     let mut cost = CostToGo::new(kitchen.clone());
     Ok(BeliefCheck {
         recordings: trials.len() as u64,
@@ -63,7 +63,7 @@ pub fn check(
 
 /// Recorded trials of one kitchen.
 #[derive(Clone, Debug)]
-pub struct Views {
+pub struct BeliefCheckTrials {
     pub kitchen: Arc<Kitchen>,
     /// In the order of the recordings.
     pub trials: Vec<TrialView>,
@@ -73,16 +73,16 @@ pub struct Views {
 ///
 /// # Errors
 /// Those of [`check`].
-pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Views> {
+pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheckTrials> {
     each_once(recordings)?;
     let results = parallel::each(recordings, |recording| view(recording), done);
-    let (mut one_kitchen, mut trials) = (OneKitchen::default(), Vec::new());
+    let (mut one_kitchen, mut trials) = (SameKitchen::default(), Vec::new());
     for (result, recording) in results.into_iter().zip(recordings) {
         let (kitchen, trial) = result?;
         one_kitchen.admit(recording, &kitchen)?;
         trials.push(trial);
     }
-    Ok(Views { kitchen: one_kitchen.kitchen()?, trials })
+    Ok(BeliefCheckTrials { kitchen: one_kitchen.kitchen()?, trials })
 }
 
 /// The presses of one recording.

@@ -15,7 +15,7 @@ use crate::session::settings::{ParticipantKind, is_code};
 
 /// A recording with what was said about its errors.
 #[derive(Clone, Debug)]
-pub struct Coded {
+pub struct CodedRecording {
     pub folder: PathBuf,
     pub codable: Codable,
     /// By rater.
@@ -24,12 +24,12 @@ pub struct Coded {
     pub known: Option<Codes>,
 }
 
-impl Coded {
+impl CodedRecording {
     /// Reads a recording and the codes beside it.
     ///
     /// # Errors
     /// It cannot be read, or a file with codes is broken.
-    pub fn open(recording: &Path) -> FileResult<Coded> {
+    pub fn open(recording: &Path) -> FileResult<CodedRecording> {
         let mut replay = Replay::open(recording)?;
         if replay.session().spec.participant.kind != ParticipantKind::Simulated {
             replay = replay.without_causes();
@@ -40,7 +40,7 @@ impl Coded {
         let is_known = !judged.is_empty() && judged.iter().all(|press| press.belief_known);
         let folder = replay.log().folder().to_path_buf();
         let codable = Codable::of(kitchen, judged);
-        Ok(Coded {
+        Ok(CodedRecording {
             codes: codes::read_all(&folder, &codable)?,
             codable,
             known: is_known.then(|| Codes::known(kitchen, judged)),
@@ -57,17 +57,17 @@ impl Coded {
 
 /// The figures of `tomcom codes`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CodesFigures {
-    pub recordings: Vec<CodedFigures>,
+pub struct CodesSummary {
+    pub recordings: Vec<CodedRecordingSummary>,
     /// Each pair of raters who have coded the same errors.
-    pub agreements: Vec<PairFigures>,
+    pub agreements: Vec<RaterPairSummary>,
     /// Each rater against what simulated participants believed.
-    pub known: Vec<PairFigures>,
+    pub known: Vec<RaterPairSummary>,
 }
 
 /// One recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CodedFigures {
+pub struct CodedRecordingSummary {
     pub recording: String,
     pub errors: u64,
     /// How many of them each rater has coded.
@@ -76,16 +76,16 @@ pub struct CodedFigures {
 
 /// Two raters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PairFigures {
+pub struct RaterPairSummary {
     pub of: String,
     pub with: String,
     #[serde(flatten)]
     pub agreement: Agreement,
 }
 
-impl CodesFigures {
+impl CodesSummary {
     /// Sums up recordings.
-    pub fn of(recordings: &[Coded]) -> CodesFigures {
+    pub fn of(recordings: &[CodedRecording]) -> CodesSummary {
         let mut pairs: BTreeMap<(String, String), AgreementTable> = BTreeMap::new();
         let mut known: BTreeMap<String, AgreementTable> = BTreeMap::new();
         for one in recordings {
@@ -98,17 +98,17 @@ impl CodesFigures {
                 }
             }
         }
-        let recording = |one: &Coded| CodedFigures {
+        let recording = |one: &CodedRecording| CodedRecordingSummary {
             recording: one.name(),
             errors: one.codable.errors.len() as u64,
             coded: one.codes.iter().map(|(rater, codes)| (rater.clone(), codes.0.len() as u64)).collect(),
         };
-        let pair = |((of, with), table): ((String, String), AgreementTable)| PairFigures {
+        let pair = |((of, with), table): ((String, String), AgreementTable)| RaterPairSummary {
             of,
             with,
             agreement: table.agreement(),
         };
-        CodesFigures {
+        CodesSummary {
             recordings: recordings.iter().map(recording).collect(),
             agreements: pairs.into_iter().map(pair).collect(),
             known: known.into_iter().map(|(of, table)| pair(((of, "simulation".to_string()), table))).collect(),
@@ -120,10 +120,10 @@ impl CodesFigures {
 ///
 /// # Errors
 /// The file cannot be read, or a row is about no error of these recordings; or a folder cannot be written to.
-pub fn import(recordings: &mut [Coded], file: &Path) -> Result<u64, RunError> {
+pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, RunError> {
     let (text, rows) = codes::read_export(file)?;
     let mut changed = vec![Vec::new(); recordings.len()];
-    let names: Vec<String> = recordings.iter().map(Coded::name).collect();
+    let names: Vec<String> = recordings.iter().map(CodedRecording::name).collect();
     for row in &rows {
         let wrong = |found: String, remedy: &str| codes::wrong_line(file, &text, row.line, found, remedy);
         let Some(index) = names.iter().position(|name| *name == row.recording) else {
@@ -156,7 +156,7 @@ pub fn import(recordings: &mut [Coded], file: &Path) -> Result<u64, RunError> {
 ///
 /// # Errors
 /// It cannot be written.
-pub fn export(recordings: &[Coded], file: &Path) -> Result<u64, RunError> {
+pub fn export(recordings: &[CodedRecording], file: &Path) -> Result<u64, RunError> {
     let mut rows = Vec::new();
     for one in recordings {
         for (rater, codes) in &one.codes {
@@ -174,7 +174,7 @@ pub fn export(recordings: &[Coded], file: &Path) -> Result<u64, RunError> {
 }
 
 /// The figures for people.
-pub fn describe(figures: &CodesFigures) -> String {
+pub fn describe(figures: &CodesSummary) -> String {
     let mut text = String::new();
     for one in &figures.recordings {
         let coded: Vec<String> = one.coded.iter().map(|(rater, number)| format!("{rater} {number}")).collect();

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
-use super::advisor::{Advisor, Question};
+use super::advisor::{AdviceRequest, Advisor};
 use super::engine::changes_task;
 use super::follower::Follower;
 use crate::base::time::SessionTime;
@@ -19,8 +19,10 @@ use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::repeats::Repeats;
-use crate::console::belief::Moment;
-use crate::console::comparison::{Comparison, Known, Lane, Spoken, What};
+use crate::console::belief::BeliefSnapshot;
+use crate::console::comparison::{
+    Communication, CommunicationContent, CommunicationContext, CommunicationLane, LaneComparison,
+};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, LocationId, State};
 use crate::measures::matching::Said;
@@ -34,13 +36,13 @@ use crate::session::{Event, Session, SessionSpec, Stamped};
 
 /// What is compared.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Request {
+pub struct CompareRequest {
     /// Beside the session's own concept.
     pub with: Vec<ConceptName>,
     pub window: u32,
 }
 
-impl Request {
+impl CompareRequest {
     /// The concepts that are asked: the session's own, or ToM-Com where it has none, and those that were asked for.
     pub fn concepts(&self, spec: &SessionSpec) -> Vec<ConceptName> {
         let own = match spec.assistant.concept {
@@ -67,7 +69,7 @@ struct Voice {
     repeats: Repeats,
     /// The error that it has proposed presses for.
     proposed: Option<u64>,
-    spoken: Vec<Spoken>,
+    spoken: Vec<Communication>,
 }
 
 /// The estimate without a signal, and without those after it.
@@ -83,7 +85,7 @@ struct Without {
 
 /// Follows a session, event by event, and asks.
 #[derive(Debug)]
-pub struct Watcher {
+pub struct ComparisonFollower {
     pub follower: Follower,
     window: u32,
     voices: Vec<Voice>,
@@ -91,18 +93,18 @@ pub struct Watcher {
     without: VecDeque<Without>,
     /// Those before.
     shown: Repeats,
-    sent: Vec<Spoken>,
+    sent: Vec<Communication>,
     /// The newest event after which is asked, when all that follows at once has happened.
     to_ask: Option<(u64, SessionTime)>,
-    known: Option<Arc<Known>>,
+    known: Option<Arc<CommunicationContext>>,
     screen: Option<Screen>,
     /// How often was asked.
     asked: u64,
 }
 
-impl Watcher {
+impl ComparisonFollower {
     /// A watcher of a session from before its first event on.
-    pub fn new(session: Session, request: &Request) -> Watcher {
+    pub fn new(session: Session, request: &CompareRequest) -> ComparisonFollower {
         let cost = CostToGo::new(session.kitchen.clone());
         let voice = |name: ConceptName| Voice {
             name,
@@ -113,7 +115,7 @@ impl Watcher {
             spoken: Vec::new(),
         };
         let voices = request.concepts(&session.spec).into_iter().map(voice).collect();
-        Watcher {
+        ComparisonFollower {
             follower: Follower::new(session, cost),
             window: request.window,
             voices,
@@ -128,8 +130,8 @@ impl Watcher {
     }
 
     /// The same without looking for the causes of errors, which takes longer than a running session can wait.
-    pub fn without_causes(self) -> Watcher {
-        Watcher { follower: self.follower.without_causes(), ..self }
+    pub fn without_causes(self) -> ComparisonFollower {
+        ComparisonFollower { follower: self.follower.without_causes(), ..self }
     }
 
     /// Moves on by one event.
@@ -148,7 +150,7 @@ impl Watcher {
         if let (Some(filter), Event::SignalShown { signal, .. }) = (filter, &stamped.event) {
             let (press, state) = (self.presses(), self.follower.session.state);
             self.without.push_back(Without { press, signal: signal.clone(), state, filter });
-            let spoken = self.spoken(What::Signal(signal.clone()), stamped.time);
+            let spoken = self.spoken(CommunicationContent::Signal(signal.clone()), stamped.time);
             self.sent.push(spoken);
         }
         match &stamped.event {
@@ -173,7 +175,7 @@ impl Watcher {
     }
 
     /// What was known when the concepts were asked last.
-    pub fn known(&self) -> Option<&Arc<Known>> {
+    pub fn known(&self) -> Option<&Arc<CommunicationContext>> {
         self.known.as_ref()
     }
 
@@ -223,11 +225,11 @@ impl Watcher {
         }
     }
 
-    fn spoken(&self, what: What, time: SessionTime) -> Spoken {
+    fn spoken(&self, what: CommunicationContent, time: SessionTime) -> Communication {
         let session = &self.follower.session;
         let (press, content) = (self.presses(), what.content(&session.kitchen));
         let said = Said { press, clock: session.trial_clock(time), content };
-        Spoken { said, time, what, known: self.known.clone() }
+        Communication { said, time, what, known: self.known.clone() }
     }
 
     /// Asks every concept what it would say now.
@@ -236,7 +238,7 @@ impl Watcher {
         self.asked += 1;
         let session = &self.follower.session;
         let (kitchen, own_hand) = (session.kitchen.clone(), session.spec.signals.own_hand);
-        let question = Question::of(&self.follower, seq, time);
+        let question = AdviceRequest::of(&self.follower, seq, time);
         let belief = estimate(&self.follower, &self.without);
         let shown = &self.shown;
         let answer = |voice: &mut Voice| {
@@ -246,9 +248,9 @@ impl Watcher {
             voice.advisor.answer(&question.about(belief, signals))
         };
         let advice: Vec<Recommendation> = self.voices.iter_mut().map(answer).collect();
-        let held = Moment::new(&kitchen, session.state, belief, time, false).held;
+        let held = BeliefSnapshot::new(&kitchen, session.state, belief, time, false).held;
         let (state, screen) = (session.state, self.screen.clone());
-        let known = Arc::new(Known { seq, state, held, advice, screen });
+        let known = Arc::new(CommunicationContext { seq, state, held, advice, screen });
         self.known = Some(known.clone());
         for (index, advice) in known.advice.iter().enumerate() {
             let what = self.says(index, advice);
@@ -258,39 +260,39 @@ impl Watcher {
     }
 
     /// What a concept says by its advice; it is remembered that it was said.
-    fn says(&mut self, index: usize, advice: &Recommendation) -> Option<What> {
+    fn says(&mut self, index: usize, advice: &Recommendation) -> Option<CommunicationContent> {
         let session = &self.follower.session;
         let voice = &mut self.voices[index];
         if let Some(signal) = &advice.best {
             voice.repeats.shown(&session.kitchen, session.state, signal);
             let location = session.kitchen.location_named(signal.target());
             voice.said.extend(location.map(|location| (session.presses[Agent::Human.index()], location)));
-            return Some(What::Signal(signal.clone()));
+            return Some(CommunicationContent::Signal(signal.clone()));
         }
         // One proposal for an error, however long it stands.
         let proposal = advice.proposal.as_ref().filter(|proposal| voice.proposed != Some(proposal.error))?;
         voice.proposed = Some(proposal.error);
-        Some(What::Proposal(proposal.presses.clone()))
+        Some(CommunicationContent::Proposal(proposal.presses.clone()))
     }
 
     /// What was said so far, and how alike it is; `over`: nothing more will come.
-    pub fn comparison(&self, over: bool) -> Comparison {
+    pub fn comparison(&self, over: bool) -> LaneComparison {
         let sender = match self.follower.session.spec.trial.condition {
             Condition::Assistant => "assistant",
             Condition::Wizard => "wizard",
             Condition::None => "nobody",
         };
-        let mut lanes = vec![Lane { name: sender.to_string(), concept: None, spoken: self.sent.clone() }];
-        lanes.extend(self.voices.iter().map(|voice| Lane {
+        let mut lanes = vec![CommunicationLane { name: sender.to_string(), concept: None, spoken: self.sent.clone() }];
+        lanes.extend(self.voices.iter().map(|voice| CommunicationLane {
             name: voice.name.name().to_string(),
             concept: Some(voice.name),
             spoken: voice.spoken.clone(),
         }));
-        Comparison::new(lanes, self.window, self.presses(), over)
+        LaneComparison::new(lanes, self.window, self.presses(), over)
     }
 
     /// Follows on a thread of its own, which ends with the desk that tells it the events.
-    pub fn on_thread(mut self) -> WatchDesk {
+    pub fn on_thread(mut self) -> ComparisonDesk {
         let (tell, events) = channel::<Stamped>();
         let (show, views) = channel();
         thread::spawn(move || {
@@ -307,7 +309,7 @@ impl Watcher {
                 }
             }
         });
-        WatchDesk { tell, views }
+        ComparisonDesk { tell, views }
     }
 }
 
@@ -334,12 +336,12 @@ pub(super) fn follows_at_once(stamped: &Stamped, time: SessionTime) -> bool {
 
 /// Where a running console tells events, and where the comparisons come.
 #[derive(Debug)]
-pub struct WatchDesk {
+pub struct ComparisonDesk {
     tell: Sender<Stamped>,
-    views: Receiver<Comparison>,
+    views: Receiver<LaneComparison>,
 }
 
-impl WatchDesk {
+impl ComparisonDesk {
     /// Tells an event.
     pub fn tell(&self, stamped: &Stamped) {
         // A thread that is gone compares nothing more, and the session goes on.
@@ -347,13 +349,13 @@ impl WatchDesk {
     }
 
     /// The last comparison, when all that was told is taken in; no more can be told.
-    pub fn last(self) -> Option<Comparison> {
+    pub fn last(self) -> Option<LaneComparison> {
         drop(self.tell);
         self.views.into_iter().last()
     }
 
     /// The newest comparison since this was called last.
-    pub fn newest(&self) -> Option<Comparison> {
+    pub fn newest(&self) -> Option<LaneComparison> {
         self.views.try_iter().last()
     }
 }

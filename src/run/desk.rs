@@ -12,8 +12,8 @@ use tokio::sync::oneshot;
 use tokio::time::{sleep, timeout};
 
 use super::live::LiveError;
-use crate::console::Message;
-use crate::console::question::{Question, Reply};
+use crate::console::ConsoleMessage;
+use crate::console::question::{QuestionPage, QuestionReply};
 use crate::console::view::theme::Theme;
 use crate::edge::gaze_file::{self, GazeFile};
 use crate::edge::gaze_input::GazeNews;
@@ -21,7 +21,7 @@ use crate::edge::gaze_json;
 use crate::edge::pupil::{self, Capture, Order};
 use crate::edge::terminal::{Hands, Screen, asked_to_end, outlive_file_limits, theme};
 use crate::gaze::surface::SurfaceMap;
-use crate::gaze::tags::{TagError, Tags};
+use crate::gaze::tags::{DisplayTags, TagError};
 use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
 use crate::session::calibration::Calibrated;
@@ -39,26 +39,26 @@ mod wall;
 mod wall;
 
 pub(super) use wall::PageInput;
-use wall::Wall;
+use wall::WallDisplay;
 
 /// What the recordings of a series share.
-pub(super) struct Desk {
+pub(super) struct OperatorDesk {
     pub screen: Screen,
     theme: Theme,
-    pub seat: Seat,
-    pub tracker: Tracker,
-    pub wall: Wall,
+    pub seat: OperatorInput,
+    pub tracker: GazeTracker,
+    pub wall: WallDisplay,
 }
 
 /// Whoever sits there, and what asks the program to end.
-pub(super) struct Seat {
+pub(super) struct OperatorInput {
     hands: Hands,
     end: Pin<Box<dyn Future<Output = io::Result<()>>>>,
 }
 
 /// Where the gaze comes from, if it comes from outside.
 #[derive(Default)]
-pub(super) struct Tracker {
+pub(super) struct GazeTracker {
     news: Option<Receiver<GazeNews>>,
     /// Where Pupil Capture takes orders.
     orders: Option<Sender<Order>>,
@@ -70,7 +70,7 @@ pub(super) struct Tracker {
     calibrated: Option<Calibrated>,
 }
 
-impl Tracker {
+impl GazeTracker {
     /// What is known of the gaze, for the next recording.
     pub fn keep(&mut self, calibrated: Option<Calibrated>) {
         self.calibrated = calibrated;
@@ -82,26 +82,26 @@ impl Tracker {
     }
 }
 
-impl Desk {
+impl OperatorDesk {
     /// Opens the devices that these settings need, and takes the terminal.
     ///
     /// # Errors
     /// There is no terminal, nothing can listen for gaze, a file with gaze cannot be read, or the tags have no room.
-    pub async fn take(spec: &SessionSpec, kitchen: &Kitchen) -> Result<Desk, LiveError> {
+    pub async fn take(spec: &SessionSpec, kitchen: &Kitchen) -> Result<OperatorDesk, LiveError> {
         outlive_file_limits().map_err(LiveError::Terminal)?;
-        let tracker = Tracker::open(spec, kitchen).await?;
-        let wall = Wall::open(spec).await?;
+        let tracker = GazeTracker::open(spec, kitchen).await?;
+        let wall = WallDisplay::open(spec).await?;
         let screen = Screen::take().map_err(LiveError::Terminal)?;
         let theme = theme(&spec.console, screen.ground);
-        let seat = Seat { hands: Hands::default(), end: Box::pin(asked_to_end()) };
-        Ok(Desk { screen, theme, seat, tracker, wall })
+        let seat = OperatorInput { hands: Hands::default(), end: Box::pin(asked_to_end()) };
+        Ok(OperatorDesk { screen, theme, seat, tracker, wall })
     }
 
     /// Asks before a recording begins; the place of the answer, nothing if the program is to be left.
     ///
     /// # Errors
     /// The terminal is gone.
-    pub async fn ask(&mut self, question: &Question) -> Result<Option<usize>, LiveError> {
+    pub async fn ask(&mut self, question: &QuestionPage) -> Result<Option<usize>, LiveError> {
         loop {
             self.screen.ask(question, self.theme).map_err(LiveError::Terminal)?;
             let message = tokio::select! {
@@ -114,9 +114,9 @@ impl Desk {
                 () = sleep(REDRAW) => continue,
             };
             match message {
-                Some(Message::Key(key)) => match question.reply(&key) {
-                    Some(Reply::Answer(index)) => return Ok(Some(index)),
-                    Some(Reply::Leave) => return Ok(None),
+                Some(ConsoleMessage::Key(key)) => match question.reply(&key) {
+                    Some(QuestionReply::Answer(index)) => return Ok(Some(index)),
+                    Some(QuestionReply::Leave) => return Ok(None),
                     None => {}
                 },
                 Some(_) => {}
@@ -129,9 +129,9 @@ impl Desk {
     }
 }
 
-impl Seat {
+impl OperatorInput {
     /// What comes in next; nothing if the program has to end, because it is asked to or because the terminal is gone.
-    pub async fn next(&mut self) -> Option<Message> {
+    pub async fn next(&mut self) -> Option<ConsoleMessage> {
         tokio::select! {
             biased;
             _ = &mut self.end => None,
@@ -140,11 +140,11 @@ impl Seat {
     }
 }
 
-impl Tracker {
-    async fn open(spec: &SessionSpec, kitchen: &Kitchen) -> Result<Tracker, LiveError> {
+impl GazeTracker {
+    async fn open(spec: &SessionSpec, kitchen: &Kitchen) -> Result<GazeTracker, LiveError> {
         let (participant, tracker) = (&spec.participant, &spec.tracker);
         let surface = || {
-            let hull = || Tags::place(kitchen).map(|tags| tags.hull()).map_err(LiveError::Tags);
+            let hull = || DisplayTags::place(kitchen).map(|tags| tags.hull()).map_err(LiveError::Tags);
             let corners = tracker.corners.map_or_else(hull, Ok)?;
             let found = format!("corners = {corners:?}");
             let remedy = "a convex quadrangle".to_string();
@@ -154,21 +154,21 @@ impl Tracker {
             GazeSource::Json => {
                 let port = participant.gaze_port;
                 let news = gaze_json::listen(port).await.map_err(|reason| LiveError::Gaze { port, reason })?;
-                Ok(Tracker { news: Some(news), ..Tracker::default() })
+                Ok(GazeTracker { news: Some(news), ..GazeTracker::default() })
             }
             GazeSource::Pupil => {
                 let (address, surface_name) = (tracker.address.clone(), tracker.surface.clone());
                 let (port, records) = (tracker.port, tracker.record);
                 let capture = Capture { address, port, surface: surface_name, map: surface()?, records };
                 let (news, orders) = pupil::follow(capture);
-                Ok(Tracker { news: Some(news), orders: Some(orders), ..Tracker::default() })
+                Ok(GazeTracker { news: Some(news), orders: Some(orders), ..GazeTracker::default() })
             }
             GazeSource::File => {
                 let path = tracker.file.as_deref().unwrap_or_default();
                 let file = Arc::new(gaze_file::read(Path::new(path), &surface()?)?);
-                Ok(Tracker { file: Some(file), ..Tracker::default() })
+                Ok(GazeTracker { file: Some(file), ..GazeTracker::default() })
             }
-            GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => Ok(Tracker::default()),
+            GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => Ok(GazeTracker::default()),
         }
     }
 

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use self::informing::participant_of;
 use self::robot::robot_of;
-use super::advisor::{Advisor, Question};
+use super::advisor::{AdviceRequest, Advisor};
 use super::follower::Follower;
 use crate::arm::worker::Robot;
 use crate::base::time::SessionTime;
@@ -48,13 +48,13 @@ pub struct Engine {
     /// The newest event after which the assistant is to be asked, when everything that follows from it has happened.
     to_ask: Option<(u64, SessionTime)>,
     /// Questions that were not handed out yet.
-    questions: Vec<Question>,
+    questions: Vec<AdviceRequest>,
 }
 
 /// What came of an input.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use = "the events belong into the log, also when the input was refused"]
-pub struct Outcome {
+pub struct InputResult {
     /// What happened until then and because of it, in order.
     pub events: Vec<Stamped>,
     /// Why the input was not taken, in words for the wizard.
@@ -96,7 +96,7 @@ impl Engine {
     }
 
     /// What the assistant is asked since this was called last, oldest first.
-    pub fn take_questions(&mut self) -> Vec<Question> {
+    pub fn take_questions(&mut self) -> Vec<AdviceRequest> {
         std::mem::take(&mut self.questions)
     }
 
@@ -134,7 +134,7 @@ impl Engine {
 
     /// Takes an event from outside (wizard, participant, tracker) at `time`; what is due until then happens first. A
     /// time before the last event counts as that of the last event.
-    pub fn input(&mut self, time: SessionTime, event: Event) -> Outcome {
+    pub fn input(&mut self, time: SessionTime, event: Event) -> InputResult {
         while self.next_due().is_some_and(|due| due <= time) {
             self.fire_next();
         }
@@ -143,7 +143,7 @@ impl Engine {
         let admitted = admitted.and_then(|()| hygiene(self.session(), now, &event));
         let taken = admitted.and_then(|()| self.record(now, event).map_err(|error| error.to_string()));
         self.settle(now);
-        Outcome { events: std::mem::take(&mut self.out), refused: taken.err() }
+        InputResult { events: std::mem::take(&mut self.out), refused: taken.err() }
     }
 
     /// The session with what was derived from it, when nothing more is to happen.
@@ -234,7 +234,7 @@ impl Engine {
     fn settle(&mut self, now: SessionTime) {
         self.let_follow(now);
         if let Some((seq, time)) = self.to_ask.take().filter(|_| self.session().is_running()) {
-            self.questions.push(Question::of(&self.follower, seq, time));
+            self.questions.push(AdviceRequest::of(&self.follower, seq, time));
         }
     }
 

@@ -14,23 +14,23 @@ use crate::session::settings::{Condition, ParticipantKind};
 
 /// The figures of one trial.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct TrialFigures {
+pub struct TrialSummary {
     pub human_actions: u64,
     pub robot_actions: u64,
     pub errors: u64,
     pub races: u64,
     pub signals: u64,
     /// None where it is not known what the human believed.
-    pub beliefs: Option<TrialBeliefs>,
+    pub beliefs: Option<TrialBeliefErrors>,
     /// For each served order, its dish and the presses of both agents since the one before it.
     pub served: Vec<(DishId, u32)>,
     /// The trial's length by its own clock, in seconds.
     pub seconds: f64,
 }
 
-impl TrialFigures {
+impl TrialSummary {
     /// The figures of a session so far.
-    pub fn of(follower: &Follower) -> TrialFigures {
+    pub fn of(follower: &Follower) -> TrialSummary {
         let session = &follower.session;
         let mut before = 0;
         let served = session.served.iter().map(|served| {
@@ -40,13 +40,13 @@ impl TrialFigures {
         });
         let served = served.collect();
         let signals = session.timeline.iter().filter(|entry| matches!(entry.what, Happening::Signal { .. }));
-        TrialFigures {
+        TrialSummary {
             human_actions: u64::from(session.presses[Agent::Human.index()]),
             robot_actions: u64::from(session.presses[Agent::Robot.index()]),
             errors: follower.errors() as u64,
             races: follower.judged.iter().filter(|press| press.verdict.race).count() as u64,
             signals: signals.count() as u64,
-            beliefs: TrialBeliefs::of(follower),
+            beliefs: TrialBeliefErrors::of(follower),
             served,
             seconds: session.trial_clock(session.time).as_secs_f64(),
         }
@@ -55,7 +55,7 @@ impl TrialFigures {
 
 /// What false beliefs did in one trial.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct TrialBeliefs {
+pub struct TrialBeliefErrors {
     /// Errors that are belief related.
     pub related: u64,
     /// Of those, the ones that no single target explains.
@@ -66,16 +66,16 @@ pub struct TrialBeliefs {
     pub episodes: u64,
 }
 
-impl TrialBeliefs {
+impl TrialBeliefErrors {
     /// Those of a session so far; none if it is not known for every press what the human believed.
-    fn of(follower: &Follower) -> Option<TrialBeliefs> {
+    fn of(follower: &Follower) -> Option<TrialBeliefErrors> {
         let judged = &follower.judged;
         let is_simulated = follower.session.spec.participant.kind == ParticipantKind::Simulated;
         if !is_simulated || judged.iter().any(|press| !press.belief_known) {
             return None;
         }
         let count = |is: fn(Cause) -> bool| judged.iter().filter_map(|press| press.cause).filter(|&c| is(c)).count();
-        Some(TrialBeliefs {
+        Some(TrialBeliefErrors {
             related: count(|cause| matches!(cause, Cause::Belief { .. })) as u64,
             related_to_pairs: count(|cause| matches!(cause, Cause::Belief { with: Some(_), .. })) as u64,
             sequences: sequences(judged),
@@ -87,7 +87,7 @@ impl TrialBeliefs {
 
 /// What false beliefs did, in one trial or several. Null where it is not known what the human believed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct BeliefFigures {
+pub struct BeliefErrorSummary {
     pub belief_related_errors: Option<u64>,
     /// Of those, the ones that it takes two false beliefs to explain.
     pub errors_of_two_beliefs: Option<u64>,
@@ -102,9 +102,9 @@ pub struct BeliefFigures {
     pub false_belief_episodes: Option<u64>,
 }
 
-impl BeliefFigures {
+impl BeliefErrorSummary {
     /// Sums up trials.
-    pub fn of<'a>(trials: impl IntoIterator<Item = &'a TrialFigures>) -> BeliefFigures {
+    pub fn of<'a>(trials: impl IntoIterator<Item = &'a TrialSummary>) -> BeliefErrorSummary {
         let mut sums = BeliefSums::default();
         trials.into_iter().for_each(|trial| sums.add(trial.beliefs.as_ref()));
         sums.figures()
@@ -130,7 +130,7 @@ impl BeliefFigures {
 
 /// The trials of one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ConditionFigures {
+pub struct ConditionSummary {
     pub condition: Condition,
     pub trials: u64,
     pub human_actions: u64,
@@ -138,15 +138,15 @@ pub struct ConditionFigures {
     pub signals: u64,
 }
 
-impl Default for ConditionFigures {
+impl Default for ConditionSummary {
     fn default() -> Self {
-        ConditionFigures { condition: Condition::None, trials: 0, human_actions: 0, errors: 0, signals: 0 }
+        ConditionSummary { condition: Condition::None, trials: 0, human_actions: 0, errors: 0, signals: 0 }
     }
 }
 
 /// The figures of `tomcom simulate`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct SimulationFigures {
+pub struct SimulationSummary {
     pub trials: u64,
     pub human_actions: u64,
     pub robot_actions: u64,
@@ -154,7 +154,7 @@ pub struct SimulationFigures {
     /// Presses of the human that the robot may have overtaken; they are not counted as errors.
     pub races: u64,
     #[serde(flatten)]
-    pub beliefs: BeliefFigures,
+    pub beliefs: BeliefErrorSummary,
     pub signals: u64,
     pub orders_served: u64,
     /// Median over the served orders of the presses of both agents since the order before.
@@ -168,7 +168,7 @@ pub struct SimulationFigures {
     /// Recordings that were there already, whole; they were read and not made again.
     pub found: u64,
     /// By who sends signals.
-    pub conditions: Vec<ConditionFigures>,
+    pub conditions: Vec<ConditionSummary>,
     pub recordings: Vec<String>,
 }
 
@@ -186,7 +186,7 @@ struct BeliefSums {
 }
 
 impl BeliefSums {
-    fn add(&mut self, trial: Option<&TrialBeliefs>) {
+    fn add(&mut self, trial: Option<&TrialBeliefErrors>) {
         let Some(trial) = trial else {
             self.unknown = true;
             return;
@@ -203,11 +203,11 @@ impl BeliefSums {
         trial.by_target.iter().for_each(|sequence| self.lengths_by_aspect.add(f64::from(sequence.length)));
     }
 
-    fn figures(&self) -> BeliefFigures {
+    fn figures(&self) -> BeliefErrorSummary {
         if self.unknown {
-            return BeliefFigures::default();
+            return BeliefErrorSummary::default();
         }
-        BeliefFigures {
+        BeliefErrorSummary {
             belief_related_errors: Some(self.related),
             errors_of_two_beliefs: Some(self.related_to_pairs),
             sequences: Some(self.lengths.count),
@@ -241,7 +241,7 @@ impl Mean {
 /// Simulated trials, summed up one by one: how many there are takes no memory.
 #[derive(Clone, Debug, Default)]
 pub struct SimulationSums {
-    figures: SimulationFigures,
+    figures: SimulationSummary,
     beliefs: BeliefSums,
     /// How many served orders took so many presses, and would have taken so many at best.
     presses_per_order: BTreeMap<u32, u64>,
@@ -250,7 +250,7 @@ pub struct SimulationSums {
 
 impl SimulationSums {
     /// Adds a trial. `plan_lengths`: the least presses for each dish from an empty kitchen.
-    pub fn add(&mut self, condition: Condition, trial: &TrialFigures, plan_lengths: &[u32]) {
+    pub fn add(&mut self, condition: Condition, trial: &TrialSummary, plan_lengths: &[u32]) {
         let sums = &mut self.figures;
         sums.trials += 1;
         sums.human_actions += trial.human_actions;
@@ -263,7 +263,7 @@ impl SimulationSums {
         let index = sums.conditions.iter().position(|one| one.condition >= condition);
         let index = index.unwrap_or(sums.conditions.len());
         if sums.conditions.get(index).is_none_or(|one| one.condition != condition) {
-            sums.conditions.insert(index, ConditionFigures { condition, ..ConditionFigures::default() });
+            sums.conditions.insert(index, ConditionSummary { condition, ..ConditionSummary::default() });
         }
         let one = &mut sums.conditions[index];
         one.trials += 1;
@@ -278,8 +278,8 @@ impl SimulationSums {
     }
 
     /// The figures of all of them.
-    pub fn figures(&self) -> SimulationFigures {
-        SimulationFigures {
+    pub fn figures(&self) -> SimulationSummary {
+        SimulationSummary {
             beliefs: self.beliefs.figures(),
             presses_per_order: median_of(&self.presses_per_order),
             optimal_presses_per_order: median_of(&self.optimal_presses_per_order),

@@ -4,10 +4,10 @@
 use std::path::Path;
 
 use super::replay::Replay;
-use super::standing::Standing;
+use super::standing::ExclusionStatus;
 use crate::base::time::SessionTime;
-use crate::console::belief::{BeliefTrack, Moment};
-use crate::console::playback::Landmark;
+use crate::console::belief::{BeliefHistory, BeliefSnapshot};
+use crate::console::playback::ReplayLandmark;
 use crate::edge::files::FileResult;
 use crate::session::settings::Visibility;
 use crate::session::{Event, Session, Stamped, apply};
@@ -17,14 +17,14 @@ const KEEP_EVERY: usize = 4096;
 
 /// A recording that can be wound forward and back.
 #[derive(Debug)]
-pub struct Film {
+pub struct SeekableReplay {
     pub(super) replay: Replay,
     pub(super) events: Vec<Stamped>,
     /// Times of the presses that were errors.
     pub errors: Vec<SessionTime>,
     judged: usize,
     /// What was estimated of the participant's belief.
-    pub beliefs: BeliefTrack,
+    pub beliefs: BeliefHistory,
     /// The session after the first `position` events.
     pub session: Session,
     pub position: usize,
@@ -32,21 +32,21 @@ pub struct Film {
     kept: Vec<Session>,
 }
 
-impl Film {
+impl SeekableReplay {
     /// Reads a recording to its end, and winds it to its beginning.
     ///
     /// # Errors
     /// Those of [`Replay::step`].
-    pub fn open(recording: &Path) -> FileResult<Film> {
+    pub fn open(recording: &Path) -> FileResult<SeekableReplay> {
         let replay = Replay::open(recording)?;
         let session = replay.session().clone();
         let kept = vec![session.clone()];
-        let mut film = Film {
+        let mut film = SeekableReplay {
             replay,
             events: Vec::new(),
             errors: Vec::new(),
             judged: 0,
-            beliefs: BeliefTrack::default(),
+            beliefs: BeliefHistory::default(),
             session,
             position: 0,
             kept,
@@ -56,7 +56,7 @@ impl Film {
     }
 
     /// Shows no estimate from now on: to whoever is to judge for oneself. Before anything is wound.
-    pub fn blinded(mut self) -> Film {
+    pub fn blinded(mut self) -> SeekableReplay {
         for session in self.kept.iter_mut().chain([&mut self.session]) {
             session.spec.console.visibility = Visibility::State;
         }
@@ -72,7 +72,7 @@ impl Film {
         while let Some(line) = self.replay.step()? {
             let (session, belief) = (self.replay.session(), self.replay.follower.filter.belief());
             let by_gaze = line.stamped.event.is_sample();
-            self.beliefs.note(Moment::new(&session.kitchen, session.state, belief, line.stamped.time, by_gaze));
+            self.beliefs.note(BeliefSnapshot::new(&session.kitchen, session.state, belief, line.stamped.time, by_gaze));
             self.events.push(line.stamped);
         }
         let judged = &self.replay.follower.judged;
@@ -90,9 +90,9 @@ impl Film {
     /// Whether it counts.
     ///
     /// # Errors
-    /// Those of [`Standing::of`].
-    pub fn standing(&self) -> FileResult<Standing> {
-        Standing::of(self.replay.session(), self.replay.log())
+    /// Those of [`ExclusionStatus::of`].
+    pub fn standing(&self) -> FileResult<ExclusionStatus> {
+        ExclusionStatus::of(self.replay.session(), self.replay.log())
     }
 
     /// The time of the last event, and the number of events.
@@ -140,17 +140,17 @@ impl Film {
     }
 
     /// The place after everything of the next moment of this kind, or of the last one before.
-    pub fn landmark(&self, what: Landmark, forward: bool) -> Option<usize> {
+    pub fn landmark(&self, what: ReplayLandmark, forward: bool) -> Option<usize> {
         let now = self.time();
         let is_it = |event: &Event| match what {
-            Landmark::Signal => matches!(event, Event::SignalShown { .. }),
-            Landmark::Marker => matches!(event, Event::Marker { .. }),
-            Landmark::Error | Landmark::FalseBelief => false,
+            ReplayLandmark::Signal => matches!(event, Event::SignalShown { .. }),
+            ReplayLandmark::Marker => matches!(event, Event::Marker { .. }),
+            ReplayLandmark::Error | ReplayLandmark::FalseBelief => false,
         };
         let times: Vec<SessionTime> = match what {
-            Landmark::Error => self.errors.clone(),
-            Landmark::FalseBelief => self.beliefs.newly_false().collect(),
-            Landmark::Signal | Landmark::Marker => {
+            ReplayLandmark::Error => self.errors.clone(),
+            ReplayLandmark::FalseBelief => self.beliefs.newly_false().collect(),
+            ReplayLandmark::Signal | ReplayLandmark::Marker => {
                 self.events.iter().filter(|stamped| is_it(&stamped.event)).map(|stamped| stamped.time).collect()
             }
         };

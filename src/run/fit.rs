@@ -12,8 +12,8 @@ use std::sync::{Arc, Mutex};
 use serde::Serialize;
 
 use super::parallel;
-use super::replay::{OneKitchen, Replay, each_once};
-use crate::base::ascent::{End, Maximum, Variable, ascend};
+use super::replay::{Replay, SameKitchen, each_once};
+use crate::base::ascent::{BoundReached, FittedVariable, Maximum, ascend};
 use crate::base::words::count;
 use crate::edge::files::FileResult;
 use crate::kitchen::Kitchen;
@@ -27,7 +27,7 @@ const HALF_WIDTH: f64 = 1.96;
 
 /// What to fit.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
+pub struct FitPlan {
     pub parameters: Vec<Parameter>,
     /// Where to begin; what is not fitted stays as it is here. None: with what stands in the recordings.
     pub start: Option<HumanModel>,
@@ -37,7 +37,7 @@ pub struct Plan {
 
 /// What `tomcom fit` prints.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Fit {
+pub struct FitSummary {
     pub recordings: u64,
     /// Presses of the human.
     pub human_actions: u64,
@@ -53,7 +53,7 @@ pub struct Fit {
     pub recordings_differ: bool,
     /// Whether the search came to its end before the tries were used up.
     pub converged: bool,
-    pub parameters: Vec<Fitted>,
+    pub parameters: Vec<FittedParameter>,
     /// All parameters, with those that were found.
     #[serde(skip)]
     pub model: HumanModel,
@@ -61,7 +61,7 @@ pub struct Fit {
 
 /// A parameter that was fitted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Fitted {
+pub struct FittedParameter {
     pub name: &'static str,
     pub unit: &'static str,
     pub before: f64,
@@ -76,8 +76,8 @@ pub struct Fitted {
     pub interval: Option<[Option<f64>; 2]>,
 }
 
-impl Fitted {
-    fn of(parameter: Parameter, before: f64, found: &Variable) -> Fitted {
+impl FittedParameter {
+    fn of(parameter: Parameter, before: f64, found: &FittedVariable) -> FittedParameter {
         let value = parameter.from_scale(found.at);
         let [low, high] = parameter.bounds().map(|end| parameter.to_scale(end));
         let told = |end: f64| (low..=high).contains(&end).then(|| parameter.from_scale(end));
@@ -86,12 +86,12 @@ impl Fitted {
         let limit = found.limit.map(|limit| parameter.from_scale(limit));
         let interval = match found.end {
             None => around,
-            Some(End::High) => limit.map(|limit| [Some(limit), None]),
-            Some(End::Low) => limit.map(|limit| [None, Some(limit)]),
+            Some(BoundReached::High) => limit.map(|limit| [Some(limit), None]),
+            Some(BoundReached::Low) => limit.map(|limit| [None, Some(limit)]),
         };
         let identified = matches!(interval, Some([Some(_), Some(_)]));
         let error = found.standard_error.filter(|_| identified);
-        Fitted {
+        FittedParameter {
             name: parameter.name(),
             unit: parameter.unit(),
             before,
@@ -116,7 +116,7 @@ impl Fitted {
 
 /// The trials of one kitchen.
 #[derive(Clone, Debug)]
-pub struct Trials {
+pub struct FitTrials {
     pub kitchen: Arc<Kitchen>,
     /// The parameters of the human model that stand in the first recording.
     pub model: HumanModel,
@@ -126,14 +126,14 @@ pub struct Trials {
     pub observations: Vec<(u64, Vec<Observation>)>,
 }
 
-impl Trials {
+impl FitTrials {
     /// Reads recordings.
     ///
     /// # Errors
     /// A recording that cannot be read or applied, or one of another kitchen.
-    pub fn read(recordings: &[PathBuf]) -> FileResult<Trials> {
+    pub fn read(recordings: &[PathBuf]) -> FileResult<FitTrials> {
         each_once(recordings)?;
-        let (mut one_kitchen, mut observations, mut models) = (OneKitchen::default(), Vec::new(), Vec::new());
+        let (mut one_kitchen, mut observations, mut models) = (SameKitchen::default(), Vec::new(), Vec::new());
         for recording in recordings {
             let mut replay = Replay::open(recording)?;
             one_kitchen.admit(recording, &replay.session().kitchen)?;
@@ -142,13 +142,13 @@ impl Trials {
         }
         let kitchen = one_kitchen.kitchen()?;
         let differ = models.windows(2).any(|pair| pair[0] != pair[1]);
-        Ok(Trials { kitchen, model: models.into_iter().next().unwrap_or_default(), differ, observations })
+        Ok(FitTrials { kitchen, model: models.into_iter().next().unwrap_or_default(), differ, observations })
     }
 }
 
 /// Likelihoods of all trials, on all processors. The sum does not depend on how many there are.
 struct Judge<'a> {
-    trials: &'a Trials,
+    trials: &'a FitTrials,
     /// What threads remember of costs to go between tries.
     costs: Mutex<Vec<CostToGo>>,
 }
@@ -177,7 +177,7 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 }
 
 /// Fits the parameters of a plan to trials. `tried` is called after each try.
-pub fn fit(trials: &Trials, plan: &Plan, tried: impl Fn()) -> Fit {
+pub fn fit(trials: &FitTrials, plan: &FitPlan, tried: impl Fn()) -> FitSummary {
     let judge = Judge { trials, costs: Mutex::new(Vec::new()) };
     let begin = plan.start.as_ref().unwrap_or(&trials.model);
     let with = |at: &[f64]| {
@@ -208,7 +208,7 @@ pub fn fit(trials: &Trials, plan: &Plan, tried: impl Fn()) -> Fit {
     }
     let presses = before.presses.max(1) as f64;
     let fitted = plan.parameters.iter().zip(&variables);
-    Fit {
+    FitSummary {
         recordings: trials.observations.len() as u64,
         human_actions: before.presses,
         log_likelihood_before: before.log_p / presses,
@@ -218,13 +218,13 @@ pub fn fit(trials: &Trials, plan: &Plan, tried: impl Fn()) -> Fit {
         begins_with_recordings: plan.start.is_none(),
         recordings_differ: trials.differ,
         converged,
-        parameters: fitted.map(|(one, found)| Fitted::of(*one, one.get(begin), found)).collect(),
+        parameters: fitted.map(|(one, found)| FittedParameter::of(*one, one.get(begin), found)).collect(),
         model,
     }
 }
 
 /// What stands above the parameters in a file.
-pub fn comment(fit: &Fit) -> String {
+pub fn comment(fit: &FitSummary) -> String {
     let values = fit.parameters.iter().map(|one| match (one.standard_error, one.interval) {
         (Some(error), _) => format!("{} = {:.4}, standard error {error:.4}", one.name, one.value),
         (None, Some(_)) => {
@@ -250,7 +250,7 @@ pub fn comment(fit: &Fit) -> String {
 }
 
 /// The figures for people.
-pub fn describe(fit: &Fit) -> String {
+pub fn describe(fit: &FitSummary) -> String {
     let lost = fit.log_likelihood_before - fit.log_likelihood;
     let end = match fit.converged {
         true if lost > 0.0 => format!(
@@ -293,7 +293,7 @@ pub fn describe(fit: &Fit) -> String {
 }
 
 /// Which parameters the recordings do not tell, and what their values are then.
-fn untold(fit: &Fit) -> String {
+fn untold(fit: &FitSummary) -> String {
     let untold: Vec<&str> = fit.parameters.iter().filter(|one| !one.identified).map(|one| one.name).collect();
     if untold.is_empty() {
         return String::new();

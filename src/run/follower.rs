@@ -30,7 +30,7 @@ pub struct Follower {
     /// What was said already.
     pub repeats: Repeats,
     /// How long the estimate took, where that is measured.
-    pub timing: Option<Timing>,
+    pub timing: Option<InferenceTiming>,
     pub(super) cost: CostToGo,
     judge: Judge,
     attributor: Attributor,
@@ -39,12 +39,12 @@ pub struct Follower {
     /// Whether the causes of errors are looked for.
     finds_causes: bool,
     /// What was estimated before the last press of the human that counts.
-    pub estimated: Option<Estimated>,
+    pub estimated: Option<PressEstimate>,
 }
 
 /// The estimate before a press of the human.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Estimated {
+pub struct PressEstimate {
     /// The number of the press.
     pub press: u64,
     /// The state that it met.
@@ -53,7 +53,7 @@ pub struct Estimated {
     pub evidence: Evidence,
 }
 
-impl Estimated {
+impl PressEstimate {
     /// What the log tells of it.
     pub fn witness(&self, kitchen: &Kitchen) -> EstimateWitness {
         EstimateWitness::new(kitchen, self.press, &self.belief, self.state, self.evidence)
@@ -62,7 +62,7 @@ impl Estimated {
 
 /// Nanoseconds that single steps of the inference took.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Timing {
+pub struct InferenceTiming {
     pub gaze_ns: Vec<u64>,
     /// Presses of the human and of the robot.
     pub action_ns: Vec<u64>,
@@ -144,7 +144,7 @@ impl Follower {
         }
         self.remember(stamped);
         if let (Some(belief), Some(evidence)) = (belief, self.filter.evidence()) {
-            self.estimated = Some(Estimated { press: stamped.seq, state: before, belief, evidence });
+            self.estimated = Some(PressEstimate { press: stamped.seq, state: before, belief, evidence });
         }
     }
 

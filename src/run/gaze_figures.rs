@@ -9,7 +9,7 @@ use crate::session::tracker::faults;
 
 /// The gaze of a recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct GazeFigures {
+pub struct GazeSummary {
     /// Recorded samples.
     pub samples: u64,
     /// Of those, the ones beside the display or with too low a confidence.
@@ -29,11 +29,11 @@ pub struct GazeFigures {
     pub precision_deg: Option<f64>,
 }
 
-impl GazeFigures {
-    pub fn of(session: &Session) -> GazeFigures {
+impl GazeSummary {
+    pub fn of(session: &Session) -> GazeSummary {
         let (gaze, tracker) = (&session.gaze, &session.tracker);
         let calibrated = session.calibrated.as_ref();
-        GazeFigures {
+        GazeSummary {
             samples: gaze.samples,
             unusable: gaze.unusable,
             faults: gaze.judge.counts,

@@ -5,29 +5,29 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::gaze::tags::{CELLS, Tag, Tags};
+use crate::gaze::tags::{CELLS, DisplayTag, DisplayTags};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationKind, OrderContent, State};
 
 /// What is to be known about a kitchen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct KitchenFigures {
+pub struct KitchenSummary {
     pub name: String,
     /// The number of joint values of all aspects, in decimal: it exceeds what JSON readers take as a number.
     pub states: String,
-    pub aspects: Vec<AspectFigures>,
-    pub plans: Vec<PlanFigures>,
+    pub aspects: Vec<AspectSummary>,
+    pub plans: Vec<ShortestPlanSummary>,
     /// The tags in the corners of the wall display; null where there is no room for them.
-    pub tags: Option<TagFigures>,
+    pub tags: Option<TagsSummary>,
 }
 
 /// The tags by which an eye tracker finds the wall display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TagFigures {
+pub struct TagsSummary {
     pub family: &'static str,
     /// The length of the black edges, in metres.
     pub edge_m: f64,
-    pub tags: Vec<TagFigure>,
+    pub tags: Vec<TagSummary>,
     /// The corners of the surface that they span: top left, top right, bottom right, bottom left, in fractions of the
     /// display.
     pub surface: [[f64; 2]; 4],
@@ -35,53 +35,53 @@ pub struct TagFigures {
 
 /// A tag: x, y, w and h with its white border, in fractions of the display; rows of cells, `#` for black.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TagFigure {
+pub struct TagSummary {
     pub id: u16,
     pub area: [f64; 4],
     pub cells: Vec<String>,
 }
 
-impl TagFigures {
-    fn of(tags: &Tags) -> TagFigures {
+impl TagsSummary {
+    fn of(tags: &DisplayTags) -> TagsSummary {
         let row = |row: &[bool; CELLS]| row.iter().map(|black| if *black { '#' } else { '.' }).collect();
-        let tag = |tag: &Tag| {
+        let tag = |tag: &DisplayTag| {
             let area = [tag.area.x, tag.area.y, tag.area.w, tag.area.h];
-            TagFigure { id: tag.id, area, cells: tag.cells().iter().map(row).collect() }
+            TagSummary { id: tag.id, area, cells: tag.cells().iter().map(row).collect() }
         };
         let tags_drawn = tags.corners.iter().map(tag).collect();
-        TagFigures { family: "tag36h11", edge_m: tags.edge_m, tags: tags_drawn, surface: tags.hull() }
+        TagsSummary { family: "tag36h11", edge_m: tags.edge_m, tags: tags_drawn, surface: tags.hull() }
     }
 }
 
 /// The size of a state aspect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct AspectFigures {
+pub struct AspectSummary {
     pub name: String,
     pub values: usize,
 }
 
 /// The shortest way to a dish from an empty kitchen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PlanFigures {
+pub struct ShortestPlanSummary {
     pub recipe: String,
     pub actions: u32,
     /// The presses of one such way: "human: take rice".
     pub presses: Vec<String>,
 }
 
-impl KitchenFigures {
+impl KitchenSummary {
     /// Computes the figures of a kitchen.
-    pub fn of(kitchen: &Arc<Kitchen>) -> KitchenFigures {
+    pub fn of(kitchen: &Arc<Kitchen>) -> KitchenSummary {
         let mut cost = CostToGo::new(kitchen.clone());
         let aspects = kitchen.aspects.iter();
-        let aspects = aspects.map(|aspect| AspectFigures { name: aspect.name.clone(), values: aspect.values.len() });
+        let aspects = aspects.map(|aspect| AspectSummary { name: aspect.name.clone(), values: aspect.values.len() });
         let plans = (0..kitchen.dishes.len()).map(|index| plan(kitchen, &mut cost, DishId(index as u8)));
-        KitchenFigures {
+        KitchenSummary {
             name: kitchen.name.clone(),
             states: kitchen.state_count().to_string(),
             aspects: aspects.collect(),
             plans: plans.collect(),
-            tags: Tags::place(kitchen).ok().as_ref().map(TagFigures::of),
+            tags: DisplayTags::place(kitchen).ok().as_ref().map(TagsSummary::of),
         }
     }
 }
@@ -101,7 +101,7 @@ pub fn plan_lengths(kitchen: &Kitchen, cost: &mut CostToGo) -> Vec<u32> {
 }
 
 /// Follows the best presses from an empty kitchen until the dish is served; the agent changes only where it must.
-fn plan(kitchen: &Kitchen, cost: &mut CostToGo, dish: DishId) -> PlanFigures {
+fn plan(kitchen: &Kitchen, cost: &mut CostToGo, dish: DishId) -> ShortestPlanSummary {
     let recipes = kitchen.true_recipes();
     let mut state = ordered(kitchen, dish);
     let actions = cost.all_orders(state, &recipes);
@@ -119,11 +119,11 @@ fn plan(kitchen: &Kitchen, cost: &mut CostToGo, dish: DishId) -> PlanFigures {
         presses.push(format!("{}: {}", agent.name(), kitchen.button(agent, button).name));
         (state, last) = (next, agent);
     }
-    PlanFigures { recipe: kitchen.dish(dish).name.clone(), actions, presses }
+    ShortestPlanSummary { recipe: kitchen.dish(dish).name.clone(), actions, presses }
 }
 
 /// Describes a kitchen for people.
-pub fn describe(kitchen: &Kitchen, figures: &KitchenFigures) -> String {
+pub fn describe(kitchen: &Kitchen, figures: &KitchenSummary) -> String {
     let mut text = format!("{} ({})\n", kitchen.title, kitchen.name);
     let written = write_locations(&mut text, kitchen)
         .and_then(|()| write_buttons(&mut text, kitchen))
@@ -174,7 +174,7 @@ fn write_buttons(text: &mut String, kitchen: &Kitchen) -> std::fmt::Result {
     Ok(())
 }
 
-fn write_recipes(text: &mut String, kitchen: &Kitchen, figures: &KitchenFigures) -> std::fmt::Result {
+fn write_recipes(text: &mut String, kitchen: &Kitchen, figures: &KitchenSummary) -> std::fmt::Result {
     writeln!(text, "\nRECIPES")?;
     for (dish, plan) in kitchen.dishes.iter().zip(&figures.plans) {
         let items = |stack: ContentId| {
@@ -190,7 +190,7 @@ fn write_recipes(text: &mut String, kitchen: &Kitchen, figures: &KitchenFigures)
     Ok(())
 }
 
-fn write_aspects(text: &mut String, figures: &KitchenFigures) -> std::fmt::Result {
+fn write_aspects(text: &mut String, figures: &KitchenSummary) -> std::fmt::Result {
     writeln!(text, "\nSTATE SPACE")?;
     for aspect in &figures.aspects {
         writeln!(text, "  {:<28} {:>4}", aspect.name, aspect.values)?;
@@ -200,7 +200,7 @@ fn write_aspects(text: &mut String, figures: &KitchenFigures) -> std::fmt::Resul
 
 fn write_tags(text: &mut String, kitchen: &Kitchen) -> std::fmt::Result {
     writeln!(text, "\nTAGS OF THE WALL DISPLAY")?;
-    let tags = match Tags::place(kitchen) {
+    let tags = match DisplayTags::place(kitchen) {
         Ok(tags) => tags,
         Err(error) => return writeln!(text, "  none: found {error}; right would be {}", error.remedy),
     };

@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use super::figures::TrialFigures;
-use super::options::Beginning;
-use super::standing::Standing;
+use super::figures::TrialSummary;
+use super::options::SessionStart;
+use super::standing::ExclusionStatus;
 use crate::base::words::count;
 
 /// How the wizard left a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Leaving {
+pub enum LeavingReason {
     /// The program ends.
     Quit,
     /// What comes next in the series begins.
@@ -20,17 +20,17 @@ pub enum Leaving {
 
 /// What came of a live session.
 #[derive(Clone, Debug)]
-pub struct LiveEnd {
+pub struct LiveOutcome {
     /// The folder of the recording.
     pub folder: PathBuf,
-    pub leaving: Leaving,
-    pub figures: TrialFigures,
-    pub standing: Standing,
+    pub leaving: LeavingReason,
+    pub figures: TrialSummary,
+    pub standing: ExclusionStatus,
     /// What its trial is done again with, if that was asked for.
-    pub again: Option<Beginning>,
+    pub again: Option<SessionStart>,
 }
 
-impl LiveEnd {
+impl LiveOutcome {
     /// What came of it, for people.
     pub fn describe(&self) -> String {
         let folder = self.folder.display();

@@ -22,7 +22,7 @@ const TELLING: u64 = 10;
 
 /// What a wizard was trained.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TrainingFigures {
+pub struct TrainingSummary {
     pub wizard: String,
     /// Where its records are looked for.
     pub folder: String,
@@ -33,15 +33,15 @@ pub struct TrainingFigures {
     pub met: Option<bool>,
 }
 
-impl TrainingFigures {
+impl TrainingSummary {
     /// Of a wizard's training as it is recorded in this folder.
     ///
     /// # Errors
     /// Those of [`training::read`].
-    pub fn read(folder: &Path, wizard: &str) -> FileResult<TrainingFigures> {
+    pub fn read(folder: &Path, wizard: &str) -> FileResult<TrainingSummary> {
         let records = training::read(folder, wizard)?;
         let last = records.last();
-        Ok(TrainingFigures {
+        Ok(TrainingSummary {
             wizard: wizard.to_string(),
             folder: folder.display().to_string(),
             times: records.len() as u64,

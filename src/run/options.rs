@@ -4,7 +4,7 @@ use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::compare::Request;
+use super::compare::CompareRequest;
 use crate::communication::concept::ConceptName;
 use crate::edge::files::{self, FileResult, SessionFiles};
 use crate::kitchen::Kitchen;
@@ -14,7 +14,7 @@ use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, 
 
 /// What `tomcom operate` is asked for.
 #[derive(Clone, Debug)]
-pub enum Beginning {
+pub enum SessionStart {
     /// A trial that is done again, in another recording in `out`: the header of that, and the kitchen that it describes.
     Again { header: Box<Header>, kitchen: Arc<Kitchen>, out: PathBuf },
     /// A new session with these settings, recorded in a folder in `out`; `trial` tells it from others with the same seed.
@@ -25,7 +25,7 @@ pub enum Beginning {
 
 /// What is still to be done by a participant of a plan.
 #[derive(Clone, Debug)]
-pub struct Series {
+pub struct TrialSeries {
     /// The settings with the plan.
     pub files: SessionFiles,
     /// The participant's place in the plan, from 0.
@@ -33,12 +33,12 @@ pub struct Series {
     /// Where its recordings are and come.
     pub out: PathBuf,
     /// Wizard and assistants are compared at the console.
-    pub compare: Option<Request>,
+    pub compare: Option<CompareRequest>,
 }
 
 /// Settings of the session file that arguments replace.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Overrides {
+pub struct SettingOverrides {
     pub participant: Option<ParticipantKind>,
     pub arm: Option<ArmKind>,
     pub gaze: Option<GazeSource>,
@@ -53,7 +53,7 @@ pub struct Overrides {
     pub rerun_listen: Option<String>,
 }
 
-impl Overrides {
+impl SettingOverrides {
     /// Replaces the settings. Where a person takes the simulated participant's place and nothing is said about the gaze,
     /// the mouse pointer stands for it.
     ///

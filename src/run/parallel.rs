@@ -16,21 +16,21 @@ pub fn each_with<T: Sync, R: Send, W: Send>(
     work: impl Fn(&mut W, &T) -> R + Sync,
     done: impl Fn() + Sync,
 ) -> Vec<R> {
-    Workers::new(own).each(items, work, done)
+    WorkerPool::new(own).each(items, work, done)
 }
 
 /// Threads with something of their own that lasts: a cache, say, which changes the time that work takes, and not what comes
 /// of it.
-pub struct Workers<W, F: Fn() -> W> {
+pub struct WorkerPool<W, F: Fn() -> W> {
     own: F,
     /// What nobody works with at the moment.
     idle: Mutex<Vec<W>>,
 }
 
-impl<W: Send, F: Fn() -> W + Sync> Workers<W, F> {
+impl<W: Send, F: Fn() -> W + Sync> WorkerPool<W, F> {
     /// Workers who make what they need with `own`, at most once for each thread.
-    pub fn new(own: F) -> Workers<W, F> {
-        Workers { own, idle: Mutex::new(Vec::new()) }
+    pub fn new(own: F) -> WorkerPool<W, F> {
+        WorkerPool { own, idle: Mutex::new(Vec::new()) }
     }
 
     /// Does the same with every item; the results have the order of the items. `done` is called after each.

@@ -12,7 +12,7 @@ use crate::session::plan::{Outcome, Progress, Study};
 
 /// What `tomcom plan SESSION` prints.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Overview {
+pub struct StudyPlanSummary {
     pub plan: String,
     pub digest: String,
     pub seed: u64,
@@ -22,12 +22,12 @@ pub struct Overview {
     pub participants: Vec<Progress>,
 }
 
-impl Overview {
+impl StudyPlanSummary {
     /// How far a study is, from the recordings in `out`.
     ///
     /// # Errors
     /// Recordings that cannot be read, or that the plan would not have asked for.
-    pub fn of(study: &Study, out: &Path) -> Result<Overview, LiveError> {
+    pub fn of(study: &Study, out: &Path) -> Result<StudyPlanSummary, LiveError> {
         let made = recordings::of_plan(out, &study.plan.name)?;
         let codes = study.plan.codes();
         if let Some(stranger) = made.iter().find(|made| !codes.contains(&made.code)) {
@@ -36,7 +36,7 @@ impl Overview {
         }
         let progress = |participant| Progress::of(study, participant, &made).map_err(LiveError::Plan);
         let participants = (0..codes.len()).map(progress).collect::<Result<Vec<_>, _>>()?;
-        Ok(Overview {
+        Ok(StudyPlanSummary {
             plan: study.plan.name.clone(),
             digest: study.digest.clone(),
             seed: study.session.seed,
@@ -48,7 +48,7 @@ impl Overview {
 }
 
 /// The plan for people.
-pub fn describe(figures: &Overview) -> String {
+pub fn describe(figures: &StudyPlanSummary) -> String {
     let mut sizes = BTreeMap::new();
     for one in &figures.participants {
         *sizes.entry(one.group.as_str()).or_insert(0) += 1;

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::advisor::Question;
+use super::advisor::AdviceRequest;
 use super::follower::Follower;
 use crate::edge::files::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, LogLine, LogReader, at_line};
@@ -82,7 +82,7 @@ impl Replay {
     ///
     /// # Errors
     /// Those of [`Replay::step`].
-    pub fn next_question(&mut self) -> FileResult<Option<Question>> {
+    pub fn next_question(&mut self) -> FileResult<Option<AdviceRequest>> {
         let mut pressed = None;
         while let Some(line) = self.step()? {
             match line.stamped.event {
@@ -90,7 +90,7 @@ impl Replay {
                 // By now the robot has made up its mind.
                 Event::Gaze(_) => {
                     if let Some(seq) = pressed {
-                        return Ok(Some(Question::of(&self.follower, seq, line.stamped.time)));
+                        return Ok(Some(AdviceRequest::of(&self.follower, seq, line.stamped.time)));
                     }
                 }
                 _ => {}
@@ -128,11 +128,11 @@ pub fn each_once(recordings: &[PathBuf]) -> FileResult<()> {
 
 /// Recordings that are looked at together must be of one kitchen.
 #[derive(Debug, Default)]
-pub struct OneKitchen {
+pub struct SameKitchen {
     first: Option<(PathBuf, Arc<Kitchen>)>,
 }
 
-impl OneKitchen {
+impl SameKitchen {
     /// Takes note of a recording's kitchen.
     ///
     /// # Errors

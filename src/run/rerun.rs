@@ -51,7 +51,7 @@ impl From<FileError> for RerunError {
 
 /// What `tomcom review` is asked for.
 #[derive(Clone, Debug)]
-pub struct Review {
+pub struct ReviewRequest {
     pub recordings: Vec<PathBuf>,
     /// Only the file is written: beside the log, or here.
     pub save: Option<Option<PathBuf>>,
@@ -63,7 +63,7 @@ pub struct Review {
 
 /// A file of a stream, and how it came about.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Saved {
+pub struct SavedStream {
     pub path: PathBuf,
     /// It was made from the log just now.
     pub made: bool,
@@ -73,7 +73,7 @@ pub struct Saved {
 
 /// A recording that somebody still writes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Running {
+pub struct OngoingRecording {
     pub recording: PathBuf,
     /// Where viewers can look on, if they can.
     pub viewers: Option<String>,
@@ -83,22 +83,22 @@ pub struct Running {
 ///
 /// # Errors
 /// One that cannot be read.
-pub fn running(recordings: &[PathBuf]) -> FileResult<Vec<Running>> {
+pub fn running(recordings: &[PathBuf]) -> FileResult<Vec<OngoingRecording>> {
     let mut running = Vec::new();
     for recording in recordings {
         if let Some(holder) = Lock::holder(LogReader::open(recording)?.folder()) {
-            running.push(Running { recording: recording.clone(), viewers: holder.viewers });
+            running.push(OngoingRecording { recording: recording.clone(), viewers: holder.viewers });
         }
     }
     Ok(running)
 }
 
 /// What came of it.
-pub enum Reviewed {
+pub enum ReviewOutcome {
     /// The file is there.
-    Saved(Saved),
+    Saved(SavedStream),
     /// The viewer was opened on the file.
-    Opened(Saved),
+    Opened(SavedStream),
     /// The viewer is served until this is dropped.
     Served { url: String, because: &'static str, _serving: Box<(Writer, WebViewer)> },
 }
@@ -107,15 +107,15 @@ pub enum Reviewed {
 ///
 /// # Errors
 /// A recording that cannot be read, a file that cannot be written, or a viewer that cannot be opened.
-pub fn review(asked: &Review) -> Result<Reviewed, RerunError> {
+pub fn review(asked: &ReviewRequest) -> Result<ReviewOutcome, RerunError> {
     let viewer = if asked.web { Viewer::None } else { Viewer::find() };
     match (&asked.save, viewer) {
-        (Some(place), _) => Ok(Reviewed::Saved(saved(&asked.recordings, place.as_deref())?)),
+        (Some(place), _) => Ok(ReviewOutcome::Saved(saved(&asked.recordings, place.as_deref())?)),
         (None, Viewer::Ready(viewer)) => {
             let file = saved(&asked.recordings, None)?;
             let opened = viewer::open(&viewer, &file.path, asked.at.map(|at| at.0));
             opened.map_err(|reason| RerunError::Viewer { path: viewer, reason })?;
-            Ok(Reviewed::Opened(file))
+            Ok(ReviewOutcome::Opened(file))
         }
         (None, other) => {
             let because = match other {
@@ -147,14 +147,14 @@ pub fn save(recording: &Path) -> Result<PathBuf, RerunError> {
 }
 
 /// Streams recordings to a server, and serves the viewer for browsers.
-fn serve(recordings: &[PathBuf], at: Option<SessionTime>, because: &'static str) -> Result<Reviewed, RerunError> {
+fn serve(recordings: &[PathBuf], at: Option<SessionTime>, because: &'static str) -> Result<ReviewOutcome, RerunError> {
     let playing = playing(recordings)?;
     let (server, web, viewer) = ports().map_err(RerunError::Web)?;
     let outlets = Outlets { file: None, server: Some((server, true)), at };
     let writer = write(playing, recordings, &outlets)?.map_err(RerunError::Web)?;
     let url = format!("http://{web}/?url={}", uri(server).replace('+', "%2B").replace(':', "%3A").replace('/', "%2F"));
     viewer::browse(&url);
-    Ok(Reviewed::Served { url, because, _serving: Box::new((writer, viewer)) })
+    Ok(ReviewOutcome::Served { url, because, _serving: Box::new((writer, viewer)) })
 }
 
 /// The first port that is free for a stream, with that of the viewer's page, which is served already. They go in pairs: of
@@ -173,7 +173,7 @@ fn ports() -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
 }
 
 /// The file of the stream of these recordings: that beside the log where it shows this log, else made from it.
-fn saved(recordings: &[PathBuf], place: Option<&Path>) -> Result<Saved, RerunError> {
+fn saved(recordings: &[PathBuf], place: Option<&Path>) -> Result<SavedStream, RerunError> {
     let (mut locked, mut because, mut logs) = (None, None, None);
     let path = match (place, recordings) {
         (Some(place), _) => place.to_path_buf(),
@@ -183,7 +183,7 @@ fn saved(recordings: &[PathBuf], place: Option<&Path>) -> Result<Saved, RerunErr
             let path = folder.join(RRD_NAME);
             let state = rrd::state(&path, &parts).unwrap_or(RrdState::Unsealed);
             if state == RrdState::Whole {
-                return Ok(Saved { path, made: false, because: None });
+                return Ok(SavedStream { path, made: false, because: None });
             }
             // Nobody else may be writing it: then, or where nothing can be written, it goes elsewhere.
             locked = Lock::take(&folder).ok();
@@ -199,7 +199,7 @@ fn saved(recordings: &[PathBuf], place: Option<&Path>) -> Result<Saved, RerunErr
     let sealed = put(recordings, &path)?.and_then(|()| logs.map_or(Ok(()), |logs| rrd::seal(&path, &logs)));
     drop(locked);
     match sealed {
-        Ok(()) => Ok(Saved { path, made: true, because }),
+        Ok(()) => Ok(SavedStream { path, made: true, because }),
         Err(reason) => Err(RerunError::Unwritable { path, reason }),
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::engine::Engine;
-use super::verify::Rerun;
+use super::verify::RerunRecording;
 use crate::base::time::SessionTime;
 use crate::edge::files::FileError;
 use crate::edge::log::{LOG_NAME, Lock, LogReader, WriteError, check_continued};
@@ -38,7 +38,7 @@ impl From<FileError> for ResumeError {
 
 /// A session that was taken up again.
 #[derive(Debug)]
-pub struct Resumed {
+pub struct ResumedSession {
     pub engine: Engine,
     /// The first events of the new part: what the cut took off, and the pause of a trial that was running.
     pub first: Vec<Stamped>,
@@ -55,7 +55,7 @@ pub struct Resumed {
 ///
 /// # Errors
 /// It cannot be read, is being written, was not cut, or does not come out the same again.
-pub fn resume(recording: &Path) -> Result<Resumed, ResumeError> {
+pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
     // Resolved, since the part goes beside it and names it.
     let there = recording.canonicalize();
     let there = there.map_err(|reason| FileError::unreadable(recording, reason, "the folder of a cut recording"))?;
@@ -67,7 +67,7 @@ pub fn resume(recording: &Path) -> Result<Resumed, ResumeError> {
     log.header.session.require_built_live().map_err(|missing| FileError::not_built(&folder, missing))?;
     let lock = Lock::take(&folder)?;
     check_continued(&folder)?;
-    let Rerun { log, mut again, difference, .. } = Rerun::of(log)?;
+    let RerunRecording { log, mut again, difference, .. } = RerunRecording::of(log)?;
     if let Some(difference) = difference {
         return Err(ResumeError::Differs { log: difference.log, seq: difference.seq });
     }
@@ -85,5 +85,5 @@ pub fn resume(recording: &Path) -> Result<Resumed, ResumeError> {
     let mut header = Header::new(old.session, old.trial, old.layout, old.recipes);
     header.continues = Some(continues);
     header.keys = old.keys;
-    Ok(Resumed { engine: again.engine, first, header, time, folder, lock })
+    Ok(ResumedSession { engine: again.engine, first, header, time, folder, lock })
 }

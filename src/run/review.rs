@@ -6,15 +6,15 @@ use std::time::Duration;
 
 use tokio::time::{Instant, sleep_until};
 
-use super::compare::{Request, WatchDesk, Watcher};
-use super::film::Film;
+use super::compare::{CompareRequest, ComparisonDesk, ComparisonFollower};
+use super::film::SeekableReplay;
 use crate::base::time::SessionTime;
-use crate::console::coding::Coding;
-use crate::console::comparison::Compared;
+use crate::console::coding::RaterSession;
+use crate::console::comparison::ComparisonView;
 use crate::console::keys::KeyError;
-use crate::console::model::Level;
-use crate::console::playback::{Landmark, Move, Playback, SPEEDS};
-use crate::console::{Command, Keys, Message, Model, update};
+use crate::console::model::NoticeLevel;
+use crate::console::playback::{Playback, ReplayKey, ReplayLandmark, SPEEDS};
+use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::edge::files::{FileError, key_map};
 use crate::edge::log::{Ending, codes};
 use crate::edge::terminal::{Hands, Screen, asked_to_end, theme};
@@ -58,8 +58,8 @@ impl From<FileError> for ReviewError {
 ///
 /// # Errors
 /// The recording cannot be read, or there is no terminal.
-pub fn review(recording: &Path, follow: bool, compare: Option<&Request>) -> Result<(), ReviewError> {
-    let film = Film::open(recording)?;
+pub fn review(recording: &Path, follow: bool, compare: Option<&CompareRequest>) -> Result<(), ReviewError> {
+    let film = SeekableReplay::open(recording)?;
     on_thread(Review::open(film, recording, follow, compare, None)?)
 }
 
@@ -69,10 +69,10 @@ pub fn review(recording: &Path, follow: bool, compare: Option<&Request>) -> Resu
 /// # Errors
 /// The recording or its codes cannot be read, or there is no terminal.
 pub fn rate(recording: &Path, rater: &str) -> Result<(), ReviewError> {
-    let film = Film::open(recording)?.blinded();
+    let film = SeekableReplay::open(recording)?.blinded();
     let codable = Codable::of(&film.replay.session().kitchen, &film.replay.follower.judged);
     let codes = codes::read(film.replay.log().folder(), rater, &codable)?;
-    let coding = Coding { rater: rater.to_string(), errors: codable.errors, codes };
+    let coding = RaterSession { rater: rater.to_string(), errors: codable.errors, codes };
     on_thread(Review::open(film, recording, false, None, Some(coding))?)
 }
 
@@ -82,8 +82,8 @@ fn on_thread(review: Review) -> Result<(), ReviewError> {
 }
 
 struct Review {
-    film: Film,
-    model: Model,
+    film: SeekableReplay,
+    model: ConsoleModel,
     screen: Screen,
     opened: Instant,
     /// The moment that is shown, and when it was reached.
@@ -94,29 +94,29 @@ struct Review {
     grows: bool,
     dirty: bool,
     /// Who compares wizard and assistants.
-    watch: Option<WatchDesk>,
+    watch: Option<ComparisonDesk>,
 }
 
 impl Review {
     fn open(
-        film: Film,
+        film: SeekableReplay,
         recording: &Path,
         follow: bool,
-        compare: Option<&Request>,
-        coding: Option<Coding>,
+        compare: Option<&CompareRequest>,
+        coding: Option<RaterSession>,
     ) -> Result<Review, ReviewError> {
         let screen = Screen::take().map_err(ReviewError::Terminal)?;
         let size = Screen::size().map_err(ReviewError::Terminal)?;
         let keys = film.replay.log().header.keys.as_ref();
-        let keys = Keys::replay(&film.session.kitchen, &key_map(keys)?)?;
+        let keys = KeyBindings::replay(&film.session.kitchen, &key_map(keys)?)?;
         let keys = if compare.is_some() { keys.with_comparison() } else { keys };
         let keys = if coding.is_some() { keys.with_coding(&film.session.kitchen) } else { keys };
-        let mut model = Model::new(keys, theme(&film.session.spec.console, screen.ground), size);
-        model.comparison = compare.map(|_| Compared::default());
+        let mut model = ConsoleModel::new(keys, theme(&film.session.spec.console, screen.ground), size);
+        model.comparison = compare.map(|_| ComparisonView::default());
         model.coding = coding;
         let watch = compare.map(|request| {
             let session = film.replay.log().session();
-            Watcher::new(session, request).without_causes().on_thread()
+            ComparisonFollower::new(session, request).without_causes().on_thread()
         });
         let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
         let excluded = film.standing()?.excluded.is_some();
@@ -140,7 +140,7 @@ impl Review {
         let plays = review.model.coding.is_none();
         review.playback(|playback| playback.playing = plays);
         if follow {
-            review.go(Move::ToEnd);
+            review.go(ReplayKey::ToEnd);
         }
         Ok(review)
     }
@@ -174,14 +174,15 @@ impl Review {
     }
 
     /// Takes a message of the terminal; whether somebody has quit.
-    fn take(&mut self, message: Message) -> bool {
+    fn take(&mut self, message: ConsoleMessage) -> bool {
         self.dirty = true;
         self.tick();
         match update(&mut self.model, &self.film.session, message) {
-            Some(Command::Move(to)) => self.go(to),
-            Some(Command::Code) => self.keep(),
-            Some(Command::Quit) => return true,
-            Some(Command::Input(_) | Command::Start(_) | Command::Next | Command::Redo) | None => {}
+            Some(ConsoleCommand::Move(to)) => self.go(to),
+            Some(ConsoleCommand::Code) => self.keep(),
+            Some(ConsoleCommand::Quit) => return true,
+            Some(ConsoleCommand::Input(_) | ConsoleCommand::Start(_) | ConsoleCommand::Next | ConsoleCommand::Redo)
+            | None => {}
         }
         false
     }
@@ -190,7 +191,7 @@ impl Review {
     fn keep(&mut self) {
         let Some(coding) = &self.model.coding else { return };
         if let Err(error) = codes::write(self.film.replay.log().folder(), &coding.rater, &coding.codes) {
-            self.model.say(Level::Alarm, format!("not kept: {error}"));
+            self.model.say(NoticeLevel::Alarm, format!("not kept: {error}"));
         }
     }
 
@@ -209,27 +210,27 @@ impl Review {
         self.model.playback.as_ref().is_some_and(what)
     }
 
-    fn go(&mut self, to: Move) {
+    fn go(&mut self, to: ReplayKey) {
         let speeds = SPEEDS.len() - 1;
         match to {
-            Move::PlayPause => {
+            ReplayKey::PlayPause => {
                 let at_end = self.film.position == self.film.length().1 && !self.grows;
                 if at_end {
                     self.stand_at(0);
                 }
                 self.playback(|playback| playback.playing = !playback.playing);
             }
-            Move::Faster => self.playback(|playback| playback.speed = (playback.speed + 1).min(speeds)),
-            Move::Slower => self.playback(|playback| playback.speed = playback.speed.saturating_sub(1)),
-            Move::StepForward => self.stand_at(self.film.next_step()),
-            Move::StepBack => self.stand_at(self.film.last_step()),
-            Move::On(what) => self.look_for(what, true),
-            Move::BackTo(what) => self.look_for(what, false),
-            Move::ToStart => self.stand_at(0),
-            Move::ToEvent(number) => self.stand_at(number as usize + 1),
-            Move::SeekForward => self.seek(self.now + SEEK),
-            Move::SeekBack => self.seek(self.now - SEEK),
-            Move::ToEnd => {
+            ReplayKey::Faster => self.playback(|playback| playback.speed = (playback.speed + 1).min(speeds)),
+            ReplayKey::Slower => self.playback(|playback| playback.speed = playback.speed.saturating_sub(1)),
+            ReplayKey::StepForward => self.stand_at(self.film.next_step()),
+            ReplayKey::StepBack => self.stand_at(self.film.last_step()),
+            ReplayKey::On(what) => self.look_for(what, true),
+            ReplayKey::BackTo(what) => self.look_for(what, false),
+            ReplayKey::ToStart => self.stand_at(0),
+            ReplayKey::ToEvent(number) => self.stand_at(number as usize + 1),
+            ReplayKey::SeekForward => self.seek(self.now + SEEK),
+            ReplayKey::SeekBack => self.seek(self.now - SEEK),
+            ReplayKey::ToEnd => {
                 let (length, events) = self.film.length();
                 self.wind(events);
                 self.now = length;
@@ -237,8 +238,8 @@ impl Review {
                 self.playback(|playback| playback.playing = grows);
             }
         }
-        let follows = self.grows && to == Move::ToEnd;
-        if !matches!(to, Move::Faster | Move::Slower) {
+        let follows = self.grows && to == ReplayKey::ToEnd;
+        if !matches!(to, ReplayKey::Faster | ReplayKey::Slower) {
             self.playback(|playback| playback.follows = follows);
         }
         self.at = Instant::now();
@@ -251,18 +252,18 @@ impl Review {
     }
 
     /// Stands at the next or the last moment of this kind; where there is none it stays.
-    fn look_for(&mut self, what: Landmark, forward: bool) {
+    fn look_for(&mut self, what: ReplayLandmark, forward: bool) {
         match self.film.landmark(what, forward) {
             Some(position) => self.stand_at(position),
             None => {
                 let which = if forward { "further" } else { "earlier" };
                 let what = match what {
-                    Landmark::Error => "error",
-                    Landmark::Signal => "signal",
-                    Landmark::Marker => "marker",
-                    Landmark::FalseBelief => "false belief",
+                    ReplayLandmark::Error => "error",
+                    ReplayLandmark::Signal => "signal",
+                    ReplayLandmark::Marker => "marker",
+                    ReplayLandmark::FalseBelief => "false belief",
                 };
-                self.model.say(Level::Refused, format!("no {which} {what}"));
+                self.model.say(NoticeLevel::Refused, format!("no {which} {what}"));
             }
         }
     }
@@ -333,7 +334,7 @@ impl Review {
 
     fn draw(&mut self) -> io::Result<()> {
         if let (Some(newest), Some(compared)) =
-            (self.watch.as_ref().and_then(WatchDesk::newest), &mut self.model.comparison)
+            (self.watch.as_ref().and_then(ComparisonDesk::newest), &mut self.model.comparison)
         {
             compared.show(newest);
             self.dirty = true;

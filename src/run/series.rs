@@ -1,21 +1,21 @@
 //! The loop over recordings: one recording is one run of at most one trial, and what a participant goes through is a
 //! series of them, made at the same desk without leaving the console.
 
-use super::begun::Begun;
-use super::compare::Request;
-use super::desk::Desk;
-use super::leaving::{Leaving, LiveEnd};
+use super::begun::PreparedSession;
+use super::compare::CompareRequest;
+use super::desk::OperatorDesk;
+use super::leaving::{LeavingReason, LiveOutcome};
 use super::live::{self, LiveError};
-use super::options::{Beginning, Series};
-use crate::console::question::Question;
+use super::options::{SessionStart, TrialSeries};
+use crate::console::question::QuestionPage;
 use crate::edge::files::SessionFiles;
 use crate::edge::recordings;
 use crate::session::plan::{Next, Progress, Study};
 
 /// What came of one session or a series.
 #[derive(Clone, Debug)]
-pub struct Sitting {
-    pub done: Vec<LiveEnd>,
+pub struct SeriesOutcome {
+    pub done: Vec<LiveOutcome>,
     /// How the participant stands, for people.
     pub remark: Option<String>,
 }
@@ -25,19 +25,19 @@ pub struct Sitting {
 ///
 /// # Errors
 /// There is no terminal, the session cannot be recorded, or the gaze input cannot be opened.
-pub fn operate(beginning: Beginning, compare: Option<Request>) -> Result<Sitting, LiveError> {
+pub fn operate(beginning: SessionStart, compare: Option<CompareRequest>) -> Result<SeriesOutcome, LiveError> {
     in_runtime(async {
         // Before the terminal is taken and a recording is made: a session that cannot start leaves nothing behind.
-        let mut begun = Begun::new(beginning)?.comparing(compare.clone());
-        let mut desk = Desk::take(begun.spec(), begun.kitchen()).await?;
+        let mut begun = PreparedSession::new(beginning)?.comparing(compare.clone());
+        let mut desk = OperatorDesk::take(begun.spec(), begun.kitchen()).await?;
         let mut done = Vec::new();
         loop {
             let mut end = live::run(begun, &mut desk).await?;
             let again = end.again.take();
             done.push(end);
             match again {
-                Some(again) => begun = Begun::new(again)?.comparing(compare.clone()),
-                None => return Ok(Sitting { done, remark: None }),
+                Some(again) => begun = PreparedSession::new(again)?.comparing(compare.clone()),
+                None => return Ok(SeriesOutcome { done, remark: None }),
             }
         }
     })
@@ -47,18 +47,18 @@ pub fn operate(beginning: Beginning, compare: Option<Request>) -> Result<Sitting
 ///
 /// # Errors
 /// Those of [`operate`], and recordings that cannot be read or do not fit the plan.
-pub fn operate_series(series: Series) -> Result<Sitting, LiveError> {
+pub fn operate_series(series: TrialSeries) -> Result<SeriesOutcome, LiveError> {
     in_runtime(async { Planned::new(series)?.run().await })
 }
 
 /// Signals and sockets belong to a runtime.
-fn in_runtime(work: impl Future<Output = Result<Sitting, LiveError>>) -> Result<Sitting, LiveError> {
+fn in_runtime(work: impl Future<Output = Result<SeriesOutcome, LiveError>>) -> Result<SeriesOutcome, LiveError> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(LiveError::Terminal)?;
     runtime.block_on(work)
 }
 
 /// What came of it, for people.
-pub fn describe(sitting: &Sitting) -> String {
+pub fn describe(sitting: &SeriesOutcome) -> String {
     let ends: String = sitting.done.iter().map(|end| format!("{}\n", end.describe())).collect();
     let remark = sitting.remark.as_ref().map_or(String::new(), |remark| format!("{remark}\n"));
     ends + &remark
@@ -66,19 +66,19 @@ pub fn describe(sitting: &Sitting) -> String {
 
 /// What the wizard chose before a recording.
 enum Choice {
-    Begin(Box<Begun>),
+    Begin(Box<PreparedSession>),
     /// Nothing: the program is left, with this remark.
     Leave(Option<String>),
 }
 
 /// The series of one participant of a plan. What comes next is read from the recordings each time, and kept nowhere else.
 struct Planned {
-    series: Series,
+    series: TrialSeries,
     study: Study,
 }
 
 impl Planned {
-    fn new(series: Series) -> Result<Planned, LiveError> {
+    fn new(series: TrialSeries) -> Result<Planned, LiveError> {
         let study = series.files.study().ok_or(LiveError::Plan("a session without a plan".to_string()))?;
         Ok(Planned { series, study })
     }
@@ -88,19 +88,19 @@ impl Planned {
         Progress::of(&self.study, self.series.participant, &made).map_err(LiveError::Plan)
     }
 
-    async fn run(self) -> Result<Sitting, LiveError> {
+    async fn run(self) -> Result<SeriesOutcome, LiveError> {
         let mut done = Vec::new();
         let mut progress = self.progress()?;
         if progress.next == Next::Finished {
-            return Ok(Sitting { done, remark: Some(stands(&progress)) });
+            return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
         }
-        let mut desk = Desk::take(&self.series.files.spec, &self.series.files.kitchen.kitchen).await?;
+        let mut desk = OperatorDesk::take(&self.series.files.spec, &self.series.files.kitchen.kitchen).await?;
         while progress.next != Next::Finished {
             let begun = match self.choose(&progress, &mut desk).await? {
                 Choice::Begin(begun) => begun,
                 Choice::Leave(remark) => {
                     let remark = remark.unwrap_or_else(|| stands(&progress));
-                    return Ok(Sitting { done, remark: Some(remark) });
+                    return Ok(SeriesOutcome { done, remark: Some(remark) });
                 }
             };
             let end = live::run(*begun, &mut desk).await?;
@@ -108,16 +108,16 @@ impl Planned {
             done.push(end);
             progress = self.progress()?;
             match leaving {
-                Leaving::Quit => break,
-                Leaving::Next => {}
-                Leaving::Redo => progress.redo(slot),
+                LeavingReason::Quit => break,
+                LeavingReason::Next => {}
+                LeavingReason::Redo => progress.redo(slot),
             }
         }
-        Ok(Sitting { done, remark: Some(stands(&progress)) })
+        Ok(SeriesOutcome { done, remark: Some(stands(&progress)) })
     }
 
     /// Gets the next recording ready, after what has to be asked first.
-    async fn choose(&self, progress: &Progress, desk: &mut Desk) -> Result<Choice, LiveError> {
+    async fn choose(&self, progress: &Progress, desk: &mut OperatorDesk) -> Result<Choice, LiveError> {
         let (slot, attempt, open) = match &progress.next {
             Next::Begin { slot, attempt } => (*slot, *attempt, None),
             Next::Choose { recording, slot, attempt } => (*slot, *attempt, Some(recording)),
@@ -144,23 +144,23 @@ impl Planned {
             }
         }
         let beginning = match continued {
-            Some(recording) => Beginning::Continued(self.series.out.join(recording)),
+            Some(recording) => SessionStart::Continued(self.series.out.join(recording)),
             None => {
                 let files = Box::new(SessionFiles { spec, ..self.series.files.clone() });
-                Beginning::New { files, trial, out: self.series.out.clone() }
+                SessionStart::New { files, trial, out: self.series.out.clone() }
             }
         };
-        let begun = Begun::new(beginning)?.comparing(self.series.compare.clone());
+        let begun = PreparedSession::new(beginning)?.comparing(self.series.compare.clone());
         Ok(Choice::Begin(Box::new(if progress.consent { begun } else { begun.with_consent() })))
     }
 }
 
 /// Whether an open recording is continued or done again.
-fn which(progress: &Progress, recording: &str, slot: usize) -> Question {
+fn which(progress: &Progress, recording: &str, slot: usize) -> QuestionPage {
     let name = slot_name(progress, slot);
     let attempt = progress.steps.get(slot).and_then(|stand| stand.recordings.last());
     let presses = attempt.map_or(0, |attempt| attempt.presses);
-    Question {
+    QuestionPage {
         title: format!("{}: {name} is not done", progress.code),
         text: vec![format!("{recording} was cut, or left before everything was done. It has {presses} presses.")],
         answers: vec![
@@ -171,8 +171,8 @@ fn which(progress: &Progress, recording: &str, slot: usize) -> Question {
 }
 
 /// Nothing is recorded before the participant agrees.
-fn consent(study: &Study, progress: &Progress, label: &str) -> Question {
-    Question {
+fn consent(study: &Study, progress: &Progress, label: &str) -> QuestionPage {
+    QuestionPage {
         title: format!("{}: {label}", progress.code),
         text: vec![study.plan.consent.clone()],
         answers: vec!["yes, the participant agrees".to_string(), "no: nothing is recorded".to_string()],

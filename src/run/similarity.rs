@@ -4,17 +4,17 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::compare::{Request, Watcher};
-use super::lesson_report::TrainingFigures;
+use super::compare::{CompareRequest, ComparisonFollower};
+use super::lesson_report::TrainingSummary;
 use super::parallel;
 use super::replay::each_once;
-use super::standing::Standing;
-use super::wizard::{self, WizardFigures, WizardLog};
+use super::standing::ExclusionStatus;
+use super::wizard::{self, WizardLog, WizardSummary};
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
-use crate::console::comparison::{Comparison, Difference};
+use crate::console::comparison::{LaneComparison, UnmatchedCommunication};
 use crate::edge::files::{FileError, FileResult};
 use crate::edge::log::{LogReader, at_line};
 use crate::kitchen::{AspectId, Kitchen};
@@ -30,17 +30,17 @@ const LISTED: usize = 20;
 
 /// What `tomcom compare` prints.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CompareFigures {
+pub struct ComparisonSummary {
     /// Over all recordings that count.
-    pub pairs: Vec<PairFigures>,
+    pub pairs: Vec<LanePairSummary>,
     pub recordings: Vec<RecordingComparison>,
     /// Of the wizard who was named.
-    pub training: Option<TrainingFigures>,
+    pub training: Option<TrainingSummary>,
 }
 
 /// Two lanes against each other.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PairFigures {
+pub struct LanePairSummary {
     pub of: String,
     pub with: String,
     /// Presses of the human within which communications match, and for which the estimate leaves out what was sent.
@@ -54,24 +54,24 @@ pub struct PairFigures {
 pub struct RecordingComparison {
     pub recording: String,
     #[serde(flatten)]
-    pub standing: Standing,
+    pub standing: ExclusionStatus,
     pub human_actions: u64,
-    pub lanes: Vec<LaneFigures>,
+    pub lanes: Vec<LaneSummary>,
     /// Of the wizard; null where nobody could send signals.
-    pub wizard: Option<WizardFigures>,
-    pub differences: Vec<DifferenceFigures>,
+    pub wizard: Option<WizardSummary>,
+    pub differences: Vec<UnmatchedSummary>,
 }
 
 /// What one side said.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LaneFigures {
+pub struct LaneSummary {
     pub name: String,
-    pub communications: Vec<SpokenFigures>,
+    pub communications: Vec<CommunicationSummary>,
 }
 
 /// A communication.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SpokenFigures {
+pub struct CommunicationSummary {
     /// Presses of the human before it.
     pub press: u32,
     /// On the trial's clock.
@@ -81,7 +81,7 @@ pub struct SpokenFigures {
 
 /// A communication without a match, and what was known then.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DifferenceFigures {
+pub struct UnmatchedSummary {
     /// As `--open` takes it, from 1.
     pub number: usize,
     /// In words.
@@ -94,15 +94,15 @@ pub struct DifferenceFigures {
     #[serde(skip)]
     by_sender: bool,
     #[serde(flatten)]
-    pub spoken: SpokenFigures,
-    pub knew: Option<KnownFigures>,
+    pub spoken: CommunicationSummary,
+    pub knew: Option<ContextSummary>,
 }
 
 /// What was known.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct KnownFigures {
+pub struct ContextSummary {
     /// Of every aspect, by the estimate that leaves out what was sent within the window.
-    pub beliefs: Vec<AspectKnown>,
+    pub beliefs: Vec<AspectContext>,
     /// What the assistant thought.
     pub advice: Option<Recommendation>,
     pub screen: Option<Screen>,
@@ -110,7 +110,7 @@ pub struct KnownFigures {
 
 /// An aspect of the belief.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct AspectKnown {
+pub struct AspectContext {
     pub aspect: String,
     pub truth: String,
     pub believes: String,
@@ -118,22 +118,22 @@ pub struct AspectKnown {
 }
 
 /// A recording that was followed to its end.
-pub struct Watched {
+pub struct ComparedRecording {
     pub recording: PathBuf,
-    pub watcher: Watcher,
-    pub standing: Standing,
-    pub comparison: Comparison,
-    pub wizard: Option<WizardFigures>,
+    pub watcher: ComparisonFollower,
+    pub standing: ExclusionStatus,
+    pub comparison: LaneComparison,
+    pub wizard: Option<WizardSummary>,
 }
 
-impl Watched {
+impl ComparedRecording {
     /// Follows a recording to its end.
     ///
     /// # Errors
     /// It cannot be read or applied.
-    pub fn new(recording: &Path, request: &Request) -> FileResult<Watched> {
+    pub fn new(recording: &Path, request: &CompareRequest) -> FileResult<ComparedRecording> {
         let mut log = LogReader::open(recording)?;
-        let mut watcher = Watcher::new(log.session(), request);
+        let mut watcher = ComparisonFollower::new(log.session(), request);
         let mut hands = WizardLog::default();
         while let Some(line) = log.next_line()? {
             let applied = watcher.apply(&line.stamped);
@@ -141,11 +141,11 @@ impl Watched {
             hands.note(&line.stamped, &watcher.follower.session);
         }
         watcher.finish();
-        let standing = Standing::of(&watcher.follower.session, &log)?;
+        let standing = ExclusionStatus::of(&watcher.follower.session, &log)?;
         let comparison = watcher.comparison(true);
         let is_wizards = log.header.session.trial.condition == Condition::Wizard;
         let wizard = is_wizards.then(|| hands.figures(&watcher.follower));
-        Ok(Watched { recording: recording.to_path_buf(), watcher, standing, comparison, wizard })
+        Ok(ComparedRecording { recording: recording.to_path_buf(), watcher, standing, comparison, wizard })
     }
 
     fn kitchen(&self) -> &Kitchen {
@@ -156,23 +156,27 @@ impl Watched {
 /// Follows recordings on all processors. `done` is called after each.
 ///
 /// # Errors
-/// Those of [`Watched::new`], or one is named twice.
-pub fn watch(recordings: &[PathBuf], request: &Request, done: impl Fn() + Sync) -> FileResult<Vec<Watched>> {
+/// Those of [`ComparedRecording::new`], or one is named twice.
+pub fn watch(
+    recordings: &[PathBuf],
+    request: &CompareRequest,
+    done: impl Fn() + Sync,
+) -> FileResult<Vec<ComparedRecording>> {
     each_once(recordings)?;
-    parallel::each(recordings, |recording| Watched::new(recording, request), done).into_iter().collect()
+    parallel::each(recordings, |recording| ComparedRecording::new(recording, request), done).into_iter().collect()
 }
 
-impl CompareFigures {
+impl ComparisonSummary {
     /// Sums recordings up. Of several, those that are excluded are left out of the pairs.
-    pub fn of(watched: &[Watched]) -> CompareFigures {
-        let counting: Vec<&Watched> =
+    pub fn of(watched: &[ComparedRecording]) -> ComparisonSummary {
+        let counting: Vec<&ComparedRecording> =
             watched.iter().filter(|one| watched.len() == 1 || one.standing.counts()).collect();
-        let mut pairs: Vec<(PairFigures, Tally)> = Vec::new();
+        let mut pairs: Vec<(LanePairSummary, Tally)> = Vec::new();
         for one in counting {
             let said: Vec<Vec<Said>> = one.comparison.lanes.iter().map(|lane| lane.said()).collect();
             for (a, b) in (0..said.len()).flat_map(|a| (a + 1..said.len()).map(move |b| (a, b))) {
                 let [of, with] = [a, b].map(|lane| one.comparison.lanes[lane].name.clone());
-                let is_it = |(pair, _): &&mut (PairFigures, Tally)| pair.of == of && pair.with == with;
+                let is_it = |(pair, _): &&mut (LanePairSummary, Tally)| pair.of == of && pair.with == with;
                 let window = one.comparison.window;
                 let add = |tally: &mut Tally| tally.add(&said[a], &said[b], one.watcher.presses(), window);
                 match pairs.iter_mut().find(is_it) {
@@ -181,13 +185,13 @@ impl CompareFigures {
                         let mut tally = Tally::default();
                         add(&mut tally);
                         let similarity = Similarity::default();
-                        pairs.push((PairFigures { of, with, window_actions: window, similarity }, tally));
+                        pairs.push((LanePairSummary { of, with, window_actions: window, similarity }, tally));
                     }
                 }
             }
         }
-        let pairs = pairs.into_iter().map(|(pair, tally)| PairFigures { similarity: tally.similarity(), ..pair });
-        CompareFigures {
+        let pairs = pairs.into_iter().map(|(pair, tally)| LanePairSummary { similarity: tally.similarity(), ..pair });
+        ComparisonSummary {
             pairs: pairs.collect(),
             recordings: watched.iter().map(RecordingComparison::of).collect(),
             training: None,
@@ -195,7 +199,7 @@ impl CompareFigures {
     }
 
     /// The same without what is about other concepts than these. Differences keep their numbers.
-    pub fn only(mut self, concepts: &[ConceptName]) -> CompareFigures {
+    pub fn only(mut self, concepts: &[ConceptName]) -> ComparisonSummary {
         let hidden = ConceptName::ALL.into_iter().filter(|concept| !concepts.contains(concept));
         let hidden: Vec<&str> = hidden.map(ConceptName::name).collect();
         let is_shown = |lane: &str| !hidden.contains(&lane);
@@ -209,11 +213,11 @@ impl CompareFigures {
 }
 
 impl RecordingComparison {
-    fn of(watched: &Watched) -> RecordingComparison {
+    fn of(watched: &ComparedRecording) -> RecordingComparison {
         let comparison = &watched.comparison;
-        let lanes = comparison.lanes.iter().map(|lane| LaneFigures {
+        let lanes = comparison.lanes.iter().map(|lane| LaneSummary {
             name: lane.name.clone(),
-            communications: lane.spoken.iter().map(SpokenFigures::of).collect(),
+            communications: lane.spoken.iter().map(CommunicationSummary::of).collect(),
         });
         let differences = comparison.differences.iter().enumerate();
         RecordingComparison {
@@ -222,52 +226,52 @@ impl RecordingComparison {
             human_actions: u64::from(watched.watcher.presses()),
             lanes: lanes.collect(),
             wizard: watched.wizard.clone(),
-            differences: differences.map(|(index, one)| DifferenceFigures::of(watched, index, one)).collect(),
+            differences: differences.map(|(index, one)| UnmatchedSummary::of(watched, index, one)).collect(),
         }
     }
 }
 
-impl SpokenFigures {
-    fn of(spoken: &crate::console::comparison::Spoken) -> SpokenFigures {
+impl CommunicationSummary {
+    fn of(spoken: &crate::console::comparison::Communication) -> CommunicationSummary {
         let (press, clock_s) = (spoken.said.press, spoken.said.clock.as_secs_f64());
-        SpokenFigures { press, clock_s, says: spoken.what.words() }
+        CommunicationSummary { press, clock_s, says: spoken.what.words() }
     }
 }
 
-impl DifferenceFigures {
+impl UnmatchedSummary {
     /// What matters most has the lowest: what concerns the first assistant, and what the sender said alone.
     fn rank(&self) -> (usize, bool, usize) {
         (self.pair, !self.by_sender, self.number)
     }
 
-    fn of(watched: &Watched, index: usize, difference: &Difference) -> DifferenceFigures {
+    fn of(watched: &ComparedRecording, index: usize, difference: &UnmatchedCommunication) -> UnmatchedSummary {
         let comparison = &watched.comparison;
         let spoken = comparison.spoken(difference);
         let knew = spoken.known.as_ref().map(|known| {
-            let held = |(index, held): (usize, &crate::console::belief::Held)| {
+            let held = |(index, held): (usize, &crate::console::belief::AspectSnapshot)| {
                 let aspect = &watched.kitchen().aspects[index];
                 let truth = watched.kitchen().true_value(known.state, AspectId(index as u8));
-                AspectKnown {
+                AspectContext {
                     aspect: aspect.name.clone(),
                     truth: aspect.labels[truth].clone(),
                     believes: aspect.labels[usize::from(held.believes)].clone(),
                     p_truth: (f64::from(held.p_truth) * 1e4).round() / 1e4,
                 }
             };
-            KnownFigures {
+            ContextSummary {
                 beliefs: known.held.iter().enumerate().map(held).collect(),
                 advice: comparison.advice(difference).cloned(),
                 screen: known.screen.clone(),
             }
         });
-        DifferenceFigures {
+        UnmatchedSummary {
             number: index + 1,
             headline: comparison.headline(difference),
             by: comparison.lanes[difference.lane].name.clone(),
             not_by: comparison.lanes[difference.not].name.clone(),
             pair: difference.lane.max(difference.not),
             by_sender: difference.lane == 0,
-            spoken: SpokenFigures::of(spoken),
+            spoken: CommunicationSummary::of(spoken),
             knew,
         }
     }
@@ -277,7 +281,7 @@ impl DifferenceFigures {
 ///
 /// # Errors
 /// There is no such difference, or more than one recording.
-pub fn open(watched: &[Watched], number: usize) -> FileResult<String> {
+pub fn open(watched: &[ComparedRecording], number: usize) -> FileResult<String> {
     let [one] = watched else {
         let found = format!("--open {number} with {} recordings", watched.len());
         let remedy = "one recording at a time".to_string();
@@ -296,13 +300,13 @@ pub fn open(watched: &[Watched], number: usize) -> FileResult<String> {
 }
 
 /// The figures for people, of what was compared by this request.
-pub fn describe(figures: &CompareFigures, request: &Request) -> String {
+pub fn describe(figures: &ComparisonSummary, request: &CompareRequest) -> String {
     let mut text = format!(
         "{:<24}{:>7}{:>8}{:>8}{:>11}{:>6}{:>7}{:>8}\n",
         "", "window", "recall", "chance", "precision", "F1", "kappa", "lead"
     );
     figures.pairs.iter().for_each(|pair| text += &describe_pair(pair));
-    text += &figures.training.as_ref().map_or(String::new(), TrainingFigures::describe);
+    text += &figures.training.as_ref().map_or(String::new(), TrainingSummary::describe);
     for one in &figures.recordings {
         let presses = count(one.human_actions, "press", "presses");
         text += &format!("\n{}: {presses} of the human\n", one.recording);
@@ -327,7 +331,7 @@ pub fn describe(figures: &CompareFigures, request: &Request) -> String {
 }
 
 /// The options that ask for the same comparison again.
-fn flags(request: &Request) -> String {
+fn flags(request: &CompareRequest) -> String {
     let mut flags = String::new();
     if !request.with.is_empty() {
         let names: Vec<&str> = request.with.iter().map(|concept| concept.name()).collect();
@@ -340,9 +344,9 @@ fn flags(request: &Request) -> String {
 }
 
 /// Differences by who said what the other did not: the session's own concept first. Their numbers go by time.
-fn describe_differences(differences: &[DifferenceFigures]) -> String {
-    let mut groups: Vec<(String, Vec<&DifferenceFigures>)> = Vec::new();
-    let mut sorted: Vec<&DifferenceFigures> = differences.iter().collect();
+fn describe_differences(differences: &[UnmatchedSummary]) -> String {
+    let mut groups: Vec<(String, Vec<&UnmatchedSummary>)> = Vec::new();
+    let mut sorted: Vec<&UnmatchedSummary> = differences.iter().collect();
     sorted.sort_by_key(|one| one.rank());
     for one in sorted {
         let who = format!("only {}, not {}", one.by, one.not_by);
@@ -369,7 +373,7 @@ fn describe_differences(differences: &[DifferenceFigures]) -> String {
     text
 }
 
-fn describe_pair(pair: &PairFigures) -> String {
+fn describe_pair(pair: &LanePairSummary) -> String {
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let found = &pair.similarity;
     let lead = found.median_lead_s.map_or("-".to_string(), |lead| format!("{lead:+.1} s"));

@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use super::engine::Engine;
 use super::error::RunError;
-use super::figures::{ConditionFigures, SimulationFigures, SimulationSums, TrialFigures};
-use super::parallel::Workers;
+use super::figures::{ConditionSummary, SimulationSummary, SimulationSums, TrialSummary};
+use super::parallel::WorkerPool;
 use super::replay::Replay;
 use super::{headless, kitchen, options};
 use crate::base::words::count;
@@ -22,7 +22,7 @@ use crate::session::{Header, Stamped};
 
 /// What to simulate.
 #[derive(Clone, Debug)]
-pub struct Simulation {
+pub struct SimulationRequest {
     pub files: SessionFiles,
     pub trials: u64,
     /// Which of the trials.
@@ -31,7 +31,7 @@ pub struct Simulation {
     pub out: PathBuf,
 }
 
-impl Simulation {
+impl SimulationRequest {
     /// The trials of the shard, in their order.
     pub fn own_trials(&self) -> impl Iterator<Item = u64> + Clone {
         let Shard { number, of } = self.shard;
@@ -86,7 +86,7 @@ pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
 ///
 /// # Errors
 /// A recording that could not be written, another one where it would be, or one with a broken file about its exclusion.
-pub fn simulate(simulation: &Simulation, done: impl Fn() + Sync) -> Result<SimulationFigures, RunError> {
+pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Result<SimulationSummary, RunError> {
     let mut sums = SimulationSums::default();
     let began = Instant::now();
     let plan_lengths = kitchen::plan_lengths(
@@ -105,14 +105,14 @@ pub fn simulate(simulation: &Simulation, done: impl Fn() + Sync) -> Result<Simul
         Ok(())
     })?;
     let wall_s = began.elapsed().as_secs_f64();
-    Ok(SimulationFigures { excluded, found, recordings, wall_s, ..sums.figures() })
+    Ok(SimulationSummary { excluded, found, recordings, wall_s, ..sums.figures() })
 }
 
 /// A trial that was simulated.
-pub struct Simulated {
+pub struct SimulatedTrial {
     pub folder: PathBuf,
     pub condition: Condition,
-    pub figures: TrialFigures,
+    pub figures: TrialSummary,
     /// It was there already.
     pub found: bool,
 }
@@ -122,9 +122,9 @@ pub struct Simulated {
 /// # Errors
 /// Those of [`simulate`], and the first of `take`.
 pub fn each_trial(
-    simulation: &Simulation,
+    simulation: &SimulationRequest,
     done: impl Fn() + Sync,
-    mut take: impl FnMut(Simulated) -> Result<(), RunError>,
+    mut take: impl FnMut(SimulatedTrial) -> Result<(), RunError>,
 ) -> Result<(), RunError> {
     // Before the first trial, so that none is simulated in vain.
     for trial in simulation.own_trials() {
@@ -133,7 +133,7 @@ pub fn each_trial(
     }
     let kitchen = Arc::new(simulation.files.kitchen.kitchen.clone());
     let cost = CostToGo::new(kitchen.clone());
-    let workers = Workers::new(|| Some(cost.clone()));
+    let workers = WorkerPool::new(|| Some(cost.clone()));
     let mut trials = simulation.own_trials();
     loop {
         let block: Vec<u64> = trials.by_ref().take(BLOCK).collect();
@@ -169,7 +169,7 @@ pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>,
         .map_err(|error| Box::new(FileError::of(Path::new("--seconds"), error.found, error.remedy.to_string())))?;
     // What differs in length is another recording.
     let out = out.join(format!("{seconds}s"));
-    let figures = simulate(&Simulation { files, trials: 1, shard: Shard::WHOLE, out }, || ())?;
+    let figures = simulate(&SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out }, || ())?;
     Ok(figures.recordings.iter().map(PathBuf::from).collect())
 }
 
@@ -181,7 +181,7 @@ fn folder_of_trial(out: &Path, spec: &SessionSpec) -> PathBuf {
 }
 
 /// The header of a trial: of a plan the trials participant by participant, else each of a participant of its own.
-fn header_of_trial(simulation: &Simulation, trial: u64) -> Header {
+fn header_of_trial(simulation: &SimulationRequest, trial: u64) -> Header {
     let files = &simulation.files.kitchen;
     let (spec, trial) = match simulation.files.study() {
         None => (settings_of_trial(&simulation.files.spec, trial), trial),
@@ -194,11 +194,11 @@ fn header_of_trial(simulation: &Simulation, trial: u64) -> Header {
 }
 
 fn simulate_trial(
-    simulation: &Simulation,
+    simulation: &SimulationRequest,
     kitchen: &Arc<Kitchen>,
     trial: u64,
     cost: CostToGo,
-) -> Result<(Simulated, CostToGo), RunError> {
+) -> Result<(SimulatedTrial, CostToGo), RunError> {
     let header = header_of_trial(simulation, trial);
     let condition = header.session.trial.condition;
     let folder = folder_of_trial(&simulation.out, &header.session);
@@ -217,12 +217,12 @@ fn simulate_trial(
             engine.into_follower()
         }
     };
-    let figures = TrialFigures::of(&follower);
-    Ok((Simulated { folder, condition, figures, found }, follower.cost))
+    let figures = TrialSummary::of(&follower);
+    Ok((SimulatedTrial { folder, condition, figures, found }, follower.cost))
 }
 
 /// The figures for people.
-pub fn describe(figures: &SimulationFigures) -> String {
+pub fn describe(figures: &SimulationSummary) -> String {
     let each = match (figures.presses_per_order, figures.optimal_presses_per_order) {
         (Some(presses), Some(best)) => format!(", {presses:.1} presses each in the median (at best {best:.1})"),
         _ => String::new(),
@@ -267,7 +267,7 @@ pub fn describe(figures: &SimulationFigures) -> String {
     )
 }
 
-fn describe_condition(one: &ConditionFigures) -> String {
+fn describe_condition(one: &ConditionSummary) -> String {
     let who = match one.condition {
         Condition::None => "unassisted",
         Condition::Wizard => "with the wizard",

@@ -24,29 +24,31 @@ pub fn aborted(recording: &Path) -> FileResult<Option<String>> {
 
 /// What was said about a trial. An analysis leaves out what does not count.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Standing {
+pub struct ExclusionStatus {
     /// Why it was aborted; null: it was not.
     pub aborted: Option<String>,
     /// Why it is excluded; null: it is not.
     pub excluded: Option<String>,
 }
 
-impl Standing {
+impl ExclusionStatus {
     /// That of a recording that was read to its end. What was said later, beside the log, holds before what is in it.
     ///
     /// # Errors
     /// The file beside the log is broken.
-    pub fn of(session: &Session, log: &LogReader) -> FileResult<Standing> {
-        let at_console = Standing::at_console(session);
+    pub fn of(session: &Session, log: &LogReader) -> FileResult<ExclusionStatus> {
+        let at_console = ExclusionStatus::at_console(session);
         Ok(match ruling(log.folder())? {
-            Some(Ruling { excluded, reason, .. }) => Standing { excluded: excluded.then_some(reason), ..at_console },
+            Some(Ruling { excluded, reason, .. }) => {
+                ExclusionStatus { excluded: excluded.then_some(reason), ..at_console }
+            }
             None => at_console,
         })
     }
 
     /// As it was said at the console.
-    pub fn at_console(session: &Session) -> Standing {
-        Standing { aborted: session.aborted.clone(), excluded: session.excluded.clone() }
+    pub fn at_console(session: &Session) -> ExclusionStatus {
+        ExclusionStatus { aborted: session.aborted.clone(), excluded: session.excluded.clone() }
     }
 
     /// Whether the analysis takes it.

@@ -8,9 +8,9 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::error::RunError;
-use super::figures::{SimulationFigures, SimulationSums, TrialFigures};
+use super::figures::{SimulationSummary, SimulationSums, TrialSummary};
 use super::kitchen::plan_lengths;
-use super::simulate::{Shard, Simulation, each_trial};
+use super::simulate::{Shard, SimulationRequest, each_trial};
 use crate::communication::concept::ConceptName;
 use crate::communication::settings::Shadow;
 use crate::edge::files::FileError;
@@ -55,17 +55,17 @@ const KNOBS: [(&str, Knob); 7] = [
 
 /// One setting with its values: `cost=0.5,1,1.5`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
+pub struct SweepAxis {
     name: &'static str,
     knob: Knob,
     /// As they were typed; each is right for the knob.
     values: Vec<String>,
 }
 
-impl FromStr for Axis {
+impl FromStr for SweepAxis {
     type Err = String;
 
-    fn from_str(text: &str) -> Result<Axis, String> {
+    fn from_str(text: &str) -> Result<SweepAxis, String> {
         let names: Vec<&str> = KNOBS.iter().map(|(name, _)| *name).collect();
         let right = || format!("SETTING=VALUE,VALUE,…, with one of {}", names.join(", "));
         let (name, values) = text.split_once('=').ok_or_else(right)?;
@@ -81,7 +81,7 @@ impl FromStr for Axis {
             return Err(format!("{name}={} twice: each value once", values[index]));
         }
         match values.iter().find(|value| !is_right(value)) {
-            None => Ok(Axis { name, knob, values }),
+            None => Ok(SweepAxis { name, knob, values }),
             Some(wrong) => {
                 let right = match knob {
                     Knob::Gaze => "on and off",
@@ -94,7 +94,7 @@ impl FromStr for Axis {
     }
 }
 
-impl Axis {
+impl SweepAxis {
     /// Sets the value; it was looked at when it was read.
     fn set(&self, spec: &mut SessionSpec, value: &str) {
         let number = value.parse().unwrap_or_default();
@@ -123,7 +123,7 @@ type Counts = Vec<[u64; 2]>;
 
 /// One line of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct SweepRow {
     /// What was set, by name; nothing in the line without signals.
     pub settings: serde_json::Map<String, serde_json::Value>,
     pub trials: u64,
@@ -139,14 +139,14 @@ pub struct Row {
 
 /// The table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SweepFigures {
+pub struct SweepSummary {
     /// The first is without signals.
-    pub rows: Vec<Row>,
+    pub rows: Vec<SweepRow>,
     pub table: PathBuf,
 }
 
 /// How many trials a sweep takes in all.
-pub fn trials(simulation: &Simulation, axes: &[Axis]) -> u64 {
+pub fn trials(simulation: &SimulationRequest, axes: &[SweepAxis]) -> u64 {
     let cells: usize = axes.iter().map(|axis| axis.values.len()).product();
     (cells as u64 + 1) * simulation.own_trials().count() as u64
 }
@@ -156,7 +156,11 @@ pub fn trials(simulation: &Simulation, axes: &[Axis]) -> u64 {
 ///
 /// # Errors
 /// Those of simulations, too many combinations, or a value that cannot be.
-pub fn sweep(simulation: &Simulation, axes: &[Axis], done: impl Fn() + Sync) -> Result<SweepFigures, RunError> {
+pub fn sweep(
+    simulation: &SimulationRequest,
+    axes: &[SweepAxis],
+    done: impl Fn() + Sync,
+) -> Result<SweepSummary, RunError> {
     let cells = grid(axes)?;
     check_axes(&simulation.files.spec, axes)?;
     let specs = cells.iter().map(|cell| spec_of(&simulation.files.spec, axes, cell)).collect::<Result<Vec<_>, _>>()?;
@@ -178,7 +182,7 @@ pub fn sweep(simulation: &Simulation, axes: &[Axis], done: impl Fn() + Sync) -> 
         reason,
         saved: None,
     })?;
-    Ok(SweepFigures { rows, table })
+    Ok(SweepSummary { rows, table })
 }
 
 /// Parts of the trials go into tables of their own; the whole one is made of the recordings of all.
@@ -190,7 +194,7 @@ fn table_name(shard: Shard) -> String {
 }
 
 /// Every combination of the values, the last axis the quickest.
-fn grid(axes: &[Axis]) -> Result<Vec<Cell>, RunError> {
+fn grid(axes: &[SweepAxis]) -> Result<Vec<Cell>, RunError> {
     let wrong =
         |found: String, remedy: String| Err(Box::new(FileError::of(Path::new("--sweep"), found, remedy)).into());
     let twice = axes.iter().enumerate().find(|(index, axis)| axes[..*index].iter().any(|one| one.name == axis.name));
@@ -214,7 +218,7 @@ fn grid(axes: &[Axis]) -> Result<Vec<Cell>, RunError> {
 }
 
 /// Settings of another concept than the one that decides change nothing.
-fn check_axes(spec: &SessionSpec, axes: &[Axis]) -> Result<(), RunError> {
+fn check_axes(spec: &SessionSpec, axes: &[SweepAxis]) -> Result<(), RunError> {
     let decides = match spec.trial.condition {
         Condition::Assistant => Some(spec.assistant.concept),
         Condition::Wizard | Condition::None => None,
@@ -234,7 +238,7 @@ fn check_axes(spec: &SessionSpec, axes: &[Axis]) -> Result<(), RunError> {
     Ok(())
 }
 
-fn spec_of(spec: &SessionSpec, axes: &[Axis], cell: &Cell) -> Result<SessionSpec, RunError> {
+fn spec_of(spec: &SessionSpec, axes: &[SweepAxis], cell: &Cell) -> Result<SessionSpec, RunError> {
     let mut spec = spec.clone();
     for (axis, (_, value)) in axes.iter().zip(cell) {
         axis.set(&mut spec, value);
@@ -254,7 +258,7 @@ fn folder_of(cell: &Cell) -> String {
 }
 
 /// The trials of one cell, and the figures of all of them.
-fn of_cell(simulation: &Simulation, done: &(impl Fn() + Sync)) -> Result<(Counts, SimulationFigures), RunError> {
+fn of_cell(simulation: &SimulationRequest, done: &(impl Fn() + Sync)) -> Result<(Counts, SimulationSummary), RunError> {
     let mut simulation = simulation.clone();
     // The assistant advises where it acts; advice beside a trial without signals would only take time.
     simulation.files.spec.assistant.shadow = Shadow::Off;
@@ -262,7 +266,7 @@ fn of_cell(simulation: &Simulation, done: &(impl Fn() + Sync)) -> Result<(Counts
     let plan_lengths = plan_lengths(&kitchen, &mut CostToGo::new(kitchen.clone()));
     let (mut trials, mut sums) = (Counts::new(), SimulationSums::default());
     each_trial(&simulation, done, |trial| {
-        let TrialFigures { errors, human_actions, .. } = trial.figures;
+        let TrialSummary { errors, human_actions, .. } = trial.figures;
         trials.push([errors, human_actions]);
         sums.add(trial.condition, &trial.figures, &plan_lengths);
         Ok(())
@@ -271,7 +275,7 @@ fn of_cell(simulation: &Simulation, done: &(impl Fn() + Sync)) -> Result<(Counts
 }
 
 /// A line of the table; `paired`: errors and presses of each trial without signals, and with them.
-fn row(cell: &Cell, figures: &SimulationFigures, paired: Option<[&Counts; 2]>) -> Row {
+fn row(cell: &Cell, figures: &SimulationSummary, paired: Option<[&Counts; 2]>) -> SweepRow {
     let per_100 = |number: u64, presses: u64| 100.0 * number as f64 / presses.max(1) as f64;
     let rate = |[errors, presses]: [u64; 2]| per_100(errors, presses);
     let spared: Vec<f64> = paired.map_or(Vec::new(), |[before, after]| {
@@ -280,7 +284,7 @@ fn row(cell: &Cell, figures: &SimulationFigures, paired: Option<[&Counts; 2]>) -
     let count = spared.len() as f64;
     let mean = (count > 0.0).then(|| spared.iter().sum::<f64>() / count);
     let squares = mean.map(|mean| spared.iter().map(|one| (one - mean) * (one - mean)).sum::<f64>());
-    Row {
+    SweepRow {
         settings: cell.iter().map(|(name, value)| (name.to_string(), value.as_str().into())).collect(),
         trials: figures.trials,
         errors_per_100: per_100(figures.errors, figures.human_actions),
@@ -293,7 +297,7 @@ fn row(cell: &Cell, figures: &SimulationFigures, paired: Option<[&Counts; 2]>) -
 }
 
 /// What stands in a column of numbers; nothing where it is not known.
-fn numbers(row: &Row) -> [String; 6] {
+fn numbers(row: &SweepRow) -> [String; 6] {
     let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.4}"));
     [
         number(Some(row.errors_per_100)),
@@ -305,11 +309,11 @@ fn numbers(row: &Row) -> [String; 6] {
     ]
 }
 
-fn setting(row: &Row, axis: &Axis) -> String {
+fn setting(row: &SweepRow, axis: &SweepAxis) -> String {
     row.settings.get(axis.name).and_then(|value| value.as_str()).unwrap_or_default().to_string()
 }
 
-fn write_table(path: &Path, axes: &[Axis], rows: &[Row]) -> std::io::Result<()> {
+fn write_table(path: &Path, axes: &[SweepAxis], rows: &[SweepRow]) -> std::io::Result<()> {
     let mut table = csv::Writer::from_path(path)?;
     let head = ["errors_per_100", "signals_per_100", "spared_per_100", "spared_error", "mean_sequence_length"];
     let names = ["condition", "trials"].into_iter().chain(axes.iter().map(|axis| axis.name));
@@ -324,7 +328,7 @@ fn write_table(path: &Path, axes: &[Axis], rows: &[Row]) -> std::io::Result<()> 
 }
 
 /// The table for people.
-pub fn describe(figures: &SweepFigures, axes: &[Axis]) -> String {
+pub fn describe(figures: &SweepSummary, axes: &[SweepAxis]) -> String {
     let settings: String = axes.iter().map(|axis| format!("{:>10}", axis.name)).collect();
     let mut text = format!(
         "{settings}{:>12}{:>12}{:>18}{:>10}{:>15}\n",

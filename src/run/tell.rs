@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::figures::{BeliefFigures, TrialFigures};
+use super::figures::{BeliefErrorSummary, TrialSummary};
 use super::follower::Follower;
-use super::gaze_figures::{self, GazeFigures};
-use super::standing::Standing;
+use super::gaze_figures::{self, GazeSummary};
+use super::standing::ExclusionStatus;
 use crate::base::words::count;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
@@ -26,36 +26,36 @@ use crate::session::{Event, Phase, Stamped};
 
 /// What `tomcom replay RECORDING` prints as figures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RecordingFigures {
+pub struct RecordingSummary {
     pub events: u64,
     /// The recording ends without its end event, and nobody writes on.
     pub cut: bool,
     /// Its session still runs: these are the figures up to now.
     pub running: bool,
     #[serde(flatten)]
-    pub standing: Standing,
+    pub standing: ExclusionStatus,
     pub human_actions: u64,
     pub robot_actions: u64,
     pub errors: u64,
     pub races: u64,
     #[serde(flatten)]
-    pub beliefs: BeliefFigures,
+    pub beliefs: BeliefErrorSummary,
     pub signals: u64,
     /// The wizard saw what assistants would say, beside what was sent.
     pub unblinded: bool,
     pub orders_served: u64,
     /// The trial's length by its own clock, in seconds.
     pub trial_s: f64,
-    pub gaze: GazeFigures,
+    pub gaze: GazeSummary,
     /// What was wrong with the gaze, in words.
     #[serde(skip)]
     gaze_faults: Option<String>,
 }
 
-impl RecordingFigures {
-    pub fn of(follower: &Follower, events: u64, ending: Ending, standing: Standing) -> RecordingFigures {
-        let trial = TrialFigures::of(follower);
-        RecordingFigures {
+impl RecordingSummary {
+    pub fn of(follower: &Follower, events: u64, ending: Ending, standing: ExclusionStatus) -> RecordingSummary {
+        let trial = TrialSummary::of(follower);
+        RecordingSummary {
             events,
             cut: ending == Ending::Cut,
             running: ending == Ending::Running,
@@ -64,12 +64,12 @@ impl RecordingFigures {
             robot_actions: trial.robot_actions,
             errors: trial.errors,
             races: trial.races,
-            beliefs: BeliefFigures::of([&trial]),
+            beliefs: BeliefErrorSummary::of([&trial]),
             signals: trial.signals,
             unblinded: follower.session.unblinded,
             orders_served: trial.served.len() as u64,
             trial_s: trial.seconds,
-            gaze: GazeFigures::of(&follower.session),
+            gaze: GazeSummary::of(&follower.session),
             gaze_faults: gaze_figures::describe(&follower.session),
         }
     }

@@ -6,20 +6,20 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::advisor::Advisor;
-use super::follower::Timing;
+use super::follower::InferenceTiming;
 use super::replay::Replay;
 use crate::edge::files::FileResult;
 use crate::kitchen::cost_to_go::CostToGo;
 
 /// What `--timing` prints, in microseconds. Null is what the recording does not have.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TimingFigures {
-    pub gaze_us: Option<Spread>,
+pub struct TimingSummary {
+    pub gaze_us: Option<DurationPercentiles>,
     /// A press of the human or of the robot.
-    pub action_us: Option<Spread>,
-    pub plan_us: Option<Spread>,
+    pub action_us: Option<DurationPercentiles>,
+    pub plan_us: Option<DurationPercentiles>,
     /// Inference and planning.
-    pub step_us: Option<Spread>,
+    pub step_us: Option<DurationPercentiles>,
     /// The length of the recording by session time, and how long its replay took, in seconds.
     pub session_s: f64,
     pub wall_s: f64,
@@ -27,21 +27,21 @@ pub struct TimingFigures {
 
 /// Times of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Spread {
+pub struct DurationPercentiles {
     pub n: u64,
     pub p50: f64,
     pub p99: f64,
     pub max: f64,
 }
 
-impl Spread {
+impl DurationPercentiles {
     /// Of times in nanoseconds, in microseconds; none of nothing. The percentiles are times that occurred (nearest rank).
-    pub fn of(mut times_ns: Vec<u64>) -> Option<Spread> {
+    pub fn of(mut times_ns: Vec<u64>) -> Option<DurationPercentiles> {
         times_ns.sort_unstable();
         let (&max, n) = (times_ns.last()?, times_ns.len());
         let us = |ns: u64| ns as f64 / 1000.0;
         let rank = |share: f64| us(times_ns[((share * n as f64).ceil() as usize).clamp(1, n) - 1]);
-        Some(Spread { n: n as u64, p50: rank(0.5), p99: rank(0.99), max: us(max) })
+        Some(DurationPercentiles { n: n as u64, p50: rank(0.5), p99: rank(0.99), max: us(max) })
     }
 }
 
@@ -49,9 +49,9 @@ impl Spread {
 ///
 /// # Errors
 /// Those of [`Replay::run`].
-pub fn measure(recording: &Path) -> FileResult<TimingFigures> {
+pub fn measure(recording: &Path) -> FileResult<TimingSummary> {
     let mut replay = Replay::open(recording)?;
-    replay.follower.timing = Some(Timing::default());
+    replay.follower.timing = Some(InferenceTiming::default());
     let session = replay.session();
     let mut advisor = Advisor::new(session, CostToGo::new(session.kitchen.clone()));
     let began = Instant::now();
@@ -66,20 +66,20 @@ pub fn measure(recording: &Path) -> FileResult<TimingFigures> {
     }
     let wall_s = began.elapsed().as_secs_f64();
     let timing = replay.follower.timing.take().unwrap_or_default();
-    Ok(TimingFigures {
-        gaze_us: Spread::of(timing.gaze_ns),
-        action_us: Spread::of(timing.action_ns),
-        plan_us: Spread::of(plan_ns),
-        step_us: Spread::of(step_ns),
+    Ok(TimingSummary {
+        gaze_us: DurationPercentiles::of(timing.gaze_ns),
+        action_us: DurationPercentiles::of(timing.action_ns),
+        plan_us: DurationPercentiles::of(plan_ns),
+        step_us: DurationPercentiles::of(step_ns),
         session_s: replay.session().time.as_secs_f64(),
         wall_s,
     })
 }
 
 /// The figures for people.
-pub fn describe(figures: &TimingFigures) -> String {
-    let line = |what: &str, spread: Option<Spread>| match spread {
-        Some(Spread { n, p50, p99, max }) => {
+pub fn describe(figures: &TimingSummary) -> String {
+    let line = |what: &str, spread: Option<DurationPercentiles>| match spread {
+        Some(DurationPercentiles { n, p50, p99, max }) => {
             format!("{what:<34}{n:>8} times, median {p50:>9.2} us, 99 % {p99:>9.2} us, most {max:>9.2} us\n")
         }
         None => format!("{what:<34}       -\n"),

@@ -8,18 +8,18 @@ use std::time::Duration;
 
 use tokio::time::{Instant, sleep_until};
 
-use super::film::Film;
+use super::film::SeekableReplay;
 use super::lesson_report;
 use super::review::ReviewError;
 use super::wizard::spells;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::recommendation::aspects_told;
-use crate::console::lesson::Feedback;
-use crate::console::model::{Dialog, Level};
+use crate::console::lesson::TrainingFeedback;
+use crate::console::model::{Dialog, NoticeLevel};
 use crate::console::playback::{Playback, SPEEDS};
 use crate::console::words;
-use crate::console::{self, Command, Keys, Message, Model, update};
+use crate::console::{self, ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::edge::clock::WallTime;
 use crate::edge::files::{FileError, FileResult, key_map};
 use crate::edge::terminal::{Hands, Screen, asked_to_end, theme};
@@ -36,7 +36,7 @@ const FRAME: Duration = Duration::from_millis(33);
 
 /// What is trained.
 #[derive(Clone, Debug)]
-pub struct Lesson {
+pub struct TrainingRequest {
     /// Recordings of simulated participants without signals.
     pub recordings: Vec<PathBuf>,
     /// The wizard's code.
@@ -52,9 +52,10 @@ pub struct Lesson {
 ///
 /// # Errors
 /// A recording that cannot be trained with, no terminal, or no place for the result.
-pub fn train(lesson: &Lesson) -> Result<(TrainingRecord, PathBuf), ReviewError> {
+pub fn train(lesson: &TrainingRequest) -> Result<(TrainingRecord, PathBuf), ReviewError> {
     let before = training::read(&lesson.out, &lesson.wizard)?;
-    let films: Vec<(Film, Vec<Spell>)> = lesson.recordings.iter().map(|one| open(one)).collect::<FileResult<_>>()?;
+    let films: Vec<(SeekableReplay, Vec<Spell>)> =
+        lesson.recordings.iter().map(|one| open(one)).collect::<FileResult<_>>()?;
     let at = WallTime::now().rfc3339();
     let began = Instant::now();
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(ReviewError::Terminal)?;
@@ -70,8 +71,8 @@ pub fn train(lesson: &Lesson) -> Result<(TrainingRecord, PathBuf), ReviewError> 
 }
 
 /// A recording with what was believed wrong in it.
-fn open(recording: &Path) -> FileResult<(Film, Vec<Spell>)> {
-    let mut film = Film::open(recording)?;
+fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<Spell>)> {
+    let mut film = SeekableReplay::open(recording)?;
     let unfit = |found: &str| {
         let remedy = "a recording of a simulated participant without signals (tomcom simulate SESSION)".to_string();
         FileError::of(recording, found.to_string(), remedy)
@@ -89,8 +90,8 @@ fn open(recording: &Path) -> FileResult<(Film, Vec<Spell>)> {
 
 /// Watches one recording after another, until all are over or somebody quits.
 async fn watch(
-    lesson: &Lesson,
-    films: Vec<(Film, Vec<Spell>)>,
+    lesson: &TrainingRequest,
+    films: Vec<(SeekableReplay, Vec<Spell>)>,
     before: &[TrainingRecord],
 ) -> Result<Vec<JudgedRecording>, ReviewError> {
     let mut screen = Screen::take().map_err(ReviewError::Terminal)?;
@@ -124,7 +125,7 @@ async fn watch(
 }
 
 /// What a recording is called in the records: those that were simulated for the training by their length, too.
-fn name_of(recording: &Path, lesson: &Lesson) -> String {
+fn name_of(recording: &Path, lesson: &TrainingRequest) -> String {
     let simulated = recording.strip_prefix(lesson.out.join("recordings")).ok();
     let name = simulated.or(recording.file_name().map(Path::new)).unwrap_or(recording);
     name.display().to_string()
@@ -132,13 +133,13 @@ fn name_of(recording: &Path, lesson: &Lesson) -> String {
 
 /// A recording that is watched.
 struct Class {
-    film: Film,
+    film: SeekableReplay,
     name: String,
     spells: Vec<Spell>,
     /// What is known of each of them.
     beliefs: Vec<JudgedBelief>,
     criterion: TrainingCriterion,
-    model: Model,
+    model: ConsoleModel,
     sent: Vec<Sent>,
     signals: Vec<JudgedSignal>,
     /// What came of it was shown.
@@ -152,19 +153,20 @@ struct Class {
 
 impl Class {
     fn new(
-        film: Film,
+        film: SeekableReplay,
         spells: Vec<Spell>,
         name: String,
-        lesson: &Lesson,
+        lesson: &TrainingRequest,
         screen: &Screen,
     ) -> Result<Class, ReviewError> {
         let spec = &film.session.spec;
-        let keys = Keys::training(&film.session.kitchen, spec, &key_map(film.replay.log().header.keys.as_ref())?)?;
+        let keys =
+            KeyBindings::training(&film.session.kitchen, spec, &key_map(film.replay.log().header.keys.as_ref())?)?;
         let size = Screen::size().map_err(ReviewError::Terminal)?;
-        let mut model = Model::new(keys, theme(&spec.console, screen.ground), size);
+        let mut model = ConsoleModel::new(keys, theme(&spec.console, screen.ground), size);
         model.playback = Some(Playback { speed: lesson.speed, ..Playback::new(name.clone()) });
         model.lesson =
-            Some(console::lesson::Lesson { task: lesson_report::task(&lesson.criterion), ..Default::default() });
+            Some(console::lesson::TrainingPanel { task: lesson_report::task(&lesson.criterion), ..Default::default() });
         let beliefs = spells.iter().map(|spell| lesson_report::unheard(&film.session, spell)).collect();
         let (now, told_missed) = (Instant::now(), vec![false; spells.len()]);
         let mut class = Class {
@@ -207,13 +209,15 @@ impl Class {
     }
 
     /// Takes a message of the terminal; whether it goes on.
-    fn take(&mut self, message: Message) -> bool {
+    fn take(&mut self, message: ConsoleMessage) -> bool {
         self.tick();
         self.model.now = self.now;
         match update(&mut self.model, &self.film.session, message) {
-            Some(Command::Quit) => return false,
-            Some(Command::Input(shown @ Event::SignalShown { .. })) => self.signal(shown),
-            Some(Command::Start(_) | Command::Input(Event::TrialPaused | Event::TrialResumed)) => self.pause(),
+            Some(ConsoleCommand::Quit) => return false,
+            Some(ConsoleCommand::Input(shown @ Event::SignalShown { .. })) => self.signal(shown),
+            Some(ConsoleCommand::Start(_) | ConsoleCommand::Input(Event::TrialPaused | Event::TrialResumed)) => {
+                self.pause()
+            }
             _ => {}
         }
         true
@@ -224,7 +228,7 @@ impl Class {
         if let Some(playback) = &mut self.model.playback {
             playback.playing = !playback.playing;
             let text = if playback.playing { "it runs" } else { "it stands" };
-            self.model.say(Level::Done, text);
+            self.model.say(NoticeLevel::Done, text);
             if let Some(lesson) = &mut self.model.lesson {
                 lesson.begun = true;
             }
@@ -232,10 +236,10 @@ impl Class {
     }
 
     /// Says what a signal was, or what was missed; it can be looked back on.
-    fn tell(&mut self, level: Level, text: String) {
+    fn tell(&mut self, level: NoticeLevel, text: String) {
         let clock = self.film.session.trial_clock(self.now);
         if let Some(lesson) = &mut self.model.lesson {
-            lesson.feedback.push(Feedback { clock, level, text });
+            lesson.feedback.push(TrainingFeedback { clock, level, text });
         }
         self.model.notice = None;
     }
@@ -260,14 +264,14 @@ impl Class {
         self.signals.push(JudgedSignal { press, clock_ns: clock, signal, worth: worth.name().to_string() });
         self.show(shown);
         let (level, text) = match worth {
-            Worth::Hit { latency_s, .. } => (Level::Done, format!("hit: believed wrong for {latency_s:.1} s")),
-            Worth::Again => (Level::Done, "told already".to_string()),
-            Worth::Harmless => (Level::Done, "believed wrong, but it leads to no error".to_string()),
-            Worth::Late => (Level::Refused, "late: it was seen to be right a moment ago".to_string()),
+            Worth::Hit { latency_s, .. } => (NoticeLevel::Done, format!("hit: believed wrong for {latency_s:.1} s")),
+            Worth::Again => (NoticeLevel::Done, "told already".to_string()),
+            Worth::Harmless => (NoticeLevel::Done, "believed wrong, but it leads to no error".to_string()),
+            Worth::Late => (NoticeLevel::Refused, "late: it was seen to be right a moment ago".to_string()),
             Worth::WrongTarget => {
-                (Level::Refused, format!("wrong: that is known; it is about {}", self.wrong_now(clock)))
+                (NoticeLevel::Refused, format!("wrong: that is known; it is about {}", self.wrong_now(clock)))
             }
-            Worth::Needless => (Level::Refused, "wrong: nothing is believed wrong".to_string()),
+            Worth::Needless => (NoticeLevel::Refused, "wrong: nothing is believed wrong".to_string()),
         };
         self.tell(level, format!("{words}: {text}"));
     }
@@ -334,7 +338,7 @@ impl Class {
                     lesson_report::about(belief),
                     lesson_report::right(belief)
                 );
-                self.tell(Level::Refused, text);
+                self.tell(NoticeLevel::Refused, text);
             }
         }
     }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::advisor::{Advisor, Question};
+use super::advisor::{AdviceRequest, Advisor};
 use super::engine::Engine;
 use super::follower::Follower;
 use crate::base::words::count;
@@ -30,12 +30,12 @@ pub struct Verification {
     pub running: bool,
     /// Where recording and re-run differ first.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub difference: Option<Difference>,
+    pub difference: Option<VerificationDifference>,
 }
 
 /// The first difference between a recording and its re-run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Difference {
+pub struct VerificationDifference {
     /// Of the recorded event.
     pub seq: u64,
     /// The log, of several parts that which it is in.
@@ -52,7 +52,7 @@ pub struct Difference {
 /// # Errors
 /// A recording that cannot be read, or whose events cannot be applied.
 pub fn verify(recording: &Path) -> FileResult<Verification> {
-    let Rerun { log, again, replayed, difference } = Rerun::of(LogReader::open(recording)?)?;
+    let RerunRecording { log, again, replayed, difference } = RerunRecording::of(LogReader::open(recording)?)?;
     let same_end = difference.is_some() || log.is_cut() || again.ends_like(&replayed);
     let verified = difference.is_none() && same_end;
     let (cut, running) = (log.is_cut(), log.ending() == Ending::Running);
@@ -60,28 +60,28 @@ pub fn verify(recording: &Path) -> FileResult<Verification> {
 }
 
 /// A recording that was run again to where it ends.
-pub(super) struct Rerun {
+pub(super) struct RerunRecording {
     pub log: LogReader,
-    pub again: Again,
+    pub again: RerunSession,
     /// What applying the recorded events leads to.
     replayed: Follower,
     /// Where they differ first.
-    pub difference: Option<Difference>,
+    pub difference: Option<VerificationDifference>,
 }
 
-impl Rerun {
+impl RerunRecording {
     /// Runs a recording again, from its first event to its last.
     ///
     /// # Errors
     /// It cannot be read, or its events cannot be applied.
-    pub fn of(mut log: LogReader) -> FileResult<Rerun> {
+    pub fn of(mut log: LogReader) -> FileResult<RerunRecording> {
         let (kitchen, header) = (log.kitchen.clone(), log.header.clone());
         header.session.require_built().map_err(|missing| FileError::not_built(log.path(), missing))?;
         let cost = CostToGo::new(kitchen.clone());
         let mut replayed = Follower::new(log.session(), cost.clone());
         let engine = Engine::new(kitchen, header.session, header.trial, cost);
         let advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
-        let mut again = Again { engine, produced: VecDeque::new(), advisor, questions: VecDeque::new() };
+        let mut again = RerunSession { engine, produced: VecDeque::new(), advisor, questions: VecDeque::new() };
         let mut difference = None;
         while let Some(line) = log.next_line()? {
             replayed
@@ -91,23 +91,23 @@ impl Rerun {
                 difference = again.difference_at(&line, log.path());
             }
         }
-        Ok(Rerun { log, again, replayed, difference })
+        Ok(RerunRecording { log, again, replayed, difference })
     }
 }
 
 /// The session that is run again.
-pub(super) struct Again {
+pub(super) struct RerunSession {
     pub engine: Engine,
     /// What came out of it and was not compared yet; at the end of a cut recording, what it lacks.
     pub produced: VecDeque<Stamped>,
     /// The assistant, and what it was asked and has not answered.
     advisor: Option<Advisor>,
-    questions: VecDeque<Question>,
+    questions: VecDeque<AdviceRequest>,
 }
 
-impl Again {
+impl RerunSession {
     /// Runs on to the recorded line and compares it with what comes out there.
-    fn difference_at(&mut self, line: &LogLine, log: &Path) -> Option<Difference> {
+    fn difference_at(&mut self, line: &LogLine, log: &Path) -> Option<VerificationDifference> {
         let recorded = &line.stamped;
         if self.produced.is_empty() {
             if is_external(self.engine.session(), &recorded.event) {
@@ -125,7 +125,13 @@ impl Again {
         let again = self.produced.pop_front().map(|stamped| event_line(&stamped));
         let same = again.as_deref() == Some(line.text.as_str());
         let log = log.to_path_buf();
-        (!same).then(|| Difference { seq: recorded.seq, log, line: line.number, recorded: line.text.clone(), again })
+        (!same).then(|| VerificationDifference {
+            seq: recorded.seq,
+            log,
+            line: line.number,
+            recorded: line.text.clone(),
+            again,
+        })
     }
 
     /// An event from outside; advice is computed again, for the event that it was computed for.

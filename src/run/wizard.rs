@@ -18,12 +18,12 @@ use crate::session::{Event, Session, Stamped};
 pub struct WizardLog {
     sent: Vec<(u64, SessionTime, Sent)>,
     screen: Option<Screen>,
-    seen: Vec<Seen>,
+    seen: Vec<SignalsPerScreen>,
 }
 
 /// How many signals were sent while this was on the wizard's screen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Seen {
+pub struct SignalsPerScreen {
     /// Null before the first frame, and without a console.
     pub screen: Option<Screen>,
     pub signals: u64,
@@ -31,11 +31,11 @@ pub struct Seen {
 
 /// The wizard's figures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct WizardFigures {
+pub struct WizardSummary {
     #[serde(flatten)]
     pub measures: WizardMeasures,
     /// What was seen.
-    pub screens: Vec<Seen>,
+    pub screens: Vec<SignalsPerScreen>,
     /// The wizard saw what assistants would say.
     pub unblinded: bool,
 }
@@ -56,7 +56,7 @@ impl WizardLog {
                 self.sent.push((stamped.seq, stamped.time, sent));
                 match self.seen.iter_mut().find(|seen| seen.screen == self.screen) {
                     Some(seen) => seen.signals += 1,
-                    None => self.seen.push(Seen { screen: self.screen.clone(), signals: 1 }),
+                    None => self.seen.push(SignalsPerScreen { screen: self.screen.clone(), signals: 1 }),
                 }
             }
             Event::SignalDrawn { signal } => {
@@ -74,10 +74,10 @@ impl WizardLog {
     }
 
     /// The figures of a session that was followed to its end.
-    pub fn figures(&self, follower: &Follower) -> WizardFigures {
+    pub fn figures(&self, follower: &Follower) -> WizardSummary {
         let sent: Vec<Sent> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
         let measures = WizardMeasures::of(&sent, spells(follower).as_deref());
-        WizardFigures { measures, screens: self.seen.clone(), unblinded: follower.session.unblinded }
+        WizardSummary { measures, screens: self.seen.clone(), unblinded: follower.session.unblinded }
     }
 }
 
@@ -105,7 +105,7 @@ pub(super) fn clock_at(session: &Session, time: SessionTime) -> SessionTime {
 }
 
 /// The figures for people, in lines.
-pub fn describe(figures: &WizardFigures) -> String {
+pub fn describe(figures: &WizardSummary) -> String {
     let measures = &figures.measures;
     let number = |value: Option<u64>| value.map_or("-".to_string(), |value| value.to_string());
     let drawn = measures.key_to_display_ms.map_or("not recorded".to_string(), |times| {

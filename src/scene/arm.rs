@@ -5,15 +5,15 @@ use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use super::colours;
 use super::shown::{Point, Row, Series, Shown};
 use crate::arm::kinematics::Arm;
-use crate::arm::link::{Shape, Solid};
-use crate::arm::motion::ArmMotion;
-use crate::arm::physics::hand::HandPlace;
+use crate::arm::link::{CollisionSolid, LinkShape};
+use crate::arm::motion::JointMotion;
+use crate::arm::physics::hand::HandPose;
 use crate::arm::reach::BUTTON_M;
 use crate::arm::reaching::resting_place;
 use crate::base::time::SessionTime;
 use crate::console::words;
 use crate::kitchen::{Agent, Button, ButtonId, Kitchen};
-use crate::robot::moment::{ArmMoment, Joints};
+use crate::robot::moment::{ArmSample, JointAngles};
 use crate::robot::safety::SafetyMode;
 use crate::session::settings::ArmKind;
 use crate::session::{Event, Session, Stamped};
@@ -47,10 +47,10 @@ const HAND: &str = "human/hand/shape";
 pub struct ArmScene {
     arm: Arm,
     /// How the timed arm moves; none: the session says how the arm in the physics stands.
-    motion: Option<ArmMotion>,
+    motion: Option<JointMotion>,
     /// Until when it is shown, and how it stood then.
     until: SessionTime,
-    joints: Joints,
+    joints: JointAngles,
     /// A force is shown at the tip.
     feels: bool,
 }
@@ -58,7 +58,7 @@ pub struct ArmScene {
 impl ArmScene {
     pub fn new(session: &Session) -> ArmScene {
         let arm = Arm::ur5();
-        let motion = ArmMotion::new(&session.kitchen, &arm);
+        let motion = JointMotion::new(&session.kitchen, &arm);
         let told = session.robot.arm.last.map(|(_, moment)| moment.joints);
         let joints = told.unwrap_or_else(|| motion.at(session.time));
         let motion = (session.spec.robot.arm == ArmKind::Timed).then_some(motion);
@@ -156,7 +156,7 @@ impl ArmScene {
     }
 
     /// How the arm in the physics stands, what it feels, and where the hand is.
-    fn moves(&mut self, moment: &ArmMoment) -> Vec<Row> {
+    fn moves(&mut self, moment: &ArmSample) -> Vec<Row> {
         self.joints = moment.joints;
         let mut rows = places(&self.arm, &self.joints);
         let [x, y, z] = moment.hand_m;
@@ -185,22 +185,23 @@ impl ArmScene {
 }
 
 /// Where the links are.
-fn places(arm: &Arm, joints: &Joints) -> Vec<Row> {
+fn places(arm: &Arm, joints: &JointAngles) -> Vec<Row> {
     let links = arm.links.iter().zip(arm.forward(joints)).skip(1);
     links.map(|(link, place)| Row::new(entity(&link.name), Shown::Place(place))).collect()
 }
 
 /// Hand and forearm as they are in the physics: the forearm leads away from the robot, and up a little.
 fn hand_shapes() -> Vec<Row> {
-    let place = HandPlace::reaching(Point3::origin(), -ABOVE_TABLE_M);
+    let place = HandPose::reaching(Point3::origin(), -ABOVE_TABLE_M);
     let [hand, forearm] = place.capsules();
-    let ball = Solid { shape: Shape::Sphere { radius_m: hand.radius_m }, link_from_solid: Isometry3::identity() };
+    let ball =
+        CollisionSolid { shape: LinkShape::Sphere { radius_m: hand.radius_m }, link_from_solid: Isometry3::identity() };
     let [from, to] = forearm.ends_m;
     let along = UnitQuaternion::rotation_between(&Vector3::z(), &(to - from)).unwrap_or_else(UnitQuaternion::identity);
     let middle = Translation3::from(nalgebra::center(&from, &to).coords);
     let length_m = (to - from).norm() + 2.0 * forearm.radius_m;
-    let shape = Shape::Cylinder { radius_m: forearm.radius_m, length_m };
-    let forearm = Solid { shape, link_from_solid: Isometry3::from_parts(middle, along) };
+    let shape = LinkShape::Cylinder { radius_m: forearm.radius_m, length_m };
+    let forearm = CollisionSolid { shape, link_from_solid: Isometry3::from_parts(middle, along) };
     vec![Row::new(HAND, Shown::Solids(vec![ball, forearm], colours::SKIN))]
 }
 
@@ -241,7 +242,7 @@ fn table(kitchen: &Kitchen) -> Shown {
     }
     let half_m = [(high[0] - low[0]) / 2.0, (high[1] - low[1]) / 2.0, THICK_M / 2.0];
     let centre = at((high[0] + low[0]) / 2.0, (high[1] + low[1]) / 2.0, kitchen.table_height_m - THICK_M / 2.0);
-    Shown::Solids(vec![Solid { shape: Shape::Box { half_m }, link_from_solid: centre }], colours::TABLE)
+    Shown::Solids(vec![CollisionSolid { shape: LinkShape::Box { half_m }, link_from_solid: centre }], colours::TABLE)
 }
 
 /// The buttons by who has them: both agents, or one alone.
@@ -249,9 +250,9 @@ fn buttons(kitchen: &Kitchen, alone: Option<Agent>) -> Shown {
     let of = |agent: Agent| &kitchen.buttons[agent.index()];
     let is_shared = |agent: Agent, button: &Button| of(agent.other()).iter().any(|other| other.at_m == button.at_m);
     let solid = |button: &Button| {
-        let shape = Shape::Cylinder { radius_m: BUTTON_RADIUS_M, length_m: BUTTON_M };
+        let shape = LinkShape::Cylinder { radius_m: BUTTON_RADIUS_M, length_m: BUTTON_M };
         let [x, y] = button.at_m;
-        Solid { shape, link_from_solid: at(x, y, kitchen.table_height_m + BUTTON_M / 2.0) }
+        CollisionSolid { shape, link_from_solid: at(x, y, kitchen.table_height_m + BUTTON_M / 2.0) }
     };
     let agent = alone.unwrap_or(Agent::Human);
     let those = of(agent).iter().filter(|button| is_shared(agent, button) == alone.is_none());

@@ -20,7 +20,7 @@ const ABOVE_MM: f64 = 52.0;
 
 const MM: f64 = 1000.0;
 
-fn area(kitchen: &Kitchen, on: kitchen::Area, colour: Colour) -> Area {
+fn area(kitchen: &Kitchen, on: kitchen::DisplayArea, colour: Colour) -> Area {
     let [width_mm, height_mm] = kitchen.display_m.map(|length| length * MM);
     Area {
         left: on.x * width_mm,
@@ -38,7 +38,7 @@ fn words_at(at: [f64; 2], words: &str, colour: Colour) -> Disc {
 
 /// The display's edge, the names of the places, and the storages.
 pub fn fixed(kitchen: &Kitchen) -> Vec<Row> {
-    let whole = kitchen::Area { x: 0.0, y: 0.0, w: 1.0, h: 1.0 };
+    let whole = kitchen::DisplayArea { x: 0.0, y: 0.0, w: 1.0, h: 1.0 };
     let name = |(index, location): (usize, &Location)| {
         // In the colour of its curves, which have no room for a legend.
         let colour = colours::of_aspect(AspectId::of_location(LocationId(index as u8)));
@@ -102,7 +102,7 @@ fn items(kitchen: &Kitchen, state: State, id: LocationId) -> Vec<ContentId> {
 }
 
 /// A disc for each item, side by side in an area, and words below it.
-fn content(kitchen: &Kitchen, on: kitchen::Area, items: &[ContentId], words: &str, colour: Colour) -> Vec<Disc> {
+fn content(kitchen: &Kitchen, on: kitchen::DisplayArea, items: &[ContentId], words: &str, colour: Colour) -> Vec<Disc> {
     let Area { left, top, width, height, .. } = area(kitchen, on, colour);
     let share = width / (items.len() as f64 + 1.0);
     let radius = (height * 0.34).min(share * 0.6);

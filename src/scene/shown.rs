@@ -4,7 +4,7 @@
 use nalgebra::Isometry3;
 
 use super::colours::Colour;
-use crate::arm::link::Solid;
+use crate::arm::link::CollisionSolid;
 
 /// Something that an entity shows from a moment on.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +36,7 @@ pub enum Shown {
     /// Points in space, with words.
     Points(Vec<Point>),
     /// Shapes in the entity's own frame.
-    Solids(Vec<Solid>, Colour),
+    Solids(Vec<CollisionSolid>, Colour),
     /// Where the entity's frame is, in that of the robot's base.
     Place(Isometry3<f64>),
     /// A value of a series.

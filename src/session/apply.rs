@@ -8,7 +8,7 @@ use crate::base::time::SessionTime;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
-use crate::kitchen::{Action, Agent, ButtonId, ContentId, DishId, LocationId, OrderContent, State};
+use crate::kitchen::{Agent, ButtonAction, ButtonId, ContentId, DishId, LocationId, OrderContent, State};
 
 /// After so many seconds without a gaze sample its rate is measured anew.
 const GAP_S: f64 = 0.5;
@@ -341,7 +341,7 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
     if let Some(after) = after {
         let before = session.state;
         change(session, now, |state| *state = after);
-        if let (Action::Serve(order), OrderContent::Dish(dish)) =
+        if let (ButtonAction::Serve(order), OrderContent::Dish(dish)) =
             (kitchen.button(agent, button).action, served_dish(&kitchen.button(agent, button).action, before))
         {
             let presses = session.all_presses();
@@ -361,9 +361,9 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
 }
 
 /// The dish that a serve action served, from the state before it.
-fn served_dish(action: &Action, before: State) -> OrderContent {
+fn served_dish(action: &ButtonAction, before: State) -> OrderContent {
     match action {
-        Action::Serve(order) => before.order(*order),
+        ButtonAction::Serve(order) => before.order(*order),
         _ => OrderContent::None,
     }
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::settings::GazeSource;
 use super::{Phase, Session};
 use crate::base::time::SessionTime;
-use crate::gaze::calibration::{Found, SETTLE_S, TARGET_S, TARGETS, Viewing, measure};
+use crate::gaze::calibration::{GazeAccuracy, SETTLE_S, TARGET_S, TARGETS, ViewingGeometry, measure};
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 
 /// No target keeps more samples: 1,000 a second for longer than it is shown.
@@ -27,12 +27,12 @@ pub enum CalibrationEvent {
     /// What follows from the samples; nothing if too few were usable.
     Measured {
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        found: Option<Found>,
+        found: Option<GazeAccuracy>,
     },
     /// The wizard takes the gaze as it is, or with the offset taken off from now on.
     Accepted { corrected: bool },
     /// What was accepted in the recording before, at the same desk, holds in this one, too.
-    Carried { found: Found, corrected: bool },
+    Carried { found: GazeAccuracy, corrected: bool },
     /// The check is given up; what was accepted before holds.
     Dismissed,
 }
@@ -55,14 +55,14 @@ pub struct Check {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// Nothing: too few usable samples.
-    pub found: Option<Found>,
+    pub found: Option<GazeAccuracy>,
 }
 
 /// A check that was accepted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibrated {
     pub at: SessionTime,
-    pub found: Found,
+    pub found: GazeAccuracy,
     /// The offset is taken off.
     pub corrected: bool,
 }
@@ -95,7 +95,7 @@ impl Check {
     }
 
     /// What follows from the samples when all targets were shown and nothing was measured yet.
-    pub fn to_measure(&self, viewing: &Viewing) -> Option<CalibrationEvent> {
+    pub fn to_measure(&self, viewing: &ViewingGeometry) -> Option<CalibrationEvent> {
         let is_due = self.are_hidden && self.result.is_none();
         is_due.then(|| CalibrationEvent::Measured { found: measure(viewing, &self.targets, &self.samples) })
     }
@@ -124,14 +124,14 @@ impl CalibrationEvent {
 
 impl Session {
     /// Where the participant sits.
-    pub fn viewing(&self) -> Viewing {
-        Viewing { display_m: self.kitchen.display_m, distance_m: self.spec.tracker.distance_m }
+    pub fn viewing(&self) -> ViewingGeometry {
+        ViewingGeometry { display_m: self.kitchen.display_m, distance_m: self.spec.tracker.distance_m }
     }
 
     /// Gaze as it is used: with the accepted offset taken off.
     pub fn corrected(&self, sample: GazeSample) -> GazeSample {
         match self.calibrated.as_ref().filter(|calibrated| calibrated.corrected) {
-            Some(Calibrated { found: Found { offset, .. }, .. }) => {
+            Some(Calibrated { found: GazeAccuracy { offset, .. }, .. }) => {
                 GazeSample { x: sample.x + offset[0], y: sample.y + offset[1], ..sample }
             }
             None => sample,

@@ -19,7 +19,7 @@ use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
 use crate::mind::BeliefWitness;
 use crate::mind::witness::EstimateWitness;
-use crate::robot::moment::ArmMoment;
+use crate::robot::moment::ArmSample;
 use crate::robot::safety::SafetyMode;
 use crate::robot::{AbortReason, IdleReason};
 
@@ -101,7 +101,7 @@ pub enum Event {
         reason: IdleReason,
     },
     /// Witness: how the arm in the physics stands, some twelve times a second while it moves.
-    RobotMoves(ArmMoment),
+    RobotMoves(ArmSample),
     /// The arm in the physics is safe in another way. After a protective stop or a fault it stays where it is until the
     /// wizard resumes it.
     RobotSafety {

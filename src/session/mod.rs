@@ -26,7 +26,7 @@ use crate::base::time::SessionTime;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::gaze::GazeSample;
-use crate::gaze::quality::{GazeFault, Judge};
+use crate::gaze::quality::{GazeFault, SampleChecker};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
 use crate::robot::safety::SafetyMode;
@@ -134,7 +134,7 @@ pub struct GazeStatus {
     pub samples: u64,
     pub unusable: u64,
     /// Those that were recorded and are not read, by kind.
-    pub judge: Judge,
+    pub judge: SampleChecker,
     /// What is wrong with the newest sample.
     pub fault: Option<GazeFault>,
     /// Samples a second, smoothed over about a second: see [`Session::gaze_hz`].

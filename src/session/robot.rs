@@ -6,7 +6,7 @@ use super::apply::note;
 use super::{Event, Happening, Session};
 use crate::base::time::SessionTime;
 use crate::kitchen::ButtonId;
-use crate::robot::moment::ArmMoment;
+use crate::robot::moment::ArmSample;
 use crate::robot::safety::SafetyMode;
 use crate::robot::{AbortReason, IdleReason};
 
@@ -75,7 +75,7 @@ pub struct RobotStatus {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArmStatus {
     /// What was told of it last, and when; nothing before it moves first, and of a timed arm.
-    pub last: Option<(SessionTime, ArmMoment)>,
+    pub last: Option<(SessionTime, ArmSample)>,
     pub mode: SafetyMode,
     /// Why it stopped by itself: the force that it felt, in newtons.
     pub stopped_by_n: Option<f64>,

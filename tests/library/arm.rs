@@ -7,14 +7,14 @@ use std::sync::{Arc, LazyLock};
 
 use nalgebra::{Point3, Vector3};
 use rand::RngExt;
-use tomcom::arm::clearance::{Capsule, InTheWay};
-use tomcom::arm::controller::{Cycle, PhysicalArm};
+use tomcom::arm::clearance::{Capsule, Obstruction};
+use tomcom::arm::controller::{ControlCycle, PhysicalArm};
 use tomcom::arm::kinematics::Arm;
 use tomcom::arm::physics::CYCLE_S;
-use tomcom::arm::physics::hand::HandPlace;
+use tomcom::arm::physics::hand::HandPose;
 use tomcom::arm::reach::Unreachable;
-use tomcom::arm::reaching::{Reaching, ReachingHand};
-use tomcom::arm::report::Report;
+use tomcom::arm::reaching::{ReachingBehaviour, ReachingHand};
+use tomcom::arm::report::PressFailure;
 use tomcom::arm::trajectory::JOINT_SPEED_RAD_S;
 use tomcom::base::rng::{Stream, stream};
 use tomcom::base::time::SessionTime;
@@ -24,7 +24,7 @@ use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, ButtonId, Kitchen};
 use tomcom::robot::AbortReason;
-use tomcom::robot::moment::{ArmMoment, ArmPhase, JOINTS, Joints};
+use tomcom::robot::moment::{ArmPhase, ArmSample, JOINTS, JointAngles};
 use tomcom::robot::safety::SafetyMode;
 use tomcom::run::engine::Engine;
 use tomcom::session::Event;
@@ -43,15 +43,15 @@ fn any_button(random: &mut Stream) -> ButtonId {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Came {
     Clicked(ButtonId),
-    Not(Report),
+    Not(PressFailure),
 }
 
-fn came(cycle: &Cycle) -> Option<Came> {
+fn came(cycle: &ControlCycle) -> Option<Came> {
     cycle.clicked.map(Came::Clicked).or(cycle.report.map(Came::Not))
 }
 
 /// Lets it go on until something comes of its press, or for so long; when that was, in seconds.
-fn until_report(arm: &mut PhysicalArm, hand: Option<HandPlace>, at_most_s: f64) -> (Option<Came>, f64) {
+fn until_report(arm: &mut PhysicalArm, hand: Option<HandPose>, at_most_s: f64) -> (Option<Came>, f64) {
     let mut since_s = 0.0;
     while since_s < at_most_s {
         since_s += CYCLE_S;
@@ -70,7 +70,7 @@ fn until_report(arm: &mut PhysicalArm, hand: Option<HandPlace>, at_most_s: f64) 
     (None, since_s)
 }
 
-fn fastest(joints: &Joints) -> f64 {
+fn fastest(joints: &JointAngles) -> f64 {
     joints.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
@@ -153,18 +153,18 @@ fn put_hand(found: &mut Contacts, watches_hands: bool, random: &mut Stream) {
     for cycle in 0..(3.0 / CYCLE_S) as usize {
         now_s += CYCLE_S;
         place += if (cycle as f64) < steps && stopped_s.is_none() { step } else { Vector3::zeros() };
-        let hand = HandPlace { at_m: Point3::from(place), elbow_m: Point3::new(place.x + 0.28, place.y, 0.12) };
+        let hand = HandPose { at_m: Point3::from(place), elbow_m: Point3::new(place.x + 0.28, place.y, 0.12) };
         if arm.phase() == ArmPhase::Hovers {
             arm.press();
         }
         let (threshold_n, was_stopped, tip_before) = (arm.mode.threshold_n(), arm.mode.is_stopped(), tip(&arm));
-        let Cycle { report, felt, touched_n, .. } = arm.cycle(Some(hand));
+        let ControlCycle { report, felt, touched_n, .. } = arm.cycle(Some(hand));
         if felt.human_n > 0.0 && !was_stopped {
             touched_m_s = touched_m_s.max((tip(&arm) - tip_before).norm() / CYCLE_S);
         }
         peak_n = peak_n.max(felt.human_n);
         told |= touched_n.is_some();
-        let stops = matches!(report, Some(Report::Contact(_)));
+        let stops = matches!(report, Some(PressFailure::Contact(_)));
         // The mode of the cycle decides, which a hand that comes near may just have made stricter, never laxer.
         found.late += usize::from(felt.human_n > threshold_n && !was_stopped && !stops);
         stopped_s = stopped_s.or(stops.then_some(now_s));
@@ -179,7 +179,7 @@ fn put_hand(found: &mut Contacts, watches_hands: bool, random: &mut Stream) {
         found.light_m_s.push(touched_m_s);
         return;
     };
-    let is_elsewhere = |joints: &Joints| (0..JOINTS).any(|joint| (joints[joint] - end[joint]).abs() > STILL_RAD);
+    let is_elsewhere = |joints: &JointAngles| (0..JOINTS).any(|joint| (joints[joint] - end[joint]).abs() > STILL_RAD);
     let moved = since_stop.iter().rev().find(|(_, joints)| is_elsewhere(joints));
     found.still_after_s.push(moved.map_or(0.0, |(after_s, _)| *after_s));
     found.restarted += usize::from(arm.mode != SafetyMode::ProtectiveStop);
@@ -270,8 +270,8 @@ fn the_same_presses_move_the_joints_the_same_way_bit_for_bit() {
 }
 
 /// A hand just above the table at the arm's tip, or beside it.
-fn hand_at([x, y, z]: [f64; 3]) -> HandPlace {
-    HandPlace { at_m: Point3::new(x, y, z), elbow_m: Point3::new(x + 0.28, y, z) }
+fn hand_at([x, y, z]: [f64; 3]) -> HandPose {
+    HandPose { at_m: Point3::new(x, y, z), elbow_m: Point3::new(x + 0.28, y, z) }
 }
 
 #[test]
@@ -282,7 +282,7 @@ fn after_a_protective_stop_only_the_wizard_lets_it_go_on_and_then_it_goes_up_and
     let [x, y] = SUSHI.button(Agent::Robot, ButtonId(0)).at_m;
     // The hand lies on the button.
     let (report, _) = until_report(&mut arm, Some(hand_at([x, y, 0.05])), 10.0);
-    assert!(matches!(report, Some(Came::Not(Report::Contact(force_n))) if force_n > 60.0), "{report:?}");
+    assert!(matches!(report, Some(Came::Not(PressFailure::Contact(force_n))) if force_n > 60.0), "{report:?}");
     assert_eq!(arm.mode, SafetyMode::ProtectiveStop);
     assert_eq!(until_report(&mut arm, None, 5.0).0, None);
     assert!(!arm.moves() && !arm.is_busy() && arm.mode == SafetyMode::ProtectiveStop, "the hand is gone, it stays");
@@ -300,7 +300,7 @@ fn a_hand_in_the_way_makes_it_wait_and_then_give_the_press_up() {
     arm.set_out(ButtonId(0)).expect("a way");
     let [x, y] = SUSHI.button(Agent::Robot, ButtonId(0)).at_m;
     let (report, after_s) = until_report(&mut arm, Some(hand_at([x, y, 0.05])), 30.0);
-    assert_eq!(report, Some(Came::Not(Report::Blocked(ButtonId(0)))));
+    assert_eq!(report, Some(Came::Not(PressFailure::Blocked(ButtonId(0)))));
     assert!(after_s > 4.0, "{after_s} s");
     assert!(!arm.mode.is_stopped(), "nobody was touched");
 }
@@ -330,7 +330,7 @@ fn a_joint_that_gives_way_is_a_fault_and_the_brakes_hold() {
     until_report(&mut arm, None, 1.0);
     arm.world().fail(Some(1));
     let (report, after_s) = until_report(&mut arm, None, 2.0);
-    assert_eq!(report, Some(Came::Not(Report::Fault(1))));
+    assert_eq!(report, Some(Came::Not(PressFailure::Fault(1))));
     assert!(after_s < 0.5 && arm.mode == SafetyMode::Fault);
     until_report(&mut arm, None, 1.0);
     assert!(!arm.moves());
@@ -342,7 +342,7 @@ fn a_button_that_does_not_click_is_given_up() {
     let mut arm = AT_REST.clone();
     arm.set_out(ButtonId(2)).expect("a way");
     arm.world().jam(2);
-    assert_eq!(until_report(&mut arm, None, 10.0).0, Some(Came::Not(Report::NoClick(ButtonId(2)))));
+    assert_eq!(until_report(&mut arm, None, 10.0).0, Some(Came::Not(PressFailure::NoClick(ButtonId(2)))));
 }
 
 #[test]
@@ -354,7 +354,7 @@ fn a_way_that_is_blocked_goes_over_what_stands_there_or_is_refused() {
     };
     let mut arm = AT_REST.clone();
     arm.around().obstacles.push(post(0.5, x, y));
-    assert_eq!(arm.set_out(ButtonId(0)), Err(Unreachable::Blocked(InTheWay::Obstacle)));
+    assert_eq!(arm.set_out(ButtonId(0)), Err(Unreachable::Blocked(Obstruction::Obstacle)));
     // Between two buttons it is gone over.
     let mut arm = AT_REST.clone();
     arm.set_out(ButtonId(0)).expect("a way");
@@ -435,7 +435,7 @@ fn on_its_way() -> Engine {
 fn a_session_tells_what_the_arm_does_until_its_press() {
     let mut engine = on_its_way();
     let seen = until(&mut engine, 10.0, is_robots_press);
-    let told: Vec<&ArmMoment> = seen
+    let told: Vec<&ArmSample> = seen
         .iter()
         .filter_map(|event| if let Event::RobotMoves(moment) = event { Some(moment) } else { None })
         .collect();
@@ -558,7 +558,7 @@ fn hand_goes_on(hand: &mut ReachingHand, now: &mut SessionTime, until_s: f64, ar
     let (end, mut nearest_m) = (SessionTime::from_secs_f64(until_s), f64::INFINITY);
     while let Some(next) = hand.next_move(*now).filter(|next| *next <= end) {
         *now = next;
-        let away = |place: &HandPlace| (place.at_m - arm_at).norm();
+        let away = |place: &HandPose| (place.at_m - arm_at).norm();
         hand.cycle(next, away);
         nearest_m = nearest_m.min(away(&hand.place()));
     }
@@ -567,7 +567,13 @@ fn hand_goes_on(hand: &mut ReachingHand, now: &mut SessionTime, until_s: f64, ar
 
 #[test]
 fn a_hand_is_at_its_button_when_it_presses_goes_back_and_keeps_off_the_arm() {
-    let hand = || ReachingHand::new(&SUSHI, Reaching { heedless: 0.0, ..Reaching::SIMULATED }, stream(1, "hand", 0));
+    let hand = || {
+        ReachingHand::new(
+            &SUSHI,
+            ReachingBehaviour { heedless: 0.0, ..ReachingBehaviour::SIMULATED },
+            stream(1, "hand", 0),
+        )
+    };
     let far = Point3::new(-1.0, 0.0, 1.0);
     let (mut free, mut now) = (hand(), SessionTime::ZERO);
     let [x, y] = SUSHI.button(Agent::Human, ButtonId(0)).at_m;

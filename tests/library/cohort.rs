@@ -17,10 +17,10 @@ use tomcom::kitchen::{Agent, AspectId, DishId, Kitchen, LocationId};
 use tomcom::measures::coding::{AgreementTable, Code, Codes, Kind};
 use tomcom::participant::SimulatedParticipant;
 use tomcom::participant::population::{Experience, Population};
-use tomcom::run::codes::{Coded, CodesFigures, export, import};
-use tomcom::run::simulate::{Shard, Simulation, simulate};
-use tomcom::run::study::reading::{self, Extent};
-use tomcom::run::sweep::{Axis, TABLE_NAME, sweep, trials};
+use tomcom::run::codes::{CodedRecording, CodesSummary, export, import};
+use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
+use tomcom::run::study::reading::{self, AnalysisScope};
+use tomcom::run::sweep::{SweepAxis, TABLE_NAME, sweep, trials};
 use tomcom::run::verify::verify;
 use tomcom::session::Event;
 use tomcom::session::admit::hygiene;
@@ -42,8 +42,8 @@ fn paper(presses: u32) -> SessionFiles {
     files
 }
 
-fn run(files: &SessionFiles, trials: u64, shard: Shard, out: &Path) -> tomcom::run::figures::SimulationFigures {
-    let simulation = Simulation { files: files.clone(), trials, shard, out: out.to_path_buf() };
+fn run(files: &SessionFiles, trials: u64, shard: Shard, out: &Path) -> tomcom::run::figures::SimulationSummary {
+    let simulation = SimulationRequest { files: files.clone(), trials, shard, out: out.to_path_buf() };
     simulate(&simulation, || ()).expect("the folder can be written")
 }
 
@@ -100,7 +100,7 @@ trait Length {
     fn mean_length(&self) -> Option<f64>;
 }
 
-impl Length for tomcom::run::figures::SimulationFigures {
+impl Length for tomcom::run::figures::SimulationSummary {
     fn mean_length(&self) -> Option<f64> {
         self.beliefs.mean_sequence_length
     }
@@ -119,7 +119,7 @@ fn a_folder_that_was_begun_is_gone_on_with() {
     let again = run(&files, 4, Shard::WHOLE, &out);
     assert_eq!(again.found, 2, "what is whole is read");
     assert!(below(&out) == before, "and the rest is made as it would have been");
-    let bare = |figures: &tomcom::run::figures::SimulationFigures| tomcom::run::figures::SimulationFigures {
+    let bare = |figures: &tomcom::run::figures::SimulationSummary| tomcom::run::figures::SimulationSummary {
         wall_s: 0.0,
         found: 0,
         ..figures.clone()
@@ -307,7 +307,7 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     let made = run(&paper(120), 1, Shard::WHOLE, &out);
     let recording = PathBuf::from(&made.recordings[0]);
     let log = fs::read(recording.join(LOG_NAME)).expect("a log");
-    let mut coded = vec![Coded::open(&recording).expect("a recording")];
+    let mut coded = vec![CodedRecording::open(&recording).expect("a recording")];
     assert_eq!(coded[0].codable.errors.len() as u64, made.errors);
     let truth = coded[0].known.clone().expect("a simulated participant tells");
     assert_eq!(truth.0.len(), coded[0].codable.errors.len());
@@ -317,8 +317,8 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     write(&recording, "R2", &slips).expect("written");
     assert_eq!(read_all(&recording, &coded[0].codable).expect("readable")["R1"], truth);
 
-    coded = vec![Coded::open(&recording).expect("a recording")];
-    let figures = CodesFigures::of(&coded);
+    coded = vec![CodedRecording::open(&recording).expect("a recording")];
+    let figures = CodesSummary::of(&coded);
     assert_eq!(figures.agreements.len(), 1);
     let right: Vec<(&str, u64)> =
         figures.known.iter().map(|pair| (pair.of.as_str(), pair.agreement.same_cause)).collect();
@@ -331,7 +331,7 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     for rater in ["R1", "R2"] {
         fs::remove_file(recording.join(format!("codes-{rater}.csv"))).expect("removed");
     }
-    coded = vec![Coded::open(&recording).expect("a recording")];
+    coded = vec![CodedRecording::open(&recording).expect("a recording")];
     import(&mut coded, &table).expect("its own export");
     assert_eq!(
         read_all(&recording, &coded[0].codable).expect("readable"),
@@ -365,9 +365,9 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     // The same beside the log, which somebody may have written by hand.
     for (row, found) in [(format!("{first},belief,the_moon"), "the_moon"), ("1,slip,".to_string(), "no error")] {
         fs::write(recording.join("codes-R3.csv"), format!("press,cause,aspect\n{row}\n")).expect("written");
-        let told = Coded::open(&recording).expect_err(&row).to_string();
+        let told = CodedRecording::open(&recording).expect_err(&row).to_string();
         assert!(told.contains("codes-R3.csv:2:") && told.contains(found), "{told}");
-        let extent = Extent { concepts: false, events: false };
+        let extent = AnalysisScope { concepts: false, events: false };
         let told = reading::read(&recording, "one", extent).err().map(|error| error.to_string());
         assert!(told.as_ref().is_some_and(|told| told.contains("codes-R3.csv:2:")), "{told:?}");
     }
@@ -417,8 +417,9 @@ fn a_sweep_has_a_line_for_every_combination_and_pairs_the_same_trials() {
     // Rollouts so few that a debug build is quick.
     (files.spec.assistant.rollout.rollouts, files.spec.assistant.rollout.least_rollouts) = (2, 2);
     let out = folder("sweep");
-    let simulation = Simulation { files, trials: 2, shard: Shard::WHOLE, out: out.clone() };
-    let axes: Vec<Axis> = ["cost=0.1,100", "gaze=on,off"].iter().map(|text| text.parse().expect("an axis")).collect();
+    let simulation = SimulationRequest { files, trials: 2, shard: Shard::WHOLE, out: out.clone() };
+    let axes: Vec<SweepAxis> =
+        ["cost=0.1,100", "gaze=on,off"].iter().map(|text| text.parse().expect("an axis")).collect();
     assert_eq!(trials(&simulation, &axes), 10);
     let figures = sweep(&simulation, &axes, || ()).expect("the folder can be written");
     let settings: Vec<String> =
@@ -440,10 +441,10 @@ fn a_sweep_has_a_line_for_every_combination_and_pairs_the_same_trials() {
     assert!(verify(&blind).expect("readable").verified);
     assert_eq!(sweep(&simulation, &axes, || ()).expect("it is there"), figures, "what is there is read");
     for wrong in ["cost", "cost=", "cost=a", "cost=nan", "horizon=1.5", "gaze=maybe", "colour=red"] {
-        assert!(wrong.parse::<Axis>().is_err(), "{wrong}");
+        assert!(wrong.parse::<SweepAxis>().is_err(), "{wrong}");
     }
-    let axis = |text: &str| text.parse::<Axis>().expect("an axis");
-    let refused = |axes: &[Axis]| sweep(&simulation, axes, || ()).expect_err("wrong").to_string();
+    let axis = |text: &str| text.parse::<SweepAxis>().expect("an axis");
+    let refused = |axes: &[SweepAxis]| sweep(&simulation, axes, || ()).expect_err("wrong").to_string();
     assert!(refused(&[axis("cost=1"), axis("cost=2")]).contains("cost twice"));
     assert!(refused(&[axis("radius=-1")]).contains("radius_deg = -1"));
 }

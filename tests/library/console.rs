@@ -13,24 +13,26 @@ use tomcom::communication::concept::ConceptName;
 use tomcom::communication::recommendation::{Reason, Recommendation, SignalOption};
 use tomcom::communication::settings::Shadow;
 use tomcom::communication::{Sender, Signal};
-use tomcom::console::arrange::{Plan, Thing};
-use tomcom::console::belief::{self, Moment};
-use tomcom::console::calibration::Best;
-use tomcom::console::comparison::{Compared, Comparison, Known, Lane, Spoken, What};
-use tomcom::console::keys::{KeyPlace, Layer};
-use tomcom::console::lesson::{Feedback, Lesson};
-use tomcom::console::model::{Dialog, Level, Recording};
+use tomcom::console::arrange::{KitchenMap, MapElement};
+use tomcom::console::belief::{self, BeliefSnapshot};
+use tomcom::console::calibration::CalibrationAdvice;
+use tomcom::console::comparison::{
+    Communication, CommunicationContent, CommunicationContext, CommunicationLane, ComparisonView, LaneComparison,
+};
+use tomcom::console::keys::{KeyLayer, KeyPlace};
+use tomcom::console::lesson::{TrainingFeedback, TrainingPanel};
+use tomcom::console::model::{Dialog, NoticeLevel, RecordingStatus};
 use tomcom::console::panels::Panel;
-use tomcom::console::picker::{Picker, Question};
+use tomcom::console::picker::{Picker, PickerQuestion};
 use tomcom::console::playback::Playback;
 use tomcom::console::preflight::checks;
 use tomcom::console::screen::screen;
 use tomcom::console::view::regions::Regions;
-use tomcom::console::view::theme::{Ground, Role, Theme};
-use tomcom::console::{Command, KeyMap, Keys, Message, Model, update, view};
+use tomcom::console::view::theme::{TerminalBackground, TextRole, Theme};
+use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyMap, update, view};
 use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::gaze::GazeSample;
-use tomcom::gaze::calibration::{Found, FoundTarget};
+use tomcom::gaze::calibration::{GazeAccuracy, TargetAccuracy};
 use tomcom::kitchen::{Agent, Kitchen, LocationKind};
 use tomcom::measures::matching::Said;
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
@@ -54,7 +56,7 @@ fn kitchen(name: &str) -> Arc<Kitchen> {
 /// A session with its console, fed with events.
 struct Stage {
     session: Session,
-    model: Model,
+    model: ConsoleModel,
     seq: u64,
     belief: DirichletBelief,
 }
@@ -67,10 +69,10 @@ impl Stage {
             spec.participant.gaze = GazeSource::Mouse;
         }
         let kitchen = kitchen(kitchen_name);
-        let keys = Keys::live(&kitchen, &spec, &KeyMap::default()).expect("the layout's keys are free");
-        let theme = Theme { colour: true, unicode: true, ground: Ground::Dark };
-        let mut model = Model::new(keys, theme, (120, 40));
-        model.recording = Recording::On("sessions/2026-03-14-P01-1".to_string());
+        let keys = KeyBindings::live(&kitchen, &spec, &KeyMap::default()).expect("the layout's keys are free");
+        let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
+        let mut model = ConsoleModel::new(keys, theme, (120, 40));
+        model.recording = RecordingStatus::On("sessions/2026-03-14-P01-1".to_string());
         model.free_bytes = Some(1 << 40);
         let belief = DirichletBelief::prior(&kitchen, &PriorModel::default(), kitchen.empty_state());
         Stage { session: Session::new(kitchen, spec, 0), model, seq: 0, belief }
@@ -102,7 +104,7 @@ impl Stage {
             let mean = labels.iter().map(|other| if other == label { *p } else { others });
             self.belief.aspects[index] = Dirichlet::new(mean.collect(), 2.0);
         }
-        let moment = Moment::new(&kitchen, self.session.state, &self.belief, self.model.now, by_gaze);
+        let moment = BeliefSnapshot::new(&kitchen, self.session.state, &self.belief, self.model.now, by_gaze);
         self.model.belief.note(moment);
     }
 
@@ -174,21 +176,21 @@ impl Stage {
         terminal.backend().to_string()
     }
 
-    fn key(&mut self, code: KeyCode) -> Option<Command> {
+    fn key(&mut self, code: KeyCode) -> Option<ConsoleCommand> {
         self.key_event(KeyEvent::new(code, KeyModifiers::NONE))
     }
 
-    fn control(&mut self, key: char) -> Option<Command> {
+    fn control(&mut self, key: char) -> Option<ConsoleCommand> {
         self.key_event(KeyEvent::new(KeyCode::Char(key), KeyModifiers::CONTROL))
     }
 
     /// A key of a terminal that also reports releases.
-    fn kind(&mut self, code: KeyCode, kind: KeyEventKind) -> Option<Command> {
+    fn kind(&mut self, code: KeyCode, kind: KeyEventKind) -> Option<ConsoleCommand> {
         self.key_event(KeyEvent::new_with_kind(code, KeyModifiers::NONE, kind))
     }
 
-    fn key_event(&mut self, key: KeyEvent) -> Option<Command> {
-        update(&mut self.model, &self.session, Message::Key(key))
+    fn key_event(&mut self, key: KeyEvent) -> Option<ConsoleCommand> {
+        update(&mut self.model, &self.session, ConsoleMessage::Key(key))
     }
 
     fn wait(&mut self, seconds: f64) {
@@ -201,10 +203,10 @@ impl Stage {
     }
 }
 
-fn input(command: Option<Command>) -> Option<Event> {
+fn input(command: Option<ConsoleCommand>) -> Option<Event> {
     match command {
-        Some(Command::Input(event)) => Some(event),
-        Some(Command::Start(_)) => Some(Event::TrialStarted),
+        Some(ConsoleCommand::Input(event)) => Some(event),
+        Some(ConsoleCommand::Start(_)) => Some(Event::TrialStarted),
         _ => None,
     }
 }
@@ -255,7 +257,7 @@ fn the_participants_keys_stand_at_their_places() {
             _ => Stage::new(name, ParticipantKind::Keyboard),
         };
         assert_eq!(stage.key(KeyCode::Tab), None);
-        assert_eq!(stage.model.layer, Layer::Participant);
+        assert_eq!(stage.model.layer, KeyLayer::Participant);
         check_snapshot("console", format!("participant_{name}_120x40"), stage.screen((120, 40)));
         check_snapshot("console", format!("participant_{name}_80x24"), stage.screen((80, 24)));
     }
@@ -275,20 +277,24 @@ fn a_training_says_what_to_do_keeps_what_it_said_and_ends_when_that_is_read() {
     stage.session.spec.console.visibility = Visibility::State;
     stage.model.playback = Some(Playback::new("seed1-S001".to_string()));
     let task = ["Press . to start.", "A hit is the first signal about a false belief that leads to an error."];
-    let lesson = Lesson { task: task.map(str::to_string).to_vec(), score: "0 hit".to_string(), ..Lesson::default() };
+    let lesson = TrainingPanel {
+        task: task.map(str::to_string).to_vec(),
+        score: "0 hit".to_string(),
+        ..TrainingPanel::default()
+    };
     stage.model.lesson = Some(lesson.clone());
     assert!(stage.screen((120, 40)).contains("A hit is the first signal"));
-    let said = |seconds: f64, level: Level, text: &str| {
+    let said = |seconds: f64, level: NoticeLevel, text: &str| {
         let clock = SessionTime::from_secs_f64(seconds);
-        Feedback { clock, level, text: text.to_string() }
+        TrainingFeedback { clock, level, text: text.to_string() }
     };
     let long = "missed, with 2 errors: recipe of tuna nigiri: believed salmon nigiri, truly tuna nigiri; right would have been: recipe of order 1";
     let feedback = vec![
-        said(4.0, Level::Done, "highlight plate: told already"),
-        said(9.0, Level::Refused, long),
-        said(12.0, Level::Done, "recipe of order 1: hit: believed wrong for 3.1 s"),
+        said(4.0, NoticeLevel::Done, "highlight plate: told already"),
+        said(9.0, NoticeLevel::Refused, long),
+        said(12.0, NoticeLevel::Done, "recipe of order 1: hit: believed wrong for 3.1 s"),
     ];
-    stage.model.lesson = Some(Lesson { feedback, begun: true, ..lesson });
+    stage.model.lesson = Some(TrainingPanel { feedback, begun: true, ..lesson });
     for size in SIZES {
         check_snapshot("console", format!("training_{}x{}", size.0, size.1), stage.screen(size));
     }
@@ -316,7 +322,7 @@ fn help_and_questions_and_the_ascii_fallback() {
     stage.control('c');
     check_snapshot("console", "quit_80x24", stage.screen((80, 24)));
     stage.model.dialog = None;
-    stage.model.theme = Theme { colour: false, unicode: false, ground: Ground::Dark };
+    stage.model.theme = Theme { colour: false, unicode: false, ground: TerminalBackground::Dark };
     let screen = stage.screen((120, 40));
     assert!(screen.is_ascii(), "only ASCII");
 }
@@ -342,19 +348,19 @@ fn what_a_wizard_sees_at_each_size() {
     let mut alarm = Stage::sushi(ParticipantKind::Simulated);
     alarm.at(22.6, Event::RobotStopped);
     alarm.at(22.6, Event::SessionEnded);
-    alarm.model.recording = Recording::Lost;
-    alarm.model.say(Level::Alarm, "session over, the recording ends here: no space left on the device");
+    alarm.model.recording = RecordingStatus::Lost;
+    alarm.model.say(NoticeLevel::Alarm, "session over, the recording ends here: no space left on the device");
     let mut away = Stage::sushi(ParticipantKind::Simulated);
     away.model.focused = false;
     let mut replay = Stage::sushi(ParticipantKind::Simulated);
-    replay.model.keys = Keys::replay(&replay.session.kitchen, &KeyMap::default()).expect("the keys are free");
+    replay.model.keys = KeyBindings::replay(&replay.session.kitchen, &KeyMap::default()).expect("the keys are free");
     let mut playback = Playback::new("2026-03-14-P01-1".to_string());
     (playback.playing, playback.event, playback.events) = (true, 43210, 59289);
     replay.model.playback = Some(playback);
     let mut state = Stage::sushi(ParticipantKind::Simulated);
     state.session.spec.console.visibility = Visibility::State;
     let mut ascii = Stage::sushi(ParticipantKind::Simulated);
-    ascii.model.theme = Theme { colour: false, unicode: false, ground: Ground::Light };
+    ascii.model.theme = Theme { colour: false, unicode: false, ground: TerminalBackground::Light };
     let stages = [
         ("ready", ready),
         ("paused", paused),
@@ -377,7 +383,7 @@ fn what_a_wizard_sees_at_each_size() {
 #[test]
 fn without_colour_every_meaning_has_a_sign_or_a_weight() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.theme = Theme { colour: false, unicode: true, ground: Ground::Dark };
+    stage.model.theme = Theme { colour: false, unicode: true, ground: TerminalBackground::Dark };
     for (columns, rows) in SIZES {
         let mut terminal = Terminal::new(TestBackend::new(columns, rows)).expect("a test terminal");
         terminal.draw(|frame| view(&stage.session, &stage.model, frame)).expect("drawn");
@@ -485,7 +491,7 @@ fn without_key_releases_two_presses_count_twice_and_a_held_key_once() {
     stage.at(stage.model.now.as_secs_f64(), Event::TrialEnded { reason: EndReason::Time });
     stage.control('c');
     stage.wait(1.0);
-    assert_eq!(stage.control('c'), Some(Command::Quit), "after the trial it does");
+    assert_eq!(stage.control('c'), Some(ConsoleCommand::Quit), "after the trial it does");
 }
 
 #[test]
@@ -558,7 +564,7 @@ fn the_timeline_loses_no_signal_no_note_and_no_error() {
 #[test]
 fn the_keys_of_a_replay_and_the_served_orders_fit_the_smallest_console() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.keys = Keys::replay(&stage.session.kitchen, &KeyMap::default()).expect("the keys are free");
+    stage.model.keys = KeyBindings::replay(&stage.session.kitchen, &KeyMap::default()).expect("the keys are free");
     let mut playback = Playback::new("2026-03-14-P01-1".to_string());
     (playback.playing, playback.event, playback.events) = (true, 43210, 59289);
     stage.model.playback = Some(playback);
@@ -573,9 +579,9 @@ fn the_keys_of_a_replay_and_the_served_orders_fit_the_smallest_console() {
 #[test]
 fn the_space_bar_stops_the_robot_in_every_view() {
     let mut stage = Stage::sushi(ParticipantKind::Keyboard);
-    let list = Some(Dialog::Pick(Picker::new(Question::Place)));
+    let list = Some(Dialog::Pick(Picker::new(PickerQuestion::Place)));
     for dialog in [None, Some(Dialog::Help), Some(Dialog::Quit), Some(Dialog::EndTrial), list] {
-        for layer in [Layer::Wizard, Layer::Participant] {
+        for layer in [KeyLayer::Wizard, KeyLayer::Participant] {
             stage.model.dialog = dialog.clone();
             stage.model.layer = layer;
             assert_eq!(input(stage.key(KeyCode::Char(' '))), Some(Event::RobotStopped));
@@ -590,7 +596,7 @@ fn the_space_bar_stops_the_robot_in_every_view() {
 #[test]
 fn whoever_wants_to_quit_is_asked_in_whatever_list_they_are() {
     let mut stage = Stage::sushi(ParticipantKind::Keyboard);
-    for dialog in [Dialog::Help, Dialog::Preflight, Dialog::Pick(Picker::new(Question::Place))] {
+    for dialog in [Dialog::Help, Dialog::Preflight, Dialog::Pick(Picker::new(PickerQuestion::Place))] {
         stage.model.dialog = Some(dialog);
         stage.wait(1.0);
         assert_eq!(stage.control('c'), None);
@@ -622,7 +628,7 @@ fn the_trial_is_started_paused_and_ended_by_keys() {
     stage.wait(1.0);
     stage.control('c');
     stage.wait(1.0);
-    assert_eq!(stage.key(KeyCode::Char('y')), Some(Command::Quit));
+    assert_eq!(stage.key(KeyCode::Char('y')), Some(ConsoleCommand::Quit));
 }
 
 #[test]
@@ -631,12 +637,12 @@ fn every_place_of_the_panel_is_its_place_on_the_display_and_back() {
         let kitchen = kitchen(name);
         for size in SIZES {
             let panel = Regions::new(size, Visibility::Recommendation, None).kitchen_inside();
-            let plan = Plan::new(&kitchen, panel, size.0 == 120);
+            let plan = KitchenMap::new(&kitchen, panel, size.0 == 120);
             assert_eq!(plan.spots.len(), kitchen.locations.len() + kitchen.storages.len());
             for spot in &plan.spots {
                 let area = match spot.thing {
-                    Thing::Location(id) => kitchen.location(id).display,
-                    Thing::Storage(index) => kitchen.storages[index].display,
+                    MapElement::Location(id) => kitchen.location(id).display,
+                    MapElement::Storage(index) => kitchen.storages[index].display,
                 };
                 assert_eq!(panel.union(spot.cells), panel, "{name} {size:?}: inside of the panel");
                 for (x, y) in [(spot.cells.x, spot.cells.y), (spot.cells.right() - 1, spot.cells.bottom() - 1)] {
@@ -659,8 +665,8 @@ fn a_layout_cannot_take_a_key_twice() {
     let mut kitchen = Kitchen::clone(&kitchen("sushi"));
     let spec: SessionSpec = toml::from_str("layout = \"\"").expect("the settings have defaults");
     kitchen.locations[0].signal_key = Some('3');
-    let clash = Keys::live(&kitchen, &spec, &KeyMap::default()).expect_err("3 is a marker");
-    assert_eq!(clash.place, KeyPlace::Layout(Layer::Wizard, '3'));
+    let clash = KeyBindings::live(&kitchen, &spec, &KeyMap::default()).expect_err("3 is a marker");
+    assert_eq!(clash.place, KeyPlace::Layout(KeyLayer::Wizard, '3'));
 }
 
 /// Types a word into an open list.
@@ -706,7 +712,7 @@ fn the_kitchen_is_corrected_from_two_lists() {
     stage.wait(1.0);
     stage.key(KeyCode::Enter);
     stage.key(KeyCode::Esc);
-    assert_eq!(stage.model.dialog, Some(Dialog::Pick(Picker::new(Question::Place))));
+    assert_eq!(stage.model.dialog, Some(Dialog::Pick(Picker::new(PickerQuestion::Place))));
     stage.key(KeyCode::Esc);
     assert_eq!(stage.model.dialog, None);
 }
@@ -769,7 +775,7 @@ fn a_trial_is_aborted_with_a_reason_and_done_again() {
         let screen = stage.screen(size);
         assert!(screen.contains("ABORTED") && screen.contains("^n do it again"), "{screen}");
     }
-    assert_eq!(stage.control('n'), Some(Command::Redo));
+    assert_eq!(stage.control('n'), Some(ConsoleCommand::Redo));
 }
 
 #[test]
@@ -788,7 +794,7 @@ fn a_trial_is_excluded_and_included_by_one_key() {
 #[test]
 fn a_lost_keyboard_is_an_alarm_and_an_event() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    let mut focus = |focused| input(update(&mut stage.model, &stage.session, Message::Focus(focused)));
+    let mut focus = |focused| input(update(&mut stage.model, &stage.session, ConsoleMessage::Focus(focused)));
     assert_eq!(focus(true), None, "it has it already");
     assert_eq!(focus(false), Some(Event::FocusLost));
     assert_eq!(focus(false), None);
@@ -796,7 +802,10 @@ fn a_lost_keyboard_is_an_alarm_and_an_event() {
         let screen = stage.screen(size);
         assert!(screen.contains("NO KEYBOARD") && screen.contains("THE KEYBOARD IS ELSEWHERE"), "{screen}");
     }
-    assert_eq!(input(update(&mut stage.model, &stage.session, Message::Focus(true))), Some(Event::FocusRegained));
+    assert_eq!(
+        input(update(&mut stage.model, &stage.session, ConsoleMessage::Focus(true))),
+        Some(Event::FocusRegained)
+    );
 }
 
 #[test]
@@ -809,7 +818,7 @@ fn what_mends_is_told_with_the_keys_that_hold() {
     };
     assert!(remedy(&stage).starts_with("^v checks the gaze"), "{}", remedy(&stage));
     let map: KeyMap = toml::from_str("[console]\ncheck_gaze = \"f9\"\n").expect("a key file");
-    stage.model.keys = Keys::live(&stage.session.kitchen, &stage.session.spec, &map).expect("f9 is free");
+    stage.model.keys = KeyBindings::live(&stage.session.kitchen, &stage.session.spec, &map).expect("f9 is free");
     assert!(remedy(&stage).starts_with("F9 checks the gaze"), "{}", remedy(&stage));
 }
 
@@ -817,7 +826,8 @@ fn what_mends_is_told_with_the_keys_that_hold() {
 fn the_notes_are_those_of_the_session() {
     let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
     stage.session.spec.console.notes = vec!["asked for help".to_string()];
-    stage.model.keys = Keys::live(&stage.session.kitchen, &stage.session.spec, &KeyMap::default()).expect("free keys");
+    stage.model.keys =
+        KeyBindings::live(&stage.session.kitchen, &stage.session.spec, &KeyMap::default()).expect("free keys");
     assert_eq!(input(stage.key(KeyCode::Char('1'))), Some(Event::Marker { note: "asked for help".to_string() }));
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('2')), None);
@@ -858,7 +868,7 @@ fn each_panel_can_be_looked_at_alone() {
     assert_eq!(panels(&stage), ["gaze_map"], "what may not be seen is left out");
     stage.wait(0.2);
     stage.key(KeyCode::Up);
-    update(&mut stage.model, &stage.session, Message::Wheel(40, 12, 1));
+    update(&mut stage.model, &stage.session, ConsoleMessage::Wheel(40, 12, 1));
     assert_eq!(stage.model.events_back, 0, "what is not seen does not move");
 }
 
@@ -866,10 +876,10 @@ fn each_panel_can_be_looked_at_alone() {
 fn a_click_sends_no_signal_and_the_wheel_goes_back_in_time() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     let regions = Regions::new((120, 40), Visibility::Recommendation, None);
-    let plan = Plan::new(&stage.session.kitchen, regions.kitchen_inside(), false);
+    let plan = KitchenMap::new(&stage.session.kitchen, regions.kitchen_inside(), false);
     for spot in &plan.spots {
-        let Thing::Location(location) = spot.thing else { continue };
-        let click = Message::Click(spot.cells.x + 1, spot.cells.y);
+        let MapElement::Location(location) = spot.thing else { continue };
+        let click = ConsoleMessage::Click(spot.cells.x + 1, spot.cells.y);
         assert_eq!(update(&mut stage.model, &stage.session, click), None);
         let label = stage.session.kitchen.location(location).label();
         assert!(stage.notice().contains(&label), "{label}: {}", stage.notice());
@@ -877,12 +887,12 @@ fn a_click_sends_no_signal_and_the_wheel_goes_back_in_time() {
     let all = panels(&stage);
     let (column, row) = (regions.belief.x + 1, regions.belief.y);
     for expected in [vec!["belief".to_string()], all] {
-        assert_eq!(update(&mut stage.model, &stage.session, Message::Click(column, row)), None);
+        assert_eq!(update(&mut stage.model, &stage.session, ConsoleMessage::Click(column, row)), None);
         assert_eq!(panels(&stage), expected);
     }
     let (column, row) = (regions.timeline.x + 1, regions.timeline.y);
     for (steps, back_s) in [(1, 5), (-3, 0)] {
-        assert_eq!(update(&mut stage.model, &stage.session, Message::Wheel(column, row, steps)), None);
+        assert_eq!(update(&mut stage.model, &stage.session, ConsoleMessage::Wheel(column, row, steps)), None);
         assert_eq!(stage.model.timeline_back_s, back_s, "back, and not into the future");
     }
 }
@@ -913,18 +923,18 @@ fn xterm(index: u8) -> [u8; 3] {
 
 #[test]
 fn colours_keep_their_contrast_on_dark_and_light_terminals() {
-    use Role::{Alarm, FalseBelief, Gaze, Human, Quiet, Robot, Signal};
+    use TextRole::{Alarm, FalseBelief, Gaze, Human, Quiet, Robot, Signal};
     // Black, and the backgrounds of VS Code, One Dark and Solarized; white, and those of Solarized and GitHub's code.
     let dark = [[0, 0, 0], [0x1e, 0x1e, 0x1e], [0x28, 0x2c, 0x34], [0x00, 0x2b, 0x36]];
     let light = [[255, 255, 255], [0xfd, 0xf6, 0xe3], [0xf6, 0xf8, 0xfa]];
-    for (ground, backgrounds) in [(Ground::Dark, &dark[..]), (Ground::Light, &light[..])] {
+    for (ground, backgrounds) in [(TerminalBackground::Dark, &dark[..]), (TerminalBackground::Light, &light[..])] {
         let colour = |role| xterm(Theme::colour(ground, role).expect("a colour of its own"));
         for background in backgrounds {
             for role in [Quiet, Human, Robot, Signal, Gaze, Alarm, FalseBelief] {
                 let ratio = contrast(colour(role), *background);
                 assert!(ratio >= 4.5, "{role:?} on {background:02x?}: {ratio:.2}");
             }
-            let ratio = contrast(colour(Role::Frame), *background);
+            let ratio = contrast(colour(TextRole::Frame), *background);
             assert!(
                 (1.5..4.5).contains(&ratio),
                 "lines are there, and quieter than text, on {background:02x?}: {ratio:.2}"
@@ -939,7 +949,7 @@ fn colours_keep_their_contrast_on_dark_and_light_terminals() {
 #[test]
 fn a_trial_starts_at_once_if_all_is_ok_and_what_was_found_is_recorded() {
     let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
-    let Some(Command::Start(Event::Preflight { checks, overridden })) = stage.key(KeyCode::Char('.')) else {
+    let Some(ConsoleCommand::Start(Event::Preflight { checks, overridden })) = stage.key(KeyCode::Char('.')) else {
         panic!("{}", stage.notice());
     };
     let names: Vec<&str> = checks.iter().map(|check| check.name.as_str()).collect();
@@ -971,7 +981,9 @@ fn what_is_not_ok_before_a_trial_is_listed_mended_or_overridden() {
     assert_eq!(input(stage.control('r')), Some(Event::RobotResumed));
     stage.at(3.0, Event::RobotResumed);
     let started = stage.key(KeyCode::Char('o'));
-    let Some(Command::Start(Event::Preflight { checks, overridden: true })) = started else { panic!("{started:?}") };
+    let Some(ConsoleCommand::Start(Event::Preflight { checks, overridden: true })) = started else {
+        panic!("{started:?}")
+    };
     let verdict = |name: &str| checks.iter().find(|check| check.name == name).map(|check| check.verdict);
     assert_eq!(verdict("gaze"), Some(Verdict::Failed));
     assert_eq!(verdict("free space"), Some(Verdict::Warning));
@@ -985,7 +997,10 @@ fn what_is_not_ok_before_a_trial_is_listed_mended_or_overridden() {
     stage.wait(0.01);
     stage.model.dialog = Some(Dialog::Preflight);
     assert!(stage.screen((80, 24)).contains("usable, confidence 0.97"), "{}", stage.screen((80, 24)));
-    assert!(matches!(stage.key(KeyCode::Char('.')), Some(Command::Start(Event::Preflight { overridden: false, .. }))));
+    assert!(matches!(
+        stage.key(KeyCode::Char('.')),
+        Some(ConsoleCommand::Start(Event::Preflight { overridden: false, .. }))
+    ));
 }
 
 #[test]
@@ -1093,8 +1108,8 @@ fn the_sheets_around_a_trial_fit_every_size() {
 #[test]
 fn the_keys_of_a_sheet_make_events_and_a_held_one_answers_once() {
     let mut stage = planned(0, false);
-    let told = |command: Option<Command>| match command {
-        Some(Command::Input(Event::Protocol(event))) => event,
+    let told = |command: Option<ConsoleCommand>| match command {
+        Some(ConsoleCommand::Input(Event::Protocol(event))) => event,
         other => panic!("{other:?}"),
     };
     let first = told(stage.key(KeyCode::Enter));
@@ -1107,7 +1122,7 @@ fn the_keys_of_a_sheet_make_events_and_a_held_one_answers_once() {
     // Signals, markers and the kitchen wait for the trial; the robot stop does not.
     assert_eq!(stage.key(KeyCode::Char('q')), None);
     assert_eq!(stage.key(KeyCode::Char('1')), None);
-    assert_eq!(stage.key(KeyCode::Char(' ')), Some(Command::Input(Event::RobotStopped)));
+    assert_eq!(stage.key(KeyCode::Char(' ')), Some(ConsoleCommand::Input(Event::RobotStopped)));
 }
 
 /// The sushi kitchen with an assistant that advises beside the wizard, and its advice.
@@ -1215,11 +1230,11 @@ fn compared(assistants: usize) -> Stage {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.model.keys = stage.model.keys.clone().with_comparison();
     let kitchen = stage.session.kitchen.clone();
-    let recipe = |order: &str| What::Signal(Signal::ShowRecipe(order.to_string()));
-    let highlight = |place: &str| What::Signal(Signal::Highlight(place.to_string()));
-    let held = Moment::new(&kitchen, stage.session.state, &stage.belief, stage.model.now, false).held;
-    let said = |press: u32, seconds: f64, what: What| {
-        let best = if let What::Signal(signal) = &what { Some(signal.clone()) } else { None };
+    let recipe = |order: &str| CommunicationContent::Signal(Signal::ShowRecipe(order.to_string()));
+    let highlight = |place: &str| CommunicationContent::Signal(Signal::Highlight(place.to_string()));
+    let held = BeliefSnapshot::new(&kitchen, stage.session.state, &stage.belief, stage.model.now, false).held;
+    let said = |press: u32, seconds: f64, what: CommunicationContent| {
+        let best = if let CommunicationContent::Signal(signal) = &what { Some(signal.clone()) } else { None };
         let option = |signal: &Signal| SignalOption {
             signal: signal.clone(),
             benefit: 4.2,
@@ -1230,19 +1245,19 @@ fn compared(assistants: usize) -> Stage {
         let options = best.iter().map(option).collect();
         let advice = Recommendation { options, best, ..Recommendation::silent(7, stage.model.now) };
         let (state, screen) = (stage.session.state, Some(screen(&stage.session, &stage.model)));
-        let known = Known { seq: 7, state, held: held.clone(), advice: vec![advice; 3], screen };
+        let known = CommunicationContext { seq: 7, state, held: held.clone(), advice: vec![advice; 3], screen };
         let clock = SessionTime::from_secs_f64(seconds - 3.0);
         let said = Said { press, clock, content: what.content(&kitchen) };
-        Spoken { said, time: SessionTime::from_secs_f64(seconds), what, known: Some(Arc::new(known)) }
+        Communication { said, time: SessionTime::from_secs_f64(seconds), what, known: Some(Arc::new(known)) }
     };
-    let lane = |name: &str, concept, spoken| Lane { name: name.to_string(), concept, spoken };
+    let lane = |name: &str, concept, spoken| CommunicationLane { name: name.to_string(), concept, spoken };
     let sent = vec![said(5, 12.0, highlight("cutting_board")), said(9, 21.8, recipe("order_1"))];
     let planned = vec![
         said(2, 8.2, highlight("cooking_pot")),
         said(5, 10.6, highlight("cutting_board")),
         said(9, 21.1, recipe("order_1")),
     ];
-    let proposed = What::Proposal(vec!["take_nori".to_string(), "assembly_board".to_string()]);
+    let proposed = CommunicationContent::Proposal(vec!["take_nori".to_string(), "assembly_board".to_string()]);
     let mut lanes = vec![
         lane("wizard", None, sent),
         lane("tom-com", Some(ConceptName::TomCom), planned),
@@ -1250,8 +1265,8 @@ fn compared(assistants: usize) -> Stage {
         lane("dev", Some(ConceptName::Dev), vec![said(6, 15.0, proposed)]),
     ];
     lanes.truncate(assistants + 1);
-    let mut comparison = Compared::default();
-    comparison.show(Comparison::new(lanes, 3, 10, false));
+    let mut comparison = ComparisonView::default();
+    comparison.show(LaneComparison::new(lanes, 3, 10, false));
     stage.model.comparison = Some(comparison);
     stage
 }
@@ -1264,7 +1279,7 @@ fn wizard_and_assistant_stand_side_by_side_at_every_size() {
     check_snapshot("console", "compared_all_80x24", compared(3).screen((80, 24)));
     check_snapshot("console", "compared_all_120x40", compared(3).screen((120, 40)));
     let mut plain = compared(3);
-    plain.model.theme = Theme { colour: false, unicode: false, ground: Ground::Dark };
+    plain.model.theme = Theme { colour: false, unicode: false, ground: TerminalBackground::Dark };
     check_snapshot("console", "compared_all_ascii_120x40", plain.screen((120, 40)));
 }
 
@@ -1327,8 +1342,8 @@ fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
     stage.at(2.0, Event::Calibration(CalibrationEvent::TargetShown { target: 1 }));
     check_snapshot("console", "calibration_target_120x40", stage.screen((120, 40)));
     assert!(stage.screen((80, 24)).contains("look here: 2 of 5"));
-    let target = |samples, accuracy_deg| FoundTarget { samples, accuracy_deg };
-    let found = Found {
+    let target = |samples, accuracy_deg| TargetAccuracy { samples, accuracy_deg };
+    let found = GazeAccuracy {
         accuracy_deg: 2.31,
         corrected_deg: 0.42,
         precision_deg: 0.19,
@@ -1349,13 +1364,14 @@ fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
 #[test]
 fn enter_takes_the_better_gaze_and_none_that_is_too_far_off() {
     let best = |accuracy_deg, corrected_deg| {
-        let found = Found { accuracy_deg, corrected_deg, precision_deg: 0.2, offset: [0.0, 0.0], targets: Vec::new() };
-        Best::of(Some(&found))
+        let found =
+            GazeAccuracy { accuracy_deg, corrected_deg, precision_deg: 0.2, offset: [0.0, 0.0], targets: Vec::new() };
+        CalibrationAdvice::of(Some(&found))
     };
-    assert_eq!(best(2.0, 0.5), Best::Corrected);
-    assert_eq!(best(1.0, 1.4), Best::AsItIs);
-    assert_eq!(best(8.5, 9.7), Best::Repeat);
-    assert_eq!(Best::of(None), Best::Repeat);
+    assert_eq!(best(2.0, 0.5), CalibrationAdvice::Corrected);
+    assert_eq!(best(1.0, 1.4), CalibrationAdvice::AsItIs);
+    assert_eq!(best(8.5, 9.7), CalibrationAdvice::Repeat);
+    assert_eq!(CalibrationAdvice::of(None), CalibrationAdvice::Repeat);
 }
 
 #[test]

@@ -12,13 +12,13 @@ use tomcom::edge::gaze_file;
 use tomcom::edge::pupil::message::{self, Told};
 use tomcom::edge::pupil::zmtp::Inbox;
 use tomcom::gaze::GazeSample;
-use tomcom::gaze::calibration::{TARGETS, Viewing, measure};
+use tomcom::gaze::calibration::{TARGETS, ViewingGeometry, measure};
 use tomcom::gaze::device_clock::DeviceClock;
 use tomcom::gaze::quality::{GazeFault, RateLimit};
 use tomcom::gaze::surface::SurfaceMap;
-use tomcom::gaze::tags::{CELLS, Tags};
+use tomcom::gaze::tags::{CELLS, DisplayTags};
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Area, Kitchen};
+use tomcom::kitchen::{DisplayArea, Kitchen};
 use tomcom::run::engine::Engine;
 use tomcom::session::admit::is_external;
 use tomcom::session::calibration::{CalibrationEvent, Check};
@@ -32,7 +32,7 @@ fn load(layout: &str) -> Kitchen {
     }
 }
 
-fn overlap(a: Area, b: Area) -> bool {
+fn overlap(a: DisplayArea, b: DisplayArea) -> bool {
     a.x < b.x + b.w && b.x < a.x + a.w && a.y < b.y + b.h && b.y < a.y + a.h
 }
 
@@ -40,10 +40,10 @@ fn overlap(a: Area, b: Area) -> bool {
 fn tags_fit_the_corners_of_every_layout() {
     for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
         let kitchen = load(layout);
-        let tags = Tags::place(&kitchen).expect("room for the tags");
+        let tags = DisplayTags::place(&kitchen).expect("room for the tags");
         assert!((0.08..=0.10).contains(&tags.edge_m), "{layout}: {} m", tags.edge_m);
         let areas = kitchen.locations.iter().map(|location| location.display);
-        let areas: Vec<Area> = areas.chain(kitchen.storages.iter().map(|storage| storage.display)).collect();
+        let areas: Vec<DisplayArea> = areas.chain(kitchen.storages.iter().map(|storage| storage.display)).collect();
         for (index, tag) in tags.corners.iter().enumerate() {
             assert!(areas.iter().all(|area| !overlap(tag.area, *area)), "{layout}: tag {}", tag.id);
             assert!(tags.corners[..index].iter().all(|other| other.id != tag.id && !overlap(other.area, tag.area)));
@@ -64,7 +64,7 @@ fn tags_fit_the_corners_of_every_layout() {
 
 #[test]
 fn tags_have_a_black_border_a_white_one_and_patterns_of_their_own() {
-    let tags = Tags::place(&load("layouts/sushi.toml")).expect("room for the tags");
+    let tags = DisplayTags::place(&load("layouts/sushi.toml")).expect("room for the tags");
     let cells = tags.corners.map(|tag| tag.cells());
     for (index, tag) in cells.iter().enumerate() {
         let last = CELLS - 1;
@@ -83,8 +83,8 @@ fn tags_have_a_black_border_a_white_one_and_patterns_of_their_own() {
 #[test]
 fn a_location_in_a_corner_leaves_no_room_for_its_tag() {
     let mut kitchen = load("layouts/sushi.toml");
-    kitchen.locations[0].display = Area { x: 0.90, y: 0.05, w: 0.08, h: 0.10 };
-    let error = Tags::place(&kitchen).expect_err("no room");
+    kitchen.locations[0].display = DisplayArea { x: 0.90, y: 0.05, w: 0.08, h: 0.10 };
+    let error = DisplayTags::place(&kitchen).expect_err("no room");
     assert_eq!(error.found, "\"order 1\" where the top right tag of the eye tracker has to be");
     assert_eq!(error.remedy, "0.10 m by 0.10 m free in each corner of the display");
 }
@@ -92,7 +92,7 @@ fn a_location_in_a_corner_leaves_no_room_for_its_tag() {
 #[test]
 fn the_surface_maps_its_corners_and_straight_lines_to_the_display() {
     // The hull of the tags: what Pupil calls (0, 0) is the outer black corner of the bottom left tag.
-    let hull = Tags::place(&load("layouts/sushi.toml")).expect("room for the tags").hull();
+    let hull = DisplayTags::place(&load("layouts/sushi.toml")).expect("room for the tags").hull();
     let map = SurfaceMap::new(hull).expect("a surface");
     for (norm_pos, expected) in
         [([0.0, 1.0], hull[0]), ([1.0, 1.0], hull[1]), ([1.0, 0.0], hull[2]), ([0.0, 0.0], hull[3])]
@@ -205,7 +205,7 @@ fn a_check_changes_nothing_in_the_trial_but_the_offset_of_the_gaze() {
 
 #[test]
 fn a_check_measures_what_the_gaze_is_off_by() {
-    let viewing = Viewing { display_m: [1.5, 0.84375], distance_m: 2.0 };
+    let viewing = ViewingGeometry { display_m: [1.5, 0.84375], distance_m: 2.0 };
     // At 2 m, a degree is 35 mm.
     assert!((viewing.angle_deg([0.5, 0.5], [0.5 + 0.0349 / 1.5, 0.5]) - 1.0).abs() < 0.001);
     let off = [0.03, -0.02];

@@ -215,7 +215,7 @@ fn ingredients(kitchen: &Kitchen, state: State) -> Vec<usize> {
 
 #[test]
 fn random_presses_create_and_lose_nothing() {
-    use tomcom::kitchen::Action;
+    use tomcom::kitchen::ButtonAction;
     for kitchen in layouts() {
         let mut random = stream(1, "kitchen test", 0);
         let recipes = kitchen.true_recipes();
@@ -235,12 +235,12 @@ fn random_presses_create_and_lose_nothing() {
             let after = ingredients(&kitchen, next).len();
             let held = kitchen.content(state.content(kitchen.hands[agent.index()])).items.len();
             match kitchen.button(agent, button).action {
-                Action::Take(_) => assert_eq!(after, before.len() + 1),
-                Action::Trash => assert_eq!(after, before.len() - held),
-                Action::Serve(_) => {
+                ButtonAction::Take(_) => assert_eq!(after, before.len() + 1),
+                ButtonAction::Trash => assert_eq!(after, before.len() - held),
+                ButtonAction::Serve(_) => {
                     assert_eq!(after, before.len() - kitchen.content(state.content(kitchen.plate)).items.len())
                 }
-                Action::Use(_) | Action::Process(_) => assert_eq!(ingredients(&kitchen, next), before),
+                ButtonAction::Use(_) | ButtonAction::Process(_) => assert_eq!(ingredients(&kitchen, next), before),
             }
             state = next;
         }

@@ -24,7 +24,7 @@ use tomcom::mind::BeliefWitness;
 use tomcom::mind::belief::Belief;
 use tomcom::mind::decision::DecisionModel;
 use tomcom::run::engine::Engine;
-use tomcom::run::figures::{BeliefFigures, TrialFigures};
+use tomcom::run::figures::{BeliefErrorSummary, TrialSummary};
 use tomcom::run::follower::Follower;
 use tomcom::run::headless;
 use tomcom::session::{Event, Session, SessionSpec, Stamped};
@@ -347,7 +347,7 @@ fn a_belief_can_be_told_from_its_witness() {
         assert_eq!(spoilt(|witness| witness.aspects[1].values.extend([("a shoe".to_string(), 0.5)])), None);
         // The session that ran and its replay say the same.
         let (ran, replayed) = (engine.into_follower(), replay);
-        assert_eq!(TrialFigures::of(&ran), TrialFigures::of(&replayed));
+        assert_eq!(TrialSummary::of(&ran), TrialSummary::of(&replayed));
     }
 }
 
@@ -357,10 +357,10 @@ fn what_nobody_knows_stays_unknown() {
     let figures = |participant: &str| {
         let follower =
             Follower::new(Session::new(kitchen.clone(), settings(participant), 0), CostToGo::new(kitchen.clone()));
-        BeliefFigures::of([&TrialFigures::of(&follower)])
+        BeliefErrorSummary::of([&TrialSummary::of(&follower)])
     };
     let nobody = figures("kind = \"keyboard\"\ngaze = \"none\"");
-    assert_eq!(nobody, BeliefFigures::default(), "a person tells no beliefs");
+    assert_eq!(nobody, BeliefErrorSummary::default(), "a person tells no beliefs");
     let simulated = figures("");
     assert_eq!((simulated.belief_related_errors, simulated.sequences), (Some(0), Some(0)));
     assert_eq!(simulated.mean_sequence_length, None, "no mean of nothing");

@@ -4,7 +4,9 @@
 use std::collections::{BinaryHeap, HashMap};
 use std::hash::{BuildHasherDefault, Hasher};
 
-use tomcom::kitchen::{Action, Agent, ContentId, Kitchen, LocationId, LocationKind, OrderContent, Recipes, State};
+use tomcom::kitchen::{
+    Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind, OrderContent, Recipes, State,
+};
 
 /// By component: presses from every location and content; the last row, at content 0, is from a storage.
 type Distances = HashMap<ContentId, Vec<Vec<u32>>>;
@@ -86,7 +88,7 @@ impl<'a> Oracle<'a> {
                 for button in &self.kitchen.buttons[agent.index()] {
                     // Something that no wanted dish can use is best thrown away once it is in a hand.
                     let in_the_way = !held.is_empty() && !useful[held.index()];
-                    if in_the_way && matches!(button.action, Action::Use(_)) {
+                    if in_the_way && matches!(button.action, ButtonAction::Use(_)) {
                         continue;
                     }
                     let Some(next) = self.kitchen.act(state, recipes, agent, button.action) else { continue };
@@ -231,10 +233,10 @@ fn alone(kitchen: &Kitchen, component: ContentId, closed: Option<LocationId>) ->
                 for item in 1..kitchen.contents.len() {
                     let id = ContentId(item as u8);
                     match button.action {
-                        Action::Take(taken) if taken == id => {
+                        ButtonAction::Take(taken) if taken == id => {
                             presses[places][0] = presses[places][0].min(presses[hand.index()][item] + 1);
                         }
-                        Action::Use(place) => {
+                        ButtonAction::Use(place) => {
                             let put = presses[place.index()][item] + 1;
                             if kitchen.accepts(place, id) && Some(place) != closed {
                                 presses[hand.index()][item] = presses[hand.index()][item].min(put);
@@ -242,7 +244,7 @@ fn alone(kitchen: &Kitchen, component: ContentId, closed: Option<LocationId>) ->
                             let pick = presses[hand.index()][item] + 1;
                             presses[place.index()][item] = presses[place.index()][item].min(pick);
                         }
-                        Action::Process(process) => {
+                        ButtonAction::Process(process) => {
                             let place = kitchen.processes[usize::from(process)].place.unwrap_or(hand);
                             if let Some(result) = kitchen.processed(process, id) {
                                 let after = presses[place.index()][result.index()] + 1;

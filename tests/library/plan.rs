@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use tomcom::base::time::SessionTime;
-use tomcom::console::view::theme::{Ground, Theme};
-use tomcom::console::{Command, KeyMap, Keys, Message, Model, update};
+use tomcom::console::view::theme::{TerminalBackground, Theme};
+use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyMap, update};
 use tomcom::edge::files::{SessionFiles, read_session};
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::edge::recordings;
@@ -355,14 +355,14 @@ fn hasty_answers_are_all_taken() {
     run.next_phase();
     run.trial();
     run.next_phase();
-    let keys = Keys::live(&run.engine.session().kitchen, &run.engine.session().spec, &KeyMap::default());
-    let theme = Theme { colour: true, unicode: true, ground: Ground::Dark };
-    let mut model = Model::new(keys.expect("keys"), theme, (80, 24));
+    let keys = KeyBindings::live(&run.engine.session().kitchen, &run.engine.session().spec, &KeyMap::default());
+    let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
+    let mut model = ConsoleModel::new(keys.expect("keys"), theme, (80, 24));
     let items = run.engine.session().questionnaire().expect("it is asked").items.clone();
     for (index, item) in items.iter().enumerate() {
         model.clock = SessionTime::from_secs_f64(5.0 + 0.3 * index as f64);
-        let key = Message::Key(KeyEvent::new(KeyCode::Char('5'), KeyModifiers::NONE));
-        let Some(Command::Input(event)) = update(&mut model, run.engine.session(), key) else {
+        let key = ConsoleMessage::Key(KeyEvent::new(KeyCode::Char('5'), KeyModifiers::NONE));
+        let Some(ConsoleCommand::Input(event)) = update(&mut model, run.engine.session(), key) else {
             panic!("item {}: {:?}", item.id, model.notice)
         };
         assert_eq!(event, Event::Protocol(ProtocolEvent::ItemAnswered { item: item.id.clone(), answer: 5 }));
@@ -370,10 +370,10 @@ fn hasty_answers_are_all_taken() {
     }
     for (gap_s, counts) in [(1.0, true), (0.3, false), (0.3, false), (0.3, true)] {
         model.clock = SessionTime::from_secs_f64(model.clock.as_secs_f64() + gap_s);
-        let key = Message::Key(KeyEvent::new(KeyCode::Enter, KeyModifiers::NONE));
+        let key = ConsoleMessage::Key(KeyEvent::new(KeyCode::Enter, KeyModifiers::NONE));
         let command = update(&mut model, run.engine.session(), key);
         assert_eq!(command.is_some(), counts, "after {gap_s} s: {command:?}");
-        if let Some(Command::Input(event)) = command {
+        if let Some(ConsoleCommand::Input(event)) = command {
             assert_eq!(run.input(event), None);
         }
     }

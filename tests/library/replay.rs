@@ -11,20 +11,20 @@ use tomcom::communication::concept::ConceptName;
 use tomcom::communication::recommendation::Recommendation;
 use tomcom::communication::settings::Shadow;
 use tomcom::communication::{Sender, Signal, signals};
-use tomcom::console::comparison::Known;
-use tomcom::console::playback::Landmark;
+use tomcom::console::comparison::CommunicationContext;
+use tomcom::console::playback::ReplayLandmark;
 use tomcom::edge::files::{SessionFiles, read_session};
 use tomcom::edge::log::{LOG_NAME, LogReader, LogWriter};
 use tomcom::gaze::GazeSample;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen, LocationId};
 use tomcom::measures::matching::Content;
-use tomcom::run::compare::{Request, Watcher};
+use tomcom::run::compare::{CompareRequest, ComparisonFollower};
 use tomcom::run::engine::Engine;
-use tomcom::run::film::Film;
+use tomcom::run::film::SeekableReplay;
 use tomcom::run::headless;
 use tomcom::run::replay::Replay;
-use tomcom::run::simulate::{Shard, Simulation, simulate};
+use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
 use tomcom::run::verify::verify;
 use tomcom::scene::{Derived, Moment, Row, Scene, Shown};
 use tomcom::session::event::{EndReason, SignalEnd};
@@ -60,7 +60,7 @@ fn simulated(name: &str, arm: ArmKind, out: &str, trials: u64, seed: u64) -> Pat
     files.spec.seed = seed;
     files.spec.trial.seconds = 120.0;
     let out = folder(out);
-    simulate(&Simulation { files, trials, shard: Shard::WHOLE, out: out.clone() }, || ())
+    simulate(&SimulationRequest { files, trials, shard: Shard::WHOLE, out: out.clone() }, || ())
         .expect("the folder can be written");
     out
 }
@@ -323,16 +323,16 @@ fn a_recording_can_be_wound_forward_and_back() {
     for name in SESSIONS {
         let out = simulated(name, ArmKind::Physics, &format!("film-{name}"), 1, 3);
         let recording = fs::read_dir(&out).expect("the folder").next().expect("a recording").expect("readable").path();
-        let mut film = Film::open(&recording).expect("it opens");
+        let mut film = SeekableReplay::open(&recording).expect("it opens");
         let (length, events) = film.length();
-        let mut straight = Film::open(&recording).expect("it opens");
+        let mut straight = SeekableReplay::open(&recording).expect("it opens");
         let mut random = stream(5, "places of a film", 0);
         for _ in 0..20 {
             let position = random.random_range(0..=events);
             film.wind(position);
             straight = match straight.position <= position {
                 true => straight,
-                false => Film::open(&recording).expect("it opens"),
+                false => SeekableReplay::open(&recording).expect("it opens"),
             };
             while straight.position < position {
                 straight.forward().expect("an event");
@@ -367,7 +367,7 @@ fn assisted(name: &str, out: &str, by: ConceptName) -> PathBuf {
     files.spec.assistant.rollout.rollouts = 8;
     files.spec.assistant.rollout.states = 8;
     let out = folder(out);
-    simulate(&Simulation { files, trials: 2, shard: Shard::WHOLE, out: out.clone() }, || ())
+    simulate(&SimulationRequest { files, trials: 2, shard: Shard::WHOLE, out: out.clone() }, || ())
         .expect("the folder can be written");
     out
 }
@@ -480,11 +480,15 @@ fn advice_that_nobody_sees_changes_nothing_else() {
 }
 
 /// What was known at every moment at which the concepts were asked, with the presses of the human until then.
-fn asked(files: &SessionFiles, events: &[Stamped], window: u32) -> (Vec<(u32, Arc<Known>)>, Watcher) {
-    let request = Request { with: vec![ConceptName::Dev], window };
+fn asked(
+    files: &SessionFiles,
+    events: &[Stamped],
+    window: u32,
+) -> (Vec<(u32, Arc<CommunicationContext>)>, ComparisonFollower) {
+    let request = CompareRequest { with: vec![ConceptName::Dev], window };
     let mut watcher =
-        Watcher::new(Session::new(Arc::new(files.kitchen.kitchen.clone()), files.spec.clone(), 0), &request);
-    let mut known: Vec<(u32, Arc<Known>)> = Vec::new();
+        ComparisonFollower::new(Session::new(Arc::new(files.kitchen.kitchen.clone()), files.spec.clone(), 0), &request);
+    let mut known: Vec<(u32, Arc<CommunicationContext>)> = Vec::new();
     for stamped in events {
         let press = watcher.presses();
         watcher.apply(stamped).expect("events of a session");
@@ -507,7 +511,7 @@ fn what_the_wizard_said_is_left_out_of_the_estimate_for_the_window_and_no_longer
         let (press, signal) = (5, Signal::ShowRecipe(kitchen.location(kitchen.orders[0]).name.clone()));
         let (files, told) = pressed_on(name, &[(2.0 * f64::from(press) + 1.9, signal.clone())]);
         let (known_told, _) = asked(&files, &told, window);
-        let thought = |known: &[(u32, Arc<Known>)], until: u32| -> Vec<_> {
+        let thought = |known: &[(u32, Arc<CommunicationContext>)], until: u32| -> Vec<_> {
             let until = known.iter().filter(|(press, _)| *press <= until);
             // Numbers of events differ by the signal's own.
             let advice = |advice: &Recommendation| (advice.best.clone(), advice.options.clone());
@@ -517,7 +521,7 @@ fn what_the_wizard_said_is_left_out_of_the_estimate_for_the_window_and_no_longer
         };
         let [with, without] = [&known_told, &known_silent].map(|known| thought(known, press - 1));
         assert!(with.len() > 4 && with == without, "{name}: until it was said");
-        let p_truth = |known: &[(u32, Arc<Known>)], at: u32| {
+        let p_truth = |known: &[(u32, Arc<CommunicationContext>)], at: u32| {
             let (_, known) = known.iter().rfind(|(press, _)| *press == at).expect("asked there");
             known.held[place(&signal).index()].p_truth
         };
@@ -542,11 +546,11 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
     files.spec.trial.seconds = 45.0;
     files.spec.assistant.concept = ConceptName::Tom;
     let out = folder("shadow");
-    simulate(&Simulation { files, trials: 1, shard: Shard::WHOLE, out: out.clone() }, || ())
+    simulate(&SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out: out.clone() }, || ())
         .expect("the folder can be written");
     let mut log = LogReader::open(&out.join("seed1-S001")).expect("a recording");
-    let request = Request { with: vec![ConceptName::Dev], window: 3 };
-    let watcher = || Watcher::new(log.session(), &request);
+    let request = CompareRequest { with: vec![ConceptName::Dev], window: 3 };
+    let watcher = || ComparisonFollower::new(log.session(), &request);
     let (mut here, there) = (watcher(), watcher().on_thread());
     let mut compared = 0;
     while let Some(line) = log.next_line().expect("an event") {
@@ -681,22 +685,22 @@ fn a_scene_tells_a_belief_before_the_press_as_the_log_does() {
 fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
     let out = simulated("default.toml", ArmKind::Timed, "landmarks", 1, 3);
     let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
-    let mut film = Film::open(&recording).expect("a recording");
+    let mut film = SeekableReplay::open(&recording).expect("a recording");
     let mut errors = film.errors.clone();
     errors.dedup();
     assert!(errors.len() > 2, "{errors:?}");
     let mut visited = Vec::new();
-    while let Some(position) = film.landmark(Landmark::Error, true) {
+    while let Some(position) = film.landmark(ReplayLandmark::Error, true) {
         film.wind(position);
         visited.push(film.time());
     }
     assert_eq!(visited, errors);
-    let back = film.landmark(Landmark::Error, false).expect("the error before");
+    let back = film.landmark(ReplayLandmark::Error, false).expect("the error before");
     film.wind(back);
     assert_eq!(film.time(), errors[errors.len() - 2]);
-    assert_eq!(film.landmark(Landmark::Signal, true), None, "nobody sends signals");
+    assert_eq!(film.landmark(ReplayLandmark::Signal, true), None, "nobody sends signals");
     film.wind(0);
-    let wrong = film.landmark(Landmark::FalseBelief, true).expect("something is believed wrong");
+    let wrong = film.landmark(ReplayLandmark::FalseBelief, true).expect("something is believed wrong");
     film.wind(wrong);
     let moment = film.beliefs.until(film.time()).last().expect("an estimate");
     assert!(moment.held.iter().any(|held| held.is_false()), "{moment:?}");

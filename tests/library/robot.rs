@@ -4,19 +4,19 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::arm::clearance::{InTheWay, Surroundings};
+use tomcom::arm::clearance::{ArmSurroundings, Obstruction};
 use tomcom::arm::inverse::{twist, wrapped};
 use tomcom::arm::kinematics::Arm;
-use tomcom::arm::motion::ArmMotion;
-use tomcom::arm::reach::{AtButton, BUTTON_M, Unreachable, out_of_reach};
+use tomcom::arm::motion::JointMotion;
+use tomcom::arm::reach::{BUTTON_M, ButtonPoses, Unreachable, out_of_reach};
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, ButtonId, DishId, Kitchen, OrderContent, State};
 use tomcom::robot::IdleReason;
-use tomcom::robot::moment::Joints;
-use tomcom::robot::policy::{Decision, decide};
+use tomcom::robot::moment::JointAngles;
+use tomcom::robot::policy::{PolicyDecision, decide};
 
 fn sushi() -> Arc<Kitchen> {
     Arc::new(read_kitchen(Path::new("layouts/sushi.toml")).expect("the sushi kitchen loads").kitchen)
@@ -45,10 +45,10 @@ fn check(orders: &[&str], contents: &[(&str, &str)], expected: &[&str]) {
     for index in 0..50 {
         let mut random = stream(1, "robot policy", index);
         let decision = match decide(&kitchen, &mut cost, state, &[], &mut random) {
-            Decision::Press(button) => kitchen.button(Agent::Robot, button).name.clone(),
-            Decision::Idle(IdleReason::NoOrder) => "no order".to_string(),
-            Decision::Idle(IdleReason::HumanTurn) => "human's turn".to_string(),
-            Decision::Idle(IdleReason::Skipped) => "skipped".to_string(),
+            PolicyDecision::Press(button) => kitchen.button(Agent::Robot, button).name.clone(),
+            PolicyDecision::Idle(IdleReason::NoOrder) => "no order".to_string(),
+            PolicyDecision::Idle(IdleReason::HumanTurn) => "human's turn".to_string(),
+            PolicyDecision::Idle(IdleReason::Skipped) => "skipped".to_string(),
         };
         if !seen.contains(&decision) {
             seen.push(decision);
@@ -96,7 +96,7 @@ fn it_frees_what_it_blocks() {
 }
 
 /// Where the tip of the arm is at this time, in metres.
-fn tip_m(arm: &Arm, motion: &ArmMotion, now_s: f64) -> [f64; 3] {
+fn tip_m(arm: &Arm, motion: &JointMotion, now_s: f64) -> [f64; 3] {
     let places = arm.forward(&motion.at(SessionTime::from_secs_f64(now_s)));
     places.last().expect("links").translation.vector.into()
 }
@@ -107,7 +107,7 @@ fn the_arm_touches_the_button_when_the_press_is_due_and_goes_over_the_others() {
     for layout in ["sushi", "burger"] {
         let path = Path::new("layouts").join(layout).with_extension("toml");
         let kitchen = read_kitchen(&path).expect("a layout of the project").kitchen;
-        let mut motion = ArmMotion::new(&kitchen, &arm);
+        let mut motion = JointMotion::new(&kitchen, &arm);
         let top_m = kitchen.table_height_m + BUTTON_M;
         let mut now_s = 1.0;
         for (index, button) in kitchen.buttons[Agent::Robot.index()].iter().enumerate() {
@@ -136,7 +136,7 @@ fn the_arm_touches_the_button_when_the_press_is_due_and_goes_over_the_others() {
 #[test]
 fn an_arm_that_stands_stays_where_it_is() {
     let (arm, kitchen) = (Arm::ur5(), sushi());
-    let mut motion = ArmMotion::new(&kitchen, &arm);
+    let mut motion = JointMotion::new(&kitchen, &arm);
     let at = SessionTime::from_secs_f64;
     motion.set_out(at(1.0), ButtonId(3), at(3.0));
     let there = motion.at(at(1.7));
@@ -151,12 +151,12 @@ fn every_inverse_solution_reproduces_the_pose_and_the_joints_it_came_from_are_am
     let (mut worst, mut solutions, mut missing) = (0.0_f64, 0, 0);
     let mut random = stream(9, "poses", 0);
     for _ in 0..10_000 {
-        let joints: Joints = std::array::from_fn(|_| (random.random::<f64>() * 2.0 - 1.0) * std::f64::consts::PI);
+        let joints: JointAngles = std::array::from_fn(|_| (random.random::<f64>() * 2.0 - 1.0) * std::f64::consts::PI);
         let target = arm.tip(&joints);
         let found = arm.inverse(&target);
         solutions += found.len();
         worst = found.iter().map(|solution| twist(&arm.tip(solution), &target).amax()).fold(worst, f64::max);
-        let is_it = |solution: &Joints| solution.iter().zip(joints).all(|(a, b)| wrapped(a - b).abs() < 1e-4);
+        let is_it = |solution: &JointAngles| solution.iter().zip(joints).all(|(a, b)| wrapped(a - b).abs() < 1e-4);
         missing += usize::from(!found.iter().any(is_it));
     }
     println!("10000 poses: {solutions} solutions, at most {worst:.1e} away (m, rad); {missing} not found again");
@@ -170,9 +170,9 @@ fn every_button_of_every_layout_is_within_reach_with_clearance() {
     for layout in ["layouts/sushi.toml", "layouts/burger.toml", "tests/kitchens/tiny.toml"] {
         let kitchen = read_kitchen(Path::new(layout)).expect("a layout of the project").kitchen;
         assert_eq!(out_of_reach(&kitchen), None, "{layout}");
-        let around = Surroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
+        let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
         for button in &kitchen.buttons[Agent::Robot.index()] {
-            let AtButton { above, touching } = arm.at_button(button.at_m, &around).expect("within reach");
+            let ButtonPoses { above, touching } = arm.at_button(button.at_m, &around).expect("within reach");
             let tip = arm.tip(&touching);
             let away_m = (tip.translation.vector.xy() - nalgebra::Vector2::from(button.at_m)).norm();
             assert!(away_m < 1e-6 && (tip * nalgebra::Vector3::z()).z < -1.0 + 1e-9, "{}", button.name);
@@ -186,13 +186,13 @@ fn every_button_of_every_layout_is_within_reach_with_clearance() {
 fn a_place_that_the_arm_cannot_press_at_is_told_with_the_reason() {
     let arm = Arm::ur5();
     let check = |at_m: [f64; 2], table_m: f64, expected: Unreachable| {
-        let around = Surroundings { table_m, obstacles: Vec::new() };
+        let around = ArmSurroundings { table_m, obstacles: Vec::new() };
         assert_eq!(arm.at_button(at_m, &around), Err(expected), "{at_m:?}");
     };
     check([1.1, 0.2], 0.0, Unreachable::TooFar);
     check([0.05, 0.05], 0.0, Unreachable::TooFar);
     check([0.89, 0.0], 0.0, Unreachable::Singular);
-    check([0.4, 0.0], 0.3, Unreachable::Blocked(InTheWay::Table));
+    check([0.4, 0.0], 0.3, Unreachable::Blocked(Obstruction::Table));
 }
 
 /// Random joint angles and where the tip is then: x, y, z and the rotation's columns, in the frame of the base. For
@@ -203,7 +203,7 @@ fn print_poses() {
     let arm = Arm::ur5();
     let mut random = stream(3, "poses", 0);
     for _ in 0..2000 {
-        let joints: Joints = std::array::from_fn(|_| (random.random::<f64>() * 2.0 - 1.0) * std::f64::consts::TAU);
+        let joints: JointAngles = std::array::from_fn(|_| (random.random::<f64>() * 2.0 - 1.0) * std::f64::consts::TAU);
         let tip = arm.tip(&joints);
         let turn = tip.rotation.to_rotation_matrix();
         println!("pose {joints:?} {:?} {:?}", tip.translation.vector.as_slice(), turn.matrix().as_slice());

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::settings::AssistantSpec;
 use tomcom::communication::{Sender, Signal};
-use tomcom::console::{KeyMap, Keys};
+use tomcom::console::{KeyBindings, KeyMap};
 use tomcom::edge::files::read_session;
 use tomcom::edge::parse::parse;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen, OrderContent, State};
 use tomcom::measures::errors::{Judge, Verdict};
-use tomcom::run::engine::{Engine, Outcome};
+use tomcom::run::engine::{Engine, InputResult};
 use tomcom::session::event::{EndReason, SignalEnd};
 use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec, SessionSpec};
 use tomcom::session::{Event, Phase};
@@ -41,7 +41,7 @@ fn every_session_file_loads_and_its_keys_are_unambiguous() {
         }
         let mut files = read_session(&path).unwrap_or_else(|error| panic!("{error}"));
         files.spec.participant.kind = ParticipantKind::Keyboard;
-        Keys::live(&files.kitchen.kitchen, &files.spec, &KeyMap::default())
+        KeyBindings::live(&files.kitchen.kitchen, &files.spec, &KeyMap::default())
             .unwrap_or_else(|clash| panic!("{}: {clash}", path.display()));
     }
 }
@@ -77,7 +77,7 @@ fn highlight(location: &str) -> Event {
 fn check(engine: &mut Engine, inputs: &[(f64, Event)]) -> Vec<(&'static str, f64)> {
     let mut kinds = Vec::new();
     for (seconds, event) in inputs {
-        let Outcome { events, refused } = engine.input(at(*seconds), event.clone());
+        let InputResult { events, refused } = engine.input(at(*seconds), event.clone());
         assert_eq!(refused, None, "{event:?}");
         kinds.extend(events.iter().map(|stamped| (stamped.event.kind(), stamped.time.as_secs_f64())));
     }

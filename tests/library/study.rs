@@ -13,8 +13,8 @@ use tomcom::kitchen::AspectId;
 use tomcom::measures::coding::{Code, Codes};
 use tomcom::robot::AbortReason;
 use tomcom::robot::safety::SafetyMode;
-use tomcom::run::codes::Coded;
-use tomcom::run::study::reading::{self, Extent};
+use tomcom::run::codes::CodedRecording;
+use tomcom::run::study::reading::{self, AnalysisScope};
 use tomcom::session::Event;
 use tomcom::session::event::EndReason;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
@@ -373,7 +373,7 @@ fn two_raters_say_why_people_erred() {
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder");
     fs::copy("tests/golden/format-1-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
-    let extent = Extent { concepts: false, events: true };
+    let extent = AnalysisScope { concepts: false, events: true };
     let read = || match reading::read(&folder, "hand", extent) {
         Ok(Some((_, reading))) => reading,
         Ok(None) => panic!("it is no practice"),
@@ -382,7 +382,7 @@ fn two_raters_say_why_people_erred() {
     let basis = |trial: &Trial| trial.beliefs.as_ref().map(|beliefs| beliefs.basis);
     let estimated = read();
     assert_eq!(basis(&estimated.trial), Some(Basis::Estimate));
-    let errors = Coded::open(&folder).expect("a recording").codable.errors;
+    let errors = CodedRecording::open(&folder).expect("a recording").codable.errors;
     assert!(errors.len() as u64 == estimated.trial.errors && errors.len() >= 2, "{errors:?}");
     let belief = |place: &str| Code::Belief(place.to_string());
     let say = |rater: &str, of: &dyn Fn(usize) -> Code, count: usize| {

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 use serial_test::serial;
 use tomcom::edge::files::read_session;
-use tomcom::run::simulate::{Shard, Simulation, simulate};
+use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
 
 use crate::tmux::TOMCOM;
 
@@ -17,7 +17,7 @@ fn forgetting_asks_first_and_a_wizards_code_is_that_of_the_training() {
     let _ = fs::remove_dir_all(&out);
     let mut files = read_session(Path::new("sessions/paper.toml")).expect("the paper's session");
     files.spec.trial.presses = 10;
-    let simulation = Simulation { files, trials: 1, shard: Shard::WHOLE, out: out.clone() };
+    let simulation = SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out: out.clone() };
     simulate(&simulation, || ()).expect("the folder can be written");
     let record = |wizard: &str, recordings: &[&str]| {
         let judged = |name: &&str| {

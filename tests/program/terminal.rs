@@ -8,12 +8,12 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use serial_test::serial;
-use tomcom::console::arrange::{Plan, Thing};
+use tomcom::console::arrange::{KitchenMap, MapElement};
 use tomcom::console::view::regions::Regions;
 use tomcom::edge::files::read_session;
 use tomcom::edge::terminal::Screen;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Action, Agent, ButtonId, Kitchen};
+use tomcom::kitchen::{Agent, ButtonAction, ButtonId, Kitchen};
 use tomcom::run::replay::Replay;
 use tomcom::session::settings::Visibility;
 
@@ -138,7 +138,7 @@ fn check_by_hand(session: &str) {
     terminal.key("Tab");
     terminal.see("KEYS: PARTICIPANT");
     let panel = Regions::new(SIZE, Visibility::Recommendation, None).kitchen_inside();
-    let plan = Plan::new(&kitchen, panel, true);
+    let plan = KitchenMap::new(&kitchen, panel, true);
     let mut cost = CostToGo::new(kitchen.clone());
     let mut replay = Replay::open(&terminal.recording()).expect("it opens while it is written");
     let recipes = kitchen.true_recipes();
@@ -159,11 +159,13 @@ fn check_by_hand(session: &str) {
             continue;
         };
         let button = kitchen.button(Agent::Human, button);
-        let place = |thing: &Thing| match button.action {
-            Action::Use(location) | Action::Serve(location) => *thing == Thing::Location(location),
-            Action::Take(item) => matches!(thing, Thing::Storage(index)
+        let place = |thing: &MapElement| match button.action {
+            ButtonAction::Use(location) | ButtonAction::Serve(location) => *thing == MapElement::Location(location),
+            ButtonAction::Take(item) => matches!(thing, MapElement::Storage(index)
                 if kitchen.storages[*index].agent == Agent::Human && kitchen.storages[*index].item == item),
-            Action::Process(_) | Action::Trash => *thing == Thing::Location(kitchen.hands[Agent::Human.index()]),
+            ButtonAction::Process(_) | ButtonAction::Trash => {
+                *thing == MapElement::Location(kitchen.hands[Agent::Human.index()])
+            }
         };
         let spot = plan.spots.iter().find(|spot| place(&spot.thing)).expect("every button is about a place");
         terminal.point(spot.cells.x + spot.cells.width / 2, spot.cells.y + spot.cells.height / 2);

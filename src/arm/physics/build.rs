@@ -7,17 +7,17 @@ use rapier3d::prelude::{
 };
 
 use super::hand::single;
-use super::{World, button};
-use crate::arm::link::{Link, Shape};
-use crate::robot::moment::{JOINTS, Joints};
+use super::{PhysicsWorld, button};
+use crate::arm::link::{ArmLink, LinkShape};
+use crate::robot::moment::{JOINTS, JointAngles};
 
 /// What a drive's rotor adds to the inertia of its joint through the gear (rotor times ratio squared), in kg m²: an estimate
 /// for the large and the small drives, as the maker does not say.
 const ARMATURE_KG_M2: [f32; JOINTS] = [1.0, 1.0, 1.0, 0.2, 0.2, 0.2];
 
-impl World {
+impl PhysicsWorld {
     /// Puts an arm together that stands so.
-    pub(super) fn build(&mut self, joints: &Joints) {
+    pub(super) fn build(&mut self, joints: &JointAngles) {
         let mut carried_from = Isometry3::identity();
         for link in self.arm.links.clone() {
             let Some(parent) = self.links.last().copied() else {
@@ -61,9 +61,9 @@ impl World {
     }
 
     /// The stick's shape, with which the arm presses.
-    fn add_stick(&mut self, parent: RigidBodyHandle, link: &Link, parent_from_link: &Isometry3<f64>) {
+    fn add_stick(&mut self, parent: RigidBodyHandle, link: &ArmLink, parent_from_link: &Isometry3<f64>) {
         for solid in &link.solids {
-            let Shape::Cylinder { radius_m, length_m } = solid.shape else { continue };
+            let LinkShape::Cylinder { radius_m, length_m } = solid.shape else { continue };
             let half_m = (length_m / 2.0 - radius_m) as f32;
             let collider = ColliderBuilder::capsule_z(half_m, radius_m as f32)
                 .position(pose(&(parent_from_link * solid.link_from_solid)))
@@ -81,7 +81,7 @@ fn pose(isometry: &Isometry3<f64>) -> Pose {
     Pose::from_parts(single(isometry.translation.vector), rotation.normalize())
 }
 
-fn mass(link: &Link) -> MassProperties {
+fn mass(link: &ArmLink) -> MassProperties {
     let Some(weight) = &link.weight else { return MassProperties::default() };
     MassProperties::new(single(weight.centre_m.coords), weight.mass_kg as f32, single(weight.inertia_kg_m2))
 }

@@ -21,7 +21,7 @@ const HAND_LENGTH_M: f64 = 0.09;
 
 /// Where a person holds the hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HandPlace {
+pub struct HandPose {
     /// The middle of the hand, in the frame of the arm's base.
     pub at_m: Point3<f64>,
     pub elbow_m: Point3<f64>,
@@ -31,10 +31,10 @@ pub struct HandPlace {
 const REACHES_M: f64 = 0.27;
 const ELBOW_M: f64 = 0.12;
 
-impl HandPlace {
+impl HandPose {
     /// A hand over a table of this height, reached out from the human's side: the elbow is further from the arm's base.
-    pub fn reaching(at_m: Point3<f64>, table_m: f64) -> HandPlace {
-        HandPlace { at_m, elbow_m: Point3::new(at_m.x + REACHES_M, at_m.y, table_m + ELBOW_M) }
+    pub fn reaching(at_m: Point3<f64>, table_m: f64) -> HandPose {
+        HandPose { at_m, elbow_m: Point3::new(at_m.x + REACHES_M, at_m.y, table_m + ELBOW_M) }
     }
 
     /// Hand and forearm.
@@ -51,22 +51,22 @@ impl HandPlace {
 
 /// The body.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hand {
+pub(super) struct PhysicalHand {
     body: RigidBodyHandle,
-    pub wanted: HandPlace,
+    pub wanted: HandPose,
     /// The height of the table, on which it can be clamped.
     table_m: f64,
 }
 
-impl Hand {
-    pub fn new(bodies: &mut RigidBodySet, wanted: HandPlace, table_m: f64) -> Hand {
+impl PhysicalHand {
+    pub fn new(bodies: &mut RigidBodySet, wanted: HandPose, table_m: f64) -> PhysicalHand {
         let body = RigidBodyBuilder::dynamic()
             .translation(single(wanted.at_m.coords))
             .additional_mass(MASS_KG)
             .lock_rotations()
             .gravity_scale(0.0)
             .can_sleep(false);
-        Hand { body: bodies.insert(body), wanted, table_m }
+        PhysicalHand { body: bodies.insert(body), wanted, table_m }
     }
 
     pub fn body(&self) -> RigidBodyHandle {
@@ -74,11 +74,11 @@ impl Hand {
     }
 
     /// Where it is: pushed away from where it is wanted, with the forearm.
-    pub fn place(&self, bodies: &RigidBodySet) -> HandPlace {
+    pub fn place(&self, bodies: &RigidBodySet) -> HandPose {
         let Some(body) = bodies.get(self.body) else { return self.wanted };
         let at_m = Point3::from(double(body.translation()));
         // The forearm yields with it.
-        HandPlace { at_m, elbow_m: self.wanted.elbow_m + (at_m - self.wanted.at_m) }
+        HandPose { at_m, elbow_m: self.wanted.elbow_m + (at_m - self.wanted.at_m) }
     }
 
     /// How fast it moves, in metres a second.

@@ -17,9 +17,9 @@ use rapier3d::prelude::{
 };
 
 use super::kinematics::Arm;
-use crate::robot::moment::{JOINTS, Joints};
+use crate::robot::moment::{JOINTS, JointAngles};
 use button::PhysicalButton;
-use hand::{Hand, HandPlace, double, single};
+use hand::{HandPose, PhysicalHand, double, single};
 
 /// The fixed step of the physics, in seconds, and how many make a cycle of the controller.
 pub const STEP_S: f64 = 0.002;
@@ -46,7 +46,7 @@ const APART_M: f64 = 0.05;
 
 /// What was felt in a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Felt {
+pub struct CycleForces {
     /// The greatest force between arm and human, in newtons.
     pub human_n: f64,
     /// The greatest force of the stick on the button, in newtons.
@@ -57,7 +57,7 @@ pub struct Felt {
 
 impl Arm {
     /// How far a hand is from the arm at these joint angles, in metres.
-    pub fn distance(&self, joints: &Joints, hand: &HandPlace) -> f64 {
+    pub fn distance(&self, joints: &JointAngles, hand: &HandPose) -> f64 {
         let human = hand.capsules();
         let arm = self.capsules(joints);
         let pairs = arm.iter().flat_map(|(_, link)| human.iter().map(move |part| link.nearest(part).distance_m));
@@ -66,7 +66,7 @@ impl Arm {
 }
 
 /// The bodies.
-pub struct World {
+pub struct PhysicsWorld {
     arm: Arm,
     parameters: IntegrationParameters,
     islands: IslandManager,
@@ -86,16 +86,16 @@ pub struct World {
     buttons: Vec<PhysicalButton>,
     /// The button that the stick may meet; the others are at rest.
     active: Option<usize>,
-    hand: Option<Hand>,
+    hand: Option<PhysicalHand>,
     table_m: f64,
     /// The last command, and what it was corrected by.
-    commanded: Joints,
-    correction: Joints,
+    commanded: JointAngles,
+    correction: JointAngles,
 }
 
-impl Clone for World {
-    fn clone(&self) -> World {
-        World {
+impl Clone for PhysicsWorld {
+    fn clone(&self) -> PhysicsWorld {
+        PhysicsWorld {
             arm: self.arm.clone(),
             parameters: self.parameters,
             islands: self.islands.clone(),
@@ -121,16 +121,16 @@ impl Clone for World {
     }
 }
 
-impl std::fmt::Debug for World {
+impl std::fmt::Debug for PhysicsWorld {
     fn fmt(&self, into: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         into.debug_struct("World").field("joints", &self.joints().0).finish_non_exhaustive()
     }
 }
 
-impl World {
+impl PhysicsWorld {
     /// An arm that stands so, above buttons at these places of a table of this height.
-    pub fn new(arm: &Arm, joints: &Joints, buttons: &[[f64; 2]], table_m: f64) -> World {
-        let mut world = World {
+    pub fn new(arm: &Arm, joints: &JointAngles, buttons: &[[f64; 2]], table_m: f64) -> PhysicsWorld {
+        let mut world = PhysicsWorld {
             arm: arm.clone(),
             parameters: IntegrationParameters {
                 dt: STEP_S as f32,
@@ -170,7 +170,7 @@ impl World {
     }
 
     /// Joint angles in radians, and their speeds in radians a second.
-    pub fn joints(&self) -> (Joints, Joints) {
+    pub fn joints(&self) -> (JointAngles, JointAngles) {
         let Some((multibody, _)) = self.joints.first().and_then(|joint| self.multibodies.get(*joint)) else {
             return (self.commanded, [0.0; JOINTS]);
         };
@@ -184,7 +184,7 @@ impl World {
     }
 
     /// Where the human's hand is, if there is one.
-    pub fn hand(&self) -> Option<HandPlace> {
+    pub fn hand(&self) -> Option<HandPose> {
         self.hand.as_ref().map(|hand| hand.place(&self.bodies))
     }
 
@@ -216,11 +216,11 @@ impl World {
     }
 
     /// A cycle of the controller: the joints go on to `command` (radians), the hand to where the person wants it.
-    pub fn cycle(&mut self, command: &Joints, hand: Option<HandPlace>) -> Felt {
+    pub fn cycle(&mut self, command: &JointAngles, hand: Option<HandPose>) -> CycleForces {
         let before = self.commanded;
         self.set_hand(hand);
         let near = self.hand().is_some_and(|hand| self.distance(&hand) < APART_M);
-        let mut felt = Felt::default();
+        let mut felt = CycleForces::default();
         for step in 1..=STEPS_A_CYCLE {
             let share = step as f64 / STEPS_A_CYCLE as f64;
             self.drive(
@@ -252,10 +252,10 @@ impl World {
         pair.map_or(0.0, |pair| f64::from(pair.total_impulse_magnitude()) / STEP_S)
     }
 
-    fn set_hand(&mut self, hand: Option<HandPlace>) {
+    fn set_hand(&mut self, hand: Option<HandPose>) {
         match (&mut self.hand, hand) {
             (Some(one), Some(wanted)) => one.wanted = wanted,
-            (None, Some(wanted)) => self.hand = Some(Hand::new(&mut self.bodies, wanted, self.table_m)),
+            (None, Some(wanted)) => self.hand = Some(PhysicalHand::new(&mut self.bodies, wanted, self.table_m)),
             (Some(_), None) => {
                 if let Some(one) = self.hand.take() {
                     let (islands, colliders) = (&mut self.islands, &mut self.colliders);
@@ -276,7 +276,7 @@ impl World {
     }
 
     /// How far a hand is from the arm, in metres.
-    pub fn distance(&self, hand: &HandPlace) -> f64 {
+    pub fn distance(&self, hand: &HandPose) -> f64 {
         self.arm.distance(&self.joints().0, hand)
     }
 
@@ -291,7 +291,7 @@ impl World {
         self.commanded = self.joints().0;
     }
 
-    fn drive(&mut self, target: &Joints, before: &Joints, after: &Joints) {
+    fn drive(&mut self, target: &JointAngles, before: &JointAngles, after: &JointAngles) {
         for (joint, handle) in self.joints.iter().enumerate() {
             let Some((multibody, link)) = self.multibodies.get_mut(*handle) else { continue };
             let Some(link) = multibody.link_mut(link) else { continue };
@@ -320,7 +320,7 @@ impl World {
     }
 
     /// The link that is deepest in the human, the force on the human in newtons, and where.
-    fn deepest(&self, hand: &Hand) -> Option<(usize, Vector3<f64>, Point3<f64>)> {
+    fn deepest(&self, hand: &PhysicalHand) -> Option<(usize, Vector3<f64>, Point3<f64>)> {
         let human = hand.place(&self.bodies).capsules();
         let arm = self.arm.capsules(&self.joints().0);
         let pairs = arm.iter().flat_map(|(link, shape)| human.iter().map(move |part| (*link, shape.nearest(part))));

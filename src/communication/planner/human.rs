@@ -112,7 +112,7 @@ impl Cases {
         for &aspect in involved {
             self.learn(kitchen, aspect, truth);
         }
-        if let crate::kitchen::Action::Serve(order) = kitchen.button(Agent::Human, button).action
+        if let crate::kitchen::ButtonAction::Serve(order) = kitchen.button(Agent::Human, button).action
             && let OrderContent::Dish(dish) = before.order(order)
         {
             self.learn(kitchen, kitchen.aspect_of_dish(dish), truth);

@@ -27,7 +27,7 @@ use super::situation::Situation;
 use super::{Signal, unavailable};
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Action, Agent, AspectId, ButtonId, Kitchen};
+use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen};
 use crate::mind::model::HumanModel;
 use crate::mind::witness::rounded;
 
@@ -71,7 +71,7 @@ impl Planner {
         let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
         let aspects = |button| kitchen.involved(Agent::Human, button).into_iter().map(AspectId::of_location);
         let of_robot = AspectId::of_location(kitchen.hands[Agent::Robot.index()]);
-        let fetches = |button| matches!(kitchen.button(Agent::Human, button).action, Action::Take(_));
+        let fetches = |button| matches!(kitchen.button(Agent::Human, button).action, ButtonAction::Take(_));
         let watched = |button| aspects(button).chain(fetches(button).then_some(of_robot)).collect();
         Planner {
             decider: Decider::new(&kitchen, &human.decision, spec.rollout.states),

@@ -2,13 +2,13 @@
 
 use ratatui::layout::Rect;
 
-use super::paint::{Brush, fit, width};
+use super::paint::{Painter, fit, width};
 use super::regions::Regions;
-use super::theme::Role;
+use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::communication::recommendation::phrase;
-use crate::console::belief::{self, Held, Moment};
-use crate::console::model::Model;
+use crate::console::belief::{self, AspectSnapshot, BeliefSnapshot};
+use crate::console::model::ConsoleModel;
 use crate::kitchen::{AspectId, AspectKind, Kitchen};
 use crate::session::{Phase, Session};
 
@@ -27,13 +27,13 @@ const FRAMED: u16 = 5;
 struct Panel<'a> {
     session: &'a Session,
     now: SessionTime,
-    moments: &'a [Moment],
-    held: &'a [Held],
+    moments: &'a [BeliefSnapshot],
+    held: &'a [AspectSnapshot],
     focus: Option<AspectId>,
 }
 
 /// Draws the belief panel.
-pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.belief;
     if area.area() == 0 {
         return;
@@ -45,11 +45,11 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         let waits = "estimated from the trial's start on";
         match area.height < FRAMED {
             true => {
-                brush.parts(area.x, area.y, area.width, &[(" belief   ", Role::Quiet), (waits, Role::Quiet)]);
+                brush.parts(area.x, area.y, area.width, &[(" belief   ", TextRole::Quiet), (waits, TextRole::Quiet)]);
             }
             false => {
                 let inside = brush.panel(area, "Belief", "estimated");
-                let quiet = brush.style(Role::Quiet);
+                let quiet = brush.style(TextRole::Quiet);
                 brush.text(inside.x + 1, inside.y, inside.width.saturating_sub(1), waits, quiet);
             }
         }
@@ -67,7 +67,7 @@ impl Panel<'_> {
         &self.session.kitchen
     }
 
-    fn panel(&self, brush: &mut Brush, area: Rect) {
+    fn panel(&self, brush: &mut Painter, area: Rect) {
         let wrong = self.held.iter().filter(|held| held.is_false()).count();
         let remark = if wrong == 0 { "estimated".to_string() } else { format!("estimated, {wrong} wrong") };
         let inside = brush.panel(area, "Belief", &remark);
@@ -102,7 +102,7 @@ impl Panel<'_> {
                     0 => format!("{} {left} more are as they should be", brush.theme.signs().ellipsis),
                     _ => format!("{} {left} more, {wrong} of them wrong", brush.theme.signs().ellipsis),
                 };
-                let style = brush.style(if wrong > 0 { Role::FalseBelief } else { Role::Quiet });
+                let style = brush.style(if wrong > 0 { TextRole::FalseBelief } else { TextRole::Quiet });
                 if y < bottom {
                     brush.text(x, y, columns, &more, style);
                 }
@@ -117,9 +117,9 @@ impl Panel<'_> {
     }
 
     /// What the columns of [`Panel::row`] are.
-    fn headings(&self, brush: &mut Brush, x: u16, y: u16, columns: u16) {
+    fn headings(&self, brush: &mut Painter, x: u16, y: u16, columns: u16) {
         let Widths { name, word, bar } = self.widths(columns);
-        let quiet = brush.style(Role::Quiet);
+        let quiet = brush.style(TextRole::Quiet);
         let believed = x + name + 1;
         let truth = believed + word + bar + 6;
         brush.text(believed, y, word, "believed", quiet);
@@ -131,11 +131,11 @@ impl Panel<'_> {
     }
 
     /// An aspect in one line: name, what is believed, how surely, the truth, since when it is wrong, its course.
-    fn row(&self, brush: &mut Brush, aspect: usize, x: u16, y: u16, columns: u16) {
+    fn row(&self, brush: &mut Painter, aspect: usize, x: u16, y: u16, columns: u16) {
         let with_course = columns >= WITH_COURSE;
         let Widths { name, word, bar } = self.widths(columns);
         let held = self.held[aspect];
-        let (role, quiet) = (self.role(aspect), brush.style(Role::Quiet));
+        let (role, quiet) = (self.role(aspect), brush.style(TextRole::Quiet));
         let style = brush.style(role);
         brush.text(x, y, name, &self.name(aspect), if held.is_false() { style } else { quiet });
         let mut at = x + name + 1;
@@ -145,7 +145,7 @@ impl Panel<'_> {
         at += bar + 1;
         brush.text(at, y, 4, &share(held.p), style);
         at += 4;
-        let truth_style = if held.is_false() { brush.style(Role::Text) } else { quiet };
+        let truth_style = if held.is_false() { brush.style(TextRole::Text) } else { quiet };
         brush.text(at, y, word, self.truth(aspect), truth_style);
         at += word + 1;
         self.since(brush, aspect, at, y);
@@ -165,11 +165,11 @@ impl Panel<'_> {
     }
 
     /// An aspect where there is little room: what is wrong in lines below its name, all else in one.
-    fn narrow(&self, brush: &mut Brush, aspect: usize, x: u16, y: u16, columns: u16) {
+    fn narrow(&self, brush: &mut Painter, aspect: usize, x: u16, y: u16, columns: u16) {
         let held = self.held[aspect];
         let role = self.role(aspect);
         let style = brush.style(role);
-        let quiet = brush.style(Role::Quiet);
+        let quiet = brush.style(TextRole::Quiet);
         let right = x + columns;
         let bar = right.saturating_sub(15);
         brush.text(bar + 5, y, 4, &share(held.p), style);
@@ -190,29 +190,29 @@ impl Panel<'_> {
             return;
         }
         brush.text(x, y, room, &name, style);
-        let text = brush.style(Role::Text);
+        let text = brush.style(TextRole::Text);
         for (row, line) in self.told(aspect, columns).iter().enumerate() {
             brush.text(x + 2, y + 1 + row as u16, columns.saturating_sub(2), line, text);
         }
     }
 
     /// Since when it is wrong, or that the gaze has just been there.
-    fn since(&self, brush: &mut Brush, aspect: usize, x: u16, y: u16) {
+    fn since(&self, brush: &mut Painter, aspect: usize, x: u16, y: u16) {
         if belief::read_at(self.moments, aspect, self.now).is_some() {
-            let style = brush.style(Role::Gaze);
+            let style = brush.style(TextRole::Gaze);
             let sign = brush.theme.signs().gaze;
             brush.text(x, y, 1, sign, style);
         }
         if let Some(since) = belief::wrong_since(self.moments, aspect) {
-            let style = brush.style(Role::FalseBelief);
+            let style = brush.style(TextRole::FalseBelief);
             let age = self.session.age(since, self.now).to_string();
             brush.text_right(x + 6, y, 5, &age, style);
         }
     }
 
     /// The few lines of a small screen: the worst beliefs, or one over time.
-    fn lines(&self, brush: &mut Brush, x: u16, y: u16, columns: u16, rows: u16) {
-        let quiet = brush.style(Role::Quiet);
+    fn lines(&self, brush: &mut Painter, x: u16, y: u16, columns: u16, rows: u16) {
+        let quiet = brush.style(TextRole::Quiet);
         brush.text(x, y, columns, " belief   ", quiet);
         let (x, columns) = (x + 10, columns.saturating_sub(11));
         if let Some(focus) = self.focus {
@@ -230,7 +230,7 @@ impl Panel<'_> {
             let note = if is_last { format!("+{more}  ") } else { String::new() };
             let age = belief::wrong_since(self.moments, aspect).map(|since| self.session.age(since, self.now));
             let end = format!("{note}{} {:>5}", share(held.p), age.unwrap_or_default().to_string());
-            let style = brush.style(Role::FalseBelief);
+            let style = brush.style(TextRole::FalseBelief);
             brush.text_right(x + columns, y, columns, &end, style);
             let room = columns.saturating_sub(end.len() as u16 + 1);
             let head = format!("{}: ", self.name(aspect));
@@ -248,9 +248,9 @@ impl Panel<'_> {
     }
 
     /// P(truth) of one aspect over time.
-    fn chart(&self, brush: &mut Brush, aspect: AspectId, x: u16, y: u16, columns: u16, rows: u16) {
+    fn chart(&self, brush: &mut Painter, aspect: AspectId, x: u16, y: u16, columns: u16, rows: u16) {
         let held = self.held[aspect.index()];
-        let quiet = brush.style(Role::Quiet);
+        let quiet = brush.style(TextRole::Quiet);
         let p = share(held.p_truth);
         let title = format!("{} is {}", self.name(aspect.index()), self.truth(aspect.index()));
         let end = format!("P(truth) {p}, {COURSE_S:.0} s");
@@ -263,14 +263,14 @@ impl Panel<'_> {
     }
 
     /// A curve of P(truth) over the last `seconds`, its false stretches in the colour of false beliefs.
-    fn curve(&self, brush: &mut Brush, aspect: usize, area: Rect, seconds: f64) {
+    fn curve(&self, brush: &mut Painter, aspect: usize, area: Rect, seconds: f64) {
         let Rect { x, y, width: columns, height: rows } = area;
         let levels = brush.theme.signs().levels;
         let course = belief::course(self.moments, aspect, self.now, seconds, usize::from(columns));
         for (column, p) in course.iter().enumerate() {
             let Some(p) = p else { continue };
             let is_false = *p < crate::measures::sequences::FALSE_BELOW;
-            let style = brush.style(if is_false { Role::FalseBelief } else { Role::Quiet });
+            let style = brush.style(if is_false { TextRole::FalseBelief } else { TextRole::Quiet });
             // The lowest level is drawn, too: something is known there.
             let height = (p * f64::from(rows) * levels.len() as f64).ceil().max(1.0) as usize;
             for row in 0..rows {
@@ -283,11 +283,11 @@ impl Panel<'_> {
         }
     }
 
-    fn role(&self, aspect: usize) -> Role {
+    fn role(&self, aspect: usize) -> TextRole {
         match self.held[aspect] {
-            held if held.is_false() => Role::FalseBelief,
-            held if f64::from(held.p_truth) < DOUBTFUL => Role::Text,
-            _ => Role::Quiet,
+            held if held.is_false() => TextRole::FalseBelief,
+            held if f64::from(held.p_truth) < DOUBTFUL => TextRole::Text,
+            _ => TextRole::Quiet,
         }
     }
 

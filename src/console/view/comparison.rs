@@ -3,14 +3,16 @@
 
 use ratatui::layout::Rect;
 
-use super::paint::{Brush, width};
-use super::regions::{ROOMY_COLUMNS, Regions, Room};
-use super::theme::Role;
+use super::paint::{Painter, width};
+use super::regions::{ROOMY_COLUMNS, Regions, ScreenSize};
+use super::theme::TextRole;
 use super::timeline::{axis, until};
 use crate::base::time::SessionTime;
-use crate::console::comparison::{Comparison, Difference, Spoken, Step, What};
-use crate::console::keys::Action;
-use crate::console::model::Model;
+use crate::console::comparison::{
+    Communication, CommunicationContent, ComparisonKey, LaneComparison, UnmatchedCommunication,
+};
+use crate::console::keys::KeyAction;
+use crate::console::model::ConsoleModel;
 use crate::session::Session;
 
 /// The width of a column in seconds.
@@ -24,7 +26,7 @@ const REMARK: u16 = 32;
 /// Where there is room for a line in the comparison's title.
 pub(super) fn title_room(regions: &Regions) -> Option<Rect> {
     let area = regions.comparison;
-    if regions.room == Room::Small || area.area() == 0 {
+    if regions.room == ScreenSize::Small || area.area() == 0 {
         return None;
     }
     let from = area.x + 1 + width(TITLE) + 2;
@@ -33,17 +35,17 @@ pub(super) fn title_room(regions: &Regions) -> Option<Rect> {
 }
 
 /// Draws the comparison.
-pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.comparison;
     let Some(compared) = model.comparison.as_ref().filter(|_| area.area() > 0) else { return };
-    let is_small = regions.room == Room::Small;
+    let is_small = regions.room == ScreenSize::Small;
     let window = compared.seen.as_ref().map(|seen| format!("matched within {} presses", seen.window));
     let inside = match is_small {
         true => area,
         false => brush.panel(area, TITLE, &window.unwrap_or_default()),
     };
     let Some(seen) = &compared.seen else {
-        let quiet = brush.style(Role::Quiet);
+        let quiet = brush.style(TextRole::Quiet);
         brush.text(inside.x + 1, inside.y, inside.width, "compared from the first order or press on", quiet);
         return;
     };
@@ -76,10 +78,10 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
 
 struct View<'a> {
     session: &'a Session,
-    model: &'a Model,
+    model: &'a ConsoleModel,
     plot: Rect,
-    seen: &'a Comparison,
-    chosen: Option<Difference>,
+    seen: &'a LaneComparison,
+    chosen: Option<UnmatchedCommunication>,
 }
 
 impl View<'_> {
@@ -91,16 +93,16 @@ impl View<'_> {
         (0..i64::from(self.plot.width)).contains(&age).then(|| self.plot.right() - 1 - age as u16)
     }
 
-    fn lane(&self, brush: &mut Brush, lane: usize, y: u16) {
+    fn lane(&self, brush: &mut Painter, lane: usize, y: u16) {
         if y >= self.plot.bottom() {
             return;
         }
-        let style = brush.style(if lane == 0 { Role::Signal } else { Role::Strong });
+        let style = brush.style(if lane == 0 { TextRole::Signal } else { TextRole::Strong });
         brush.text(self.plot.x - LABELS + 1, y, LABELS - 1, &self.seen.lanes[lane].name, style);
         for (index, spoken) in self.seen.lanes[lane].spoken.iter().enumerate() {
             let Some(x) = self.column(spoken.time) else { continue };
             let is_chosen = self.chosen.is_some_and(|chosen| (chosen.lane, chosen.index) == (lane, index));
-            let role = if lane == 0 { Role::Signal } else { Role::Strong };
+            let role = if lane == 0 { TextRole::Signal } else { TextRole::Strong };
             let style = if is_chosen { brush.theme.badge(role) } else { brush.style(role) };
             let sign = self.sign(brush, spoken);
             brush.text(x, y, 1, &sign, style);
@@ -108,19 +110,19 @@ impl View<'_> {
     }
 
     /// The key of a signal; a proposal has none.
-    fn sign(&self, brush: &Brush, spoken: &Spoken) -> String {
-        let What::Signal(signal) = &spoken.what else { return brush.theme.signs().by_hand.to_string() };
+    fn sign(&self, brush: &Painter, spoken: &Communication) -> String {
+        let CommunicationContent::Signal(signal) = &spoken.what else { return brush.theme.signs().by_hand.to_string() };
         let location = self.session.kitchen.location_named(signal.target());
         location.and_then(|id| self.model.keys.mark(id)).map_or("!".to_string(), |chord| chord.to_string())
     }
 
     /// Lines from what the first lane said, above, to its match in this lane, below.
-    fn matches(&self, brush: &mut Brush, lane: usize, y: u16) {
+    fn matches(&self, brush: &mut Painter, lane: usize, y: u16) {
         if y >= self.plot.bottom() {
             return;
         }
         let [top_left, top_right, bottom_left, bottom_right, across, down] = brush.theme.signs().frame;
-        let style = brush.style(Role::Quiet);
+        let style = brush.style(TextRole::Quiet);
         for &(of, with) in &self.seen.pairs[lane - 1].matched {
             let times = [self.seen.lanes[0].spoken[of].time, self.seen.lanes[lane].spoken[with].time];
             let [Some(from), Some(to)] = times.map(|time| self.column(time)) else { continue };
@@ -139,11 +141,11 @@ impl View<'_> {
 }
 
 /// How alike the first lane and this one are.
-fn figures_line(brush: &mut Brush, inside: Rect, y: u16, seen: &Comparison, lane: usize) {
+fn figures_line(brush: &mut Painter, inside: Rect, y: u16, seen: &LaneComparison, lane: usize) {
     let name = format!("{:<9}", seen.lanes[lane].name);
     if seen.lanes[0].spoken.is_empty() {
         let text = "no signal was sent yet: nothing to hold against";
-        brush.parts(inside.x + 1, y, inside.width - 1, &[(&name, Role::Strong), (text, Role::Quiet)]);
+        brush.parts(inside.x + 1, y, inside.width - 1, &[(&name, TextRole::Strong), (text, TextRole::Quiet)]);
         return;
     }
     let found = &seen.pairs[lane - 1].similarity;
@@ -159,13 +161,19 @@ fn figures_line(brush: &mut Brush, inside: Rect, y: u16, seen: &Comparison, lane
         ),
         false => format!("recall {recall}  precision {precision}  F1 {f1}  kappa {kappa}  lead {lead}"),
     };
-    brush.parts(inside.x + 1, y, inside.width - 1, &[(&name, Role::Strong), (&text, Role::Text)]);
+    brush.parts(inside.x + 1, y, inside.width - 1, &[(&name, TextRole::Strong), (&text, TextRole::Text)]);
 }
 
 /// The differences up to the chosen one, the last in the last row.
-fn differences(brush: &mut Brush, area: Rect, seen: &Comparison, chosen: Option<(usize, Difference)>, model: &Model) {
+fn differences(
+    brush: &mut Painter,
+    area: Rect,
+    seen: &LaneComparison,
+    chosen: Option<(usize, UnmatchedCommunication)>,
+    model: &ConsoleModel,
+) {
     let Some((at, _)) = chosen.filter(|_| area.height > 0) else {
-        let quiet = brush.style(Role::Quiet);
+        let quiet = brush.style(TextRole::Quiet);
         if area.height > 0 {
             brush.text(area.x + 1, area.y, area.width - 1, "no differences yet", quiet);
         }
@@ -178,12 +186,12 @@ fn differences(brush: &mut Brush, area: Rect, seen: &Comparison, chosen: Option<
         let y = area.y + row as u16;
         let is_chosen = index == at;
         let number = format!("{:>3}/{}  ", index + 1, seen.differences.len());
-        let role = if is_chosen { Role::Strong } else { Role::Quiet };
-        let open = model.keys.of(&Action::Differ(Step::Open)).filter(|_| is_chosen);
+        let role = if is_chosen { TextRole::Strong } else { TextRole::Quiet };
+        let open = model.keys.of(&KeyAction::Differ(ComparisonKey::Open)).filter(|_| is_chosen);
         let open = open.map_or(String::new(), |key| format!("  {key} opens it"));
         let headline = seen.headline(difference);
         let room = area.width.saturating_sub(width(&open) + 1);
-        let x = brush.parts(area.x + 1, y, room, &[(&number, Role::Quiet), (&headline, role)]);
-        brush.parts(x, y, area.right().saturating_sub(x), &[(&open, Role::Signal)]);
+        let x = brush.parts(area.x + 1, y, room, &[(&number, TextRole::Quiet), (&headline, role)]);
+        brush.parts(x, y, area.right().saturating_sub(x), &[(&open, TextRole::Signal)]);
     }
 }

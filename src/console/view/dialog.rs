@@ -3,17 +3,17 @@
 use ratatui::layout::Rect;
 
 use super::hands;
-use super::paint::{Brush, width, wrap};
+use super::paint::{Painter, width, wrap};
 use super::picker;
 use super::regions::inside;
-use super::theme::{Role, Signs, Theme};
-use crate::console::chord::Chord;
-use crate::console::keys::{Action, Binding, Keys, Layer};
-use crate::console::model::{Dialog, Model};
+use super::theme::{Glyphs, TextRole, Theme};
+use crate::console::chord::KeyChord;
+use crate::console::keys::{KeyAction, KeyBinding, KeyBindings, KeyLayer};
+use crate::console::model::{ConsoleModel, Dialog};
 use crate::session::{Phase, Session};
 
 /// Draws the open dialog, if there is one.
-pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
+pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
     match &model.dialog {
         None => {}
         Some(Dialog::Pick(list)) => picker::draw(brush, screen, session, list),
@@ -35,7 +35,7 @@ pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
                 _ => &["The session ends, the recording is kept."],
             };
             let is_running = matches!(session.phase, Phase::Running | Phase::Paused);
-            let again = model.keys.of(&Action::Quit).filter(|_| !is_running);
+            let again = model.keys.of(&KeyAction::Quit).filter(|_| !is_running);
             let yes = again.map_or("y".to_string(), |chord| format!("y or {chord}"));
             ask(brush, screen, "Quit tomcom?", lines, &yes);
         }
@@ -43,7 +43,7 @@ pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
 }
 
 /// Clears the middle of the screen and frames it.
-pub(super) fn open(brush: &mut Brush, screen: Rect, size: (u16, u16), title: &str, remark: &str) -> Rect {
+pub(super) fn open(brush: &mut Painter, screen: Rect, size: (u16, u16), title: &str, remark: &str) -> Rect {
     let (columns, rows) = (size.0.min(screen.width), size.1.min(screen.height));
     let area = Rect {
         x: screen.x + (screen.width - columns) / 2,
@@ -58,7 +58,7 @@ pub(super) fn open(brush: &mut Brush, screen: Rect, size: (u16, u16), title: &st
             }
         }
     }
-    let style = brush.style(Role::Strong);
+    let style = brush.style(TextRole::Strong);
     brush.frame(area, &brush.theme.signs().frame, style);
     brush.text(area.x + 2, area.y, columns, &format!(" {title} "), style);
     if !remark.is_empty() {
@@ -68,18 +68,23 @@ pub(super) fn open(brush: &mut Brush, screen: Rect, size: (u16, u16), title: &st
 }
 
 /// A question, and the keys that say yes.
-fn ask(brush: &mut Brush, screen: Rect, title: &str, lines: &[&str], yes: &str) {
+fn ask(brush: &mut Painter, screen: Rect, title: &str, lines: &[&str], yes: &str) {
     let inside = open(brush, screen, (46, lines.len() as u16 + 5), title, "");
     for (row, line) in lines.iter().enumerate() {
-        brush.parts(inside.x + 2, inside.y + 1 + row as u16, inside.width - 3, &[(line, Role::Text)]);
+        brush.parts(inside.x + 2, inside.y + 1 + row as u16, inside.width - 3, &[(line, TextRole::Text)]);
     }
     let y = inside.bottom() - 1;
-    let parts = [(yes, Role::Strong), (" yes    ", Role::Text), ("any other key", Role::Strong), (" no", Role::Text)];
+    let parts = [
+        (yes, TextRole::Strong),
+        (" yes    ", TextRole::Text),
+        ("any other key", TextRole::Strong),
+        (" no", TextRole::Text),
+    ];
     brush.parts(inside.x + 2, y, inside.width - 3, &parts);
 }
 
 /// What each knew where they differ.
-fn difference(brush: &mut Brush, screen: Rect, lines: &[String]) {
+fn difference(brush: &mut Painter, screen: Rect, lines: &[String]) {
     let columns = (screen.width - 4).min(100);
     let wrapped: Vec<(bool, String)> = lines
         .iter()
@@ -89,7 +94,7 @@ fn difference(brush: &mut Brush, screen: Rect, lines: &[String]) {
     let rows = wrapped.len() as u16 + 2;
     let inside = open(brush, screen, (columns, rows), "What each knew", "any key closes");
     for (row, (is_head, line)) in wrapped.iter().enumerate().take(usize::from(inside.height)) {
-        let style = brush.style(if *is_head { Role::Strong } else { Role::Text });
+        let style = brush.style(if *is_head { TextRole::Strong } else { TextRole::Text });
         brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, style);
     }
 }
@@ -107,14 +112,14 @@ fn report_lines(lines: &[String], size: (u16, u16)) -> (u16, Vec<String>, usize)
 }
 
 /// How many lines of the open report are below those that fit.
-pub fn report_rest(model: &Model) -> usize {
+pub fn report_rest(model: &ConsoleModel) -> usize {
     let Some(Dialog::Report(lines)) = &model.dialog else { return 0 };
     let (_, lines, rows) = report_lines(lines, model.size);
     lines.len().saturating_sub(rows)
 }
 
 /// What came of a training.
-fn report(brush: &mut Brush, screen: Rect, lines: &[String], model: &Model) {
+fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleModel) {
     let (columns, lines, rows) = report_lines(lines, (screen.width, screen.height));
     let rest = lines.len().saturating_sub(rows);
     let from = model.help_from.min(rest);
@@ -122,10 +127,10 @@ fn report(brush: &mut Brush, screen: Rect, lines: &[String], model: &Model) {
     let size = (columns, lines.len().min(rows) as u16 + 4);
     let inside = open(brush, screen, size, "The training is over", remark);
     for (row, line) in lines.iter().skip(from).take(rows).enumerate() {
-        let style = brush.style(if from + row == 0 { Role::Strong } else { Role::Text });
+        let style = brush.style(if from + row == 0 { TextRole::Strong } else { TextRole::Text });
         brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, style);
     }
-    let parts = [("enter", Role::Strong), (" goes on; it is recorded, too", Role::Quiet)];
+    let parts = [("enter", TextRole::Strong), (" goes on; it is recorded, too", TextRole::Quiet)];
     brush.parts(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 2, &parts);
 }
 
@@ -138,7 +143,7 @@ const HELP_INDENT: u16 = 7;
 #[derive(Clone, Copy)]
 enum Line<'a> {
     Heading(&'a str),
-    Key(&'a Binding),
+    Key(&'a KeyBinding),
     /// A sign of the panels, with what it means.
     Sign(&'static str, &'static str),
     Space,
@@ -157,7 +162,7 @@ impl Line<'_> {
 }
 
 /// What the signs mean that explain themselves nowhere else.
-fn legend(signs: &Signs) -> Vec<Line<'static>> {
+fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
     let meanings = [
         (signs.gaze, "the gaze; in the belief: it was just there"),
         (signs.trail, "where the gaze was before"),
@@ -186,7 +191,7 @@ fn legend(signs: &Signs) -> Vec<Line<'static>> {
 }
 
 /// What the help says, in columns, and how many of them fit side by side.
-fn help_columns<'a>(keys: &'a Keys, theme: &Theme, size: (u16, u16)) -> (Vec<Vec<Line<'a>>>, usize) {
+fn help_columns<'a>(keys: &'a KeyBindings, theme: &Theme, size: (u16, u16)) -> (Vec<Vec<Line<'a>>>, usize) {
     let mut groups: Vec<(&str, Vec<Line>)> = Vec::new();
     for binding in &keys.bindings {
         match groups.iter_mut().find(|(group, _)| *group == binding.group) {
@@ -201,12 +206,12 @@ fn help_columns<'a>(keys: &'a Keys, theme: &Theme, size: (u16, u16)) -> (Vec<Vec
 }
 
 /// How many pages the help has beyond the first.
-pub fn help_pages(model: &Model) -> usize {
+pub fn help_pages(model: &ConsoleModel) -> usize {
     let (columns, fits) = help_columns(&model.keys, &model.theme, model.size);
     columns.len() - fits
 }
 
-fn help(brush: &mut Brush, screen: Rect, model: &Model) {
+fn help(brush: &mut Painter, screen: Rect, model: &ConsoleModel) {
     let theme = brush.theme;
     let (columns, fits) = help_columns(&model.keys, &theme, (screen.width, screen.height));
     let tallest = columns.iter().map(Vec::len).max().unwrap_or(0) as u16;
@@ -227,28 +232,28 @@ fn help(brush: &mut Brush, screen: Rect, model: &Model) {
     }
 }
 
-fn help_line(brush: &mut Brush, x: u16, y: u16, columns: u16, line: &Line) {
+fn help_line(brush: &mut Painter, x: u16, y: u16, columns: u16, line: &Line) {
     match line {
         Line::Space => {}
         Line::Heading(text) => {
-            let style = brush.style(Role::Strong);
+            let style = brush.style(TextRole::Strong);
             brush.text(x, y, columns, text, style);
         }
         Line::Sign(sign, meaning) => {
-            let style = brush.style(Role::Strong);
+            let style = brush.style(TextRole::Strong);
             brush.text(x + 5, y, 1, sign, style);
-            brush.parts(x + HELP_INDENT, y, columns.saturating_sub(HELP_INDENT), &[(meaning, Role::Text)]);
+            brush.parts(x + HELP_INDENT, y, columns.saturating_sub(HELP_INDENT), &[(meaning, TextRole::Text)]);
         }
         Line::Key(binding) => {
-            let key = binding.chords.first().map(Chord::to_string).unwrap_or_default();
+            let key = binding.chords.first().map(KeyChord::to_string).unwrap_or_default();
             let role = match binding.layer {
-                Some(Layer::Wizard) => Role::Signal,
-                Some(Layer::Participant) => Role::Human,
-                None => Role::Strong,
+                Some(KeyLayer::Wizard) => TextRole::Signal,
+                Some(KeyLayer::Participant) => TextRole::Human,
+                None => TextRole::Strong,
             };
             let style = brush.style(role);
             brush.text(x + 6 - width(&key).min(6), y, 6, &key, style);
-            brush.parts(x + HELP_INDENT, y, columns.saturating_sub(HELP_INDENT), &[(&binding.help, Role::Text)]);
+            brush.parts(x + HELP_INDENT, y, columns.saturating_sub(HELP_INDENT), &[(&binding.help, TextRole::Text)]);
         }
     }
 }

@@ -1,9 +1,9 @@
 //! What happened, in words, the newest on top: where the terminal is large.
 
-use super::paint::Brush;
+use super::paint::Painter;
 use super::regions::Regions;
-use super::theme::Role;
-use crate::console::model::Model;
+use super::theme::TextRole;
+use crate::console::model::ConsoleModel;
 use crate::console::words;
 use crate::kitchen::Agent;
 use crate::session::{Happening, Session};
@@ -12,7 +12,7 @@ use crate::session::{Happening, Session};
 const WHO: u16 = 10;
 
 /// Draws the list of events.
-pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     if regions.events.area() == 0 {
         return;
     }
@@ -28,19 +28,19 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         let (who, what) = words::happening(&session.kitchen, &entry.what);
         let is_error = model.is_error(entry);
         let role = match &entry.what {
-            Happening::Press { agent: Agent::Human, .. } => Role::Human,
-            Happening::Press { agent: Agent::Robot, .. } => Role::Robot,
-            Happening::Signal { .. } | Happening::SignalEnded(_) => Role::Signal,
-            Happening::RobotStopped | Happening::ArmStopped { .. } => Role::Alarm,
-            Happening::ArmTouched { .. } => Role::Robot,
-            _ => Role::Strong,
+            Happening::Press { agent: Agent::Human, .. } => TextRole::Human,
+            Happening::Press { agent: Agent::Robot, .. } => TextRole::Robot,
+            Happening::Signal { .. } | Happening::SignalEnded(_) => TextRole::Signal,
+            Happening::RobotStopped | Happening::ArmStopped { .. } => TextRole::Alarm,
+            Happening::ArmTouched { .. } => TextRole::Robot,
+            _ => TextRole::Strong,
         };
-        let quiet = brush.style(Role::Quiet);
+        let quiet = brush.style(TextRole::Quiet);
         brush.text_right(inside.x + 6, y, 6, &age, quiet);
         let x = inside.x + 7;
         let columns = inside.right().saturating_sub(x + WHO);
         brush.parts(x, y, WHO - 1, &[(who, role)]);
         let mark = if is_error { format!(" {} error", brush.theme.signs().error) } else { String::new() };
-        brush.parts(x + WHO, y, columns, &[(&what, Role::Text), (&mark, Role::Alarm)]);
+        brush.parts(x + WHO, y, columns, &[(&what, TextRole::Text), (&mark, TextRole::Alarm)]);
     }
 }

@@ -2,19 +2,19 @@
 
 use ratatui::style::Style;
 
-use super::paint::{Brush, width};
+use super::paint::{Painter, width};
 use super::regions::Regions;
-use super::theme::Role;
+use super::theme::TextRole;
 use super::{comparison, timeline};
 use crate::communication::Sender;
 use crate::communication::concept::ConceptName;
-use crate::console::coding::Rate;
+use crate::console::coding::RaterKey;
 use crate::console::form::sheet;
-use crate::console::hands::Hand;
-use crate::console::keys::{Action, Binding, Layer};
-use crate::console::model::{Dialog, Level, Model, Notice};
-use crate::console::panels::Look;
-use crate::console::playback::Move;
+use crate::console::hands::ManualAction;
+use crate::console::keys::{KeyAction, KeyBinding, KeyLayer};
+use crate::console::model::{ConsoleModel, Dialog, Notice, NoticeLevel};
+use crate::console::panels::PanelKey;
+use crate::console::playback::ReplayKey;
 use crate::session::admit::may_send;
 use crate::session::protocol::StudyPhase;
 use crate::session::settings::{ParticipantKind, Visibility};
@@ -24,10 +24,10 @@ use crate::session::{Phase, Session};
 const NOTICE_S: f64 = 4.0;
 
 /// Draws the key line.
-pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.footer;
     if !model.focused && model.playback.is_none() {
-        let alarm = brush.theme.badge(Role::Alarm);
+        let alarm = brush.theme.badge(TextRole::Alarm);
         let words = " THE KEYBOARD IS ELSEWHERE, and the robot stop with it: click into this window ";
         brush.text(area.x, area.y, area.width, &format!("{words:<width$}", width = usize::from(area.width)), alarm);
         return;
@@ -35,8 +35,8 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let mut x = area.x;
     if session.spec.participant.kind == ParticipantKind::Keyboard && model.playback.is_none() {
         let (label, role) = match model.layer {
-            Layer::Wizard => (" KEYS: WIZARD ", Role::Signal),
-            Layer::Participant => (" KEYS: PARTICIPANT ", Role::Human),
+            KeyLayer::Wizard => (" KEYS: WIZARD ", TextRole::Signal),
+            KeyLayer::Participant => (" KEYS: PARTICIPANT ", TextRole::Human),
         };
         let badge = brush.theme.badge(role);
         x = brush.text(x, area.y, area.width, label, badge);
@@ -44,42 +44,43 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let notice = model.notice.as_ref().filter(|notice| model.clock.secs_since(notice.at) < NOTICE_S);
     let notice = notice.filter(|notice| !above(brush, regions, session, model, notice));
     // An alarm may take the place of the keys.
-    let most = if notice.is_some_and(|notice| notice.level == Level::Alarm) { area.width } else { area.width / 2 };
+    let most =
+        if notice.is_some_and(|notice| notice.level == NoticeLevel::Alarm) { area.width } else { area.width / 2 };
     let said = notice.map_or(0, |notice| width(&notice.text) + 3).min(most);
     let end = area.right().saturating_sub(said);
     // The end of the trial is rare, and gives its room to the others; after it only leaving is left to do.
     let is_over = is_over(session, model);
-    let is_late = |binding: &&Binding| match is_over {
-        true => !matches!(binding.action, Action::Advance | Action::Quit | Action::Hand(Hand::Redo)),
-        false => matches!(binding.action, Action::EndTrial | Action::Look(Look::Next)),
+    let is_late = |binding: &&KeyBinding| match is_over {
+        true => !matches!(binding.action, KeyAction::Advance | KeyAction::Quit | KeyAction::Hand(ManualAction::Redo)),
+        false => matches!(binding.action, KeyAction::EndTrial | KeyAction::Look(PanelKey::Next)),
     };
-    let (late, mut first): (Vec<&Binding>, Vec<&Binding>) = model.keys.bindings.iter().partition(is_late);
+    let (late, mut first): (Vec<&KeyBinding>, Vec<&KeyBinding>) = model.keys.bindings.iter().partition(is_late);
     // The robot stop is always first; the way back to all panels is next, where one is alone.
     first.sort_by_key(|binding| match binding.action {
-        Action::StopRobot => 0,
-        Action::Look(Look::All) => 1,
+        KeyAction::StopRobot => 0,
+        KeyAction::Look(PanelKey::All) => 1,
         _ => 2,
     });
     for binding in first.into_iter().chain(late) {
         let Some(label) = label(binding, session, model) else { continue };
         let Some(chord) = binding.chords.first() else { continue };
         let key = match binding.action {
-            Action::Note(_) if session.spec.console.notes.len() > 1 => {
+            KeyAction::Note(_) if session.spec.console.notes.len() > 1 => {
                 format!("1-{}", session.spec.console.notes.len())
             }
             // One label for the keys of both directions.
-            Action::Rate(Rate::Belief(_)) => "letters".to_string(),
-            Action::Move(Move::StepForward) => "left/right".to_string(),
-            Action::Move(Move::SeekForward) => "pgup/pgdn".to_string(),
-            Action::Move(Move::Faster) => "+/-".to_string(),
-            Action::Move(Move::ToEnd) => "home/end".to_string(),
+            KeyAction::Rate(RaterKey::Belief(_)) => "letters".to_string(),
+            KeyAction::Move(ReplayKey::StepForward) => "left/right".to_string(),
+            KeyAction::Move(ReplayKey::SeekForward) => "pgup/pgdn".to_string(),
+            KeyAction::Move(ReplayKey::Faster) => "+/-".to_string(),
+            KeyAction::Move(ReplayKey::ToEnd) => "home/end".to_string(),
             _ => chord.to_string(),
         };
         if x + width(&key) + width(label) + 3 > end {
             continue;
         }
-        let key_style = if binding.action == Action::StopRobot { Role::Alarm } else { Role::Strong };
-        x = brush.parts(x + 2, area.y, end - x, &[(&key, key_style), (" ", Role::Text), (label, Role::Quiet)]);
+        let key_style = if binding.action == KeyAction::StopRobot { TextRole::Alarm } else { TextRole::Strong };
+        x = brush.parts(x + 2, area.y, end - x, &[(&key, key_style), (" ", TextRole::Text), (label, TextRole::Quiet)]);
     }
     if let Some(notice) = notice {
         let style = style_of(brush, notice);
@@ -88,7 +89,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
 }
 
 /// Says it in a title line above, where that has room for it, so that it takes no key its place; whether it did.
-fn above(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model, notice: &Notice) -> bool {
+fn above(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel, notice: &Notice) -> bool {
     let room = timeline::title_room(brush, regions, session, model).or_else(|| comparison::title_room(regions));
     let Some(room) = room.filter(|room| width(&notice.text) + 4 <= room.width) else { return false };
     let style = style_of(brush, notice);
@@ -96,16 +97,16 @@ fn above(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model,
     true
 }
 
-fn style_of(brush: &Brush, notice: &Notice) -> Style {
+fn style_of(brush: &Painter, notice: &Notice) -> Style {
     match notice.level {
-        Level::Done => brush.style(Role::Strong),
-        Level::Refused => brush.theme.badge(Role::Strong),
-        Level::Alarm => brush.theme.badge(Role::Alarm),
+        NoticeLevel::Done => brush.style(TextRole::Strong),
+        NoticeLevel::Refused => brush.theme.badge(TextRole::Strong),
+        NoticeLevel::Alarm => brush.theme.badge(TextRole::Alarm),
     }
 }
 
 /// Whether a live trial is over.
-fn is_over(session: &Session, model: &Model) -> bool {
+fn is_over(session: &Session, model: &ConsoleModel) -> bool {
     model.playback.is_none() && matches!(session.phase, Phase::Over(_) | Phase::Closed)
 }
 
@@ -121,15 +122,15 @@ fn onward(session: &Session) -> Option<&'static str> {
 }
 
 /// What the footer says of a key, if it does something now.
-fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&'a str> {
+fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -> Option<&'a str> {
     match &model.dialog {
         // It types a space there.
         Some(Dialog::Note(_)) => return None,
-        Some(_) if binding.action != Action::StopRobot => return None,
+        Some(_) if binding.action != KeyAction::StopRobot => return None,
         _ => {}
     }
     let can_redo = session.aborted.is_some() || session.excluded.is_some();
-    if binding.action == Action::Hand(Hand::Redo) && matches!(session.phase, Phase::Over(_)) && can_redo {
+    if binding.action == KeyAction::Hand(ManualAction::Redo) && matches!(session.phase, Phase::Over(_)) && can_redo {
         return Some("do it again");
     }
     let label = binding.footer?;
@@ -138,21 +139,21 @@ fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&
     }
     if model.playback.is_none() && sheet(session).is_some() {
         // The sheet says itself what its keys do.
-        return matches!(binding.action, Action::Quit | Action::Help | Action::StopRobot).then_some(label);
+        return matches!(binding.action, KeyAction::Quit | KeyAction::Help | KeyAction::StopRobot).then_some(label);
     }
     let runs = matches!(session.phase, Phase::Running | Phase::Paused);
     if is_over(session, model) {
         return match binding.action {
-            Action::Advance => onward(session),
-            Action::Quit if !session.is_step_done() => Some(label),
-            Action::Quit => Some("closes the session"),
-            Action::Note(_) if session.phase != Phase::Closed => Some(label),
-            Action::Help => Some(label),
+            KeyAction::Advance => onward(session),
+            KeyAction::Quit if !session.is_step_done() => Some(label),
+            KeyAction::Quit => Some("closes the session"),
+            KeyAction::Note(_) if session.phase != Phase::Closed => Some(label),
+            KeyAction::Help => Some(label),
             _ => None,
         };
     }
     match binding.action {
-        Action::Advance if model.lesson.is_some() => {
+        KeyAction::Advance if model.lesson.is_some() => {
             let runs = model.playback.as_ref().is_some_and(|playback| playback.playing);
             let begun = model.lesson.as_ref().is_some_and(|lesson| lesson.begun);
             Some(if runs {
@@ -163,18 +164,18 @@ fn label<'a>(binding: &'a Binding, session: &Session, model: &Model) -> Option<&
                 "start"
             })
         }
-        Action::Advance => match session.phase {
+        KeyAction::Advance => match session.phase {
             Phase::Ready => Some("start"),
             Phase::Running => Some("pause"),
             Phase::Paused => Some("resume"),
             Phase::Over(_) | Phase::Closed => None,
         },
-        Action::EndTrial => runs.then_some(label),
-        Action::StopRobot => (!session.robot.stopped).then_some(label),
-        Action::ResumeRobot => session.robot.stopped.then_some(label),
-        Action::Accept => can_accept(session).then_some(label),
-        Action::TakeBack => session.shown.is_some().then_some(label),
-        Action::Look(Look::All) => {
+        KeyAction::EndTrial => runs.then_some(label),
+        KeyAction::StopRobot => (!session.robot.stopped).then_some(label),
+        KeyAction::ResumeRobot => session.robot.stopped.then_some(label),
+        KeyAction::Accept => can_accept(session).then_some(label),
+        KeyAction::TakeBack => session.shown.is_some().then_some(label),
+        KeyAction::Look(PanelKey::All) => {
             (model.alone.is_some() || model.events_back > 0 || model.timeline_back_s > 0).then_some(label)
         }
         _ => Some(label),

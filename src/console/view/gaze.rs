@@ -2,10 +2,10 @@
 
 use ratatui::layout::Rect;
 
-use super::paint::{Brush, fit};
-use super::regions::{Regions, Room};
-use super::theme::Role;
-use crate::console::model::Model;
+use super::paint::{Painter, fit};
+use super::regions::{Regions, ScreenSize};
+use super::theme::TextRole;
+use crate::console::model::ConsoleModel;
 use crate::gaze::nearest_location;
 use crate::kitchen::LocationId;
 use crate::session::Session;
@@ -15,18 +15,18 @@ use crate::session::tracker::faults;
 const TRAIL_S: f64 = 2.0;
 
 /// Draws the gaze panel.
-pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.gaze;
     if area.area() == 0 {
         return;
     }
-    if regions.room == Room::Small {
-        brush.parts(area.x, area.y, area.width, &[(" gaze     ", Role::Quiet)]);
+    if regions.room == ScreenSize::Small {
+        brush.parts(area.x, area.y, area.width, &[(" gaze     ", TextRole::Quiet)]);
         let x = line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
         quality(brush, x + 3, area.y, area.right().saturating_sub(x + 4), session, model);
         return;
     }
-    let source = Model::gaze_label(session.spec.participant.gaze);
+    let source = ConsoleModel::gaze_label(session.spec.participant.gaze);
     // The most frequent fault; all of them are in the list before a trial and in the figures.
     let worst = faults(session).into_iter().max_by_key(|(count, _)| *count);
     let remark = match worst {
@@ -39,9 +39,9 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     quality(brush, x, inside.y + 1, columns, session, model);
 }
 
-fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) -> u16 {
+fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) -> u16 {
     let Some((at, sample)) = session.gaze.last else {
-        return brush.parts(x, y, columns, &[("no sample so far", Role::Quiet)]);
+        return brush.parts(x, y, columns, &[("no sample so far", TextRole::Quiet)]);
     };
     let sign = brush.theme.signs().gaze;
     let age_s = session.age(at, model.now).as_secs_f64();
@@ -57,11 +57,17 @@ fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, mode
         x,
         y,
         columns,
-        &[(sign, Role::Gaze), (" ", Role::Text), (&place, Role::Gaze), (", ", Role::Quiet), (&age, Role::Quiet)],
+        &[
+            (sign, TextRole::Gaze),
+            (" ", TextRole::Text),
+            (&place, TextRole::Gaze),
+            (", ", TextRole::Quiet),
+            (&age, TextRole::Quiet),
+        ],
     )
 }
 
-fn quality(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
+fn quality(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
     let gaze = &session.gaze;
     let unusable = 100.0 * gaze.unusable as f64 / gaze.samples.max(1) as f64;
     let text = match (session.gaze_hz(model.now), gaze.last) {
@@ -71,11 +77,11 @@ fn quality(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, m
         (Some(hz), None) => format!("{hz:.0} Hz, conf -, {unusable:.0}% unusable"),
         (None, _) => "0 Hz, conf -, -% unusable".to_string(),
     };
-    brush.parts(x, y, columns, &[(&text, Role::Quiet)]);
+    brush.parts(x, y, columns, &[(&text, TextRole::Quiet)]);
 }
 
 /// Draws the display to scale with the trail of the gaze, and when each place was looked at last.
-pub fn draw_map(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+pub fn draw_map(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     if regions.gaze_map.area() == 0 {
         return;
     }
@@ -88,7 +94,7 @@ pub fn draw_map(brush: &mut Brush, regions: &Regions, session: &Session, model: 
     for (at, sample) in &model.trail {
         if model.now.secs_since(*at) < TRAIL_S {
             let (x, y) = cell([sample.x, sample.y]);
-            let style = brush.style(Role::Gaze);
+            let style = brush.style(TextRole::Gaze);
             brush.text(x, y, 1, signs.trail, style);
         }
     }
@@ -101,21 +107,21 @@ pub fn draw_map(brush: &mut Brush, regions: &Regions, session: &Session, model: 
             None => fit(&location.label(), 6, brush.theme.signs().ellipsis),
         };
         let (age, role) = match seen {
-            Some(age_s) if age_s < 1.0 => ("now".to_string(), Role::Gaze),
-            Some(age_s) => (format!("{age_s:.0}s"), Role::Text),
-            None => ("never".to_string(), Role::Quiet),
+            Some(age_s) if age_s < 1.0 => ("now".to_string(), TextRole::Gaze),
+            Some(age_s) => (format!("{age_s:.0}s"), TextRole::Text),
+            None => ("never".to_string(), TextRole::Quiet),
         };
-        write_centred(brush, inside, x, y, &label, Role::Quiet);
+        write_centred(brush, inside, x, y, &label, TextRole::Quiet);
         write_centred(brush, inside, x, y + 1, &age, role);
     }
     if let Some((_, sample)) = session.gaze.last {
         let (x, y) = cell([sample.x, sample.y]);
-        let style = brush.style(Role::Gaze);
+        let style = brush.style(TextRole::Gaze);
         brush.text(x, y, 1, signs.gaze, style);
     }
 }
 
-fn write_centred(brush: &mut Brush, inside: Rect, x: u16, y: u16, text: &str, role: Role) {
+fn write_centred(brush: &mut Painter, inside: Rect, x: u16, y: u16, text: &str, role: TextRole) {
     let columns = super::paint::width(text);
     let last = inside.right().saturating_sub(columns);
     let x = x.saturating_sub(columns / 2).clamp(inside.x, last.max(inside.x));

@@ -3,11 +3,11 @@
 use ratatui::layout::Rect;
 
 use super::dialog::open;
-use super::paint::{Brush, wrap};
-use super::theme::Role;
-use crate::console::keys::Action;
-use crate::console::model::Model;
-use crate::console::note::Line;
+use super::paint::{Painter, wrap};
+use super::theme::TextRole;
+use crate::console::keys::KeyAction;
+use crate::console::model::ConsoleModel;
+use crate::console::note::TextInput;
 use crate::console::preflight::{OVERRIDE, all_ok, checks};
 use crate::session::preflight::{Check, Verdict};
 use crate::session::{Phase, Session};
@@ -19,7 +19,7 @@ const MEND: &str = "mend: ";
 const FOUND: u16 = 23;
 
 /// Draws what was found before a trial.
-pub fn preflight(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
+pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
     let checks = checks(session, model);
     let columns = (COLUMNS + 24).min(screen.width);
     // Inside the frame, behind the names.
@@ -38,51 +38,56 @@ pub fn preflight(brush: &mut Brush, screen: Rect, session: &Session, model: &Mod
         y += 1;
         for (row, words) in remedy.iter().enumerate() {
             let mend = if row == 0 { MEND } else { "      " };
-            brush.parts(inside.x + FOUND, y, room, &[(mend, Role::Quiet), (words, Role::Text)]);
+            brush.parts(inside.x + FOUND, y, room, &[(mend, TextRole::Quiet), (words, TextRole::Text)]);
             y += 1;
         }
     }
-    let start = model.keys.of(&Action::Advance).map(|key| key.to_string()).unwrap_or_default();
+    let start = model.keys.of(&KeyAction::Advance).map(|key| key.to_string()).unwrap_or_default();
     let anyway = OVERRIDE.to_string();
     let (key, does) = match (session.phase, all_ok(&checks)) {
         (Phase::Ready, true) => (start.as_str(), " starts the trial   "),
         (Phase::Ready, false) => (anyway.as_str(), " starts all the same   "),
         _ => ("", ""),
     };
-    let parts = [(key, Role::Strong), (does, Role::Quiet), ("esc", Role::Strong), (" leaves", Role::Quiet)];
+    let parts =
+        [(key, TextRole::Strong), (does, TextRole::Quiet), ("esc", TextRole::Strong), (" leaves", TextRole::Quiet)];
     brush.parts(inside.x + 1, inside.bottom().saturating_sub(1), inside.width.saturating_sub(2), &parts);
 }
 
-fn line(brush: &mut Brush, inside: Rect, y: u16, check: &Check) {
+fn line(brush: &mut Painter, inside: Rect, y: u16, check: &Check) {
     let (word, role) = match check.verdict {
-        Verdict::Ok => ("ok", Role::Text),
-        Verdict::Warning => ("warning", Role::Strong),
-        Verdict::Failed => ("FAILED", Role::Alarm),
+        Verdict::Ok => ("ok", TextRole::Text),
+        Verdict::Warning => ("warning", TextRole::Strong),
+        Verdict::Failed => ("FAILED", TextRole::Alarm),
     };
     brush.parts(inside.x + 1, y, 8, &[(word, role)]);
-    brush.parts(inside.x + 10, y, FOUND - 11, &[(&check.name, Role::Text)]);
+    brush.parts(inside.x + 10, y, FOUND - 11, &[(&check.name, TextRole::Text)]);
     let x = inside.x + FOUND;
     brush.parts(x, y, inside.right().saturating_sub(x + 1), &[(&check.found, role)]);
 }
 
 /// Draws the line for a note.
-pub fn note(brush: &mut Brush, screen: Rect, text: &Line) {
+pub fn note(brush: &mut Painter, screen: Rect, text: &TextInput) {
     let says = "The trial is paused and the robot stands: only here the space bar types a space.";
     let lines = wrap(says, COLUMNS - 4);
     let size = (COLUMNS, lines.len() as u16 + 7);
     let inside = open(brush, screen, size, "A note", "the trial is paused");
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     let [before, under, after] = text.parts(usize::from(columns));
-    let style = brush.style(Role::Strong);
-    let badge = brush.theme.badge(Role::Text);
+    let style = brush.style(TextRole::Strong);
+    let badge = brush.theme.badge(TextRole::Text);
     let at = brush.text(x, inside.y + 1, columns, &before, style);
     let at = brush.text(at, inside.y + 1, (x + columns).saturating_sub(at), &under, badge);
     brush.text(at, inside.y + 1, (x + columns).saturating_sub(at), &after, style);
-    let quiet = brush.style(Role::Quiet);
+    let quiet = brush.style(TextRole::Quiet);
     for (row, line) in lines.iter().enumerate() {
         brush.text(x, inside.y + 3 + row as u16, columns, line, quiet);
     }
-    let parts =
-        [("enter", Role::Strong), (" keeps it   ", Role::Quiet), ("esc", Role::Strong), (" leaves", Role::Quiet)];
+    let parts = [
+        ("enter", TextRole::Strong),
+        (" keeps it   ", TextRole::Quiet),
+        ("esc", TextRole::Strong),
+        (" leaves", TextRole::Quiet),
+    ];
     brush.parts(x, inside.bottom().saturating_sub(1), columns, &parts);
 }

@@ -1,9 +1,9 @@
 //! The head line: where are we, and is everything alive.
 
-use super::paint::{Brush, width};
-use super::regions::{ROOMY_COLUMNS, Regions, Room};
-use super::theme::Role;
-use crate::console::model::{Model, Recording, Viewers};
+use super::paint::{Painter, width};
+use super::regions::{ROOMY_COLUMNS, Regions, ScreenSize};
+use super::theme::TextRole;
+use crate::console::model::{ConsoleModel, RecordingStatus, ViewerStreamStatus};
 use crate::console::words;
 use crate::robot::safety::SafetyMode;
 use crate::session::settings::{Condition, GazeSource};
@@ -11,14 +11,14 @@ use crate::session::tracker::Link;
 use crate::session::{Phase, Session};
 
 /// Draws the head line.
-pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.head;
     // One panel alone is drawn in full, but the head line is as long as it is.
-    let room = if area.width < ROOMY_COLUMNS { Room::Small } else { Room::Medium };
-    let gap = if room == Room::Small { 1 } else { 3 };
-    let strong = brush.style(Role::Strong);
+    let room = if area.width < ROOMY_COLUMNS { ScreenSize::Small } else { ScreenSize::Medium };
+    let gap = if room == ScreenSize::Small { 1 } else { 3 };
+    let strong = brush.style(TextRole::Strong);
     // A small replay, and one of a plan, need the room of the name.
-    let is_tight = (model.playback.is_some() || session.step().is_some()) && room == Room::Small;
+    let is_tight = (model.playback.is_some() || session.step().is_some()) && room == ScreenSize::Small;
     let name = if is_tight { "" } else { "tomcom" };
     let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
     let badge = brush.theme.badge(phase_role(session.phase));
@@ -32,20 +32,20 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         let presses = session.all_presses();
         let unit = if is_tight && model.playback.is_none() { "" } else { " presses" };
         let counts = format!("{presses:>3}/{}{unit}", session.spec.trial.presses);
-        let text = brush.style(Role::Text);
+        let text = brush.style(TextRole::Text);
         x = brush.text(x, area.y, 20, &counts, text) + gap;
     }
     let mut healths = healths(session, model, room);
-    let needed = |healths: &[(String, Role)]| healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
+    let needed = |healths: &[(String, TextRole)]| healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
     // Where not all fits, what is as it should be goes first.
     while needed(&healths) > area.right().saturating_sub(x)
-        && let Some(fine) = healths.iter().position(|(_, role)| matches!(role, Role::Text | Role::Quiet))
+        && let Some(fine) = healths.iter().position(|(_, role)| matches!(role, TextRole::Text | TextRole::Quiet))
     {
         healths.remove(fine);
     }
     let needed = needed(&healths);
     let mut right = area.right().saturating_sub(needed).max(x);
-    let quiet = brush.style(Role::Quiet);
+    let quiet = brush.style(TextRole::Quiet);
     for text in facts(session, model) {
         if x + width(&text) + gap < right {
             x = brush.text(x, area.y, right - x, &text, quiet) + gap;
@@ -57,18 +57,18 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     }
 }
 
-fn phase_role(phase: Phase) -> Role {
+fn phase_role(phase: Phase) -> TextRole {
     match phase {
-        Phase::Running => Role::Text,
-        Phase::Paused => Role::Signal,
-        _ => Role::Quiet,
+        Phase::Running => TextRole::Text,
+        Phase::Paused => TextRole::Signal,
+        _ => TextRole::Quiet,
     }
 }
 
-fn clock(brush: &mut Brush, x: u16, y: u16, session: &Session, model: &Model) -> u16 {
+fn clock(brush: &mut Painter, x: u16, y: u16, session: &Session, model: &ConsoleModel) -> u16 {
     let clock = session.trial_clock(model.now).to_string();
     let total = crate::base::time::SessionTime::from_secs_f64(session.spec.trial.seconds);
-    brush.parts(x, y, 16, &[(&format!("{clock:>5}"), Role::Strong), (&format!(" / {total}"), Role::Quiet)])
+    brush.parts(x, y, 16, &[(&format!("{clock:>5}"), TextRole::Strong), (&format!(" / {total}"), TextRole::Quiet)])
 }
 
 fn condition(session: &Session) -> &'static str {
@@ -86,7 +86,7 @@ fn series(session: &Session) -> Option<String> {
 }
 
 /// What stays the same during a trial, the most important first.
-fn facts(session: &Session, model: &Model) -> Vec<String> {
+fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
     let condition = condition(session);
     let served = format!("{} served", session.served.len());
     let code = session.spec.participant.code.clone();
@@ -103,50 +103,50 @@ fn facts(session: &Session, model: &Model) -> Vec<String> {
 }
 
 /// Recording, gaze, stream and robot: each with its state in words.
-fn healths(session: &Session, model: &Model, room: Room) -> Vec<(String, Role)> {
+fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize) -> Vec<(String, TextRole)> {
     let mut healths = Vec::new();
     if !model.focused && model.playback.is_none() {
-        healths.push((" NO KEYBOARD ".to_string(), Role::Alarm));
+        healths.push((" NO KEYBOARD ".to_string(), TextRole::Alarm));
     }
     let excluded = model.playback.as_ref().is_some_and(|playback| playback.excluded) || session.excluded.is_some();
     if excluded {
-        healths.push((" EXCLUDED ".to_string(), Role::Strong));
+        healths.push((" EXCLUDED ".to_string(), TextRole::Strong));
     }
     match &model.playback {
         Some(playback) => {
             let state = if playback.playing { "play" } else { "paused" };
             let follows = if playback.follows { " live" } else { "" };
-            let what = if room == Room::Small { "" } else { " event" };
+            let what = if room == ScreenSize::Small { "" } else { " event" };
             let (speed, event, events) = (playback.speed_label(), playback.event, playback.events);
             let label = format!("{state} {speed}{follows} {what} {event}/{events}");
-            healths.push((label, Role::Strong));
+            healths.push((label, TextRole::Strong));
             match (playback.follows, playback.running) {
-                (false, true) => healths.push(("still running: --follow".to_string(), Role::Strong)),
-                (false, false) if playback.cut => healths.push(("cut".to_string(), Role::Alarm)),
+                (false, true) => healths.push(("still running: --follow".to_string(), TextRole::Strong)),
+                (false, false) if playback.cut => healths.push(("cut".to_string(), TextRole::Alarm)),
                 _ => {}
             }
         }
         None => healths.push(match &model.recording {
-            Recording::Off => ("not recorded".to_string(), Role::Quiet),
-            Recording::On(_) => (format!("{} rec", model.theme.signs().recording), Role::Text),
-            Recording::Lost => (" RECORDING LOST ".to_string(), Role::Alarm),
+            RecordingStatus::Off => ("not recorded".to_string(), TextRole::Quiet),
+            RecordingStatus::On(_) => (format!("{} rec", model.theme.signs().recording), TextRole::Text),
+            RecordingStatus::Lost => (" RECORDING LOST ".to_string(), TextRole::Alarm),
         }),
     }
-    if room > Room::Small || model.playback.is_none() {
+    if room > ScreenSize::Small || model.playback.is_none() {
         healths.push(gaze(session, model));
     }
     if let Some((text, is_fine)) = model.display.as_ref().map(|display| display.line()) {
-        healths.push((text, if is_fine { Role::Text } else { Role::Alarm }));
+        healths.push((text, if is_fine { TextRole::Text } else { TextRole::Alarm }));
     }
-    if let Some(Viewers { dropped: dropped @ 1.., .. }) = &model.viewers {
-        healths.push((format!("RERUN {dropped} DROPPED"), Role::Alarm));
+    if let Some(ViewerStreamStatus { dropped: dropped @ 1.., .. }) = &model.viewers {
+        healths.push((format!("RERUN {dropped} DROPPED"), TextRole::Alarm));
     }
     let robot = match (session.robot.stopped, session.robot.held) {
-        (true, _) => (stopped(session), Role::Alarm),
-        (false, true) => ("ROBOT HELD", Role::Strong),
-        (false, false) => ("robot ok", Role::Text),
+        (true, _) => (stopped(session), TextRole::Alarm),
+        (false, true) => ("ROBOT HELD", TextRole::Strong),
+        (false, false) => ("robot ok", TextRole::Text),
     };
-    if (room > Room::Small && model.playback.is_none()) || robot.1 != Role::Text {
+    if (room > ScreenSize::Small && model.playback.is_none()) || robot.1 != TextRole::Text {
         healths.push((robot.0.to_string(), robot.1));
     }
     healths
@@ -162,32 +162,34 @@ fn stopped(session: &Session) -> &'static str {
 }
 
 /// Where Rerun's viewers connect, as long as they and the stream's file get everything.
-fn streamed(model: &Model) -> Option<String> {
+fn streamed(model: &ConsoleModel) -> Option<String> {
     let viewers = model.viewers.as_ref().filter(|viewers| viewers.dropped == 0)?;
     let port = viewers.address.as_ref().and_then(|address| address.rsplit(':').next());
     Some(port.map_or("rerun ok".to_string(), |port| format!("rerun :{port} ok")))
 }
 
-fn gaze(session: &Session, model: &Model) -> (String, Role) {
+fn gaze(session: &Session, model: &ConsoleModel) -> (String, TextRole) {
     if session.spec.participant.gaze == GazeSource::None {
-        return ("no gaze".to_string(), Role::Quiet);
+        return ("no gaze".to_string(), TextRole::Quiet);
     }
     match (&session.tracker.link, session.tracker.sees_display) {
         (Link::Lost { since, .. }, _) => {
-            return (format!("NO TRACKER {:.0} s", model.now.secs_since(*since)), Role::Alarm);
+            return (format!("NO TRACKER {:.0} s", model.now.secs_since(*since)), TextRole::Alarm);
         }
         (Link::Unknown, _) if session.spec.participant.gaze == GazeSource::Pupil => {
-            return ("NO TRACKER".to_string(), Role::Alarm);
+            return ("NO TRACKER".to_string(), TextRole::Alarm);
         }
-        (Link::Connected { .. }, Some(false)) => return ("TAGS NOT SEEN".to_string(), Role::Alarm),
+        (Link::Connected { .. }, Some(false)) => return ("TAGS NOT SEEN".to_string(), TextRole::Alarm),
         _ => {}
     }
     let usable = session.gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= 1.0);
     match (session.gaze_hz(model.now), session.gaze.arrived) {
-        (Some(_), _) if !usable => ("GAZE UNUSABLE".to_string(), Role::Alarm),
-        (Some(hz), _) => (format!("gaze {hz:>3.0} Hz"), Role::Text),
-        (None, Some(at)) if session.is_running() => (format!("NO GAZE {:.0} s", model.now.secs_since(at)), Role::Alarm),
-        (None, None) if session.is_running() => ("NO GAZE".to_string(), Role::Alarm),
-        _ => ("gaze waits".to_string(), Role::Quiet),
+        (Some(_), _) if !usable => ("GAZE UNUSABLE".to_string(), TextRole::Alarm),
+        (Some(hz), _) => (format!("gaze {hz:>3.0} Hz"), TextRole::Text),
+        (None, Some(at)) if session.is_running() => {
+            (format!("NO GAZE {:.0} s", model.now.secs_since(at)), TextRole::Alarm)
+        }
+        (None, None) if session.is_running() => ("NO GAZE".to_string(), TextRole::Alarm),
+        _ => ("gaze waits".to_string(), TextRole::Quiet),
     }
 }

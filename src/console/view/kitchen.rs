@@ -4,15 +4,15 @@
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
-use super::paint::{Brush, fit, width, wrap};
-use super::regions::{Regions, Room};
-use super::theme::Role;
+use super::paint::{Painter, fit, width, wrap};
+use super::regions::{Regions, ScreenSize};
+use super::theme::TextRole;
 use crate::base::time::SessionTime;
-use crate::console::arrange::{Plan, Thing};
-use crate::console::keys::Layer;
-use crate::console::model::Model;
+use crate::console::arrange::{KitchenMap, MapElement};
+use crate::console::keys::KeyLayer;
+use crate::console::model::ConsoleModel;
 use crate::console::words;
-use crate::kitchen::{Action, Agent, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
+use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
 use crate::session::Session;
 use crate::session::settings::{Condition, ParticipantKind};
 
@@ -25,44 +25,46 @@ const FADING_S: f64 = 3.0;
 const GAZE_S: f64 = 3.0;
 
 /// Draws the kitchen panel.
-pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.kitchen;
     if area.area() == 0 {
         return;
     }
-    if regions.room > Room::Small {
+    if regions.room > ScreenSize::Small {
         let remark = match model.layer {
-            Layer::Wizard if model.coding.is_some() => "[key]: wrong about this",
-            Layer::Wizard if model.playback.is_some() => "",
-            Layer::Wizard if session.spec.trial.condition == Condition::None => "unassisted: no signals",
-            Layer::Wizard if session.spec.trial.condition == Condition::Assistant => "the assistant sends the signals",
-            Layer::Wizard => "[key] tells the participant",
-            Layer::Participant => "[key] is the participant's button",
+            KeyLayer::Wizard if model.coding.is_some() => "[key]: wrong about this",
+            KeyLayer::Wizard if model.playback.is_some() => "",
+            KeyLayer::Wizard if session.spec.trial.condition == Condition::None => "unassisted: no signals",
+            KeyLayer::Wizard if session.spec.trial.condition == Condition::Assistant => {
+                "the assistant sends the signals"
+            }
+            KeyLayer::Wizard => "[key] tells the participant",
+            KeyLayer::Participant => "[key] is the participant's button",
         };
         brush.panel(area, &session.kitchen.title, remark);
     }
     let with_keys = session.spec.participant.kind == ParticipantKind::Keyboard;
-    let plan = Plan::new(&session.kitchen, regions.kitchen_inside(), with_keys);
+    let plan = KitchenMap::new(&session.kitchen, regions.kitchen_inside(), with_keys);
     zones(brush, &plan);
     for spot in &plan.spots {
         match spot.thing {
-            Thing::Location(location) => Place::new(session, model, location).draw(brush, spot.cells),
-            Thing::Storage(index) => storage(brush, session, model, index, spot.cells),
+            MapElement::Location(location) => Place::new(session, model, location).draw(brush, spot.cells),
+            MapElement::Storage(index) => storage(brush, session, model, index, spot.cells),
         }
     }
     gaze_mark(brush, &plan, area, session, model);
     super::calibration::target(brush, &plan, area, session);
 }
 
-fn zones(brush: &mut Brush, plan: &Plan) {
+fn zones(brush: &mut Painter, plan: &KitchenMap) {
     for zone in &plan.zones {
         let (name, role) = match zone.owner {
-            Some(Agent::Human) => ("HUMAN", Role::Human),
-            Some(Agent::Robot) => ("ROBOT", Role::Robot),
-            None => ("SHARED", Role::Quiet),
+            Some(Agent::Human) => ("HUMAN", TextRole::Human),
+            Some(Agent::Robot) => ("ROBOT", TextRole::Robot),
+            None => ("SHARED", TextRole::Quiet),
         };
         let line = zone.cells.width.saturating_sub(1);
-        let thin = brush.style(Role::Frame);
+        let thin = brush.style(TextRole::Frame);
         let rule = brush.theme.signs().frame[4].repeat(usize::from(line));
         brush.text(zone.cells.x, zone.cells.y, line, &rule, thin);
         let label = format!(" {name} ");
@@ -72,45 +74,50 @@ fn zones(brush: &mut Brush, plan: &Plan) {
     }
 }
 
-fn storage(brush: &mut Brush, session: &Session, model: &Model, index: usize, cells: Rect) {
+fn storage(brush: &mut Painter, session: &Session, model: &ConsoleModel, index: usize, cells: Rect) {
     let storage = &session.kitchen.storages[index];
-    let is_it = |action: Action| action == Action::Take(storage.item);
+    let is_it = |action: ButtonAction| action == ButtonAction::Take(storage.item);
     let key = participant_key(session, model, storage.agent, is_it);
-    let text = brush.style(Role::Text);
+    let text = brush.style(TextRole::Text);
     let x = match key {
-        Some(key) => badge(brush, cells.x, cells, &key, Role::Human),
+        Some(key) => badge(brush, cells.x, cells, &key, TextRole::Human),
         None => cells.x,
     };
     brush.text(x + 1, cells.y, cells.right().saturating_sub(x + 1), &storage.label, text);
 }
 
-fn badge(brush: &mut Brush, x: u16, cells: Rect, key: &str, role: Role) -> u16 {
+fn badge(brush: &mut Painter, x: u16, cells: Rect, key: &str, role: TextRole) -> u16 {
     let style = brush.style(role).add_modifier(Modifier::BOLD);
     let label = format!("[{key}]");
     brush.text(x, cells.y, cells.right().saturating_sub(x), &label, style)
 }
 
 /// The participant's key of the first of its buttons that `is_it`, while the keys are the participant's.
-fn participant_key(session: &Session, model: &Model, agent: Agent, is_it: impl Fn(Action) -> bool) -> Option<String> {
-    if model.layer != Layer::Participant || agent != Agent::Human {
+fn participant_key(
+    session: &Session,
+    model: &ConsoleModel,
+    agent: Agent,
+    is_it: impl Fn(ButtonAction) -> bool,
+) -> Option<String> {
+    if model.layer != KeyLayer::Participant || agent != Agent::Human {
         return None;
     }
     let index = session.kitchen.buttons[Agent::Human.index()].iter().position(|button| is_it(button.action))?;
     model.keys.of_button(ButtonId(index as u8)).map(|chord| chord.to_string())
 }
 
-fn agent_role(agent: Option<Agent>) -> Role {
+fn agent_role(agent: Option<Agent>) -> TextRole {
     match agent {
-        Some(Agent::Human) => Role::Human,
-        Some(Agent::Robot) => Role::Robot,
-        None => Role::Strong,
+        Some(Agent::Human) => TextRole::Human,
+        Some(Agent::Robot) => TextRole::Robot,
+        None => TextRole::Strong,
     }
 }
 
 /// A location's card: a rule at its left that says at a glance how it is, then key and name, then what lies there.
 struct Place<'a> {
     session: &'a Session,
-    model: &'a Model,
+    model: &'a ConsoleModel,
     id: LocationId,
     kitchen: &'a Kitchen,
     /// What lies there, and whether it is nothing.
@@ -123,7 +130,7 @@ struct Place<'a> {
 }
 
 impl<'a> Place<'a> {
-    fn new(session: &'a Session, model: &'a Model, id: LocationId) -> Place<'a> {
+    fn new(session: &'a Session, model: &'a ConsoleModel, id: LocationId) -> Place<'a> {
         let kitchen = &session.kitchen;
         let content = kitchen.content_label(session.state, id).to_string();
         let is_order = kitchen.location(id).kind == LocationKind::Order;
@@ -138,7 +145,7 @@ impl<'a> Place<'a> {
         Place { session, model, id, kitchen, content, is_empty, fresh, is_shown }
     }
 
-    fn draw(&self, brush: &mut Brush, cells: Rect) {
+    fn draw(&self, brush: &mut Painter, cells: Rect) {
         if cells.width < 6 || cells.height == 0 {
             return;
         }
@@ -166,12 +173,12 @@ impl<'a> Place<'a> {
     }
 
     /// The line at the left: heavy where the participant is shown the place, in the colour of who changed it just now.
-    fn rule(&self, brush: &mut Brush, cells: Rect) {
+    fn rule(&self, brush: &mut Painter, cells: Rect) {
         let signs = brush.theme.signs();
         let (sign, role) = match (self.is_shown, self.fresh) {
-            (true, _) => (signs.rules[2], Role::Signal),
+            (true, _) => (signs.rules[2], TextRole::Signal),
             (_, Some((_, by))) => (signs.rules[1], agent_role(by)),
-            _ => (signs.rules[0], if self.is_empty { Role::Frame } else { Role::Quiet }),
+            _ => (signs.rules[0], if self.is_empty { TextRole::Frame } else { TextRole::Quiet }),
         };
         let style = brush.style(role);
         for y in cells.y..cells.bottom() {
@@ -180,7 +187,7 @@ impl<'a> Place<'a> {
     }
 
     /// Key and name; where they end.
-    fn title(&self, brush: &mut Brush, cells: Rect) -> u16 {
+    fn title(&self, brush: &mut Painter, cells: Rect) -> u16 {
         let label = self.kitchen.location(self.id).label();
         let mut x = cells.x + 1;
         if let Some((key, role)) = self.key() {
@@ -190,8 +197,8 @@ impl<'a> Place<'a> {
             x = brush.text(x, cells.y, cells.width, &key, style);
         }
         let style = match self.is_shown {
-            true => brush.theme.badge(Role::Signal),
-            false => brush.style(if self.is_empty { Role::Quiet } else { Role::Text }),
+            true => brush.theme.badge(TextRole::Signal),
+            false => brush.style(if self.is_empty { TextRole::Quiet } else { TextRole::Text }),
         };
         let room = cells.right().saturating_sub(x);
         let label = if width(&label) < room { format!(" {label}") } else { label };
@@ -199,33 +206,33 @@ impl<'a> Place<'a> {
     }
 
     /// The key that acts here, in the active layer.
-    fn key(&self) -> Option<(String, Role)> {
+    fn key(&self) -> Option<(String, TextRole)> {
         match self.model.layer {
-            Layer::Wizard => {
+            KeyLayer::Wizard => {
                 let sends = self.session.spec.trial.condition == Condition::Wizard || self.model.playback.is_some();
                 let key = self.model.keys.of_signal(self.id).filter(|_| sends);
                 let key = key.or_else(|| self.model.keys.of_belief(self.id));
-                key.map(|chord| (chord.to_string(), Role::Signal))
+                key.map(|chord| (chord.to_string(), TextRole::Signal))
             }
-            Layer::Participant => {
-                let main = |action| matches!(action, Action::Use(at) | Action::Serve(at) if at == self.id);
-                participant_key(self.session, self.model, Agent::Human, main).map(|key| (key, Role::Human))
+            KeyLayer::Participant => {
+                let main = |action| matches!(action, ButtonAction::Use(at) | ButtonAction::Serve(at) if at == self.id);
+                participant_key(self.session, self.model, Agent::Human, main).map(|key| (key, TextRole::Human))
             }
         }
     }
 
-    fn content_style(&self, brush: &Brush) -> Style {
+    fn content_style(&self, brush: &Painter) -> Style {
         match self.fresh {
             Some((age_s, by)) if age_s < LOUD_S => brush.theme.badge(agent_role(by)),
             Some((age_s, by)) if age_s < FADING_S => brush.style(agent_role(by)).add_modifier(Modifier::BOLD),
             Some((_, by)) => brush.style(agent_role(by)),
-            None if self.is_empty => brush.style(Role::Quiet),
-            None => brush.style(Role::Strong),
+            None if self.is_empty => brush.style(TextRole::Quiet),
+            None => brush.style(TextRole::Strong),
         }
     }
 
     /// What lies there; how many lines that takes.
-    fn contents(&self, brush: &mut Brush, room: Rect) -> u16 {
+    fn contents(&self, brush: &mut Painter, room: Rect) -> u16 {
         let style = self.content_style(brush);
         let mut lines = wrap(&self.content, room.width);
         if lines.len() > usize::from(room.height) {
@@ -241,7 +248,7 @@ impl<'a> Place<'a> {
     }
 
     /// An order: what is wanted, since when, and, while it is shown, the recipe.
-    fn order(&self, brush: &mut Brush, room: Rect) {
+    fn order(&self, brush: &mut Painter, room: Rect) {
         let style = self.content_style(brush);
         let is_wanted = matches!(self.session.state.order(self.id), OrderContent::Dish(_));
         let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
@@ -256,32 +263,32 @@ impl<'a> Place<'a> {
             let gap = if room.height > 1 { 2 } else { 1 };
             let unseen = if words::is_unseen(self.session, self.id) { "unseen" } else { "" };
             let left = |x: u16| room.right().saturating_sub(x);
-            let x = brush.parts(end + gap, room.y, left(end + gap), &[(&age.to_string(), Role::Quiet)]) + gap;
+            let x = brush.parts(end + gap, room.y, left(end + gap), &[(&age.to_string(), TextRole::Quiet)]) + gap;
             if width(unseen) <= left(x) {
-                brush.parts(x, room.y, left(x), &[(unseen, Role::Gaze)]);
+                brush.parts(x, room.y, left(x), &[(unseen, TextRole::Gaze)]);
             }
         }
         if let (true, true, Some(recipe)) = (self.is_shown, room.height > 1, words::recipe(self.session, self.id)) {
-            let style = brush.style(Role::Signal);
+            let style = brush.style(TextRole::Signal);
             brush.text(room.x, room.y + 1, room.width, &squeeze(&recipe, room.width), style);
         }
     }
 
     /// Below what lies there, or at the right of its last line: what the robot is about to do here, and what just changed.
-    fn news(&self, brush: &mut Brush, room: Rect, lines: u16) {
+    fn news(&self, brush: &mut Painter, room: Rect, lines: u16) {
         let signs = brush.theme.signs();
-        let mut news: Vec<(String, Role)> = Vec::new();
+        let mut news: Vec<(String, TextRole)> = Vec::new();
         if let Some((button, _, _)) = self.session.robot.intention
             && words::place(self.kitchen, Agent::Robot, button) == self.id
             && !self.session.robot.stopped
         {
-            news.push((format!("{}robot", signs.to), Role::Robot));
+            news.push((format!("{}robot", signs.to), TextRole::Robot));
         }
         if let Some((age_s, by)) = self.fresh {
             news.push((format!("{}{age_s:.0}s", signs.changed), agent_role(by)));
         } else if words::is_unseen(self.session, self.id) {
             let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
-            news.push((format!("unseen {age}"), Role::Gaze));
+            news.push((format!("unseen {age}"), TextRole::Gaze));
         }
         let y = room.y + lines.min(room.height - 1);
         let needed = news.iter().map(|(text, _)| width(text) + 1).sum::<u16>();
@@ -291,7 +298,7 @@ impl<'a> Place<'a> {
             false => (0..room.width).filter(|x| brush.is_written(room.x + x, y)).max().map_or(0, |x| x + 1),
         };
         if ends + needed > room.width {
-            news.retain(|(_, role)| *role != Role::Robot || ends + needed <= room.width);
+            news.retain(|(_, role)| *role != TextRole::Robot || ends + needed <= room.width);
         }
         let mut x = if lines < room.height { room.x } else { room.right().saturating_sub(needed) };
         for (text, role) in news {
@@ -303,13 +310,15 @@ impl<'a> Place<'a> {
 
     /// The participant's buttons that act here beside the main one, processes and the hand's bin: key and name.
     fn other_buttons(&self) -> Vec<(String, String)> {
-        if self.model.layer != Layer::Participant {
+        if self.model.layer != KeyLayer::Participant {
             return Vec::new();
         }
         let hand = self.kitchen.hands[Agent::Human.index()];
-        let is_here = |action: Action| match action {
-            Action::Process(process) => self.kitchen.processes[usize::from(process)].place.unwrap_or(hand) == self.id,
-            Action::Trash => self.id == hand,
+        let is_here = |action: ButtonAction| match action {
+            ButtonAction::Process(process) => {
+                self.kitchen.processes[usize::from(process)].place.unwrap_or(hand) == self.id
+            }
+            ButtonAction::Trash => self.id == hand,
             _ => false,
         };
         let buttons = self.kitchen.buttons[Agent::Human.index()].iter().enumerate();
@@ -322,8 +331,8 @@ impl<'a> Place<'a> {
 }
 
 /// One button a line, from the lower edge of the card upwards; where it is too low for that, all in its last line.
-fn draw_buttons(brush: &mut Brush, room: Rect, buttons: &[(String, String)]) {
-    let style = brush.style(Role::Human).add_modifier(Modifier::BOLD);
+fn draw_buttons(brush: &mut Painter, room: Rect, buttons: &[(String, String)]) {
+    let style = brush.style(TextRole::Human).add_modifier(Modifier::BOLD);
     let count = buttons.len() as u16;
     for (index, (key, name)) in buttons.iter().enumerate() {
         let index = index as u16;
@@ -352,14 +361,14 @@ pub fn squeeze(name: &str, columns: u16) -> String {
     fit(&words.join(" "), columns, "")
 }
 
-fn gaze_mark(brush: &mut Brush, plan: &Plan, panel: Rect, session: &Session, model: &Model) {
+fn gaze_mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Session, model: &ConsoleModel) {
     let Some((at, sample)) = session.gaze.last else { return };
     let age_s = model.now.secs_since(at);
     let Some((x, y)) = plan.cell([sample.x, sample.y]) else { return };
     if age_s > GAZE_S || x < panel.x || x >= panel.right() || y < panel.y || y >= panel.bottom() {
         return;
     }
-    let style = brush.style(Role::Gaze);
+    let style = brush.style(TextRole::Gaze);
     let style = if age_s > 1.0 { style.remove_modifier(Modifier::BOLD).add_modifier(Modifier::DIM) } else { style };
     let sign = brush.theme.signs().gaze;
     let is_text = |symbol: &str| symbol.chars().any(|letter| letter.is_alphanumeric());

@@ -1,20 +1,20 @@
 //! A wizard's training: the task, and then what each signal was, the newest on top.
 
-use super::paint::{Brush, wrap};
-use super::regions::{Regions, Room};
-use super::theme::Role;
-use crate::console::lesson::{Feedback, Lesson};
-use crate::console::model::{Level, Model};
+use super::paint::{Painter, wrap};
+use super::regions::{Regions, ScreenSize};
+use super::theme::TextRole;
+use crate::console::lesson::{TrainingFeedback, TrainingPanel};
+use crate::console::model::{ConsoleModel, NoticeLevel};
 
 /// Columns of the clock before what is said.
 const CLOCK: u16 = 6;
 
 /// Draws what the training says.
-pub fn draw(brush: &mut Brush, regions: &Regions, model: &Model) {
+pub fn draw(brush: &mut Painter, regions: &Regions, model: &ConsoleModel) {
     let area = regions.lesson;
     let Some(lesson) = model.lesson.as_ref().filter(|_| area.area() > 0) else { return };
     let inside = match regions.room {
-        Room::Small => area,
+        ScreenSize::Small => area,
         _ => brush.panel(area, "Training", &lesson.score),
     };
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
@@ -26,7 +26,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, model: &Model) {
                 return;
             }
             if row == 0 {
-                let quiet = brush.style(Role::Quiet);
+                let quiet = brush.style(TextRole::Quiet);
                 brush.text(x, y, indent, &clock, quiet);
             }
             let style = brush.style(role);
@@ -37,16 +37,16 @@ pub fn draw(brush: &mut Brush, regions: &Regions, model: &Model) {
 }
 
 /// What is said, each with the trial's clock, or without one.
-fn lines(lesson: &Lesson) -> Vec<(String, String, Role)> {
+fn lines(lesson: &TrainingPanel) -> Vec<(String, String, TextRole)> {
     if lesson.feedback.is_empty() {
-        return lesson.task.iter().map(|text| (String::new(), text.clone(), Role::Text)).collect();
+        return lesson.task.iter().map(|text| (String::new(), text.clone(), TextRole::Text)).collect();
     }
     let newest = lesson.feedback.iter().rev().enumerate();
-    let line = |(back, Feedback { clock, level, text }): (usize, &Feedback)| {
+    let line = |(back, TrainingFeedback { clock, level, text }): (usize, &TrainingFeedback)| {
         let role = match (back, level) {
-            (_, Level::Refused | Level::Alarm) => Role::FalseBelief,
-            (0, Level::Done) => Role::Strong,
-            (_, Level::Done) => Role::Text,
+            (_, NoticeLevel::Refused | NoticeLevel::Alarm) => TextRole::FalseBelief,
+            (0, NoticeLevel::Done) => TextRole::Strong,
+            (_, NoticeLevel::Done) => TextRole::Text,
         };
         (format!("{:>5}", clock.to_string()), text.clone(), role)
     };

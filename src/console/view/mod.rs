@@ -23,16 +23,16 @@ pub mod timeline;
 
 use ratatui::Frame;
 
-use super::model::{Dialog, Model};
+use super::model::{ConsoleModel, Dialog};
 use crate::session::Session;
-use paint::Brush;
+use paint::Painter;
 use regions::{LEAST, Regions};
-use theme::Role;
+use theme::TextRole;
 
 /// Draws the console.
-pub fn view(session: &Session, model: &Model, frame: &mut Frame) {
+pub fn view(session: &Session, model: &ConsoleModel, frame: &mut Frame) {
     let area = frame.area();
-    let mut brush = Brush { buffer: frame.buffer_mut(), theme: model.theme };
+    let mut brush = Painter { buffer: frame.buffer_mut(), theme: model.theme };
     if area.width < LEAST.0 || area.height < LEAST.1 {
         too_small(&mut brush, session, model);
         return;
@@ -55,9 +55,9 @@ pub fn view(session: &Session, model: &Model, frame: &mut Frame) {
     dialog::draw(&mut brush, area, session, model);
 }
 
-fn too_small(brush: &mut Brush, session: &Session, model: &Model) {
+fn too_small(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
     let area = *brush.buffer.area();
-    let (alarm, text) = (brush.style(Role::Alarm), brush.style(Role::Text));
+    let (alarm, text) = (brush.style(TextRole::Alarm), brush.style(TextRole::Text));
     let need = format!("{}x{} is too small: the console needs {}x{}", area.width, area.height, LEAST.0, LEAST.1);
     brush.text(0, 0, area.width, &need, text);
     let stop = if session.robot.stopped { "ROBOT STOPPED" } else { "the space bar stops the robot" };
@@ -77,7 +77,7 @@ fn too_small(brush: &mut Brush, session: &Session, model: &Model) {
         Some(Dialog::Report(_)) => "What came of the training needs more room; enter goes on",
         None => return,
     };
-    let strong = brush.style(Role::Strong);
+    let strong = brush.style(TextRole::Strong);
     for (row, line) in paint::wrap(question, area.width).iter().enumerate() {
         brush.text(0, 2 + row as u16, area.width, line, strong);
     }

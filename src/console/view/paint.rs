@@ -6,10 +6,10 @@ use ratatui::style::Style;
 use ratatui::text::Span;
 
 use super::regions::below_title;
-use super::theme::{Role, Theme};
+use super::theme::{TextRole, Theme};
 
 /// Paints on a buffer in a theme.
-pub struct Brush<'a> {
+pub struct Painter<'a> {
     pub buffer: &'a mut Buffer,
     pub theme: Theme,
 }
@@ -53,8 +53,8 @@ pub fn wrap(text: &str, columns: u16) -> Vec<String> {
     lines
 }
 
-impl Brush<'_> {
-    pub fn style(&self, role: Role) -> Style {
+impl Painter<'_> {
+    pub fn style(&self, role: TextRole) -> Style {
         self.theme.style(role)
     }
 
@@ -81,7 +81,7 @@ impl Brush<'_> {
     }
 
     /// Writes parts one after another, and returns the column after the last.
-    pub fn parts(&mut self, x: u16, y: u16, columns: u16, parts: &[(&str, Role)]) -> u16 {
+    pub fn parts(&mut self, x: u16, y: u16, columns: u16, parts: &[(&str, TextRole)]) -> u16 {
         let end = x + columns;
         parts.iter().fold(x, |x, (text, role)| {
             let style = self.style(*role);
@@ -110,12 +110,12 @@ impl Brush<'_> {
 
     /// Draws the title line of a panel, with a remark at the right; returns what is below it.
     pub fn panel(&mut self, area: Rect, title: &str, remark: &str) -> Rect {
-        self.panel_with(area, title, &[(remark, Role::Quiet)])
+        self.panel_with(area, title, &[(remark, TextRole::Quiet)])
     }
 
     /// The same with a remark in parts.
-    pub fn panel_with(&mut self, area: Rect, title: &str, remark: &[(&str, Role)]) -> Rect {
-        let (line, strong) = (self.style(Role::Frame), self.style(Role::Strong));
+    pub fn panel_with(&mut self, area: Rect, title: &str, remark: &[(&str, TextRole)]) -> Rect {
+        let (line, strong) = (self.style(TextRole::Frame), self.style(TextRole::Strong));
         let room = area.width.saturating_sub(2);
         let rule = self.theme.signs().frame[4].repeat(usize::from(room));
         self.text(area.x + 1, area.y, room, &rule, line);
@@ -131,10 +131,10 @@ impl Brush<'_> {
     }
 
     /// A bar of `columns`, filled by `share` of 0 to 1.
-    pub fn bar(&mut self, x: u16, y: u16, columns: u16, share: f64, role: Role) -> u16 {
+    pub fn bar(&mut self, x: u16, y: u16, columns: u16, share: f64, role: TextRole) -> u16 {
         let signs = self.theme.signs();
         let filled = (share.clamp(0.0, 1.0) * f64::from(columns)).round() as u16;
-        let (full, quiet) = (self.style(role), self.style(Role::Frame));
+        let (full, quiet) = (self.style(role), self.style(TextRole::Frame));
         let x = self.text(x, y, filled, &signs.bar_full.repeat(usize::from(filled)), full);
         let rest = columns - filled;
         self.text(x, y, rest, &signs.bar_empty.repeat(usize::from(rest)), quiet)

@@ -3,9 +3,9 @@
 use ratatui::layout::Rect;
 
 use super::dialog::open;
-use super::paint::{Brush, width};
-use super::theme::Role;
-use crate::console::picker::{Choice, Picker};
+use super::paint::{Painter, width};
+use super::theme::TextRole;
+use crate::console::picker::{Picker, PickerEntry};
 use crate::session::Session;
 
 /// No list is wider, or higher.
@@ -14,7 +14,7 @@ const MOST: (u16, u16) = (64, 26);
 const AROUND: u16 = 6;
 
 /// Draws an open list.
-pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, picker: &Picker) {
+pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, picker: &Picker) {
     let choices = picker.choices(session);
     // The height does not change while somebody types.
     let all = Picker::new(picker.question).choices(session).len() as u16;
@@ -24,8 +24,8 @@ pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, picker: &Picker)
     let cursor = brush.theme.signs().to;
     let typed = format!("{}_", picker.filter);
     let found = format!("{} of {all}", choices.len());
-    brush.parts(x, inside.y, columns, &[("search ", Role::Quiet), (&typed, Role::Strong)]);
-    let quiet = brush.style(Role::Quiet);
+    brush.parts(x, inside.y, columns, &[("search ", TextRole::Quiet), (&typed, TextRole::Strong)]);
+    let quiet = brush.style(TextRole::Quiet);
     brush.text_right(x + columns, inside.y, 12, &found, quiet);
     let list = Rect { x, y: inside.y + 2, width: columns, height: inside.height.saturating_sub(4) };
     let rows = usize::from(list.height).max(1);
@@ -37,22 +37,22 @@ pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, picker: &Picker)
         brush.text(list.x, list.y, list.width, "nothing is called so: bksp deletes", quiet);
     }
     let keys = [
-        ("up/down", Role::Strong),
-        (" or type  ", Role::Quiet),
-        ("enter", Role::Strong),
-        (" takes it  ", Role::Quiet),
-        ("esc", Role::Strong),
-        (" leaves", Role::Quiet),
+        ("up/down", TextRole::Strong),
+        (" or type  ", TextRole::Quiet),
+        ("enter", TextRole::Strong),
+        (" takes it  ", TextRole::Quiet),
+        ("esc", TextRole::Strong),
+        (" leaves", TextRole::Quiet),
     ];
     brush.parts(x, inside.bottom().saturating_sub(1), columns, &keys);
 }
 
-fn line(brush: &mut Brush, list: Rect, row: u16, choice: &Choice, cursor: Option<&str>) {
+fn line(brush: &mut Painter, list: Rect, row: u16, choice: &PickerEntry, cursor: Option<&str>) {
     let y = list.y + row;
-    let role = if cursor.is_some() { Role::Strong } else { Role::Text };
+    let role = if cursor.is_some() { TextRole::Strong } else { TextRole::Text };
     let remark = width(&choice.remark).min(list.width / 2);
     let label = list.width.saturating_sub(remark + 3);
-    brush.parts(list.x, y, label + 2, &[(cursor.unwrap_or(" "), Role::Signal), (" ", role), (&choice.label, role)]);
-    let quiet = brush.style(Role::Quiet);
+    brush.parts(list.x, y, label + 2, &[(cursor.unwrap_or(" "), TextRole::Signal), (" ", role), (&choice.label, role)]);
+    let quiet = brush.style(TextRole::Quiet);
     brush.text_right(list.x + list.width, y, remark, &choice.remark, quiet);
 }

@@ -2,15 +2,15 @@
 
 use ratatui::layout::Rect;
 
-use super::paint::{Brush, width, wrap};
-use super::regions::{Regions, Room};
-use super::theme::Role;
+use super::paint::{Painter, width, wrap};
+use super::regions::{Regions, ScreenSize};
+use super::theme::TextRole;
 use crate::base::words::count;
 use crate::communication::Sender;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::{Proposal, Recommendation, SignalOption};
-use crate::console::keys::Action;
-use crate::console::model::Model;
+use crate::console::keys::KeyAction;
+use crate::console::model::ConsoleModel;
 use crate::console::words;
 use crate::session::Session;
 use crate::session::admit::may_send;
@@ -26,17 +26,17 @@ const LONGEST_SIGNAL: u16 = 28;
 const NARROW: u16 = 46;
 
 /// Draws the recommendation panel.
-pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.recommendation;
     if area.area() == 0 {
         return;
     }
-    if regions.room == Room::Small {
+    if regions.room == ScreenSize::Small {
         return line(brush, area, session, model);
     }
     let inside = brush.panel(area, "Recommendation", remark(session, area.width));
     let Some(advice) = &session.advice else {
-        let quiet = brush.style(Role::Quiet);
+        let quiet = brush.style(TextRole::Quiet);
         for (row, line) in wrap(silence(session), inside.width).iter().enumerate() {
             brush.text(inside.x, inside.y + row as u16, inside.width, line, quiet);
         }
@@ -71,7 +71,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
             _ => "would save nothing",
         };
         let text = format!("{} {what}", count(useless.len() as u64, "signal", "signals"));
-        let style = brush.style(Role::Quiet);
+        let style = brush.style(TextRole::Quiet);
         brush.text(inside.x, y, inside.width, &text, style);
     }
 }
@@ -91,11 +91,11 @@ fn remark(session: &Session, columns: u16) -> &'static str {
 }
 
 /// The presses that are proposed, and that only words can tell them to the participant; returns the row below.
-fn proposal(brush: &mut Brush, inside: Rect, advice: &Recommendation) -> u16 {
+fn proposal(brush: &mut Painter, inside: Rect, advice: &Recommendation) -> u16 {
     let Some(proposal) = &advice.proposal else { return inside.y };
     let lines = wrap(&proposed(proposal), inside.width);
     for (row, line) in lines.iter().enumerate().take(usize::from(inside.height)) {
-        let style = brush.style(Role::Strong);
+        let style = brush.style(TextRole::Strong);
         brush.text(inside.x, inside.y + row as u16, inside.width, line, style);
     }
     (inside.y + lines.len() as u16).min(inside.bottom())
@@ -116,32 +116,32 @@ fn silence(session: &Session) -> &'static str {
 }
 
 /// The best advice in one line.
-fn line(brush: &mut Brush, area: Rect, session: &Session, model: &Model) {
-    let mut parts = vec![(" advice   ".to_string(), Role::Quiet)];
+fn line(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel) {
+    let mut parts = vec![(" advice   ".to_string(), TextRole::Quiet)];
     match session.advice.as_ref().map(|advice| (advice, advice.best.as_ref().and(advice.top()))) {
-        None => parts.push((silence(session).to_string(), Role::Quiet)),
+        None => parts.push((silence(session).to_string(), TextRole::Quiet)),
         Some((Recommendation { proposal: Some(proposal), .. }, None)) => {
-            parts.push((proposed(proposal), Role::Strong));
+            parts.push((proposed(proposal), TextRole::Strong));
         }
-        Some((advice, None)) => parts.push((nothing(session, advice).to_string(), Role::Quiet)),
+        Some((advice, None)) => parts.push((nothing(session, advice).to_string(), TextRole::Quiet)),
         Some((advice, Some(option))) => {
             let worth = worth(option, session);
             let worth = match session.spec.assistant.concept {
                 ConceptName::Tom => format!("{worth}above threshold "),
                 _ => format!("net {worth}"),
             };
-            parts.push((worth, Role::Strong));
-            parts.push((key(option, session, model), Role::Signal));
-            parts.push((words::signal(&option.signal), Role::Strong));
+            parts.push((worth, TextRole::Strong));
+            parts.push((key(option, session, model), TextRole::Signal));
+            parts.push((words::signal(&option.signal), TextRole::Strong));
             if let Some(reason) = &advice.reason {
-                parts.push((format!(": {}", reason.words()), Role::Quiet));
+                parts.push((format!(": {}", reason.words()), TextRole::Quiet));
             }
         }
     }
     let age = session.advice.as_ref().map_or(String::new(), |advice| age(session, advice, model));
-    let parts: Vec<(&str, Role)> = parts.iter().map(|(text, role)| (text.as_str(), *role)).collect();
+    let parts: Vec<(&str, TextRole)> = parts.iter().map(|(text, role)| (text.as_str(), *role)).collect();
     brush.parts(area.x, area.y, area.width.saturating_sub(width(&age) + 1), &parts);
-    let style = brush.style(Role::Quiet);
+    let style = brush.style(TextRole::Quiet);
     brush.text_right(area.right().saturating_sub(1), area.y, area.width, &age, style);
 }
 
@@ -154,7 +154,7 @@ fn nothing(session: &Session, advice: &Recommendation) -> &'static str {
 }
 
 /// How old the advice is.
-fn age(session: &Session, advice: &Recommendation, model: &Model) -> String {
+fn age(session: &Session, advice: &Recommendation, model: &ConsoleModel) -> String {
     format!("  {:.1} s old", session.age(advice.for_ns, model.now).as_secs_f64())
 }
 
@@ -167,7 +167,7 @@ fn worth(option: &SignalOption, session: &Session) -> String {
 }
 
 /// The key of an option's signal, if it has one: "[q] ".
-fn key(option: &SignalOption, session: &Session, model: &Model) -> String {
+fn key(option: &SignalOption, session: &Session, model: &ConsoleModel) -> String {
     let location = session.kitchen.location_named(option.signal.target());
     let chord =
         location.and_then(|location| model.keys.mark(location)).filter(|_| may_send(session, Sender::Wizard).is_ok());
@@ -175,16 +175,16 @@ fn key(option: &SignalOption, session: &Session, model: &Model) -> String {
 }
 
 fn option_line(
-    brush: &mut Brush,
+    brush: &mut Painter,
     inside: Rect,
     y: u16,
     option: &SignalOption,
     session: &Session,
-    model: &Model,
+    model: &ConsoleModel,
     advice: &Recommendation,
 ) -> u16 {
     let is_best = Some(&option.signal) == advice.best.as_ref();
-    let role = if is_best { Role::Strong } else { Role::Quiet };
+    let role = if is_best { TextRole::Strong } else { TextRole::Quiet };
     let worth = worth(option, session);
     let mut x = brush.parts(inside.x, y, inside.width, &[(worth.as_str(), role)]);
     let (key, words) = (key(option, session, model), words::signal(&option.signal));
@@ -192,12 +192,12 @@ fn option_line(
     if inside.right().saturating_sub(x) >= GAUGE + 1 + LONGEST_SIGNAL {
         x = gauge(brush, x, y, option, session, role);
     }
-    brush.parts(x, y, inside.right().saturating_sub(x), &[(key.as_str(), Role::Signal), (words.as_str(), role)]);
+    brush.parts(x, y, inside.right().saturating_sub(x), &[(key.as_str(), TextRole::Signal), (words.as_str(), role)]);
     y + 1
 }
 
 /// The benefit as a bar: full up to one standard error below it, open to one above; a line where the cost is.
-fn gauge(brush: &mut Brush, x: u16, y: u16, option: &SignalOption, session: &Session, role: Role) -> u16 {
+fn gauge(brush: &mut Painter, x: u16, y: u16, option: &SignalOption, session: &Session, role: TextRole) -> u16 {
     let signs = brush.theme.signs();
     let (cost, of_tom) = (session.spec.assistant.price(), session.spec.assistant.concept == ConceptName::Tom);
     let a_column = if of_tom { 1.0 / f64::from(GAUGE) } else { PRESSES_A_COLUMN };
@@ -207,7 +207,7 @@ fn gauge(brush: &mut Brush, x: u16, y: u16, option: &SignalOption, session: &Ses
     for index in 0..GAUGE {
         let at = f64::from(index) + 0.5;
         let (sign, role) = match () {
-            () if column(cost).floor() == f64::from(index) => (line, Role::Frame),
+            () if column(cost).floor() == f64::from(index) => (line, TextRole::Frame),
             () if at <= column(least) => (full, role),
             () if at <= column(most) => (open, role),
             () => (" ", role),
@@ -219,7 +219,7 @@ fn gauge(brush: &mut Brush, x: u16, y: u16, option: &SignalOption, session: &Ses
 }
 
 /// Why the best option would help, as long as there is room for it, and shorter where there is not.
-fn reason(brush: &mut Brush, inside: Rect, y: u16, advice: &Recommendation, session: &Session) -> u16 {
+fn reason(brush: &mut Painter, inside: Rect, y: u16, advice: &Recommendation, session: &Session) -> u16 {
     let (Some(reason), Some(option)) = (&advice.reason, advice.top()) else { return y };
     let saves = match session.spec.assistant.concept {
         ConceptName::Tom => String::new(),
@@ -233,7 +233,7 @@ fn reason(brush: &mut Brush, inside: Rect, y: u16, advice: &Recommendation, sess
         let all = wrap(&said[3], columns);
         lines = rows.checked_sub(1).map(|last| [&all[..last], &[all[last..].join(" ")]].concat());
     }
-    let style = brush.style(Role::Text);
+    let style = brush.style(TextRole::Text);
     let lines = lines.unwrap_or_default();
     for (row, line) in lines.iter().enumerate() {
         brush.text(inside.x + 2, y + row as u16, columns, line, style);
@@ -243,12 +243,12 @@ fn reason(brush: &mut Brush, inside: Rect, y: u16, advice: &Recommendation, sess
 
 /// What a signal costs, and how old the advice is.
 fn cost_line(
-    brush: &mut Brush,
+    brush: &mut Painter,
     inside: Rect,
     y: u16,
     session: &Session,
     advice: &Recommendation,
-    model: &Model,
+    model: &ConsoleModel,
 ) -> u16 {
     let silence = match advice.best.is_none() && advice.proposal.is_none() {
         true => format!("{}; ", nothing(session, advice)),
@@ -261,12 +261,14 @@ fn cost_line(
         ConceptName::TomCom if inside.width < NARROW => format!("{silence}costs {price:.1}"),
         ConceptName::TomCom => format!("{silence}a signal costs {price:.1}"),
     };
-    let role = if advice.best.is_none() { Role::Strong } else { Role::Quiet };
-    let accept =
-        model.keys.of(&Action::Accept).filter(|_| advice.best.is_some() && may_send(session, Sender::Wizard).is_ok());
+    let role = if advice.best.is_none() { TextRole::Strong } else { TextRole::Quiet };
+    let accept = model
+        .keys
+        .of(&KeyAction::Accept)
+        .filter(|_| advice.best.is_some() && may_send(session, Sender::Wizard).is_ok());
     let accept = accept.map_or(String::new(), |chord| format!("  [{}] accepts", chord.name()));
-    brush.parts(inside.x, y, inside.width, &[(left.as_str(), role), (accept.as_str(), Role::Signal)]);
-    let style = brush.style(Role::Quiet);
+    brush.parts(inside.x, y, inside.width, &[(left.as_str(), role), (accept.as_str(), TextRole::Signal)]);
+    let style = brush.style(TextRole::Quiet);
     brush.text_right(inside.right(), y, inside.width, &age(session, advice, model), style);
     y + 1
 }

@@ -2,8 +2,8 @@
 
 use ratatui::layout::Rect;
 
-use crate::console::comparison::Compared;
-use crate::console::model::Model;
+use crate::console::comparison::ComparisonView;
+use crate::console::model::ConsoleModel;
 use crate::console::panels::Panel;
 use crate::session::Session;
 use crate::session::settings::Visibility;
@@ -16,7 +16,7 @@ pub const ROOMY_COLUMNS: u16 = 112;
 
 /// How much room there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Room {
+pub enum ScreenSize {
     /// Panels shrink to lines; down to 80x24.
     Small,
     /// Everything at once: 120x40.
@@ -28,7 +28,7 @@ pub enum Room {
 /// The places of the panels; an empty one is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Regions {
-    pub room: Room,
+    pub room: ScreenSize,
     pub head: Rect,
     pub kitchen: Rect,
     pub belief: Rect,
@@ -55,8 +55,8 @@ const TIMELINE_ROWS: u16 = 7;
 
 impl Regions {
     /// Deals out a terminal of `size` columns and rows to what this console shows.
-    pub fn showing(size: (u16, u16), session: &Session, model: &Model) -> Regions {
-        let assistants = |compared: &Compared| compared.seen.as_ref().map_or(1, |seen| seen.pairs.len()) as u16;
+    pub fn showing(size: (u16, u16), session: &Session, model: &ConsoleModel) -> Regions {
+        let assistants = |compared: &ComparisonView| compared.seen.as_ref().map_or(1, |seen| seen.pairs.len()) as u16;
         let compared = model.comparison.as_ref().map(assistants);
         let regions = Regions::with(size, session.spec.console.visibility, model.alone, compared);
         if model.lesson.is_some() { regions.teaching() } else { regions }
@@ -67,7 +67,7 @@ impl Regions {
         match self.gaze_map.area() {
             0 if self.kitchen.area() == 0 => self,
             0 => {
-                let (kitchen, lesson) = bottom(self.kitchen, if self.room == Room::Small { 3 } else { 7 });
+                let (kitchen, lesson) = bottom(self.kitchen, if self.room == ScreenSize::Small { 3 } else { 7 });
                 Regions { kitchen, lesson, ..self }
             }
             _ => {
@@ -85,9 +85,9 @@ impl Regions {
     /// With a comparison of a wizard with so many assistants, if there is one.
     fn with(size: (u16, u16), visibility: Visibility, alone: Option<Panel>, assistants: Option<u16>) -> Regions {
         let room = match size {
-            (columns, rows) if columns >= 168 && rows >= 46 => Room::Large,
-            (columns, rows) if columns >= ROOMY_COLUMNS && rows >= 34 => Room::Medium,
-            _ => Room::Small,
+            (columns, rows) if columns >= 168 && rows >= 46 => ScreenSize::Large,
+            (columns, rows) if columns >= ROOMY_COLUMNS && rows >= 34 => ScreenSize::Medium,
+            _ => ScreenSize::Small,
         };
         let all = Rect::new(0, 0, size.0, size.1);
         let (head, rest) = top(all, 1);
@@ -113,16 +113,16 @@ impl Regions {
         };
         match room {
             _ if let Some(panel) = alone => bare.alone(panel),
-            Room::Small => bare.small(visibility),
-            Room::Medium => bare.medium(visibility),
-            Room::Large => bare.large(visibility),
+            ScreenSize::Small => bare.small(visibility),
+            ScreenSize::Medium => bare.medium(visibility),
+            ScreenSize::Large => bare.large(visibility),
         }
     }
 
     fn alone(self, panel: Panel) -> Regions {
         let blank = Rect::default();
         let body = self.kitchen;
-        let mut regions = Regions { kitchen: blank, room: self.room.max(Room::Medium), ..self };
+        let mut regions = Regions { kitchen: blank, room: self.room.max(ScreenSize::Medium), ..self };
         match panel {
             Panel::Kitchen => regions.kitchen = body,
             Panel::Belief => regions.belief = body,
@@ -223,7 +223,7 @@ impl Regions {
     /// The cells of the kitchen panel without its title, where the display points are.
     pub fn kitchen_inside(&self) -> Rect {
         match self.room {
-            Room::Small => self.kitchen,
+            ScreenSize::Small => self.kitchen,
             _ => below_title(self.kitchen),
         }
     }
@@ -231,12 +231,12 @@ impl Regions {
 
 /// Rows of the comparison: axis and first lane, for each assistant its lane, its matches and its figures, and the
 /// differences; with a title where there is room.
-fn comparison_rows(room: Room, assistants: u16) -> u16 {
+fn comparison_rows(room: ScreenSize, assistants: u16) -> u16 {
     match room {
         // Figures of the first assistant alone.
-        Room::Small => 4 + if assistants == 1 { 2 } else { assistants },
-        Room::Medium => 4 + 3 * assistants,
-        Room::Large => 7 + 3 * assistants,
+        ScreenSize::Small => 4 + if assistants == 1 { 2 } else { assistants },
+        ScreenSize::Medium => 4 + 3 * assistants,
+        ScreenSize::Large => 7 + 3 * assistants,
     }
 }
 

@@ -2,29 +2,29 @@
 
 use std::f64::consts::TAU;
 
-use super::paint::Brush;
-use super::regions::{Regions, Room};
-use super::theme::Role;
+use super::paint::Painter;
+use super::regions::{Regions, ScreenSize};
+use super::theme::TextRole;
 use crate::base::words::count;
-use crate::console::hands::Hand;
-use crate::console::keys::Action;
-use crate::console::model::Model;
+use crate::console::hands::ManualAction;
+use crate::console::keys::KeyAction;
+use crate::console::model::ConsoleModel;
 use crate::console::words;
 use crate::kitchen::Agent;
 use crate::robot::IdleReason;
-use crate::robot::moment::ArmMoment;
+use crate::robot::moment::ArmSample;
 use crate::robot::safety::{SLOWS_M, SafetyMode};
 use crate::session::settings::ArmKind;
 use crate::session::{Phase, Session};
 
 /// Draws the robot panel.
-pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.robot;
     if area.area() == 0 {
         return;
     }
-    if regions.room == Room::Small {
-        brush.parts(area.x, area.y, area.width, &[(" robot    ", Role::Quiet)]);
+    if regions.room == ScreenSize::Small {
+        brush.parts(area.x, area.y, area.width, &[(" robot    ", TextRole::Quiet)]);
         let (mut columns, mode) = (area.width.saturating_sub(11), session.robot.arm.mode);
         if mode != SafetyMode::Normal && !session.robot.stopped {
             let name = format!(" {}", mode.name());
@@ -45,7 +45,7 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
     let name = if is_arm && !mode.is_stopped() { mode.name() } else { "" };
     let between = if name.is_empty() || remark.is_empty() { "" } else { "  " };
     let title = if is_arm { "UR5" } else { "Robot" };
-    let parts = [(name, mode_role(mode)), (between, Role::Quiet), (&remark, Role::Quiet)];
+    let parts = [(name, mode_role(mode)), (between, TextRole::Quiet), (&remark, TextRole::Quiet)];
     let inside = brush.panel_with(area, title, &parts);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
@@ -62,16 +62,16 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
 }
 
 /// What the robot holds, and how often it has pressed.
-fn holds(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session) {
+fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
     let held = session.kitchen.content_label(session.state, session.kitchen.hands[Agent::Robot.index()]);
     let presses = count(u64::from(session.presses[Agent::Robot.index()]), "press", "presses");
-    brush.parts(x, y, columns, &[("holds ", Role::Quiet), (held, Role::Text)]);
-    let quiet = brush.style(Role::Quiet);
+    brush.parts(x, y, columns, &[("holds ", TextRole::Quiet), (held, TextRole::Text)]);
+    let quiet = brush.style(TextRole::Quiet);
     brush.text_right(x + columns, y, columns / 2, &presses, quiet);
 }
 
 /// How the arm stands: what it does, its joints, how far the hand is, and what it feels.
-fn arm(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, moment: &ArmMoment) {
+fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, moment: &ArmSample) {
     let signs = brush.theme.signs();
     let bar = |angle: &f64| signs.levels[((angle / TAU + 0.5) * 8.0).clamp(0.0, 7.0) as usize];
     let bars: String = moment.joints.iter().map(bar).collect();
@@ -85,42 +85,43 @@ fn arm(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, momen
         force_n if force_n >= 0.5 => format!(" {force_n:>3.0} N"),
         _ => format!(" {:>3}  ", signs.dash),
     };
-    let hand_role = if moment.hand_away_m < SLOWS_M { Role::Human } else { Role::Quiet };
-    let parts = [(phase.as_str(), Role::Text), (&bars, Role::Robot), (&hand, hand_role), (&force, Role::Text)];
+    let hand_role = if moment.hand_away_m < SLOWS_M { TextRole::Human } else { TextRole::Quiet };
+    let parts =
+        [(phase.as_str(), TextRole::Text), (&bars, TextRole::Robot), (&hand, hand_role), (&force, TextRole::Text)];
     brush.parts(x, y, columns, &parts);
 }
 
 /// The joint angles in degrees.
-fn joints(brush: &mut Brush, x: u16, y: u16, columns: u16, moment: &ArmMoment) {
+fn joints(brush: &mut Painter, x: u16, y: u16, columns: u16, moment: &ArmSample) {
     let angles: String = moment.joints.iter().map(|angle| format!("{:>6.0}", angle.to_degrees())).collect();
-    brush.parts(x, y, columns, &[("joints", Role::Quiet), (&angles, Role::Text), (" deg", Role::Quiet)]);
+    brush.parts(x, y, columns, &[("joints", TextRole::Quiet), (&angles, TextRole::Text), (" deg", TextRole::Quiet)]);
 }
 
 /// That the robot is stopped, why, and the key that lets it go on.
-fn stopped(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
+fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
     let arm = &session.robot.arm;
     let (label, goes_on) = match arm.mode {
         mode if mode.has_stopped_itself() => (format!(" {} ", mode.name()), "resumes"),
         _ => (" STOPPED ".to_string(), "lets it go on"),
     };
-    let key = model.keys.of(&Action::ResumeRobot).filter(|_| session.phase != Phase::Closed);
+    let key = model.keys.of(&KeyAction::ResumeRobot).filter(|_| session.phase != Phase::Closed);
     let resume = key.map(|key| format!(" {key} {goes_on}")).unwrap_or_default();
     let force = arm.stopped_by_n.map(|force_n| format!(" {force_n:.0} N")).unwrap_or_default();
-    let badge = brush.theme.badge(Role::Alarm);
+    let badge = brush.theme.badge(TextRole::Alarm);
     let end = brush.text(x, y, columns, &label, badge);
-    brush.parts(end, y, (x + columns).saturating_sub(end), &[(&force, Role::Alarm), (&resume, Role::Text)]);
+    brush.parts(end, y, (x + columns).saturating_sub(end), &[(&force, TextRole::Alarm), (&resume, TextRole::Text)]);
 }
 
 /// How much a safety mode is to be seen.
-fn mode_role(mode: SafetyMode) -> Role {
+fn mode_role(mode: SafetyMode) -> TextRole {
     match mode {
-        SafetyMode::Normal => Role::Quiet,
-        SafetyMode::Reduced => Role::Strong,
-        _ => Role::Alarm,
+        SafetyMode::Normal => TextRole::Quiet,
+        SafetyMode::Reduced => TextRole::Strong,
+        _ => TextRole::Alarm,
     }
 }
 
-fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
+fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
     if session.robot.stopped {
         stopped(brush, x, y, columns, session, model);
         return;
@@ -138,7 +139,7 @@ fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, mode
             Some(IdleReason::Skipped) => "waits: its only press was skipped",
             None => "has nothing to press",
         };
-        brush.parts(x, y, columns, &[(why, Role::Quiet)]);
+        brush.parts(x, y, columns, &[(why, TextRole::Quiet)]);
         return;
     };
     let now = if session.is_running() { model.now } else { session.paused_at };
@@ -147,26 +148,26 @@ fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, mode
     let label = format!("{} {}", brush.theme.signs().to, words::button(&session.kitchen, Agent::Robot, button));
     let bar = 8.min(columns / 4);
     let by = if session.robot.driven { " driven" } else { "" };
-    brush.parts(x, y, columns.saturating_sub(bar + 7), &[(&label, Role::Robot), (by, Role::Signal)]);
-    let at = brush.bar(x + columns - bar - 6, y, bar, 1.0 - left_s / whole_s, Role::Robot);
-    brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), Role::Text)]);
+    brush.parts(x, y, columns.saturating_sub(bar + 7), &[(&label, TextRole::Robot), (by, TextRole::Signal)]);
+    let at = brush.bar(x + columns - bar - 6, y, bar, 1.0 - left_s / whole_s, TextRole::Robot);
+    brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
 }
 
 /// The key that releases the robot.
-fn release(model: &Model) -> String {
-    model.keys.of(&Action::Hand(Hand::HoldRobot)).map(|key| format!("{key} releases it")).unwrap_or_default()
+fn release(model: &ConsoleModel) -> String {
+    model.keys.of(&KeyAction::Hand(ManualAction::HoldRobot)).map(|key| format!("{key} releases it")).unwrap_or_default()
 }
 
 /// Says that the robot is held; where the line goes on, and how much room is left.
-fn held(brush: &mut Brush, x: u16, y: u16, columns: u16, model: &Model) -> (u16, u16) {
+fn held(brush: &mut Painter, x: u16, y: u16, columns: u16, model: &ConsoleModel) -> (u16, u16) {
     badge(brush, x, y, columns, " HELD ", &format!(" {} ", release(model)))
 }
 
 /// A badge, with more words where there is room for them; where the line goes on, and how much room is left.
-fn badge(brush: &mut Brush, x: u16, y: u16, columns: u16, label: &str, words: &str) -> (u16, u16) {
-    let badge = brush.theme.badge(Role::Strong);
+fn badge(brush: &mut Painter, x: u16, y: u16, columns: u16, label: &str, words: &str) -> (u16, u16) {
+    let badge = brush.theme.badge(TextRole::Strong);
     let end = brush.text(x, y, columns, label, badge);
     let left = (x + columns).saturating_sub(end);
-    let end = brush.parts(end, y, left, &[(if left > 50 { words } else { " " }, Role::Quiet)]);
+    let end = brush.parts(end, y, left, &[(if left > 50 { words } else { " " }, TextRole::Quiet)]);
     (end, (x + columns).saturating_sub(end))
 }

@@ -5,11 +5,11 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 
 use super::dialog::open;
-use super::paint::{Brush, width, wrap};
-use super::theme::{Role, Theme};
-use crate::console::form::{Sheet, WAIVERS, sheet};
-use crate::console::model::Model;
-use crate::console::question::Question;
+use super::paint::{Painter, width, wrap};
+use super::theme::{TextRole, Theme};
+use crate::console::form::{SheetContent, WAIVERS, sheet};
+use crate::console::model::ConsoleModel;
+use crate::console::question::QuestionPage;
 use crate::session::Session;
 use crate::session::plan::Questionnaire;
 use crate::session::protocol::{Answer, Protocol};
@@ -19,7 +19,7 @@ const WIDEST: u16 = 84;
 
 /// What a sheet is drawn with.
 struct Pen<'a, 'b> {
-    brush: &'a mut Brush<'b>,
+    brush: &'a mut Painter<'b>,
     with_keys: bool,
 }
 
@@ -27,7 +27,7 @@ struct Pen<'a, 'b> {
 #[derive(Default)]
 struct Page {
     columns: u16,
-    lines: Vec<(u16, String, Role)>,
+    lines: Vec<(u16, String, TextRole)>,
     /// The line that has to be seen.
     focus: usize,
 }
@@ -37,13 +37,13 @@ impl Page {
         Page { columns: screen.width.saturating_sub(4).min(WIDEST).saturating_sub(4), ..Page::default() }
     }
 
-    fn text(&mut self, indent: u16, text: &str, role: Role) {
+    fn text(&mut self, indent: u16, text: &str, role: TextRole) {
         let lines = wrap(text, self.columns.saturating_sub(indent));
         self.lines.extend(lines.into_iter().map(|line| (indent, line, role)));
     }
 
     /// A text behind a mark that stands before its first line.
-    fn marked(&mut self, mark: &str, text: &str, role: Role) {
+    fn marked(&mut self, mark: &str, text: &str, role: TextRole) {
         let first = self.lines.len();
         self.text(width(mark) + 1, text, role);
         if let Some(line) = self.lines.get_mut(first) {
@@ -52,11 +52,11 @@ impl Page {
     }
 
     fn space(&mut self) {
-        self.lines.push((0, String::new(), Role::Text));
+        self.lines.push((0, String::new(), TextRole::Text));
     }
 
     /// Draws it, as much as there is room for, with its focus, and what the keys do on the last line.
-    fn draw(self, pen: &mut Pen, screen: Rect, title: &str, remark: &str, keys: &[(&str, Role)]) {
+    fn draw(self, pen: &mut Pen, screen: Rect, title: &str, remark: &str, keys: &[(&str, TextRole)]) {
         let rows = (self.lines.len() as u16 + 5).min(screen.height.saturating_sub(2));
         let brush = &mut *pen.brush;
         let inside = open(brush, screen, (self.columns + 4, rows), title, remark);
@@ -74,15 +74,17 @@ impl Page {
 }
 
 /// Draws the sheet of the running phase, if it has one.
-pub fn draw(brush: &mut Brush, screen: Rect, session: &Session, model: &Model) {
+pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
     let (Some(sheet), Some((step, protocol))) = (sheet(session), session.step()) else { return };
     let where_ = format!("{}  {}", session.spec.participant.code, step.label());
     // Over a recording the keys do something else.
     let pen = &mut Pen { brush, with_keys: model.playback.is_none() };
     match sheet {
-        Sheet::Steps { title, steps } => draw_steps(pen, screen, (title, &where_), steps, protocol, session),
-        Sheet::Questions(questionnaire) => draw_questions(pen, screen, &where_, questionnaire, protocol, session),
-        Sheet::Failed => draw_failed(pen, screen, &where_, session),
+        SheetContent::Steps { title, steps } => draw_steps(pen, screen, (title, &where_), steps, protocol, session),
+        SheetContent::Questions(questionnaire) => {
+            draw_questions(pen, screen, &where_, questionnaire, protocol, session)
+        }
+        SheetContent::Failed => draw_failed(pen, screen, &where_, session),
     }
 }
 
@@ -107,11 +109,11 @@ fn draw_steps(
     for (index, step) in steps.iter().enumerate() {
         let is_done = protocol.ticks.get(index) == Some(&true);
         let role = if open == Some(index) {
-            Role::Strong
+            TextRole::Strong
         } else if is_done {
-            Role::Quiet
+            TextRole::Quiet
         } else {
-            Role::Text
+            TextRole::Text
         };
         if open == Some(index) {
             page.focus = page.lines.len();
@@ -122,7 +124,12 @@ fn draw_steps(
         page.focus = page.lines.len();
     }
     let on = if open.is_some() { " this step is done".to_string() } else { onward(session) };
-    let keys = [("enter", Role::Strong), (on.as_str(), Role::Text), ("   left", Role::Strong), (" back", Role::Text)];
+    let keys = [
+        ("enter", TextRole::Strong),
+        (on.as_str(), TextRole::Text),
+        ("   left", TextRole::Strong),
+        (" back", TextRole::Text),
+    ];
     page.draw(pen, screen, heads.0, heads.1, &keys);
 }
 
@@ -138,19 +145,19 @@ fn draw_questions(
     let mut page = Page::new(screen);
     if let Some(item) = questionnaire.items.get(protocol.item) {
         let given = protocol.answers.get(protocol.item).copied().flatten();
-        page.text(0, &format!("{} of {items}", protocol.item + 1), Role::Quiet);
+        page.text(0, &format!("{} of {items}", protocol.item + 1), TextRole::Quiet);
         page.space();
-        page.text(0, &item.text, Role::Strong);
+        page.text(0, &item.text, TextRole::Strong);
         page.space();
         scale(&mut page, questionnaire, given);
         let points = format!("1-{}", questionnaire.scale.points);
         let keys = [
-            (points.as_str(), Role::Strong),
-            (" answer   ", Role::Text),
-            ("0", Role::Strong),
-            (" no answer   ", Role::Text),
-            ("left right", Role::Strong),
-            (" back, on", Role::Text),
+            (points.as_str(), TextRole::Strong),
+            (" answer   ", TextRole::Text),
+            ("0", TextRole::Strong),
+            (" no answer   ", TextRole::Text),
+            ("left right", TextRole::Strong),
+            (" back, on", TextRole::Text),
         ];
         return page.draw(pen, screen, &questionnaire.title, where_, &keys);
     }
@@ -160,7 +167,7 @@ fn draw_questions(
             Some(Answer::Skipped) => "-".to_string(),
             None => "?".to_string(),
         };
-        page.marked(&format!("{answer:>3}"), &item.text, Role::Text);
+        page.marked(&format!("{answer:>3}"), &item.text, TextRole::Text);
     }
     page.focus = page.lines.len();
     let (on, back) = match (protocol.confirmed, protocol.open_item()) {
@@ -169,7 +176,8 @@ fn draw_questions(
         (false, None) => (" confirm the answers".to_string(), " back"),
     };
     let left = if back.is_empty() { "" } else { "   left" };
-    let keys = [("enter", Role::Strong), (on.as_str(), Role::Text), (left, Role::Strong), (back, Role::Text)];
+    let keys =
+        [("enter", TextRole::Strong), (on.as_str(), TextRole::Text), (left, TextRole::Strong), (back, TextRole::Text)];
     page.draw(pen, screen, &questionnaire.title, where_, &keys);
 }
 
@@ -182,12 +190,12 @@ fn scale(page: &mut Page, questionnaire: &Questionnaire, given: Option<Answer>) 
     let points: Vec<String> = (1..=questionnaire.scale.points).map(point).collect();
     let line = points.join("   ");
     let (low, high) = (&questionnaire.scale.low, &questionnaire.scale.high);
-    page.lines.push((0, line.clone(), Role::Strong));
+    page.lines.push((0, line.clone(), TextRole::Strong));
     let gap = usize::from(width(&line).saturating_sub(width(low) + width(high)).max(3));
-    page.lines.push((0, format!("{low}{}{high}", " ".repeat(gap)), Role::Quiet));
+    page.lines.push((0, format!("{low}{}{high}", " ".repeat(gap)), TextRole::Quiet));
     if given == Some(Answer::Skipped) {
         page.space();
-        page.text(0, "no answer", Role::Strong);
+        page.text(0, "no answer", TextRole::Strong);
     }
 }
 
@@ -196,39 +204,39 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session) {
     let (Some(criterion), Some(practice)) = (step.criterion, &protocol.practice) else { return };
     let mut page = Page::new(screen);
     let rate = criterion.error_rate.map_or(String::new(), |rate| format!(", at most {:.0} % errors", 100.0 * rate));
-    page.text(0, &format!("Asked for: {} orders served{rate}.", criterion.orders), Role::Text);
+    page.text(0, &format!("Asked for: {} orders served{rate}.", criterion.orders), TextRole::Text);
     let share = 100.0 * f64::from(practice.errors) / f64::from(practice.presses.max(1));
     let (orders, presses, errors) = (practice.orders, practice.presses, practice.errors);
     let found = format!("Found: {orders} served, {errors} errors in {presses} presses ({share:.0} %).");
-    page.text(0, &found, Role::Strong);
+    page.text(0, &found, TextRole::Strong);
     page.space();
-    page.text(0, "To go on to the first trial all the same, say why:", Role::Text);
+    page.text(0, "To go on to the first trial all the same, say why:", TextRole::Text);
     for (index, reason) in WAIVERS.iter().enumerate() {
-        page.marked(&format!("  {}", index + 1), reason, Role::Text);
+        page.marked(&format!("  {}", index + 1), reason, TextRole::Text);
     }
     let waivers = format!("1-{}", WAIVERS.len());
     let keys = [
-        ("enter", Role::Strong),
-        (" practise again   ", Role::Text),
-        (waivers.as_str(), Role::Strong),
-        (" go on all the same", Role::Text),
+        ("enter", TextRole::Strong),
+        (" practise again   ", TextRole::Text),
+        (waivers.as_str(), TextRole::Strong),
+        (" go on all the same", TextRole::Text),
     ];
     page.draw(pen, screen, "The criterion is not met", where_, &keys);
 }
 
 /// Draws a question before a recording begins: nothing else is on the screen.
-pub fn draw_question(question: &Question, theme: Theme, frame: &mut Frame) {
+pub fn draw_question(question: &QuestionPage, theme: Theme, frame: &mut Frame) {
     let screen = frame.area();
-    let mut brush = Brush { buffer: frame.buffer_mut(), theme };
+    let mut brush = Painter { buffer: frame.buffer_mut(), theme };
     let mut page = Page::new(screen);
     for paragraph in &question.text {
-        page.text(0, paragraph, Role::Text);
+        page.text(0, paragraph, TextRole::Text);
         page.space();
     }
     for (index, answer) in question.answers.iter().enumerate() {
-        page.marked(&format!("  {}", index + 1), answer, Role::Strong);
+        page.marked(&format!("  {}", index + 1), answer, TextRole::Strong);
     }
     page.focus = page.lines.len();
-    let keys = [("esc", Role::Strong), (" leave: nothing is recorded", Role::Text)];
+    let keys = [("esc", TextRole::Strong), (" leave: nothing is recorded", TextRole::Text)];
     page.draw(&mut Pen { brush: &mut brush, with_keys: true }, screen, &question.title, "", &keys);
 }

@@ -1,32 +1,32 @@
 //! The participant's side: the signal that is on the display now, with what it says and how long it stays.
 
-use super::paint::{Brush, width, wrap};
-use super::regions::{Regions, Room};
-use super::theme::Role;
+use super::paint::{Painter, width, wrap};
+use super::regions::{Regions, ScreenSize};
+use super::theme::TextRole;
 use crate::communication::Signal;
-use crate::console::keys::Action;
-use crate::console::model::Model;
+use crate::console::keys::KeyAction;
+use crate::console::model::ConsoleModel;
 use crate::console::words;
 use crate::session::{Phase, Session, ShownSignal};
 
 /// Draws what the participant is shown.
-pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.shown;
     if area.area() == 0 {
         return;
     }
-    if regions.room == Room::Small {
-        brush.parts(area.x, area.y, area.width, &[(" display  ", Role::Quiet)]);
+    if regions.room == ScreenSize::Small {
+        brush.parts(area.x, area.y, area.width, &[(" display  ", TextRole::Quiet)]);
         line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
         return;
     }
-    let back = model.keys.of(&Action::TakeBack).map(|key| format!("{key} takes it back"));
+    let back = model.keys.of(&KeyAction::TakeBack).map(|key| format!("{key} takes it back"));
     let remark = session.shown.as_ref().and(back).unwrap_or_default();
     let inside = brush.panel(area, "On the participant's display", &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
     if let Some(shown) = &session.shown {
-        let style = brush.style(Role::Text);
+        let style = brush.style(TextRole::Text);
         for (row, text) in wrap(&says(session, &shown.signal), columns).iter().take(2).enumerate() {
             brush.text(x, inside.y + 1 + row as u16, columns, text, style);
         }
@@ -34,16 +34,16 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
 }
 
 /// The signal with its remaining time in one line.
-fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, model: &Model) {
-    let start = model.keys.of(&Action::Advance).filter(|_| session.phase == Phase::Ready);
+fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
+    let start = model.keys.of(&KeyAction::Advance).filter(|_| session.phase == Phase::Ready);
     if let Some(key) = start {
         let key = key.to_string();
-        let parts = [("press ", Role::Strong), (&key, Role::Signal), (" to start the trial", Role::Strong)];
+        let parts = [("press ", TextRole::Strong), (&key, TextRole::Signal), (" to start the trial", TextRole::Strong)];
         brush.parts(x, y, columns, &parts);
         return;
     }
     let Some(shown) = &session.shown else {
-        brush.parts(x, y, columns, &[("no signal: the kitchen only", Role::Quiet)]);
+        brush.parts(x, y, columns, &[("no signal: the kitchen only", TextRole::Quiet)]);
         return;
     };
     let title = match (&shown.signal, columns > 60) {
@@ -53,17 +53,17 @@ fn line(brush: &mut Brush, x: u16, y: u16, columns: u16, session: &Session, mode
     let (left_s, share) = left(session, shown, model);
     let bar = if columns < 44 { 4 } else { 8 };
     let room = columns.saturating_sub(bar + 7);
-    let end = brush.parts(x, y, room, &[(&title, Role::Signal)]);
+    let end = brush.parts(x, y, room, &[(&title, TextRole::Signal)]);
     let by = format!(" by {}", words::sender(shown.by));
     if end + width(&by) <= x + room {
-        brush.parts(end, y, room, &[(&by, Role::Quiet)]);
+        brush.parts(end, y, room, &[(&by, TextRole::Quiet)]);
     }
-    let at = brush.bar(x + columns - bar - 6, y, bar, share, Role::Signal);
-    brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), Role::Text)]);
+    let at = brush.bar(x + columns - bar - 6, y, bar, share, TextRole::Signal);
+    brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
 }
 
 /// Seconds that it stays, and their share of the whole.
-fn left(session: &Session, shown: &ShownSignal, model: &Model) -> (f64, f64) {
+fn left(session: &Session, shown: &ShownSignal, model: &ConsoleModel) -> (f64, f64) {
     let now = if session.is_running() { model.now } else { session.paused_at };
     let left_s = shown.until.secs_since(now);
     (left_s, left_s / shown.until.secs_since(shown.since).max(1e-3))

@@ -6,7 +6,7 @@ use ratatui::style::{Color, Modifier, Style};
 
 /// What something on the screen is, not how it looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum TextRole {
     Text,
     /// Labels, and what is as it should be.
     Quiet,
@@ -27,7 +27,7 @@ pub enum Role {
 
 /// The terminal's background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ground {
+pub enum TerminalBackground {
     Dark,
     Light,
 }
@@ -37,12 +37,12 @@ pub enum Ground {
 pub struct Theme {
     pub colour: bool,
     pub unicode: bool,
-    pub ground: Ground,
+    pub ground: TerminalBackground,
 }
 
 /// The signs of the console.
 #[derive(Debug, PartialEq, Eq)]
-pub struct Signs {
+pub struct Glyphs {
     /// Corners top left, top right, bottom left, bottom right, then horizontal and vertical line.
     pub frame: [&'static str; 6],
     /// The rule of a card: as it is, changed just now, shown to the participant.
@@ -71,7 +71,7 @@ pub struct Signs {
     pub dash: &'static str,
 }
 
-const UNICODE: Signs = Signs {
+const UNICODE: Glyphs = Glyphs {
     frame: ["╭", "╮", "╰", "╯", "─", "│"],
     rules: ["▏", "▌", "█"],
     bar_full: "▰",
@@ -95,7 +95,7 @@ const UNICODE: Signs = Signs {
     dash: "–",
 };
 
-const ASCII: Signs = Signs {
+const ASCII: Glyphs = Glyphs {
     frame: [".", ".", "'", "'", "-", "|"],
     rules: ["|", "!", "#"],
     bar_full: "=",
@@ -120,33 +120,35 @@ const ASCII: Signs = Signs {
 };
 
 impl Theme {
-    pub fn signs(&self) -> &'static Signs {
+    pub fn signs(&self) -> &'static Glyphs {
         if self.unicode { &UNICODE } else { &ASCII }
     }
 
     /// The colour of a role, as an index into the 256 colours of xterm; `None` is the terminal's own.
-    pub fn colour(ground: Ground, role: Role) -> Option<u8> {
+    pub fn colour(ground: TerminalBackground, role: TextRole) -> Option<u8> {
         let (dark, light) = match role {
-            Role::Text | Role::Strong => return None,
-            Role::Quiet => (247, 241),
-            Role::Frame => (240, 248),
-            Role::Human => (80, 23),
-            Role::Robot => (111, 25),
-            Role::Signal => (177, 127),
-            Role::Gaze => (114, 22),
-            Role::Alarm => (203, 160),
-            Role::FalseBelief => (221, 94),
+            TextRole::Text | TextRole::Strong => return None,
+            TextRole::Quiet => (247, 241),
+            TextRole::Frame => (240, 248),
+            TextRole::Human => (80, 23),
+            TextRole::Robot => (111, 25),
+            TextRole::Signal => (177, 127),
+            TextRole::Gaze => (114, 22),
+            TextRole::Alarm => (203, 160),
+            TextRole::FalseBelief => (221, 94),
         };
-        Some(if ground == Ground::Dark { dark } else { light })
+        Some(if ground == TerminalBackground::Dark { dark } else { light })
     }
 
-    pub fn style(&self, role: Role) -> Style {
+    pub fn style(&self, role: TextRole) -> Style {
         let modifier = match role {
-            Role::Text | Role::Human | Role::Robot => Modifier::empty(),
+            TextRole::Text | TextRole::Human | TextRole::Robot => Modifier::empty(),
             // A grey of its own is darker or brighter by as much as it should be; where there is none, dim has to do.
-            Role::Quiet | Role::Frame if self.colour => Modifier::empty(),
-            Role::Quiet | Role::Frame => Modifier::DIM,
-            Role::Strong | Role::Signal | Role::Gaze | Role::Alarm | Role::FalseBelief => Modifier::BOLD,
+            TextRole::Quiet | TextRole::Frame if self.colour => Modifier::empty(),
+            TextRole::Quiet | TextRole::Frame => Modifier::DIM,
+            TextRole::Strong | TextRole::Signal | TextRole::Gaze | TextRole::Alarm | TextRole::FalseBelief => {
+                Modifier::BOLD
+            }
         };
         let style = Style::new().add_modifier(modifier);
         match Theme::colour(self.ground, role).filter(|_| self.colour) {
@@ -156,7 +158,7 @@ impl Theme {
     }
 
     /// The same as a filled badge.
-    pub fn badge(&self, role: Role) -> Style {
+    pub fn badge(&self, role: TextRole) -> Style {
         self.style(role).remove_modifier(Modifier::DIM).add_modifier(Modifier::REVERSED | Modifier::BOLD)
     }
 }

@@ -2,13 +2,13 @@
 
 use ratatui::layout::Rect;
 
-use super::paint::{Brush, width};
-use super::regions::{Regions, Room};
-use super::theme::Role;
+use super::paint::{Painter, width};
+use super::regions::{Regions, ScreenSize};
+use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::console::coding::press;
-use crate::console::model::Model;
+use crate::console::model::ConsoleModel;
 use crate::kitchen::Agent;
 use crate::session::event::SignalEnd;
 use crate::session::{Entry, Happening, Phase, Session};
@@ -19,19 +19,19 @@ const LABELS: u16 = 10;
 const TITLE: &str = "Timeline";
 
 /// Draws the timeline.
-pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Model) {
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.timeline;
     if area.area() == 0 {
         return;
     }
-    let is_small = regions.room == Room::Small;
+    let is_small = regions.room == ScreenSize::Small;
     let inside = if is_small { area } else { brush.panel(area, &title(session, model), &legend(brush)) };
     let rows: &[&str] = match is_small {
         // Signals, orders and notes share a row.
         true => &["", "human", "robot", "events"],
         false => &["", "human", "robot", "signals", "orders", "notes"],
     };
-    let quiet = brush.style(Role::Quiet);
+    let quiet = brush.style(TextRole::Quiet);
     for (row, label) in rows.iter().enumerate() {
         brush.text(inside.x + 1, inside.y + row as u16, LABELS, label, quiet);
     }
@@ -53,18 +53,18 @@ pub fn draw(brush: &mut Brush, regions: &Regions, session: &Session, model: &Mod
         .collect();
     place(brush, plot, &in_view);
     if let Some(words) = coding(session, model).filter(|_| is_small) {
-        let strong = brush.style(Role::Strong);
+        let strong = brush.style(TextRole::Strong);
         brush.text(inside.x + 1, inside.y, inside.width, &format!("{words} "), strong);
     }
 }
 
 /// Its title, with where a rater stands.
-fn title(session: &Session, model: &Model) -> String {
+fn title(session: &Session, model: &ConsoleModel) -> String {
     coding(session, model).map_or(TITLE.to_string(), |words| format!("{TITLE}: {words}"))
 }
 
 /// Where a rater stands, where errors are coded.
-fn coding(session: &Session, model: &Model) -> Option<String> {
+fn coding(session: &Session, model: &ConsoleModel) -> Option<String> {
     let (coding, playback) = (model.coding.as_ref()?, model.playback.as_ref()?);
     let error = session.timeline.iter().rev().find(|entry| model.is_error(entry));
     let press = error.map_or(String::new(), |entry| press(&session.kitchen, &entry.what));
@@ -72,7 +72,7 @@ fn coding(session: &Session, model: &Model) -> Option<String> {
 }
 
 /// What stands at the right edge: now; in a pause the last that happened, since that is when one looks back.
-pub(super) fn until(session: &Session, model: &Model) -> SessionTime {
+pub(super) fn until(session: &Session, model: &ConsoleModel) -> SessionTime {
     let last = session.timeline.last().map_or(session.paused_at, |entry| entry.time.max(session.paused_at));
     if session.phase == Phase::Paused { last.min(model.now) } else { model.now }
 }
@@ -82,12 +82,12 @@ struct Mark {
     x: u16,
     y: u16,
     sign: String,
-    role: Role,
+    role: TextRole,
 }
 
 /// Writes the signs, the newest first. Of presses in one column one stands for all; everything else is never lost: what
 /// finds its cell taken moves to the next free one, towards the past.
-fn place(brush: &mut Brush, plot: Rect, marks: &[Mark]) {
+fn place(brush: &mut Painter, plot: Rect, marks: &[Mark]) {
     let signs = brush.theme.signs();
     let rank = |mark: &Mark| match mark.sign.as_str() {
         sign if sign == signs.press => 2,
@@ -113,9 +113,9 @@ fn place(brush: &mut Brush, plot: Rect, marks: &[Mark]) {
 }
 
 /// Where there is room for a line in the timeline's title, between its name and what its signs mean.
-pub(super) fn title_room(brush: &Brush, regions: &Regions, session: &Session, model: &Model) -> Option<Rect> {
+pub(super) fn title_room(brush: &Painter, regions: &Regions, session: &Session, model: &ConsoleModel) -> Option<Rect> {
     let area = regions.timeline;
-    if regions.room == Room::Small || area.area() == 0 {
+    if regions.room == ScreenSize::Small || area.area() == 0 {
         return None;
     }
     let from = area.x + 1 + width(&title(session, model)) + 2;
@@ -123,7 +123,7 @@ pub(super) fn title_room(brush: &Brush, regions: &Regions, session: &Session, mo
     Some(Rect { x: from, y: area.y, width: until.saturating_sub(from), height: 1 })
 }
 
-fn legend(brush: &Brush) -> String {
+fn legend(brush: &Painter) -> String {
     let signs = brush.theme.signs();
     format!("{} press  {} no effect  {} error  {} served", signs.press, signs.no_effect, signs.error, signs.served)
 }
@@ -133,11 +133,11 @@ fn column(time: SessionTime) -> i64 {
 }
 
 /// Draws the axis of time in the first row, in columns of so many seconds, with now, or so long ago, at its right end.
-pub(super) fn axis(brush: &mut Brush, plot: Rect, back_s: u32, column_s: f64) {
-    let quiet = brush.style(Role::Quiet);
+pub(super) fn axis(brush: &mut Painter, plot: Rect, back_s: u32, column_s: f64) {
+    let quiet = brush.style(TextRole::Quiet);
     let every = (10.0 / column_s) as u16;
     let line = brush.theme.signs().frame[4];
-    let thin = brush.style(Role::Frame);
+    let thin = brush.style(TextRole::Frame);
     for x in plot.x..plot.right() {
         brush.text(x, plot.y, 1, line, thin);
     }
@@ -153,46 +153,46 @@ pub(super) fn axis(brush: &mut Brush, plot: Rect, back_s: u32, column_s: f64) {
 }
 
 /// Row, sign and meaning of an entry of the timeline.
-fn mark(brush: &Brush, session: &Session, model: &Model, entry: &Entry) -> Option<(u16, String, Role)> {
+fn mark(brush: &Painter, session: &Session, model: &ConsoleModel, entry: &Entry) -> Option<(u16, String, TextRole)> {
     let signs = brush.theme.signs();
     Some(match &entry.what {
         Happening::Press { agent, effective, .. } => {
             let row = if *agent == Agent::Human { 1 } else { 2 };
-            let role = if *agent == Agent::Human { Role::Human } else { Role::Robot };
+            let role = if *agent == Agent::Human { TextRole::Human } else { TextRole::Robot };
             match (model.is_error(entry), effective) {
-                (true, _) => (row, signs.error.to_string(), Role::Alarm),
+                (true, _) => (row, signs.error.to_string(), TextRole::Alarm),
                 (false, false) => (row, signs.no_effect.to_string(), role),
                 (false, true) => (row, signs.press.to_string(), role),
             }
         }
-        Happening::ArmTouched { .. } => (2, signs.touched.to_string(), Role::Alarm),
-        Happening::RobotStopped | Happening::ArmStopped { .. } => (2, signs.stopped.to_string(), Role::Alarm),
-        Happening::RobotResumed | Happening::RobotReleased => (2, signs.to.to_string(), Role::Robot),
-        Happening::RobotHeld => (2, signs.pause.to_string(), Role::Robot),
-        Happening::RobotSkipped(_) => (2, signs.taken_back.to_string(), Role::Robot),
-        Happening::RobotDriven(_) => (2, signs.by_hand.to_string(), Role::Signal),
-        Happening::Corrected { .. } => (4, signs.by_hand.to_string(), Role::Signal),
-        Happening::Signal { signal, .. } => (3, signal_sign(session, model, signal), Role::Signal),
-        Happening::SignalEnded(SignalEnd::TakenBack) => (3, signs.taken_back.to_string(), Role::Signal),
+        Happening::ArmTouched { .. } => (2, signs.touched.to_string(), TextRole::Alarm),
+        Happening::RobotStopped | Happening::ArmStopped { .. } => (2, signs.stopped.to_string(), TextRole::Alarm),
+        Happening::RobotResumed | Happening::RobotReleased => (2, signs.to.to_string(), TextRole::Robot),
+        Happening::RobotHeld => (2, signs.pause.to_string(), TextRole::Robot),
+        Happening::RobotSkipped(_) => (2, signs.taken_back.to_string(), TextRole::Robot),
+        Happening::RobotDriven(_) => (2, signs.by_hand.to_string(), TextRole::Signal),
+        Happening::Corrected { .. } => (4, signs.by_hand.to_string(), TextRole::Signal),
+        Happening::Signal { signal, .. } => (3, signal_sign(session, model, signal), TextRole::Signal),
+        Happening::SignalEnded(SignalEnd::TakenBack) => (3, signs.taken_back.to_string(), TextRole::Signal),
         Happening::SignalEnded(SignalEnd::Elapsed) => return None,
-        Happening::Served { .. } => (4, signs.served.to_string(), Role::Strong),
-        Happening::OrderShown { .. } => (4, "+".to_string(), Role::Quiet),
-        Happening::Excluded(_) => (5, signs.error.to_string(), Role::Signal),
-        Happening::Included => (5, signs.served.to_string(), Role::Signal),
-        Happening::Focus(false) => (5, "!".to_string(), Role::Alarm),
+        Happening::Served { .. } => (4, signs.served.to_string(), TextRole::Strong),
+        Happening::OrderShown { .. } => (4, "+".to_string(), TextRole::Quiet),
+        Happening::Excluded(_) => (5, signs.error.to_string(), TextRole::Signal),
+        Happening::Included => (5, signs.served.to_string(), TextRole::Signal),
+        Happening::Focus(false) => (5, "!".to_string(), TextRole::Alarm),
         Happening::Focus(true) => return None,
         Happening::Marker(note) => {
             let number =
                 session.spec.console.notes.iter().position(|known| known == note).map(|index| (index + 1).to_string());
-            (5, number.unwrap_or("*".to_string()), Role::Strong)
+            (5, number.unwrap_or("*".to_string()), TextRole::Strong)
         }
-        Happening::Trial(Phase::Paused) => (5, signs.pause.to_string(), Role::Strong),
-        Happening::Trial(_) => (5, signs.to.to_string(), Role::Strong),
+        Happening::Trial(Phase::Paused) => (5, signs.pause.to_string(), TextRole::Strong),
+        Happening::Trial(_) => (5, signs.to.to_string(), TextRole::Strong),
     })
 }
 
 /// The key of the signal, as it stands in the kitchen.
-fn signal_sign(session: &Session, model: &Model, signal: &Signal) -> String {
+fn signal_sign(session: &Session, model: &ConsoleModel, signal: &Signal) -> String {
     let location = session.kitchen.location_named(signal.target());
     location.and_then(|id| model.keys.mark(id)).map_or("!".to_string(), |chord| chord.to_string())
 }

@@ -2,10 +2,10 @@
 
 use toml::Spanned;
 
-use super::contents::Items;
+use super::contents::IngredientItems;
 use super::places::stored;
 use super::{Result, SpecFile, wrong, wrong_file};
-use crate::kitchen::action::{Action, Agent, Button};
+use crate::kitchen::action::{Agent, Button, ButtonAction};
 use crate::kitchen::layout::{ButtonSpec, LayoutSpec, Location, LocationId, is_same_key};
 use crate::kitchen::recipe::{Process, RecipesSpec};
 
@@ -16,7 +16,7 @@ const MAX_GAMEPAD: u8 = 63;
 pub(super) fn buttons(
     layout: &LayoutSpec,
     spec: &RecipesSpec,
-    items: &Items,
+    items: &IngredientItems,
     locations: &[Location],
     processes: &[Process],
 ) -> Result<[Vec<Button>; 2]> {
@@ -26,13 +26,13 @@ pub(super) fn buttons(
     };
     let mut buttons = [Vec::new(), Vec::new()];
     for agent in Agent::BOTH {
-        let mut list: Vec<(String, Action, &ButtonSpec)> = Vec::new();
+        let mut list: Vec<(String, ButtonAction, &ButtonSpec)> = Vec::new();
         for storage in layout.storage.iter().filter(|storage| storage.agent == agent) {
             let item = stored(&storage.ingredient, spec, items)?;
-            list.push((format!("take {}", storage.ingredient.get_ref()), Action::Take(item), &storage.button));
+            list.push((format!("take {}", storage.ingredient.get_ref()), ButtonAction::Take(item), &storage.button));
         }
         for place in &layout.place {
-            list.push((place.name.get_ref().clone(), Action::Use(located(&place.name)), &place.button));
+            list.push((place.name.get_ref().clone(), ButtonAction::Use(located(&place.name)), &place.button));
         }
         for (index, process) in processes.iter().enumerate().filter(|(_, process)| process.agents[agent.index()]) {
             let button = layout.process.iter().find(|button| *button.name.get_ref() == process.name);
@@ -40,13 +40,13 @@ pub(super) fn buttons(
                 let found = format!("no button for the process \"{}\" of the recipe file", process.name);
                 return Err(wrong_file(SpecFile::Layout, found, "a table [[process]] with this name and a button"));
             };
-            list.push((process.name.clone(), Action::Process(index as u8), &button.button));
+            list.push((process.name.clone(), ButtonAction::Process(index as u8), &button.button));
         }
         for hand in layout.hand.iter().filter(|hand| *hand.agent.get_ref() == agent) {
-            list.push(("trash".to_string(), Action::Trash, &hand.trash));
+            list.push(("trash".to_string(), ButtonAction::Trash, &hand.trash));
         }
         for (index, order) in layout.order.iter().enumerate() {
-            list.push((format!("serve {}", index + 1), Action::Serve(located(&order.name)), &order.serve));
+            list.push((format!("serve {}", index + 1), ButtonAction::Serve(located(&order.name)), &order.serve));
         }
         for (name, action, spec) in list {
             buttons[agent.index()].push(button(agent, name, action, spec, &buttons[agent.index()])?);
@@ -61,7 +61,7 @@ pub(super) fn buttons(
     Ok(buttons)
 }
 
-fn button(agent: Agent, name: String, action: Action, spec: &ButtonSpec, others: &[Button]) -> Result<Button> {
+fn button(agent: Agent, name: String, action: ButtonAction, spec: &ButtonSpec, others: &[Button]) -> Result<Button> {
     if others.iter().any(|other| other.name == name) {
         let found = format!("a second button \"{name}\" of the {}", agent.name());
         return Err(wrong(SpecFile::Layout, spec.at_m.span(), found, "a name of its own for each button of an agent"));

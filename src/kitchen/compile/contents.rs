@@ -4,7 +4,7 @@ use toml::Spanned;
 
 use super::{Result, SpecFile, look, wrong, wrong_file};
 use crate::kitchen::content::{Content, ContentId};
-use crate::kitchen::look::Look;
+use crate::kitchen::look::Appearance;
 use crate::kitchen::recipe::{DishSpec, RecipesSpec};
 
 /// At most so many contents: one byte, and one value of it means "none".
@@ -12,7 +12,7 @@ const MAX_CONTENTS: usize = 255;
 const TOO_MANY: &str = "at most 255 items and stacks: fewer ingredients, states or slots";
 
 /// Names of the ingredient items ("rice cooked") and the ids that they get.
-pub(super) struct Items {
+pub(super) struct IngredientItems {
     pub(super) names: Vec<String>,
     /// The ingredient of each item.
     pub(super) ingredient: Vec<usize>,
@@ -20,9 +20,9 @@ pub(super) struct Items {
     pub(super) state: Vec<usize>,
 }
 
-impl Items {
-    pub(super) fn read(spec: &RecipesSpec) -> Result<Items> {
-        let mut items = Items { names: Vec::new(), ingredient: Vec::new(), state: Vec::new() };
+impl IngredientItems {
+    pub(super) fn read(spec: &RecipesSpec) -> Result<IngredientItems> {
+        let mut items = IngredientItems { names: Vec::new(), ingredient: Vec::new(), state: Vec::new() };
         for (index, ingredient) in spec.ingredient.iter().enumerate() {
             let states: Vec<String> = match ingredient.states.is_empty() {
                 true => vec![String::new()],
@@ -64,7 +64,7 @@ impl Items {
 }
 
 /// Empty, all items, all stacks: pairs first, then larger ones.
-pub(super) fn contents(spec: &RecipesSpec, items: &Items) -> Result<Vec<Content>> {
+pub(super) fn contents(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Content>> {
     let item_sets = (0..items.names.len()).map(|index| vec![ContentId(index as u8 + 1)]);
     let mut sets: Vec<Vec<ContentId>> = std::iter::once(Vec::new()).chain(item_sets).collect();
     sets.extend(stacks(spec, items)?);
@@ -86,7 +86,7 @@ pub(super) fn contents(spec: &RecipesSpec, items: &Items) -> Result<Vec<Content>
 }
 
 /// How an item looks; an ingredient without looks is drawn by its name.
-fn item_look(spec: &RecipesSpec, items: &Items, item: usize) -> Result<Option<Look>> {
+fn item_look(spec: &RecipesSpec, items: &IngredientItems, item: usize) -> Result<Option<Appearance>> {
     let ingredient = &spec.ingredient[items.ingredient[item]];
     let (looks, states) = (&ingredient.look, ingredient.states.len().max(1));
     if !looks.is_empty() && looks.len() != states {
@@ -98,7 +98,7 @@ fn item_look(spec: &RecipesSpec, items: &Items, item: usize) -> Result<Option<Lo
 }
 
 /// All stacks of two and more, small ones first.
-fn stacks(spec: &RecipesSpec, items: &Items) -> Result<Vec<Vec<ContentId>>> {
+fn stacks(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Vec<ContentId>>> {
     let mut stacks: Vec<Vec<ContentId>> = vec![Vec::new()];
     let mut of_slots: Vec<ContentId> = Vec::new();
     for slot in &spec.slot {
@@ -123,7 +123,7 @@ fn stacks(spec: &RecipesSpec, items: &Items) -> Result<Vec<Vec<ContentId>>> {
     Ok(stacks)
 }
 
-fn content(set: &[ContentId], items: &Items, dish_names: &[(Vec<ContentId>, String)]) -> Content {
+fn content(set: &[ContentId], items: &IngredientItems, dish_names: &[(Vec<ContentId>, String)]) -> Content {
     let names: Vec<&str> = set.iter().map(|item| items.names[item.index() - 1].as_str()).collect();
     let name = match dish_names.iter().find(|(stack, _)| stack == set) {
         Some((_, dish)) => dish.clone(),
@@ -134,7 +134,7 @@ fn content(set: &[ContentId], items: &Items, dish_names: &[(Vec<ContentId>, Stri
     Content { name, items: set.to_vec(), ingredient, look_alikes: Vec::new(), look: None }
 }
 
-pub(super) fn dish_names(spec: &RecipesSpec, items: &Items) -> Result<Vec<(Vec<ContentId>, String)>> {
+pub(super) fn dish_names(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<(Vec<ContentId>, String)>> {
     let one = |dish: &DishSpec| {
         let mut stack = items.find_all(dish.items.get_ref())?;
         stack.sort_unstable();
@@ -146,7 +146,7 @@ pub(super) fn dish_names(spec: &RecipesSpec, items: &Items) -> Result<Vec<(Vec<C
 /// The same content with one ingredient exchanged for one that looks like it.
 fn look_alikes(
     spec: &RecipesSpec,
-    items: &Items,
+    items: &IngredientItems,
     sets: &[Vec<ContentId>],
     set: &[ContentId],
 ) -> Result<Vec<ContentId>> {

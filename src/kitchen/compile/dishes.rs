@@ -1,15 +1,15 @@
 //! Processing steps, dishes, and the recipes that a memory may take for theirs.
 
-use super::contents::Items;
+use super::contents::IngredientItems;
 use super::places::stored;
 use super::{Result, SpecFile, look, wrong, wrong_file};
 use crate::kitchen::action::Agent;
 use crate::kitchen::content::{Content, ContentId};
 use crate::kitchen::layout::{LayoutSpec, Location, LocationId, LocationKind};
-use crate::kitchen::recipe::{Combine, DeviationSpec, Dish, Process, ProcessSpec, RecipesSpec};
+use crate::kitchen::recipe::{DeviationCombination, DeviationSpec, Dish, Process, ProcessSpec, RecipesSpec};
 use crate::kitchen::state::MAX_DISHES;
 
-pub(super) fn processes(spec: &RecipesSpec, items: &Items, locations: &[Location]) -> Result<Vec<Process>> {
+pub(super) fn processes(spec: &RecipesSpec, items: &IngredientItems, locations: &[Location]) -> Result<Vec<Process>> {
     let one = |process: &ProcessSpec| {
         let place = match process.at.get_ref().as_str() {
             "hand" => None,
@@ -33,7 +33,7 @@ pub(super) fn processes(spec: &RecipesSpec, items: &Items, locations: &[Location
     spec.process.iter().map(one).collect()
 }
 
-pub(super) fn dishes(spec: &RecipesSpec, items: &Items, contents: &[Content]) -> Result<Vec<Dish>> {
+pub(super) fn dishes(spec: &RecipesSpec, items: &IngredientItems, contents: &[Content]) -> Result<Vec<Dish>> {
     if spec.dish.is_empty() || spec.dish.len() > MAX_DISHES {
         let found = format!("{} dishes", spec.dish.len());
         return Err(wrong_file(SpecFile::Recipes, found, format!("1 to {MAX_DISHES} tables [[dish]]")));
@@ -75,7 +75,7 @@ pub(super) fn dishes(spec: &RecipesSpec, items: &Items, contents: &[Content]) ->
 fn variants(
     deviation: &DeviationSpec,
     spec: &RecipesSpec,
-    items: &Items,
+    items: &IngredientItems,
     truth: &[ContentId],
 ) -> Result<Vec<Vec<ContentId>>> {
     let mut sets = vec![truth.to_vec()];
@@ -85,8 +85,8 @@ fn variants(
             return Err(wrong(SpecFile::Recipes, vary.slot.span(), found, "the name of a [[slot]]"));
         };
         let starts = match deviation.combine {
-            Combine::OneAtATime => vec![truth.to_vec()],
-            Combine::All => sets.clone(),
+            DeviationCombination::OneAtATime => vec![truth.to_vec()],
+            DeviationCombination::All => sets.clone(),
         };
         for start in starts {
             for item in items.find_all(&vary.items)? {
@@ -105,7 +105,7 @@ fn variants(
 pub(super) fn check_obtainable(
     spec: &RecipesSpec,
     layout: &LayoutSpec,
-    items: &Items,
+    items: &IngredientItems,
     processes: &[Process],
 ) -> Result<()> {
     let mut obtainable: Vec<ContentId> =

@@ -15,11 +15,11 @@ use super::aspect::{Aspect, AspectKind};
 use super::content::{Content, ContentId};
 use super::cost_to_go::MAX_BUTTONS;
 use super::layout::{LayoutSpec, Location, LocationId, LocationKind};
-use super::look::Look;
+use super::look::Appearance;
 use super::recipe::{Dish, DishId, Process, RecipesSpec};
-use super::rules::Tables;
+use super::rules::TransitionTables;
 use super::state::OrderContent;
-use contents::Items;
+use contents::IngredientItems;
 
 /// At most so many orders at a time; the cost to go is exact for one and for two.
 pub const MAX_ORDERS: usize = 2;
@@ -57,8 +57,8 @@ fn wrong(file: SpecFile, span: Range<usize>, found: impl Into<String>, remedy: i
 }
 
 /// Reads how something looks.
-fn look(file: SpecFile, text: &Spanned<String>) -> Result<Look> {
-    Look::read(text.get_ref())
+fn look(file: SpecFile, text: &Spanned<String>) -> Result<Appearance> {
+    Appearance::read(text.get_ref())
         .map_err(|remedy| wrong(file, text.span(), format!("look = \"{}\"", text.get_ref()), remedy))
 }
 
@@ -69,7 +69,7 @@ fn wrong_file(file: SpecFile, found: impl Into<String>, remedy: impl Into<String
 impl Kitchen {
     /// Compiles a kitchen. Errors name the file, the place in it, what was found and what would be right.
     pub fn compile(layout: &LayoutSpec, recipes: &RecipesSpec) -> Result<Kitchen> {
-        let items = Items::read(recipes)?;
+        let items = IngredientItems::read(recipes)?;
         let contents = contents::contents(recipes, &items)?;
         let locations = places::locations(layout)?;
         let (hands, board, plate) = places::roles(layout, &locations)?;
@@ -115,7 +115,7 @@ impl Kitchen {
 /// What the cost to go can number: its keys and its lines have a fixed size.
 fn check_size(
     locations: &[Location],
-    tables: &Tables,
+    tables: &TransitionTables,
     buttons: &[Vec<Button>; 2],
     processes: &[Process],
 ) -> Result<()> {
@@ -152,11 +152,11 @@ fn positive(value: &Spanned<f64>, name: &str) -> Result<()> {
 fn tables(
     layout: &LayoutSpec,
     spec: &RecipesSpec,
-    items: &Items,
+    items: &IngredientItems,
     contents: &[Content],
     locations: &[Location],
     processes: &[Process],
-) -> Result<Tables> {
+) -> Result<TransitionTables> {
     let width = contents.len();
     let mut accepts = vec![false; locations.len() * width];
     let first_place = locations.len() - layout.place.len();
@@ -187,14 +187,14 @@ fn tables(
             becomes[index * width + from.index()] = *to;
         }
     }
-    Ok(Tables { width, accepts, stacks, becomes })
+    Ok(TransitionTables { width, accepts, stacks, becomes })
 }
 
 /// Marks in `row` what a word of "accepts" lets in.
 fn accept(
     name: &Spanned<String>,
     spec: &RecipesSpec,
-    items: &Items,
+    items: &IngredientItems,
     contents: &[Content],
     row: &mut [bool],
 ) -> Result<()> {
@@ -217,7 +217,7 @@ fn accept(
     Ok(())
 }
 
-fn aspects(contents: &[Content], locations: &[Location], dishes: &[Dish], tables: &Tables) -> Vec<Aspect> {
+fn aspects(contents: &[Content], locations: &[Location], dishes: &[Dish], tables: &TransitionTables) -> Vec<Aspect> {
     let order_values = || {
         let dishes = (0..dishes.len()).map(|index| OrderContent::Dish(DishId(index as u8)).code());
         [OrderContent::None.code(), OrderContent::Served.code()].into_iter().chain(dishes).collect()

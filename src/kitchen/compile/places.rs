@@ -2,24 +2,25 @@
 
 use toml::Spanned;
 
-use super::contents::Items;
+use super::contents::IngredientItems;
 use super::{MAX_ORDERS, MIN_GAP_M, Result, SpecFile, look, wrong, wrong_file};
 use crate::kitchen::action::Agent;
 use crate::kitchen::content::ContentId;
 use crate::kitchen::layout::{
-    Area, LayoutSpec, Location, LocationId, LocationKind, PlaceSpec, Storage, StorageSpec, is_same_key,
+    DisplayArea, LayoutSpec, Location, LocationId, LocationKind, PlaceSpec, Storage, StorageSpec, is_same_key,
 };
 use crate::kitchen::recipe::RecipesSpec;
 use crate::kitchen::state::MAX_LOCATIONS;
 
 pub(super) fn locations(layout: &LayoutSpec) -> Result<Vec<Location>> {
-    let location = |name: &Spanned<String>, kind, display: &Spanned<Area>, signal: &Option<Spanned<char>>| Location {
-        name: name.get_ref().clone(),
-        kind,
-        display: *display.get_ref(),
-        signal_key: signal.as_ref().map(|key| *key.get_ref()),
-        look: None,
-    };
+    let location =
+        |name: &Spanned<String>, kind, display: &Spanned<DisplayArea>, signal: &Option<Spanned<char>>| Location {
+            name: name.get_ref().clone(),
+            kind,
+            display: *display.get_ref(),
+            signal_key: signal.as_ref().map(|key| *key.get_ref()),
+            look: None,
+        };
     let orders = layout.order.iter().map(|o| (&o.name, location(&o.name, LocationKind::Order, &o.display, &o.signal)));
     let hands = layout
         .hand
@@ -125,7 +126,7 @@ pub(super) fn check_signal_keys(layout: &LayoutSpec) -> Result<()> {
     Ok(())
 }
 
-pub(super) fn storages(layout: &LayoutSpec, spec: &RecipesSpec, items: &Items) -> Result<Vec<Storage>> {
+pub(super) fn storages(layout: &LayoutSpec, spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Storage>> {
     let one = |storage: &StorageSpec| {
         Ok(Storage {
             agent: storage.agent,
@@ -138,7 +139,7 @@ pub(super) fn storages(layout: &LayoutSpec, spec: &RecipesSpec, items: &Items) -
 }
 
 /// The item that a storage of this ingredient gives.
-pub(super) fn stored(name: &Spanned<String>, spec: &RecipesSpec, items: &Items) -> Result<ContentId> {
+pub(super) fn stored(name: &Spanned<String>, spec: &RecipesSpec, items: &IngredientItems) -> Result<ContentId> {
     let ingredient = spec.ingredient.iter().position(|ingredient| ingredient.name.get_ref() == name.get_ref());
     let item = ingredient.and_then(|ingredient| items.ingredient.iter().position(|&of| of == ingredient));
     item.map(|item| ContentId(item as u8 + 1)).ok_or_else(|| {

@@ -1,8 +1,8 @@
 //! Which item in the kitchen becomes which part of which target.
 
-use super::demand::Demand;
-use super::goal::{Classes, Goal, MAX_TARGETS, Offer, USELESS};
-use super::ground::Ground;
+use super::demand::PressDemand;
+use super::goal::{ContentClasses, ItemValue, MAX_TARGETS, ServingGoal, USELESS};
+use super::ground::KitchenTables;
 use crate::base::bits::ones;
 
 /// At most so many parts of all targets together.
@@ -12,7 +12,7 @@ pub const STORAGE: u8 = u8::MAX;
 
 /// One part to bring to the board, or a complete stack to serve.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Task {
+pub struct AssemblyTask {
     pub target: u8,
     /// Which items of the target it is; all of them: a complete stack.
     pub bits: u8,
@@ -23,20 +23,30 @@ pub struct Task {
 /// A choice of items for all targets, in the order in which the targets will be served.
 #[derive(Clone, Copy, Debug)]
 pub struct Assignment {
-    pub tasks: [Task; MAX_TASKS],
+    pub tasks: [AssemblyTask; MAX_TASKS],
     pub count: usize,
     pub order: [usize; MAX_TARGETS],
     /// Locations whose content is used, one bit each.
     used: u32,
     /// What the tasks take at least.
-    pub demand: Demand,
+    pub demand: PressDemand,
 }
 
 impl Assignment {
     /// Chooses for one target after another what saves most presses against taking it from a storage.
-    pub fn choose(ground: &Ground, goal: &Goal, state: &Classes, order: [usize; MAX_TARGETS]) -> Assignment {
-        let mut choice =
-            Assignment { tasks: [Task::default(); MAX_TASKS], count: 0, order, used: 0, demand: Demand::default() };
+    pub fn choose(
+        ground: &KitchenTables,
+        goal: &ServingGoal,
+        state: &ContentClasses,
+        order: [usize; MAX_TARGETS],
+    ) -> Assignment {
+        let mut choice = Assignment {
+            tasks: [AssemblyTask::default(); MAX_TASKS],
+            count: 0,
+            order,
+            used: 0,
+            demand: PressDemand::default(),
+        };
         let mut useful = 0;
         for location in ground.places() {
             useful |= u32::from(state[location] > USELESS) << location;
@@ -47,11 +57,18 @@ impl Assignment {
         if goal.targets.len() > 1 {
             choice.exchange(ground, goal, state);
         }
-        choice.demand = Demand::of(ground, goal, state, choice.tasks[..choice.count].iter().copied());
+        choice.demand = PressDemand::of(ground, goal, state, choice.tasks[..choice.count].iter().copied());
         choice
     }
 
-    fn choose_for(&mut self, ground: &Ground, goal: &Goal, state: &Classes, target: usize, useful: u32) {
+    fn choose_for(
+        &mut self,
+        ground: &KitchenTables,
+        goal: &ServingGoal,
+        state: &ContentClasses,
+        target: usize,
+        useful: u32,
+    ) {
         let complete = goal.complete[target];
         if let Some(location) = self.nearest_complete(ground, state, goal.target_class[target], useful) {
             self.push(target, complete, location as u8);
@@ -65,14 +82,14 @@ impl Assignment {
             have = ready;
         }
         let classes = goal.content.len();
-        let mut offered = [Offer::default(); 16];
+        let mut offered = [ItemValue::default(); 16];
         let mut count = 0;
         for location in ones(useful & !self.used) {
             offered[count] = goal.offers[target][location * classes + usize::from(state[location])];
             count += usize::from(offered[count].fills() & !have != 0);
         }
         while have != complete {
-            let open = |&offer: &Offer| if offer.fills() & have == 0 { offer } else { Offer::default() };
+            let open = |&offer: &ItemValue| if offer.fills() & have == 0 { offer } else { ItemValue::default() };
             let best = offered[..count].iter().map(open).max().unwrap_or_default();
             let (fills, at) = match best.fills() {
                 0 => (1 << (complete & !have).trailing_zeros(), STORAGE),
@@ -84,7 +101,7 @@ impl Assignment {
     }
 
     /// Lets two targets exchange their items where that saves presses.
-    fn exchange(&mut self, ground: &Ground, goal: &Goal, state: &Classes) {
+    fn exchange(&mut self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) {
         // What lies somewhere can only be exchanged if both targets can use it.
         let (mut stored, mut shared) = (0u32, 0u32);
         for (index, task) in self.tasks[..self.count].iter().enumerate().filter(|(_, task)| task.bits.count_ones() == 1)
@@ -102,8 +119,8 @@ impl Assignment {
         let is_first = (1 << of_first) - 1;
         let needs = |index: usize| usize::from(goal.way(state, &self.tasks[index], STORAGE).1);
         let wanted = ones(stored & is_first).fold(0, |wanted, index| wanted | needs(index)) & 3;
-        let fits = |task: &Task, at: u8| goal.fits(state, task, at);
-        let presses = |task: &Task, at: u8| u32::from(goal.way(state, task, at).0);
+        let fits = |task: &AssemblyTask, at: u8| goal.fits(state, task, at);
+        let presses = |task: &AssemblyTask, at: u8| u32::from(goal.way(state, task, at).0);
         // Of two hands the one that the first target needs should be free first; what is on the board stays there.
         let frees = |at: u8| at != STORAGE && wanted & ground.journeys.bit[usize::from(at)] != 0;
         for first in ones((stored | shared) & is_first) {
@@ -124,7 +141,7 @@ impl Assignment {
 
     fn push(&mut self, target: usize, bits: u8, at: u8) {
         if self.count < MAX_TASKS {
-            self.tasks[self.count] = Task { target: target as u8, bits, at };
+            self.tasks[self.count] = AssemblyTask { target: target as u8, bits, at };
             self.count += 1;
         }
         if at != STORAGE {
@@ -132,7 +149,13 @@ impl Assignment {
         }
     }
 
-    fn nearest_complete(&self, ground: &Ground, state: &Classes, class: u8, useful: u32) -> Option<usize> {
+    fn nearest_complete(
+        &self,
+        ground: &KitchenTables,
+        state: &ContentClasses,
+        class: u8,
+        useful: u32,
+    ) -> Option<usize> {
         let complete = ones(useful & !self.used).filter(|&location| state[location] == class);
         complete.min_by_key(|&location| ground.last_presses(location))
     }

@@ -19,18 +19,18 @@ struct Bucket([u64; 8]);
 
 /// Values of one byte by keys below 2^56 - 1, in buckets of eight, one cache line each.
 #[derive(Clone, Debug)]
-pub struct Cache {
+pub struct ValueCache {
     buckets: Vec<Bucket>,
     mask: u64,
     /// Which entry of a full bucket goes next.
     turn: usize,
 }
 
-impl Cache {
+impl ValueCache {
     /// A cache of 2^`bits` values.
-    pub fn new(bits: u32) -> Cache {
+    pub fn new(bits: u32) -> ValueCache {
         let buckets = 1usize << (bits - 3);
-        Cache { buckets: vec![Bucket([EMPTY; 8]); buckets], mask: buckets as u64 - 1, turn: 0 }
+        ValueCache { buckets: vec![Bucket([EMPTY; 8]); buckets], mask: buckets as u64 - 1, turn: 0 }
     }
 
     #[inline]
@@ -67,7 +67,7 @@ impl Cache {
 /// The costs of one decision: of a state, and of those that each button of an agent leads to.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub struct Decision {
+pub struct DecisionCosts {
     state: State,
     /// Targets and agent; `u32::MAX`: an empty entry.
     question: u32,
@@ -79,16 +79,16 @@ pub struct Decision {
 
 /// Decisions by state and question, one cache line each; the newest of those that share a line stays.
 #[derive(Clone, Debug)]
-pub struct Decisions {
-    lines: Vec<Decision>,
+pub struct DecisionCache {
+    lines: Vec<DecisionCosts>,
     mask: u64,
 }
 
-impl Decisions {
+impl DecisionCache {
     /// Room for 2^`bits` decisions.
-    pub fn new(bits: u32) -> Decisions {
-        let empty = Decision { state: State::default(), question: u32::MAX, here: 0, after: [0; MAX_BUTTONS] };
-        Decisions { lines: vec![empty; 1 << bits], mask: (1 << bits) - 1 }
+    pub fn new(bits: u32) -> DecisionCache {
+        let empty = DecisionCosts { state: State::default(), question: u32::MAX, here: 0, after: [0; MAX_BUTTONS] };
+        DecisionCache { lines: vec![empty; 1 << bits], mask: (1 << bits) - 1 }
     }
 
     #[inline]
@@ -113,11 +113,11 @@ impl Decisions {
     }
 
     #[inline]
-    pub fn get(&self, index: usize) -> &Decision {
+    pub fn get(&self, index: usize) -> &DecisionCosts {
         &self.lines[index]
     }
 
     pub fn set(&mut self, index: usize, state: State, question: u32, here: u8, after: [u8; MAX_BUTTONS]) {
-        self.lines[index] = Decision { state, question, here, after };
+        self.lines[index] = DecisionCosts { state, question, here, after };
     }
 }

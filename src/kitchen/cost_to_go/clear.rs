@@ -1,12 +1,12 @@
 //! The part of a plan that makes room: throws away, picks up, puts aside.
 
 use super::journeys::FreeMask;
-use super::moves::Move;
-use super::plan::Plan;
+use super::moves::ClearingMove;
+use super::plan::PressPlan;
 
 /// What the work on a target needs.
 #[derive(Clone, Copy, Debug)]
-pub struct Wants {
+pub struct TargetNeeds {
     target: usize,
     /// Whether parts have to come onto the board.
     assembling: bool,
@@ -17,16 +17,16 @@ pub struct Wants {
     hands_full: bool,
 }
 
-impl Wants {
+impl TargetNeeds {
     /// Whether the hand of this agent should be empty.
     pub fn hand(&self, agent: usize) -> bool {
         self.hands_full || self.needs & (1 << agent) != 0
     }
 }
 
-impl Plan<'_> {
+impl PressPlan<'_> {
     /// Makes room for the work on a target in the way that mostly is best: one press or two. Whether there is a way.
-    pub(super) fn clear(&mut self, wants: &Wants) -> bool {
+    pub(super) fn clear(&mut self, wants: &TargetNeeds) -> bool {
         let best = self
             .put_down(wants)
             .or_else(|| self.throw_away(wants))
@@ -40,7 +40,7 @@ impl Plan<'_> {
     }
 
     /// What the work on a target needs now.
-    pub(super) fn wants(&self, target: usize) -> Wants {
+    pub(super) fn wants(&self, target: usize) -> TargetNeeds {
         let of_target = || self.tasks().filter(move |(_, task)| usize::from(task.target) == target);
         let complete = self.goal.complete[target];
         let assembling = of_target().any(|(_, task)| task.bits != complete && !self.is_ready(&task));
@@ -48,11 +48,11 @@ impl Plan<'_> {
         let needs = needs.fold(0, |needs, (_, task)| needs | self.needs(&task));
         let later = self.tasks().fold(needs, |needs, (_, task)| needs | self.needs(&task));
         let hands_full = self.ground.hands.iter().all(|&hand| self.state[hand] != 0);
-        Wants { target, assembling, needs, later, hands_full }
+        TargetNeeds { target, assembling, needs, later, hands_full }
     }
 
     /// Whether what lies at a location is where the target's parts have to go.
-    pub(super) fn blocks(&self, wants: &Wants, location: usize) -> bool {
+    pub(super) fn blocks(&self, wants: &TargetNeeds, location: usize) -> bool {
         let ground = self.ground;
         match location {
             _ if self.state[location] == 0 => false,
@@ -63,30 +63,30 @@ impl Plan<'_> {
     }
 
     /// Puts down what a wanted hand holds where it has to go anyway.
-    fn put_down(&self, wants: &Wants) -> Option<Move> {
+    fn put_down(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let wanted = (0..2).filter(|&agent| wants.hand(agent));
         wanted.into_iter().find_map(|agent| {
             let (task, _) = self.task_at(self.ground.hands[agent])?;
             match self.best_place(task, wants.needs, true)? {
-                (0, to) => Some(Move::Bring { task, to }),
+                (0, to) => Some(ClearingMove::Bring { task, to }),
                 _ => None,
             }
         })
     }
 
     /// Throws away what is of no use from a hand that is needed, or from one of two full ones.
-    fn throw_away(&self, wants: &Wants) -> Option<Move> {
+    fn throw_away(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let hands = self.ground.hands;
         let useless = |agent: usize| self.state[hands[agent]] != 0 && self.task_at(hands[agent]).is_none();
         let needed = (0..2).find(|&agent| wants.needs & (1 << agent) != 0 && useless(agent));
         // A hand that will be needed later rather than one that may hold it to the end.
         let full = (0..2).filter(|&agent| wants.hands_full && useless(agent));
         let full = full.max_by_key(|&agent| (wants.later & (1 << agent) != 0, agent == 0));
-        needed.or(full).map(|agent| Move::Throw { hand: hands[agent] })
+        needed.or(full).map(|agent| ClearingMove::Throw { hand: hands[agent] })
     }
 
     /// Takes away what lies where the target's parts have to go, if a hand is free for it.
-    fn empty_place(&self, wants: &Wants) -> Option<Move> {
+    fn empty_place(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let ground = self.ground;
         let [human, robot] = ground.hands;
         let hand = match (self.state[human] == 0, self.state[robot] == 0) {
@@ -99,7 +99,7 @@ impl Plan<'_> {
         let blocking = ground.places().filter(|&location| self.blocks(wants, location));
         // First what goes on its own way, then what is of no use, then what has to be put elsewhere.
         let ranked = blocking.filter_map(|from| match self.task_at(from) {
-            None => Some((1, Move::PickUp { from, hand })),
+            None => Some((1, ClearingMove::PickUp { from, hand })),
             Some((task, _)) => {
                 let (detour, made) = self.put_aside(wants, task, hand)?;
                 Some((2 * detour.min(1), made))
@@ -110,45 +110,45 @@ impl Plan<'_> {
 
     /// Moves a part out of the way: along its own way, or into a hand that can hold it, or somewhere else. With the presses
     /// that this costs extra.
-    fn put_aside(&self, wants: &Wants, task: usize, hand: usize) -> Option<(u32, Move)> {
+    fn put_aside(&self, wants: &TargetNeeds, task: usize, hand: usize) -> Option<(u32, ClearingMove)> {
         let of = self.choice.tasks[task];
         let from = usize::from(of.at);
         // What lies on its target's board as it cannot stay there comes back at once.
         let returns =
             usize::from(of.target) == wants.target && from == self.ground.board && self.leads(task, from, hand);
         if returns {
-            return Some((0, Move::Bring { task, to: hand }));
+            return Some((0, ClearingMove::Bring { task, to: hand }));
         }
         let spare_hand = wants.needs & self.ground.journeys.bit[hand] == 0;
         match self.best_place(task, wants.needs, false) {
-            Some((detour, to)) if detour == 0 || !spare_hand => Some((detour, Move::Bring { task, to })),
-            _ if spare_hand => Some((1, Move::Bring { task, to: hand })),
+            Some((detour, to)) if detour == 0 || !spare_hand => Some((detour, ClearingMove::Bring { task, to })),
+            _ if spare_hand => Some((1, ClearingMove::Bring { task, to: hand })),
             _ => None,
         }
     }
 
     /// Takes away what lies where the item in a needed hand has to go anyway.
-    fn make_way(&self, wants: &Wants) -> Option<Move> {
+    fn make_way(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let ground = self.ground;
         let needed = (0..2).filter(|&agent| !wants.hands_full && wants.needs & (1 << agent) != 0);
         needed.into_iter().find_map(|agent| {
             let (held, _) = self.task_at(ground.hands[agent])?;
             let other = ground.hands[1 - agent];
             let from = self.blocked_by(held)?;
-            let Some((task, _)) = self.task_at(from) else { return Some(Move::PickUp { from, hand: other }) };
+            let Some((task, _)) = self.task_at(from) else { return Some(ClearingMove::PickUp { from, hand: other }) };
             let spare_hand = wants.needs & ground.journeys.bit[other] == 0;
             match self.best_place(task, wants.needs, true) {
-                Some((0, to)) => Some(Move::Bring { task, to }),
-                _ if spare_hand && self.leads(task, from, other) => Some(Move::Bring { task, to: other }),
+                Some((0, to)) => Some(ClearingMove::Bring { task, to }),
+                _ if spare_hand && self.leads(task, from, other) => Some(ClearingMove::Bring { task, to: other }),
                 _ => None,
             }
         })
     }
 
     /// Puts down what a wanted hand holds, or throws it away if there is no place.
-    fn empty_hand(&self, wants: &Wants) -> Option<Move> {
-        let mut best: Option<(u32, Move)> = None;
-        let mut consider = |rest: u32, made: Move| {
+    fn empty_hand(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
+        let mut best: Option<(u32, ClearingMove)> = None;
+        let mut consider = |rest: u32, made: ClearingMove| {
             if best.is_none_or(|(least, _)| rest < least) {
                 best = Some((rest, made));
             }
@@ -156,12 +156,12 @@ impl Plan<'_> {
         for agent in (0..2).filter(|&agent| wants.hand(agent)) {
             let Some((task, of)) = self.task_at(self.ground.hands[agent]) else { continue };
             if let Some((detour, to)) = self.best_place(task, wants.needs, true) {
-                consider(detour, Move::Bring { task, to });
+                consider(detour, ClearingMove::Bring { task, to });
             }
             if of.bits.count_ones() == 1 {
                 let (fresh, _) = self.goal.fresh[usize::from(of.target)][of.bits.trailing_zeros() as usize];
                 // Thrown away with one press, taken anew with those of a fresh one.
-                consider((u32::from(fresh) + 1).saturating_sub(self.least(&of)), Move::Discard { task });
+                consider((u32::from(fresh) + 1).saturating_sub(self.least(&of)), ClearingMove::Discard { task });
             }
         }
         best.map(|(_, best)| best)

@@ -3,13 +3,13 @@
 //! What a press leads to is at most one press nearer; if it can be taken back by one press, it is at most one further away.
 //! Together with the bound that settles most buttons without a plan.
 
-use super::cache::{Decision, MAX_BUTTONS};
+use super::cache::{DecisionCosts, MAX_BUTTONS};
 use super::goal::MAX_TARGETS;
 use super::plan::BLOCKED;
-use super::rating::Rating;
-use super::search::{self, Search};
+use super::rating::AssignmentRating;
+use super::search::{self, BestFirstSearch};
 use super::{CostToGo, Look, SLOT_BITS, UNREACHABLE};
-use crate::kitchen::{Action, Agent, ContentId, LocationId, Recipes, State};
+use crate::kitchen::{Agent, ButtonAction, ContentId, LocationId, Recipes, State};
 
 /// How much care is taken of a decision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub enum Care {
 
 /// Where the value of a state is kept.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Kept {
+pub(super) enum CacheSlot {
     /// Under its goal's slot and its key.
     At(usize, u64),
     /// Nowhere: without orders, or with one that cannot be made, it is always the same.
@@ -34,10 +34,10 @@ pub(super) enum Kept {
 
 /// A state that a button leads to.
 #[derive(Clone, Copy, Debug)]
-pub struct Next {
+pub struct SuccessorState {
     button: usize,
     state: State,
-    kept: Kept,
+    kept: CacheSlot,
     /// Its bound and, where that was wanted, what its best plan takes.
     bracket: (u32, Option<u32>),
 }
@@ -46,14 +46,14 @@ impl CostToGo {
     /// C of the state and of every state that a button of `agent` leads to, in one look-up where it was asked before: what
     /// decisions, inference and rollouts need.
     #[inline]
-    pub fn decision(&mut self, state: State, recipes: &Recipes, agent: Agent) -> &Decision {
+    pub fn decision(&mut self, state: State, recipes: &Recipes, agent: Agent) -> &DecisionCosts {
         self.decision_with(Care::Exact, state, recipes, agent)
     }
 
     /// The same with more or less care. What is known of one is not used for the other, so that a value never depends on
     /// what was asked before.
     #[inline]
-    pub fn decision_with(&mut self, care: Care, state: State, recipes: &Recipes, agent: Agent) -> &Decision {
+    pub fn decision_with(&mut self, care: Care, state: State, recipes: &Recipes, agent: Agent) -> &DecisionCosts {
         let (mut targets, count) = self.targets(state, recipes);
         let question = question(&targets, care, agent);
         let (index, known) = self.decisions.find(state, question);
@@ -165,22 +165,22 @@ impl CostToGo {
 
     /// The states that the agent's buttons lead to from a state and where it is kept; give the room back when it is done
     /// with. What is kept of all of them is fetched at once, so that memory is waited for once.
-    fn nexts(&mut self, state: State, here: Kept, recipes: &Recipes, agent: Agent) -> Vec<Next> {
+    fn nexts(&mut self, state: State, here: CacheSlot, recipes: &Recipes, agent: Agent) -> Vec<SuccessorState> {
         let kitchen = self.kitchen.clone();
         let mut nexts = std::mem::take(&mut self.nexts);
         nexts.clear();
         for (index, button) in kitchen.buttons[agent.index()].iter().enumerate() {
             let Some(there) = kitchen.act(state, recipes, agent, button.action) else { continue };
             let kept = match (button.action, here) {
-                (Action::Serve(_), _) => self.kept(there, recipes),
-                (_, Kept::At(slot, key)) => Kept::At(slot, self.moved(slot, key, state, there)),
-                (_, Kept::Always(value)) => Kept::Always(value),
+                (ButtonAction::Serve(_), _) => self.kept(there, recipes),
+                (_, CacheSlot::At(slot, key)) => CacheSlot::At(slot, self.moved(slot, key, state, there)),
+                (_, CacheSlot::Always(value)) => CacheSlot::Always(value),
             };
-            nexts.push(Next { button: index, state: there, kept, bracket: (0, None) });
+            nexts.push(SuccessorState { button: index, state: there, kept, bracket: (0, None) });
         }
         let keys = nexts.iter().filter_map(|next| match next.kept {
-            Kept::At(_, key) => Some(key),
-            Kept::Always(_) => None,
+            CacheSlot::At(_, key) => Some(key),
+            CacheSlot::Always(_) => None,
         });
         std::hint::black_box(keys.fold(0, |fetched, key| fetched ^ self.cache.fetch(key)));
         nexts
@@ -203,27 +203,27 @@ impl CostToGo {
     }
 
     #[inline]
-    fn kept(&mut self, state: State, recipes: &Recipes) -> Kept {
+    fn kept(&mut self, state: State, recipes: &Recipes) -> CacheSlot {
         let (mut targets, count) = self.targets(state, recipes);
         self.kept_for(state, &mut targets[..count])
     }
 
     #[inline]
-    pub(super) fn kept_for(&mut self, state: State, targets: &mut [ContentId]) -> Kept {
+    pub(super) fn kept_for(&mut self, state: State, targets: &mut [ContentId]) -> CacheSlot {
         if targets.is_empty() {
-            return Kept::Always(0);
+            return CacheSlot::Always(0);
         }
         match self.key_of_state(state, targets) {
-            Some((slot, key)) => Kept::At(slot, key),
-            None => Kept::Always(UNREACHABLE),
+            Some((slot, key)) => CacheSlot::At(slot, key),
+            None => CacheSlot::Always(UNREACHABLE),
         }
     }
 
     /// The bound of a state and, if that is not above `most`, what its best plan takes.
-    fn bracket(&mut self, state: State, kept: Kept, most: u32) -> (u32, Option<u32>) {
+    fn bracket(&mut self, state: State, kept: CacheSlot, most: u32) -> (u32, Option<u32>) {
         let (slot, key) = match kept {
-            Kept::At(slot, key) => (slot, key),
-            Kept::Always(value) => return (value, Some(value)),
+            CacheSlot::At(slot, key) => (slot, key),
+            CacheSlot::Always(value) => return (value, Some(value)),
         };
         let known = self.known(Look::Bound, key);
         if let Some(lower) = known {
@@ -236,7 +236,7 @@ impl CostToGo {
         }
         let Some(goal) = self.goals[slot].clone() else { return (UNREACHABLE, None) };
         let classes = self.classes(&goal, state);
-        let rating = Rating::new(&self.ground, &goal, &classes);
+        let rating = AssignmentRating::new(&self.ground, &goal, &classes);
         let lower = known.unwrap_or_else(|| self.keep(Look::Bound, key, rating.lower));
         if lower > most {
             return (lower, None);
@@ -249,13 +249,13 @@ impl CostToGo {
     }
 
     /// Whether the value of a state is below `limit`, which is at most one press above it.
-    pub(super) fn is_below(&mut self, limit: u32, state: State, kept: Kept) -> bool {
+    pub(super) fn is_below(&mut self, limit: u32, state: State, kept: CacheSlot) -> bool {
         if limit == 0 {
             return false;
         }
         match (kept, self.bracket(state, kept, limit - 1)) {
             (_, (_, None)) => false,
-            (Kept::At(slot, _), (lower, Some(upper))) if upper >= limit => self.has_way(slot, state, lower, limit),
+            (CacheSlot::At(slot, _), (lower, Some(upper))) if upper >= limit => self.has_way(slot, state, lower, limit),
             (_, (_, Some(upper))) => upper < limit,
         }
     }
@@ -265,30 +265,32 @@ impl CostToGo {
         let Some(goal) = self.goals[slot].clone() else { return false };
         let classes = self.classes(&goal, state);
         self.counts.searches += 1;
-        let mut finds = |reach| Search::finds(self, slot, &goal, &classes, limit, reach);
+        let mut finds = |reach| BestFirstSearch::finds(self, slot, &goal, &classes, limit, reach);
         let far = limit >= lower + goal.targets.len() as u32;
         finds(search::NEAR) || far && finds(search::FAR)
     }
 
     /// Whether one press of the agent leads back from where an action of it leads.
-    fn can_be_undone(&self, state: State, agent: Agent, action: Action) -> bool {
+    fn can_be_undone(&self, state: State, agent: Agent, action: ButtonAction) -> bool {
         let held = state.content(self.kitchen.hands[agent.index()]);
         match action {
-            Action::Take(_) => self.trashes[agent.index()],
-            Action::Trash => self.takes[agent.index()][held.index()],
-            Action::Use(location) => {
+            ButtonAction::Take(_) => self.trashes[agent.index()],
+            ButtonAction::Trash => self.takes[agent.index()][held.index()],
+            ButtonAction::Use(location) => {
                 let there = state.content(location);
                 // What is stacked stays so; what was picked up can be put down where it is accepted.
                 there.is_empty() || held.is_empty() && self.kitchen.accepts(location, there)
             }
-            Action::Process(_) | Action::Serve(_) => false,
+            ButtonAction::Process(_) | ButtonAction::Serve(_) => false,
         }
     }
 
-    fn value_kept(&mut self, look: Look, state: State, kept: Kept) -> u32 {
+    fn value_kept(&mut self, look: Look, state: State, kept: CacheSlot) -> u32 {
         match kept {
-            Kept::At(slot, key) => self.known(look, key).unwrap_or_else(|| self.compute_for(look, key, slot, state)),
-            Kept::Always(value) => value,
+            CacheSlot::At(slot, key) => {
+                self.known(look, key).unwrap_or_else(|| self.compute_for(look, key, slot, state))
+            }
+            CacheSlot::Always(value) => value,
         }
     }
 }

@@ -1,31 +1,36 @@
 //! What tasks take at least: the presses of their journeys, and those that clear what is in their way.
 
-use super::assign::{STORAGE, Task};
-use super::goal::{Classes, Goal};
-use super::ground::Ground;
-use super::journeys::Needs;
+use super::assign::{AssemblyTask, STORAGE};
+use super::goal::{ContentClasses, ServingGoal};
+use super::ground::KitchenTables;
+use super::journeys::JourneyNeeds;
 
 /// What tasks take at least.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Demand {
+pub struct PressDemand {
     /// Presses if nothing were ever in the way.
     presses: u32,
     /// Locations whose content is used, one bit each.
     used: u32,
     /// What the journeys cannot do without.
-    needs: Needs,
+    needs: JourneyNeeds,
     /// The same for those journeys that cannot do without a station, by station.
-    station_needs: [Needs; 8],
+    station_needs: [JourneyNeeds; 8],
     /// The targets that have to be assembled on the board, one bit each.
     assembled: u32,
     /// Whether anything but the last press is left.
     is_busy: bool,
 }
 
-impl Demand {
+impl PressDemand {
     /// Of these tasks as their items lie now.
-    pub fn of(ground: &Ground, goal: &Goal, state: &Classes, tasks: impl Iterator<Item = Task>) -> Demand {
-        let mut demand = Demand::default();
+    pub fn of(
+        ground: &KitchenTables,
+        goal: &ServingGoal,
+        state: &ContentClasses,
+        tasks: impl Iterator<Item = AssemblyTask>,
+    ) -> PressDemand {
+        let mut demand = PressDemand::default();
         for task in tasks {
             let (target, at) = (usize::from(task.target), usize::from(task.at));
             if task.at != STORAGE {
@@ -49,7 +54,7 @@ impl Demand {
         demand
     }
 
-    fn need(&mut self, needs: Needs) {
+    fn need(&mut self, needs: JourneyNeeds) {
         self.needs |= needs;
         let mut stations = needs >> 2;
         while stations != 0 {
@@ -59,7 +64,7 @@ impl Demand {
     }
 
     /// Presses that are needed at least: those of the journeys, and those that clear what is in their way.
-    pub fn bound(&self, ground: &Ground, state: &Classes) -> u32 {
+    pub fn bound(&self, ground: &KitchenTables, state: &ContentClasses) -> u32 {
         let unused = |location: usize| state[location] != 0 && self.used & (1 << location) == 0;
         let mut in_the_way = 0;
         // Everything of no use that is in a hand or picked up has to be thrown away, but what a hand holds to the end that

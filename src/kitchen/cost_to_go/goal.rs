@@ -2,11 +2,11 @@
 //!
 //! For the cost to go only the worth of a content matters: all contents that are of no use are one class, "in the way".
 
-use crate::kitchen::{Action, Agent, ContentId, Kitchen, LocationId, State};
+use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, State};
 
-use super::assign::{STORAGE, Task};
-use super::ground::Ground;
-use super::journeys::{Journeys, NEVER, Needs};
+use super::assign::{AssemblyTask, STORAGE};
+use super::ground::KitchenTables;
+use super::journeys::{JourneyNeeds, JourneyTables, NEVER};
 
 /// At most so many targets, see [`crate::kitchen::compile::MAX_ORDERS`].
 pub const MAX_TARGETS: usize = 2;
@@ -14,18 +14,18 @@ pub const MAX_TARGETS: usize = 2;
 pub const USELESS: u8 = 1;
 
 /// Classes of the physical locations, by location index.
-pub type Classes = [u8; 16];
+pub type ContentClasses = [u8; 16];
 
 /// What an item is worth where it is, for one target. Of two offers the greater one is better: it gains more, or as much
 /// and its location comes first. One number, so that the best of many is found without branches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Offer(u32);
+pub struct ItemValue(u32);
 
-impl Offer {
+impl ItemValue {
     /// `gain`: presses saved by taking it rather than what is in a storage, and what it is worth that its location becomes
     /// free, in half presses.
-    fn new(gain: u16, location: u8, fills: u8) -> Offer {
-        Offer(u32::from_be_bytes([(gain >> 8) as u8, gain as u8, !location, fills]))
+    fn new(gain: u16, location: u8, fills: u8) -> ItemValue {
+        ItemValue(u32::from_be_bytes([(gain >> 8) as u8, gain as u8, !location, fills]))
     }
 
     /// Bit j if it can become the j-th item of the target; 0 if a storage is nearer.
@@ -42,7 +42,7 @@ impl Offer {
 
 /// One set of targets with its tables over classes.
 #[derive(Clone, Debug)]
-pub struct Goal {
+pub struct ServingGoal {
     /// The full stacks that are wanted, in ascending order.
     pub targets: Vec<ContentId>,
     /// The class of each content.
@@ -58,11 +58,11 @@ pub struct Goal {
     /// `[target][location * classes + class]`: presses that bring it onto the board if nothing is in the way.
     pub near: [Vec<u8>; MAX_TARGETS],
     /// The same index: what that cannot do without.
-    pub near_needs: [Vec<Needs>; MAX_TARGETS],
+    pub near_needs: [Vec<JourneyNeeds>; MAX_TARGETS],
     /// The same index: what it would be taken for.
-    pub offers: [Vec<Offer>; MAX_TARGETS],
+    pub offers: [Vec<ItemValue>; MAX_TARGETS],
     /// `[target][j]`: presses for the j-th item from a storage, and what that cannot do without.
-    pub fresh: [Vec<(u8, Needs)>; MAX_TARGETS],
+    pub fresh: [Vec<(u8, JourneyNeeds)>; MAX_TARGETS],
     /// For each target the component index of its j-th item.
     pub components: [Vec<usize>; MAX_TARGETS],
     /// For each target the bits of all its items.
@@ -89,8 +89,8 @@ pub struct Goal {
     key_by_class: Vec<u64>,
 }
 
-impl Goal {
-    pub fn new(kitchen: &Kitchen, ground: &Ground, targets: Vec<ContentId>) -> Goal {
+impl ServingGoal {
+    pub fn new(kitchen: &Kitchen, ground: &KitchenTables, targets: Vec<ContentId>) -> ServingGoal {
         let journeys = &ground.journeys;
         let mut content = vec![ContentId::EMPTY];
         let mut class_of = vec![USELESS; kitchen.contents.len()];
@@ -105,7 +105,7 @@ impl Goal {
                 content[usize::from(USELESS)] = ContentId(index as u8);
             }
         }
-        let mut goal = Goal {
+        let mut goal = ServingGoal {
             stands_for: stands_for(kitchen, &class_of),
             class_of,
             fills: Default::default(),
@@ -167,7 +167,7 @@ impl Goal {
 
     /// Presses of a part, and what they cannot do without, if its item lies at `at`.
     #[inline]
-    pub fn way(&self, state: &Classes, task: &Task, at: u8) -> (u8, Needs) {
+    pub fn way(&self, state: &ContentClasses, task: &AssemblyTask, at: u8) -> (u8, JourneyNeeds) {
         let target = usize::from(task.target);
         if at == STORAGE {
             return self.fresh[target][task.bits.trailing_zeros() as usize];
@@ -184,18 +184,18 @@ impl Goal {
 
     /// Whether what lies at `at` is the item of a task, or can become it.
     #[inline]
-    pub fn fits(&self, state: &Classes, task: &Task, at: u8) -> bool {
+    pub fn fits(&self, state: &ContentClasses, task: &AssemblyTask, at: u8) -> bool {
         at == STORAGE || self.fills[usize::from(task.target)][usize::from(state[usize::from(at)])] == task.bits
     }
 
     /// Whether a task's item lies on the board as it has to be.
     #[inline]
-    pub fn is_ready(&self, ground: &Ground, state: &Classes, task: &Task) -> bool {
+    pub fn is_ready(&self, ground: &KitchenTables, state: &ContentClasses, task: &AssemblyTask) -> bool {
         let at = usize::from(task.at);
         at == ground.board && self.ready[usize::from(task.target)][usize::from(state[at])] == task.bits
     }
 
-    fn fill_distances(&mut self, kitchen: &Kitchen, journeys: &Journeys) {
+    fn fill_distances(&mut self, kitchen: &Kitchen, journeys: &JourneyTables) {
         for target in 0..self.targets.len() {
             for &component in &self.components[target] {
                 let presses = journeys.storage_presses(journeys.all_free, component);
@@ -222,7 +222,7 @@ impl Goal {
         }
     }
 
-    fn fill_offers(&mut self, ground: &Ground) {
+    fn fill_offers(&mut self, ground: &KitchenTables) {
         let classes = self.content.len();
         for target in 0..self.targets.len() {
             let offer = |(index, &near): (usize, &u8)| {
@@ -230,8 +230,8 @@ impl Goal {
                 let of_bits = self.fresh[target].iter().enumerate().filter(|(bit, _)| fills & (1 << bit) != 0);
                 let fresh: i16 = of_bits.map(|(_, (presses, _))| i16::from(*presses)).sum();
                 match u16::try_from(fresh - i16::from(near)) {
-                    Ok(saves) => Offer::new(2 * saves + ground.in_the_way[location], location as u8, fills),
-                    Err(_) => Offer::default(),
+                    Ok(saves) => ItemValue::new(2 * saves + ground.in_the_way[location], location as u8, fills),
+                    Err(_) => ItemValue::default(),
                 }
             };
             self.offers[target] = self.near[target].iter().enumerate().map(offer).collect();
@@ -242,7 +242,7 @@ impl Goal {
         let useful = |class: u8| if class == USELESS { 0 } else { class };
         for agent in Agent::BOTH {
             let taken = kitchen.buttons[agent.index()].iter().filter_map(|button| match button.action {
-                Action::Take(item) => Some(useful(self.class_of[item.index()])),
+                ButtonAction::Take(item) => Some(useful(self.class_of[item.index()])),
                 _ => None,
             });
             self.takes[agent.index()] = taken.filter(|&class| class != 0).collect();
@@ -282,7 +282,7 @@ impl Goal {
 
     /// The same for a state of classes.
     #[inline]
-    pub fn key_of_classes(&self, state: &Classes) -> u64 {
+    pub fn key_of_classes(&self, state: &ContentClasses) -> u64 {
         let rows = self.key_by_class.chunks_exact(self.content.len());
         rows.zip(&state[self.first..self.last]).map(|(parts, &class)| parts[usize::from(class)]).sum()
     }
@@ -304,7 +304,7 @@ impl Goal {
 }
 
 /// Which items of the target a content has or can become: bit j for the j-th.
-fn worth(kitchen: &Kitchen, journeys: &Journeys, target: ContentId, content: usize) -> u8 {
+fn worth(kitchen: &Kitchen, journeys: &JourneyTables, target: ContentId, content: usize) -> u8 {
     let candidate = &kitchen.contents[content];
     if candidate.is_stack() {
         return ready(kitchen, target, ContentId(content as u8));

@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use crate::kitchen::{Action, Agent, ContentId, Kitchen, LocationId};
+use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId};
 
-use super::goal::{Classes, Goal, MAX_TARGETS, USELESS};
-use super::journeys::{FreeMask, Journeys};
+use super::goal::{ContentClasses, MAX_TARGETS, ServingGoal, USELESS};
+use super::journeys::{FreeMask, JourneyTables};
 
 /// What is fixed for one kitchen.
 #[derive(Clone, Debug)]
-pub struct Ground {
-    pub journeys: Journeys,
+pub struct KitchenTables {
+    pub journeys: JourneyTables,
     /// Physical locations: first and one past the last index.
     pub first: usize,
     pub last: usize,
@@ -22,7 +22,7 @@ pub struct Ground {
     /// How much it is worth, in half presses, that a location becomes free.
     pub in_the_way: Vec<u16>,
     /// The presses other than taking and serving, once each.
-    moves: Vec<(Agent, Action)>,
+    moves: Vec<(Agent, ButtonAction)>,
     /// Where each process happens; none: in the hand.
     pub process_place: Vec<Option<usize>>,
     /// `[location * contents + content]`.
@@ -33,8 +33,8 @@ pub struct Ground {
     last_presses: Vec<u32>,
 }
 
-impl Ground {
-    pub fn new(kitchen: &Kitchen) -> Ground {
+impl KitchenTables {
+    pub fn new(kitchen: &Kitchen) -> KitchenTables {
         let contents = kitchen.contents.len();
         let first = kitchen.orders.len();
         let last = kitchen.locations.len();
@@ -51,7 +51,7 @@ impl Ground {
         let takes_all = |&location: &usize| (1..contents).all(|item| accepts[location * contents + item]);
         let spare = (first..last).filter(|location| !hands.contains(location) && *location != board);
         let spare = spare.filter(takes_all).collect();
-        let journeys = Journeys::new(kitchen);
+        let journeys = JourneyTables::new(kitchen);
         let in_the_way = |location: usize| match location {
             _ if location == board || location == plate => 4,
             _ if hands.contains(&location) => 2,
@@ -63,7 +63,7 @@ impl Ground {
             _ if hands.contains(&location) => 2,
             _ => 3,
         };
-        Ground {
+        KitchenTables {
             first,
             last,
             hands,
@@ -105,7 +105,7 @@ impl Ground {
 
     /// What is free in a state.
     #[inline]
-    pub fn free(&self, state: &Classes) -> FreeMask {
+    pub fn free(&self, state: &ContentClasses) -> FreeMask {
         let mut free = 0;
         for location in self.places() {
             if state[location] == 0 {
@@ -120,13 +120,13 @@ impl Ground {
 }
 
 /// The presses other than taking and serving, each once: what happens at a place is the same whoever presses.
-fn moves(kitchen: &Kitchen) -> Vec<(Agent, Action)> {
-    let mut moves: Vec<(Agent, Action)> = Vec::new();
+fn moves(kitchen: &Kitchen) -> Vec<(Agent, ButtonAction)> {
+    let mut moves: Vec<(Agent, ButtonAction)> = Vec::new();
     for agent in Agent::BOTH {
         for button in &kitchen.buttons[agent.index()] {
             let counts = match button.action {
-                Action::Take(_) | Action::Serve(_) => false,
-                Action::Process(process) if kitchen.processes[usize::from(process)].place.is_some() => {
+                ButtonAction::Take(_) | ButtonAction::Serve(_) => false,
+                ButtonAction::Process(process) if kitchen.processes[usize::from(process)].place.is_some() => {
                     !moves.iter().any(|(_, other)| *other == button.action)
                 }
                 _ => true,
@@ -142,11 +142,11 @@ fn moves(kitchen: &Kitchen) -> Vec<(Agent, Action)> {
 /// Calls `visit` with every state that one press can lead to, but presses that can never help. Only what `wanted` says is
 /// taken from a storage: for each target, bits of its items.
 pub fn successors(
-    ground: &Ground,
-    goal: &Goal,
-    state: &Classes,
+    ground: &KitchenTables,
+    goal: &ServingGoal,
+    state: &ContentClasses,
     wanted: [u8; MAX_TARGETS],
-    mut visit: impl FnMut(Classes),
+    mut visit: impl FnMut(ContentClasses),
 ) {
     let is_wanted =
         |class: u8| (0..goal.targets.len()).any(|target| goal.fills[target][usize::from(class)] & wanted[target] != 0);
@@ -165,7 +165,7 @@ pub fn successors(
         let held = state[hand];
         let mut next = *state;
         match action {
-            Action::Use(location) => {
+            ButtonAction::Use(location) => {
                 let location = location.index();
                 let there = state[location];
                 match (held, there) {
@@ -189,7 +189,7 @@ pub fn successors(
                     _ => continue,
                 }
             }
-            Action::Process(process) => {
+            ButtonAction::Process(process) => {
                 let place = ground.process_place[usize::from(process)].unwrap_or(hand);
                 let result = goal.becomes[usize::from(process)][usize::from(state[place])];
                 if result == 0 {
@@ -197,7 +197,7 @@ pub fn successors(
                 }
                 next[place] = result;
             }
-            Action::Trash if held != 0 => next[hand] = 0,
+            ButtonAction::Trash if held != 0 => next[hand] = 0,
             _ => continue,
         }
         visit(next);

@@ -1,7 +1,7 @@
 //! Journeys: the presses that bring one item from where it is to the board in the form that a recipe needs, for every
 //! combination of what is free on the way. One breadth-first search per component and combination, at start-up.
 
-use crate::kitchen::{Action, Agent, ContentId, Kitchen, LocationId, LocationKind};
+use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind};
 
 /// No way.
 pub const NEVER: u8 = u8::MAX;
@@ -12,7 +12,7 @@ pub type FreeMask = usize;
 
 /// Tables over (what is free, component, place, content).
 #[derive(Clone, Debug)]
-pub struct Journeys {
+pub struct JourneyTables {
     /// Places where something is processed, in the order of their mask bits from bit 2 on.
     pub stations: Vec<LocationId>,
     /// The mask bit of each location, 0 for those that are no step of any journey.
@@ -32,10 +32,10 @@ pub struct Journeys {
 }
 
 /// What a journey cannot do without.
-pub type Needs = u16;
+pub type JourneyNeeds = u16;
 
-impl Journeys {
-    pub fn new(kitchen: &Kitchen) -> Journeys {
+impl JourneyTables {
+    pub fn new(kitchen: &Kitchen) -> JourneyTables {
         let mut stations: Vec<LocationId> = kitchen.processes.iter().filter_map(|process| process.place).collect();
         stations.sort_unstable();
         stations.dedup();
@@ -55,7 +55,7 @@ impl Journeys {
             .collect();
         components.sort_unstable();
         components.dedup();
-        let mut journeys = Journeys {
+        let mut journeys = JourneyTables {
             stations,
             bit,
             spare_bit,
@@ -90,18 +90,18 @@ impl Journeys {
     }
 
     /// Which single bits of the free mask such a journey cannot do without.
-    pub fn needs(&self, component: usize, location: usize, content: u8) -> Needs {
+    pub fn needs(&self, component: usize, location: usize, content: u8) -> JourneyNeeds {
         self.indispensable(|free| self.presses(free | self.bit[location], component, location, content))
     }
 
     /// The same for an item from a storage.
-    pub fn storage_needs(&self, component: usize) -> Needs {
+    pub fn storage_needs(&self, component: usize) -> JourneyNeeds {
         self.indispensable(|free| self.storage_presses(free, component))
     }
 
-    fn indispensable(&self, presses: impl Fn(FreeMask) -> u8) -> Needs {
-        let bits = (0..Needs::BITS).map(|bit| 1 << bit).filter(|bit| self.all_free & bit != 0);
-        bits.filter(|&bit| presses(self.all_free & !bit) == NEVER).map(|bit| bit as Needs).sum()
+    fn indispensable(&self, presses: impl Fn(FreeMask) -> u8) -> JourneyNeeds {
+        let bits = (0..JourneyNeeds::BITS).map(|bit| 1 << bit).filter(|bit| self.all_free & bit != 0);
+        bits.filter(|&bit| presses(self.all_free & !bit) == NEVER).map(|bit| bit as JourneyNeeds).sum()
     }
 
     fn fill(&mut self, kitchen: &Kitchen) {
@@ -112,7 +112,7 @@ impl Journeys {
                     let hand = kitchen.hands[agent.index()].index();
                     let is_free = free & (1 << agent.index()) != 0;
                     kitchen.buttons[agent.index()].iter().filter_map(move |button| match button.action {
-                        Action::Take(item) if is_free => Some((hand, item)),
+                        ButtonAction::Take(item) if is_free => Some((hand, item)),
                         _ => None,
                     })
                 };

@@ -2,7 +2,7 @@
 //!
 //! It is computed backwards from the goal. For every part of the wanted stacks the tables of [`journeys`] say how many presses
 //! it is away from the board, from every place and for everything that may be in the way. An [`assign::Assignment`] chooses
-//! which item becomes which part, which gives a lower bound; a [`plan::Plan`] carries it out, press by press, and clears what
+//! which item becomes which part, which gives a lower bound; a [`plan::PressPlan`] carries it out, press by press, and clears what
 //! is in the way, which gives an upper bound. Where they agree, the value is settled; where they do not, a bounded
 //! [`search`] over single presses decides. What was found is kept by state classes (see [`goal`]: all that is of no use is
 //! one class), and whole decisions are kept by state. A value depends on the state and the recipes alone, never on what was
@@ -23,17 +23,17 @@ mod search;
 
 use std::sync::Arc;
 
-use self::cache::{Cache, Decisions};
-pub use self::cache::{Decision, MAX_BUTTONS};
+use self::cache::{DecisionCache, ValueCache};
+pub use self::cache::{DecisionCosts, MAX_BUTTONS};
 pub use self::decide::Care;
-use self::decide::Next;
-use self::goal::{Classes, Goal};
-use self::ground::Ground;
+use self::decide::SuccessorState;
+use self::goal::{ContentClasses, ServingGoal};
+use self::ground::KitchenTables;
 use self::plan::BLOCKED;
-use self::rating::Rating;
-use self::search::Search;
+use self::rating::AssignmentRating;
+use self::search::BestFirstSearch;
 use super::Kitchen;
-use super::action::{Action, Agent};
+use super::action::{Agent, ButtonAction};
 use super::content::ContentId;
 use super::layout::LocationId;
 use super::state::{OrderContent, Recipes, State};
@@ -50,14 +50,14 @@ const SLOT_BITS: u32 = 16 + cache::KIND_BITS;
 #[derive(Clone, Debug)]
 pub struct CostToGo {
     kitchen: Arc<Kitchen>,
-    ground: Ground,
+    ground: KitchenTables,
     /// `[first target * contents + second target]`, made when first wanted; no second target: 0.
-    goals: Vec<Option<Arc<Goal>>>,
-    cache: Cache,
-    decisions: Decisions,
+    goals: Vec<Option<Arc<ServingGoal>>>,
+    cache: ValueCache,
+    decisions: DecisionCache,
     /// Room for the states around a decision.
-    nexts: Vec<Next>,
-    counts: Counts,
+    nexts: Vec<SuccessorState>,
+    counts: EvaluationCounts,
     /// `[agent][content]`: what an agent that has thrown it away can take again.
     takes: [Vec<bool>; 2],
     /// By agent, whether it can throw away what it has taken.
@@ -77,7 +77,7 @@ enum Look {
 
 /// How often what was done since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct EvaluationCounts {
     /// Decisions that had to be put together, button by button.
     pub decisions_missed: u64,
     /// Single values asked for, and those that had to be computed.
@@ -89,18 +89,18 @@ pub struct Counts {
 
 impl CostToGo {
     pub fn new(kitchen: Arc<Kitchen>) -> CostToGo {
-        let ground = Ground::new(&kitchen);
+        let ground = KitchenTables::new(&kitchen);
         let goals = vec![None; kitchen.contents.len() * kitchen.contents.len()];
-        let (cache, decisions) = (Cache::new(CACHE_BITS), Decisions::new(DECISION_BITS));
+        let (cache, decisions) = (ValueCache::new(CACHE_BITS), DecisionCache::new(DECISION_BITS));
         let has = |agent: Agent, action| kitchen.buttons[agent.index()].iter().any(|button| button.action == action);
         let takes = |agent| {
-            let has = |item| has(agent, Action::Take(ContentId(item as u8)));
+            let has = |item| has(agent, ButtonAction::Take(ContentId(item as u8)));
             (0..kitchen.contents.len()).map(has).collect()
         };
         CostToGo {
             takes: Agent::BOTH.map(takes),
-            trashes: Agent::BOTH.map(|agent| has(agent, Action::Trash)),
-            counts: Counts::default(),
+            trashes: Agent::BOTH.map(|agent| has(agent, ButtonAction::Trash)),
+            counts: EvaluationCounts::default(),
             kitchen,
             ground,
             goals,
@@ -153,7 +153,7 @@ impl CostToGo {
     }
 
     /// How much was looked up and how much computed since the start.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> EvaluationCounts {
         self.counts
     }
 
@@ -198,8 +198,8 @@ impl CostToGo {
         Some((slot, goal.key_of_state(state) << SLOT_BITS | (slot << cache::KIND_BITS) as u64))
     }
 
-    fn classes(&self, goal: &Goal, state: State) -> Classes {
-        let mut classes: Classes = [0; 16];
+    fn classes(&self, goal: &ServingGoal, state: State) -> ContentClasses {
+        let mut classes: ContentClasses = [0; 16];
         for location in self.ground.places() {
             classes[location] = goal.class_of[state.content(LocationId(location as u8)).index()];
         }
@@ -221,7 +221,7 @@ impl CostToGo {
     }
 
     /// The value of a state of classes without one of its targets, which has just been served.
-    fn without(&mut self, goal: &Goal, state: &Classes, served: usize) -> u32 {
+    fn without(&mut self, goal: &ServingGoal, state: &ContentClasses, served: usize) -> u32 {
         let rest = goal.targets.iter().enumerate().filter(|(index, _)| *index != served);
         let rest: Vec<ContentId> = rest.map(|(_, &target)| target).collect();
         if rest.is_empty() {
@@ -230,7 +230,7 @@ impl CostToGo {
         let slot = self.slot(&rest);
         self.make_goal(slot, &rest);
         let Some(rest) = self.goals[slot].clone() else { return UNREACHABLE };
-        let mut classes: Classes = [0; 16];
+        let mut classes: ContentClasses = [0; 16];
         for location in self.ground.places() {
             classes[location] = rest.class_of[goal.content[usize::from(state[location])].index()];
         }
@@ -238,31 +238,31 @@ impl CostToGo {
         self.cache.get(key).unwrap_or_else(|| self.compute(Look::Exact, key, slot, &rest, &classes))
     }
 
-    fn compute(&mut self, look: Look, key: u64, slot: usize, goal: &Goal, state: &Classes) -> u32 {
+    fn compute(&mut self, look: Look, key: u64, slot: usize, goal: &ServingGoal, state: &ContentClasses) -> u32 {
         let value = self.solve(look, slot, goal, state);
         self.keep(look, key, value)
     }
 
-    fn solve(&mut self, look: Look, slot: usize, goal: &Goal, state: &Classes) -> u32 {
+    fn solve(&mut self, look: Look, slot: usize, goal: &ServingGoal, state: &ContentClasses) -> u32 {
         if look == Look::Bound {
-            return Rating::bound(&self.ground, goal, state);
+            return AssignmentRating::bound(&self.ground, goal, state);
         }
-        let rating = Rating::new(&self.ground, goal, state);
+        let rating = AssignmentRating::new(&self.ground, goal, state);
         let upper = rating.close_upper(&self.ground, goal, state);
         if upper <= rating.lower || look == Look::Plan && upper < BLOCKED {
             return upper;
         }
         self.counts.searches += 1;
-        let best = Search::run(self, slot, goal, state, rating.lower, upper, search::NEAR);
+        let best = BestFirstSearch::run(self, slot, goal, state, rating.lower, upper, search::NEAR);
         // One press above the bound is common with two targets, and then mostly exact.
         match best < rating.lower + goal.targets.len() as u32 {
             true => best,
-            false => Search::run(self, slot, goal, state, rating.lower, best, search::FAR),
+            false => BestFirstSearch::run(self, slot, goal, state, rating.lower, best, search::FAR),
         }
     }
 
     /// The key of its exact value.
-    fn key(&self, slot: usize, goal: &Goal, state: &Classes) -> u64 {
+    fn key(&self, slot: usize, goal: &ServingGoal, state: &ContentClasses) -> u64 {
         goal.key_of_classes(state) << SLOT_BITS | (slot << cache::KIND_BITS) as u64
     }
 
@@ -274,7 +274,7 @@ impl CostToGo {
     #[inline]
     fn make_goal(&mut self, slot: usize, targets: &[ContentId]) {
         if self.goals[slot].is_none() {
-            let goal = Goal::new(&self.kitchen, &self.ground, targets.to_vec());
+            let goal = ServingGoal::new(&self.kitchen, &self.ground, targets.to_vec());
             self.goals[slot] = Some(Arc::new(goal));
         }
     }

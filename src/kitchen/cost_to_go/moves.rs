@@ -1,15 +1,15 @@
 //! The moves that make room, and all that might.
 
-use super::assign::{STORAGE, Task};
-use super::clear::Wants;
-use super::plan::Plan;
+use super::assign::{AssemblyTask, STORAGE};
+use super::clear::TargetNeeds;
+use super::plan::PressPlan;
 
 /// At most so many moves are thought of at once.
 const MAX_MOVES: usize = 32;
 
 /// One press or two that make room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Move {
+pub enum ClearingMove {
     /// Throws away what is of no use in this hand.
     Throw { hand: usize },
     /// Picks up what is of no use.
@@ -26,32 +26,32 @@ pub enum Move {
 
 /// Moves, each once.
 #[derive(Clone, Copy, Debug)]
-pub struct Moves {
-    all: [Move; MAX_MOVES],
+pub struct ClearingMoves {
+    all: [ClearingMove; MAX_MOVES],
     count: usize,
 }
 
-impl Moves {
-    fn new() -> Moves {
-        Moves { all: [Move::Throw { hand: 0 }; MAX_MOVES], count: 0 }
+impl ClearingMoves {
+    fn new() -> ClearingMoves {
+        ClearingMoves { all: [ClearingMove::Throw { hand: 0 }; MAX_MOVES], count: 0 }
     }
 
-    fn add(&mut self, other: Move) {
+    fn add(&mut self, other: ClearingMove) {
         if self.count < MAX_MOVES && !self.all().contains(&other) {
             self.all[self.count] = other;
             self.count += 1;
         }
     }
 
-    pub fn all(&self) -> &[Move] {
+    pub fn all(&self) -> &[ClearingMove] {
         &self.all[..self.count]
     }
 }
 
-impl Plan<'_> {
+impl PressPlan<'_> {
     /// All moves that might make room for what the work on a target needs.
-    pub(super) fn moves(&self, wants: &Wants) -> Moves {
-        let mut moves = Moves::new();
+    pub(super) fn moves(&self, wants: &TargetNeeds) -> ClearingMoves {
+        let mut moves = ClearingMoves::new();
         for agent in 0..2 {
             self.empty(wants, agent, &mut moves);
         }
@@ -64,32 +64,32 @@ impl Plan<'_> {
     }
 
     /// Makes a move.
-    pub(super) fn make(&mut self, made: Move) {
+    pub(super) fn make(&mut self, made: ClearingMove) {
         let ground = self.ground;
         self.presses += match made {
-            Move::Throw { .. } | Move::PickUp { .. } | Move::Discard { .. } => 1,
-            Move::Bring { task, to } => {
+            ClearingMove::Throw { .. } | ClearingMove::PickUp { .. } | ClearingMove::Discard { .. } => 1,
+            ClearingMove::Bring { task, to } => {
                 // From one place to another it takes a hand.
                 let from = usize::from(self.choice.tasks[task].at);
                 if ground.is_hand(from) || ground.is_hand(to) { 1 } else { 2 }
             }
-            Move::Fetch { .. } => 2,
-            Move::Exchange { .. } => 0,
+            ClearingMove::Fetch { .. } => 2,
+            ClearingMove::Exchange { .. } => 0,
         };
         match made {
-            Move::Throw { hand } => self.state[hand] = 0,
-            Move::PickUp { from, hand } => self.state[hand] = std::mem::take(&mut self.state[from]),
-            Move::Bring { task, to } => self.relocate(task, to),
-            Move::Discard { task } => {
+            ClearingMove::Throw { hand } => self.state[hand] = 0,
+            ClearingMove::PickUp { from, hand } => self.state[hand] = std::mem::take(&mut self.state[from]),
+            ClearingMove::Bring { task, to } => self.relocate(task, to),
+            ClearingMove::Discard { task } => {
                 self.state[usize::from(self.choice.tasks[task].at)] = 0;
                 self.choice.tasks[task].at = STORAGE;
             }
-            Move::Fetch { task, class, hand, to } => {
+            ClearingMove::Fetch { task, class, hand, to } => {
                 self.state[hand] = class;
                 self.choice.tasks[task].at = hand as u8;
                 self.relocate(task, to);
             }
-            Move::Exchange { tasks: [one, other] } => {
+            ClearingMove::Exchange { tasks: [one, other] } => {
                 let at = self.choice.tasks[one].at;
                 self.choice.tasks[one].at = self.choice.tasks[other].at;
                 self.choice.tasks[other].at = at;
@@ -123,22 +123,22 @@ impl Plan<'_> {
     }
 
     /// The ways to empty an agent's hand.
-    fn empty(&self, wants: &Wants, agent: usize, moves: &mut Moves) {
+    fn empty(&self, wants: &TargetNeeds, agent: usize, moves: &mut ClearingMoves) {
         let hand = self.ground.hands[agent];
         let wanted = wants.hand(agent);
         let Some((task, of)) = self.task_at(hand) else {
             if wanted && self.state[hand] != 0 {
-                moves.add(Move::Throw { hand });
+                moves.add(ClearingMove::Throw { hand });
             }
             return;
         };
         if let Some((detour, to)) = self.best_place(task, wants.needs, true)
             && (wanted || detour == 0)
         {
-            moves.add(Move::Bring { task, to });
+            moves.add(ClearingMove::Bring { task, to });
         }
         if of.bits.count_ones() == 1 && wanted {
-            moves.add(Move::Discard { task });
+            moves.add(ClearingMove::Discard { task });
         }
         if let Some(from) = self.blocked_by(task) {
             self.take_away(wants, from, moves);
@@ -146,28 +146,28 @@ impl Plan<'_> {
     }
 
     /// The ways to take away what lies at a place.
-    fn take_away(&self, wants: &Wants, from: usize, moves: &mut Moves) {
+    fn take_away(&self, wants: &TargetNeeds, from: usize, moves: &mut ClearingMoves) {
         for hand in self.ground.hands.into_iter().filter(|&hand| self.state[hand] == 0) {
             let Some((task, _)) = self.task_at(from) else {
-                moves.add(Move::PickUp { from, hand });
+                moves.add(ClearingMove::PickUp { from, hand });
                 continue;
             };
-            moves.add(Move::Bring { task, to: hand });
+            moves.add(ClearingMove::Bring { task, to: hand });
             if let Some((_, to)) = self.best_place(task, wants.needs, true) {
-                moves.add(Move::Bring { task, to });
+                moves.add(ClearingMove::Bring { task, to });
             }
         }
     }
 
     /// The exchanges of two targets' items that take no more presses.
-    fn exchange(&self, moves: &mut Moves) {
-        let movable = |task: &Task| task.bits.count_ones() == 1 && task.at != STORAGE && !self.is_ready(task);
-        let way = |task: &Task, at: u8| self.goal.way(&self.state, task, at).0;
+    fn exchange(&self, moves: &mut ClearingMoves) {
+        let movable = |task: &AssemblyTask| task.bits.count_ones() == 1 && task.at != STORAGE && !self.is_ready(task);
+        let way = |task: &AssemblyTask, at: u8| self.goal.way(&self.state, task, at).0;
         for (one, a) in self.tasks().filter(|(_, task)| movable(task)) {
             for (other, b) in self.tasks().filter(|(_, task)| movable(task) && task.target > a.target) {
                 let fit = self.goal.fits(&self.state, &a, b.at) && self.goal.fits(&self.state, &b, a.at);
                 if fit && way(&a, b.at) + way(&b, a.at) <= way(&a, a.at) + way(&b, b.at) {
-                    moves.add(Move::Exchange { tasks: [one, other] });
+                    moves.add(ClearingMove::Exchange { tasks: [one, other] });
                 }
             }
         }
@@ -175,7 +175,7 @@ impl Plan<'_> {
 
     /// What could be taken from a storage and brought to a free place on its way, so that the hand that takes it is not
     /// needed later.
-    fn fetch(&self, moves: &mut Moves) {
+    fn fetch(&self, moves: &mut ClearingMoves) {
         let (ground, goal) = (self.ground, self.goal);
         for (task, of) in self.tasks().filter(|(_, task)| task.at == STORAGE) {
             let target = usize::from(of.target);
@@ -190,7 +190,7 @@ impl Plan<'_> {
                     };
                     for to in ground.places().filter(is_free) {
                         if at(hand) + 1 == fresh && at(to) + 2 == fresh {
-                            moves.add(Move::Fetch { task, class, hand, to });
+                            moves.add(ClearingMove::Fetch { task, class, hand, to });
                         }
                     }
                 }

@@ -1,9 +1,9 @@
 //! Plans: the presses that carry out an assignment, one target after another, and clear what is in the way.
 
-use super::assign::{Assignment, STORAGE, Task};
-use super::demand::Demand;
-use super::goal::{Classes, Goal};
-use super::ground::Ground;
+use super::assign::{AssemblyTask, Assignment, STORAGE};
+use super::demand::PressDemand;
+use super::goal::{ContentClasses, ServingGoal};
+use super::ground::KitchenTables;
 use super::journeys::{FreeMask, NEVER};
 
 /// No plan found.
@@ -12,10 +12,10 @@ pub const BLOCKED: u32 = 1000;
 const MAX_STEPS: usize = 40;
 
 /// A plan in the making.
-pub struct Plan<'a> {
-    pub(super) ground: &'a Ground,
-    pub(super) goal: &'a Goal,
-    pub(super) state: Classes,
+pub struct PressPlan<'a> {
+    pub(super) ground: &'a KitchenTables,
+    pub(super) goal: &'a ServingGoal,
+    pub(super) state: ContentClasses,
     pub(super) choice: Assignment,
     /// Tasks that are not done, one bit each.
     pub(super) open: u32,
@@ -25,9 +25,14 @@ pub struct Plan<'a> {
     steps: usize,
 }
 
-impl<'a> Plan<'a> {
-    pub fn new(ground: &'a Ground, goal: &'a Goal, state: &Classes, choice: &Assignment) -> Plan<'a> {
-        Plan { ground, goal, state: *state, choice: *choice, open: choice.all(), presses: 0, served: 0, steps: 0 }
+impl<'a> PressPlan<'a> {
+    pub fn new(
+        ground: &'a KitchenTables,
+        goal: &'a ServingGoal,
+        state: &ContentClasses,
+        choice: &Assignment,
+    ) -> PressPlan<'a> {
+        PressPlan { ground, goal, state: *state, choice: *choice, open: choice.all(), presses: 0, served: 0, steps: 0 }
     }
 
     /// The presses of the whole plan, [`BLOCKED`] if it comes to a standstill or takes more than `limit`. Room is made in the
@@ -60,7 +65,7 @@ impl<'a> Plan<'a> {
             let wants = self.wants(target);
             if second_thought {
                 for &made in self.moves(&wants).all() {
-                    let mut other = Plan { ..self };
+                    let mut other = PressPlan { ..self };
                     other.make(made);
                     if other.is_over(limit) {
                         continue;
@@ -84,14 +89,14 @@ impl<'a> Plan<'a> {
     fn is_over(&self, limit: u32) -> bool {
         let rest = || {
             let tasks = self.tasks().map(|(_, task)| task);
-            Demand::of(self.ground, self.goal, &self.state, tasks).bound(self.ground, &self.state)
+            PressDemand::of(self.ground, self.goal, &self.state, tasks).bound(self.ground, &self.state)
         };
         limit < BLOCKED && self.presses + rest() > limit
     }
 
     /// Does what is certain to be right: serves a complete stack if the way is free, processes parts where they are, and
     /// brings what the stack on the board needs as long as nothing is in the way. Gives the presses, the state after them, and the target if one was served.
-    pub fn settle(mut self) -> (u32, Classes, Option<usize>) {
+    pub fn settle(mut self) -> (u32, ContentClasses, Option<usize>) {
         let order = self.choice.order;
         loop {
             for &target in &order[..self.goal.targets.len()] {
@@ -131,13 +136,13 @@ impl<'a> Plan<'a> {
     }
 
     /// Decides for a target where the board could be for more than one: the presses and the state after bringing a part.
-    pub fn begin(mut self, target: usize) -> Option<(u32, Classes)> {
+    pub fn begin(mut self, target: usize) -> Option<(u32, ContentClasses)> {
         let begins = self.begun().is_none() && self.bring_part(target);
         begins.then_some((self.presses, self.state))
     }
 
     #[inline]
-    pub(super) fn tasks(&self) -> impl Iterator<Item = (usize, Task)> + '_ {
+    pub(super) fn tasks(&self) -> impl Iterator<Item = (usize, AssemblyTask)> + '_ {
         let mut open = self.open;
         std::iter::from_fn(move || {
             let index = open.trailing_zeros() as usize;
@@ -147,7 +152,7 @@ impl<'a> Plan<'a> {
     }
 
     /// A task of the target; the only one if its stack is complete.
-    fn first_of(&self, target: usize) -> Option<(usize, Task)> {
+    fn first_of(&self, target: usize) -> Option<(usize, AssemblyTask)> {
         self.tasks().find(|(_, task)| usize::from(task.target) == target)
     }
 
@@ -176,7 +181,7 @@ impl<'a> Plan<'a> {
     }
 
     /// Whether a task's item lies on the board as it has to be.
-    pub(super) fn is_ready(&self, task: &Task) -> bool {
+    pub(super) fn is_ready(&self, task: &AssemblyTask) -> bool {
         self.goal.is_ready(self.ground, &self.state, task)
     }
 
@@ -186,7 +191,7 @@ impl<'a> Plan<'a> {
         if self.state[board] == 0 {
             return true;
         }
-        let ours = |(_, task): (usize, Task)| usize::from(task.target) == target && self.is_ready(&task);
+        let ours = |(_, task): (usize, AssemblyTask)| usize::from(task.target) == target && self.is_ready(&task);
         self.tasks().any(ours)
     }
 
@@ -270,12 +275,12 @@ impl<'a> Plan<'a> {
                 index
             }
         };
-        self.choice.tasks[keep] = Task { target: target as u8, bits, at: board as u8 };
+        self.choice.tasks[keep] = AssemblyTask { target: target as u8, bits, at: board as u8 };
         self.state[board] = self.goal.part_class[target][usize::from(bits)];
     }
 
     /// Presses of a task now.
-    pub(super) fn bring(&self, task: &Task, free: FreeMask) -> u8 {
+    pub(super) fn bring(&self, task: &AssemblyTask, free: FreeMask) -> u8 {
         let (ground, goal) = (self.ground, self.goal);
         let target = usize::from(task.target);
         if task.bits.count_ones() > 1 {
@@ -295,17 +300,17 @@ impl<'a> Plan<'a> {
     }
 
     /// Presses of a task if nothing were in the way.
-    pub(super) fn least(&self, task: &Task) -> u32 {
+    pub(super) fn least(&self, task: &AssemblyTask) -> u32 {
         u32::from(self.goal.way(&self.state, task, task.at).0)
     }
 
     /// What the rest of a task cannot do without.
-    pub(super) fn needs(&self, task: &Task) -> FreeMask {
+    pub(super) fn needs(&self, task: &AssemblyTask) -> FreeMask {
         usize::from(self.goal.way(&self.state, task, task.at).1)
     }
 
     /// The task whose item lies at a location.
-    pub(super) fn task_at(&self, location: usize) -> Option<(usize, Task)> {
+    pub(super) fn task_at(&self, location: usize) -> Option<(usize, AssemblyTask)> {
         self.tasks().find(|(_, task)| usize::from(task.at) == location)
     }
 }

@@ -1,36 +1,36 @@
 //! What a state is at least and at most worth, without a search.
 
 use super::assign::Assignment;
-use super::goal::{Classes, Goal, MAX_TARGETS};
-use super::ground::Ground;
-use super::plan::{BLOCKED, Plan};
+use super::goal::{ContentClasses, MAX_TARGETS, ServingGoal};
+use super::ground::KitchenTables;
+use super::plan::{BLOCKED, PressPlan};
 
 /// The assignments for both orders of serving, the one with the lower bound first.
-pub struct Rating {
+pub struct AssignmentRating {
     choices: [Assignment; 2],
     count: usize,
     /// The lower bound.
     pub lower: u32,
 }
 
-impl Rating {
-    pub fn new(ground: &Ground, goal: &Goal, state: &Classes) -> Rating {
+impl AssignmentRating {
+    pub fn new(ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> AssignmentRating {
         let forwards = Assignment::choose(ground, goal, state, [0, 1]);
         let lower = forwards.demand.bound(ground, state);
         if !order_counts(goal, state) {
             let count = if goal.targets_differ() { 2 } else { 1 };
-            return Rating { choices: [forwards, forwards.reversed()], count, lower };
+            return AssignmentRating { choices: [forwards, forwards.reversed()], count, lower };
         }
         let backwards = Assignment::choose(ground, goal, state, [1, 0]);
         let other = backwards.demand.bound(ground, state);
         match lower <= other {
-            true => Rating { choices: [forwards, backwards], count: 2, lower },
-            false => Rating { choices: [backwards, forwards], count: 2, lower: other },
+            true => AssignmentRating { choices: [forwards, backwards], count: 2, lower },
+            false => AssignmentRating { choices: [backwards, forwards], count: 2, lower: other },
         }
     }
 
     /// The lower bound alone.
-    pub fn bound(ground: &Ground, goal: &Goal, state: &Classes) -> u32 {
+    pub fn bound(ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> u32 {
         let of_order = |order| Assignment::choose(ground, goal, state, order).demand.bound(ground, state);
         let forwards = of_order([0, 1]);
         if order_counts(goal, state) { forwards.min(of_order([1, 0])) } else { forwards }
@@ -55,12 +55,12 @@ impl Rating {
     }
 
     /// The presses of the best plan, [`BLOCKED`] if none comes to an end with at most `most`.
-    pub fn upper(&self, ground: &Ground, goal: &Goal, state: &Classes, most: u32) -> u32 {
+    pub fn upper(&self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses, most: u32) -> u32 {
         self.best_plan(ground, goal, state, most, false)
     }
 
     /// The same, with second thoughts where the plans do not reach the bound.
-    pub fn close_upper(&self, ground: &Ground, goal: &Goal, state: &Classes) -> u32 {
+    pub fn close_upper(&self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> u32 {
         let upper = self.upper(ground, goal, state, BLOCKED);
         if upper <= self.lower {
             return upper;
@@ -68,10 +68,17 @@ impl Rating {
         upper.min(self.best_plan(ground, goal, state, upper - 1, true))
     }
 
-    fn best_plan(&self, ground: &Ground, goal: &Goal, state: &Classes, most: u32, second_thought: bool) -> u32 {
+    fn best_plan(
+        &self,
+        ground: &KitchenTables,
+        goal: &ServingGoal,
+        state: &ContentClasses,
+        most: u32,
+        second_thought: bool,
+    ) -> u32 {
         let (mut upper, mut limit) = (BLOCKED, most);
         for choice in self.choices() {
-            let presses = Plan::new(ground, goal, state, choice).carry_out(limit, second_thought);
+            let presses = PressPlan::new(ground, goal, state, choice).carry_out(limit, second_thought);
             if presses > limit {
                 continue;
             }
@@ -86,6 +93,6 @@ impl Rating {
 }
 
 /// Whether it may make a difference which of the targets chooses first.
-fn order_counts(goal: &Goal, state: &Classes) -> bool {
+fn order_counts(goal: &ServingGoal, state: &ContentClasses) -> bool {
     goal.targets_differ() && state.iter().any(|&class| goal.is_shared[usize::from(class)])
 }

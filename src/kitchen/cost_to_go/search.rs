@@ -6,15 +6,15 @@ use std::collections::BinaryHeap;
 
 use rustc_hash::FxHashMap;
 
-use super::goal::{Classes, Goal};
+use super::goal::{ContentClasses, ServingGoal};
 use super::ground::successors;
-use super::plan::{BLOCKED, Plan};
-use super::rating::Rating;
+use super::plan::{BLOCKED, PressPlan};
+use super::rating::AssignmentRating;
 use super::{CostToGo, Look};
 
 /// How far a search goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reach {
+pub struct SearchLimits {
     /// States that are expanded, at most.
     expansions: usize,
     /// Whether items may be taken from a storage before they can be brought all the way to the board.
@@ -22,9 +22,9 @@ pub struct Reach {
 }
 
 /// Enough for 99 % of the states met in sessions and 95 % of those after random presses.
-pub const NEAR: Reach = Reach { expansions: 48, takes: false };
+pub const NEAR: SearchLimits = SearchLimits { expansions: 48, takes: false };
 /// For what is left two presses or more above the bound.
-pub const FAR: Reach = Reach { expansions: 24, takes: true };
+pub const FAR: SearchLimits = SearchLimits { expansions: 24, takes: true };
 
 /// Most searches meet fewer states than this.
 const ROOM: usize = 200;
@@ -42,7 +42,7 @@ struct Open {
     met: usize,
     /// Presses so far.
     presses: u32,
-    state: Classes,
+    state: ContentClasses,
 }
 
 impl Open {
@@ -73,10 +73,10 @@ impl Ord for Open {
 }
 
 /// One search.
-pub struct Search<'a> {
+pub struct BestFirstSearch<'a> {
     costs: &'a mut CostToGo,
     slot: usize,
-    goal: &'a Goal,
+    goal: &'a ServingGoal,
     /// The least presses of a whole way found so far.
     best: u32,
     open: BinaryHeap<Open>,
@@ -84,46 +84,53 @@ pub struct Search<'a> {
     met: usize,
     /// The least presses with which each state was met, by its key.
     seen: FxHashMap<u64, u32>,
-    reach: Reach,
+    reach: SearchLimits,
     /// Whether any way below `best` will do.
     any: bool,
 }
 
-impl<'a> Search<'a> {
+impl<'a> BestFirstSearch<'a> {
     /// The presses of the best way from `start` that the search finds, `best` if it finds none better; it need not look for
     /// any below `lower`.
     pub fn run(
         costs: &'a mut CostToGo,
         slot: usize,
-        goal: &'a Goal,
-        start: &Classes,
+        goal: &'a ServingGoal,
+        start: &ContentClasses,
         lower: u32,
         best: u32,
-        reach: Reach,
+        reach: SearchLimits,
     ) -> u32 {
-        Search::new(costs, slot, goal, best, reach, false).best(start, lower)
+        BestFirstSearch::new(costs, slot, goal, best, reach, false).best(start, lower)
     }
 
     /// Whether there is a way of less than `limit` presses from `start`.
     pub fn finds(
         costs: &'a mut CostToGo,
         slot: usize,
-        goal: &'a Goal,
-        start: &Classes,
+        goal: &'a ServingGoal,
+        start: &ContentClasses,
         limit: u32,
-        reach: Reach,
+        reach: SearchLimits,
     ) -> bool {
-        Search::new(costs, slot, goal, limit, reach, true).best(start, limit - 1) < limit
+        BestFirstSearch::new(costs, slot, goal, limit, reach, true).best(start, limit - 1) < limit
     }
 
-    fn new(costs: &'a mut CostToGo, slot: usize, goal: &'a Goal, best: u32, reach: Reach, any: bool) -> Search<'a> {
+    fn new(
+        costs: &'a mut CostToGo,
+        slot: usize,
+        goal: &'a ServingGoal,
+        best: u32,
+        reach: SearchLimits,
+        any: bool,
+    ) -> BestFirstSearch<'a> {
         let seen = FxHashMap::with_capacity_and_hasher(ROOM, Default::default());
-        Search { costs, slot, goal, best, open: BinaryHeap::new(), met: 0, seen, reach, any }
+        BestFirstSearch { costs, slot, goal, best, open: BinaryHeap::new(), met: 0, seen, reach, any }
     }
 
     /// The presses of the best way that is found; none below `lower` is looked for.
-    fn best(mut self, start: &Classes, lower: u32) -> u32 {
-        let rating = Rating::new(&self.costs.ground, self.goal, start);
+    fn best(mut self, start: &ContentClasses, lower: u32) -> u32 {
+        let rating = AssignmentRating::new(&self.costs.ground, self.goal, start);
         self.look(start, rating, 0, lower);
         if self.open.is_empty() {
             self.keep(lower, 0, 0, start);
@@ -134,7 +141,7 @@ impl<'a> Search<'a> {
                 break;
             }
             if next.gap == UNSEEN {
-                let rating = Rating::new(&self.costs.ground, self.goal, &next.state);
+                let rating = AssignmentRating::new(&self.costs.ground, self.goal, &next.state);
                 self.look(&next.state, rating, next.presses, next.bound);
                 continue;
             }
@@ -144,17 +151,17 @@ impl<'a> Search<'a> {
         self.best
     }
 
-    fn keep(&mut self, bound: u32, gap: u32, presses: u32, state: &Classes) {
+    fn keep(&mut self, bound: u32, gap: u32, presses: u32, state: &ContentClasses) {
         self.met += 1;
         self.open.push(Open { bound, gap, met: self.met, presses, state: *state });
     }
 
     fn expand(&mut self, open: &Open) {
         let goal = self.goal;
-        let rating = Rating::new(&self.costs.ground, goal, &open.state);
+        let rating = AssignmentRating::new(&self.costs.ground, goal, &open.state);
         if goal.targets.len() > 1 {
             for choice in rating.choices() {
-                let plan = Plan::new(&self.costs.ground, goal, &open.state, choice);
+                let plan = PressPlan::new(&self.costs.ground, goal, &open.state, choice);
                 if let Some((presses, next)) = plan.begin(choice.order[0]) {
                     self.meet(&next, open.presses + presses, open.bound);
                 }
@@ -181,14 +188,14 @@ impl<'a> Search<'a> {
     }
 
     /// A state met after `presses`.
-    fn meet(&mut self, state: &Classes, presses: u32, bound: u32) {
+    fn meet(&mut self, state: &ContentClasses, presses: u32, bound: u32) {
         let key = self.costs.key(self.slot, self.goal, state);
         if !self.is_new(key, presses) {
             return;
         }
         let (known, mut rating) = (self.costs.known(Look::Bound, key), None);
         let lower = known.unwrap_or_else(|| {
-            let new = Rating::new(&self.costs.ground, self.goal, state);
+            let new = AssignmentRating::new(&self.costs.ground, self.goal, state);
             let lower = new.lower;
             rating = Some(new);
             self.costs.keep(Look::Bound, key, lower)
@@ -201,14 +208,14 @@ impl<'a> Search<'a> {
         if lower > bound {
             return self.keep(lower, UNSEEN, presses, state);
         }
-        let rating = rating.unwrap_or_else(|| Rating::new(&self.costs.ground, self.goal, state));
+        let rating = rating.unwrap_or_else(|| AssignmentRating::new(&self.costs.ground, self.goal, state));
         self.look(state, rating, presses, bound);
     }
 
     /// A closer look at a state: does what is certain to be right, and plans from there.
-    fn look(&mut self, state: &Classes, mut rating: Rating, presses: u32, bound: u32) {
+    fn look(&mut self, state: &ContentClasses, mut rating: AssignmentRating, presses: u32, bound: u32) {
         let goal = self.goal;
-        let plan = Plan::new(&self.costs.ground, goal, state, rating.best_choice());
+        let plan = PressPlan::new(&self.costs.ground, goal, state, rating.best_choice());
         let (settling, settled, served) = plan.settle();
         let presses = presses + settling;
         if let Some(target) = served {
@@ -221,7 +228,7 @@ impl<'a> Search<'a> {
             if !self.is_new(key, presses) {
                 return;
             }
-            rating = Rating::new(&self.costs.ground, goal, &settled);
+            rating = AssignmentRating::new(&self.costs.ground, goal, &settled);
         }
         if presses + rating.lower >= self.best {
             return;

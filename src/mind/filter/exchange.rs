@@ -1,7 +1,7 @@
 //! What the human learns from a press of a location's button: hand and location decide together what happens.
 
 use crate::base::rng::Stream;
-use crate::kitchen::{Action, Agent, AspectId, Kitchen, LocationId};
+use crate::kitchen::{Agent, AspectId, ButtonAction, Kitchen, LocationId};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 
 use super::gamma::Gammas;
@@ -52,7 +52,7 @@ impl Exchange {
                 let mut state = kitchen.empty_state();
                 state.set_code(hand_at, in_hand);
                 state.set_code(location, at_location);
-                let next = kitchen.act(state, &kitchen.true_recipes(), Agent::Human, Action::Use(location));
+                let next = kitchen.act(state, &kitchen.true_recipes(), Agent::Human, ButtonAction::Use(location));
                 let result = next.and_then(|next| there.index_of(next.code(location)));
                 outcomes.push(match (result, in_hand, at_location) {
                     (None, _, _) => Outcome::Nothing,

@@ -24,7 +24,9 @@ use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::kitchen::State;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Action, Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
+use crate::kitchen::{
+    Agent, AspectId, AspectKind, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent,
+};
 pub use evidence::Evidence;
 use evidence::{Judge, Sampler};
 use exchange::Exchange;
@@ -67,10 +69,10 @@ impl BeliefFilter {
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel, seed: u64) -> BeliefFilter {
         let shown = kitchen.empty_state();
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
-        let lesson = |action: Action| match action {
-            Action::Use(location) => Lesson::Exchange(Exchange::new(&kitchen, location)),
-            Action::Serve(order) => Lesson::Serving(Serving::new(&kitchen, order)),
-            Action::Take(_) | Action::Process(_) | Action::Trash => Lesson::Alone,
+        let lesson = |action: ButtonAction| match action {
+            ButtonAction::Use(location) => Lesson::Exchange(Exchange::new(&kitchen, location)),
+            ButtonAction::Serve(order) => Lesson::Serving(Serving::new(&kitchen, order)),
+            ButtonAction::Take(_) | ButtonAction::Process(_) | ButtonAction::Trash => Lesson::Alone,
         };
         let lessons = kitchen.buttons[Agent::Human.index()].iter().map(|button| lesson(button.action)).collect();
         BeliefFilter {

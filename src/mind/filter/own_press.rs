@@ -6,7 +6,7 @@
 //! that the rules treat alike are drawn; how a kind's share is divided among its contents is independent of that and stays
 //! exactly as it is.
 
-use crate::kitchen::{Action, Agent, AspectId, ContentId, Kitchen};
+use crate::kitchen::{Agent, AspectId, ButtonAction, ContentId, Kitchen};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 
 /// So much of every belief is doubt, spread as expected: what is left when something happens that was held impossible.
@@ -27,11 +27,11 @@ fn restrict(dirichlet: &Dirichlet, keep: impl Fn(usize) -> bool, becomes: impl F
 }
 
 /// Learns from a press that works at one location alone; whether it was one.
-pub fn learn_alone(kitchen: &Kitchen, belief: &mut DirichletBelief, action: Action, effective: bool) -> bool {
+pub fn learn_alone(kitchen: &Kitchen, belief: &mut DirichletBelief, action: ButtonAction, effective: bool) -> bool {
     let hand = AspectId::of_location(kitchen.hands[Agent::Human.index()]);
     let empty = value_of(kitchen, hand, ContentId::EMPTY);
     match action {
-        Action::Take(item) => {
+        ButtonAction::Take(item) => {
             let taken = value_of(kitchen, hand, item);
             let of_hand = &mut belief.aspects[hand.index()];
             *of_hand = match effective {
@@ -39,12 +39,12 @@ pub fn learn_alone(kitchen: &Kitchen, belief: &mut DirichletBelief, action: Acti
                 false => restrict(of_hand, |value| value != empty, |value| value),
             };
         }
-        Action::Trash => {
+        ButtonAction::Trash => {
             // It is empty now, or was so before.
             let of_hand = &mut belief.aspects[hand.index()];
             *of_hand = restrict(of_hand, |_| true, |_| empty);
         }
-        Action::Process(process) => {
+        ButtonAction::Process(process) => {
             let place = kitchen.processes[usize::from(process)].place;
             let aspect = place.map_or(hand, AspectId::of_location);
             let values = &kitchen.aspects[aspect.index()];
@@ -59,7 +59,7 @@ pub fn learn_alone(kitchen: &Kitchen, belief: &mut DirichletBelief, action: Acti
                 |value| result(value).unwrap_or(value),
             );
         }
-        Action::Use(_) | Action::Serve(_) => return false,
+        ButtonAction::Use(_) | ButtonAction::Serve(_) => return false,
     }
     true
 }

@@ -10,7 +10,7 @@ use rand_distr::{Distribution, Gamma};
 use super::sight::Glance;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{Care, CostToGo};
-use crate::kitchen::{Action, Agent, AspectId, AspectKind, ButtonId, ContentId, DishId, Kitchen, LocationId};
+use crate::kitchen::{Agent, AspectId, AspectKind, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId};
 use crate::kitchen::{OrderContent, Recipes, State};
 use crate::mind::decision::DecisionModel;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
@@ -125,10 +125,10 @@ impl Person {
         let action = kitchen.button(Agent::Human, button).action;
         let hand = kitchen.hands[Agent::Human.index()];
         let places = match action {
-            Action::Take(_) | Action::Trash => vec![hand],
-            Action::Use(location) => vec![hand, location],
-            Action::Process(process) => vec![kitchen.processes[usize::from(process)].place.unwrap_or(hand)],
-            Action::Serve(order) => vec![order, kitchen.plate],
+            ButtonAction::Take(_) | ButtonAction::Trash => vec![hand],
+            ButtonAction::Use(location) => vec![hand, location],
+            ButtonAction::Process(process) => vec![kitchen.processes[usize::from(process)].place.unwrap_or(hand)],
+            ButtonAction::Serve(order) => vec![order, kitchen.plate],
         };
         // What a hand holds is empty after "trash" either way, and full of something after "take".
         let doubtful = |index: usize| -> Vec<f64> {
@@ -140,7 +140,7 @@ impl Person {
         let mut outcome = |way: Way, dish: Option<(AspectId, usize)>| {
             let next = kitchen.act(way.state, &way.recipes, Agent::Human, action);
             let is_possible = match (action, effective) {
-                (Action::Trash, _) | (Action::Take(_), true) => true,
+                (ButtonAction::Trash, _) | (ButtonAction::Take(_), true) => true,
                 _ => next.is_some() == effective,
             };
             if !is_possible {
@@ -148,7 +148,7 @@ impl Person {
             }
             total += way.p;
             let mut state = next.unwrap_or(way.state);
-            if let (Action::Take(item), true) = (action, effective) {
+            if let (ButtonAction::Take(item), true) = (action, effective) {
                 state.set_content(hand, item);
             }
             for &place in &places {
@@ -165,7 +165,7 @@ impl Person {
             }
         };
         match action {
-            Action::Serve(order) => each_serving(kitchen, &before, order, &mut outcome),
+            ButtonAction::Serve(order) => each_serving(kitchen, &before, order, &mut outcome),
             _ => each_exchange(kitchen, &before, &places, &mut outcome),
         }
         let changed = places.iter().map(|place| place.index()).chain(kitchen.locations.len()..kitchen.aspects.len());

@@ -8,20 +8,20 @@ use crate::session::SessionSpec;
 use crate::session::settings::ParticipantKind;
 
 /// The participant's display, if the participant is at one.
-pub(in crate::run) struct Wall(Option<Display>);
+pub(in crate::run) struct WallDisplay(Option<Display>);
 
-impl Wall {
+impl WallDisplay {
     /// Serves the display, where the participant is at one.
     ///
     /// # Errors
     /// Nothing can listen at its address.
-    pub async fn open(spec: &SessionSpec) -> Result<Wall, LiveError> {
+    pub async fn open(spec: &SessionSpec) -> Result<WallDisplay, LiveError> {
         if spec.participant.kind != ParticipantKind::Display {
-            return Ok(Wall(None));
+            return Ok(WallDisplay(None));
         }
         let (address, port) = (spec.display.listen, spec.display.port);
         let opened = Display::open(address, port, &Words::of(&spec.display)).await;
-        opened.map(|display| Wall(Some(display))).map_err(|reason| LiveError::Display { address, port, reason })
+        opened.map(|display| WallDisplay(Some(display))).map_err(|reason| LiveError::Display { address, port, reason })
     }
 
     /// The display.

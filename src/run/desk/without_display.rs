@@ -7,15 +7,15 @@ use crate::session::SessionSpec;
 pub(in crate::run) enum PageInput {}
 
 /// No display.
-pub(in crate::run) struct Wall;
+pub(in crate::run) struct WallDisplay;
 
-impl Wall {
+impl WallDisplay {
     /// Sessions whose participant is at a display were refused before.
     ///
     /// # Errors
     /// None.
-    pub async fn open(_: &SessionSpec) -> Result<Wall, LiveError> {
-        Ok(Wall)
+    pub async fn open(_: &SessionSpec) -> Result<WallDisplay, LiveError> {
+        Ok(WallDisplay)
     }
 
     /// Never.

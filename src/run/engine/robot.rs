@@ -2,16 +2,16 @@
 
 use super::Engine;
 #[cfg(feature = "physics")]
-use crate::arm::body::Body;
+use crate::arm::body::SteppedArm;
 #[cfg(feature = "physics")]
-use crate::arm::reaching::Reaching;
+use crate::arm::reaching::ReachingBehaviour;
 use crate::arm::worker::Robot;
 #[cfg(not(feature = "physics"))]
 use crate::base::features::{Feature, NotBuilt};
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, ButtonId, Kitchen};
 use crate::participant::SimulatedParticipant;
-use crate::robot::RobotDeed;
+use crate::robot::RobotActivity;
 use crate::session::settings::ArmKind;
 #[cfg(feature = "physics")]
 use crate::session::settings::ParticipantKind;
@@ -32,10 +32,10 @@ pub(super) fn robot_of(kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> Rob
 #[cfg(feature = "physics")]
 fn with_physics(robot: Robot, kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> Robot {
     let hand = match spec.participant.kind {
-        ParticipantKind::Simulated => Reaching::SIMULATED,
-        ParticipantKind::Keyboard | ParticipantKind::Display => Reaching::UNSEEN,
+        ParticipantKind::Simulated => ReachingBehaviour::SIMULATED,
+        ParticipantKind::Keyboard | ParticipantKind::Display => ReachingBehaviour::UNSEEN,
     };
-    robot.with_body(Body::new(kitchen, hand, spec.seed, trial))
+    robot.with_body(SteppedArm::new(kitchen, hand, spec.seed, trial))
 }
 
 #[cfg(not(feature = "physics"))]
@@ -57,24 +57,24 @@ impl Engine {
         }
     }
 
-    pub(super) fn record_deed(&mut self, now: SessionTime, deed: RobotDeed) {
+    pub(super) fn record_deed(&mut self, now: SessionTime, deed: RobotActivity) {
         let kitchen = self.session().kitchen.clone();
         let name = |button: ButtonId| kitchen.button(Agent::Robot, button).name.clone();
         let event = match deed {
-            RobotDeed::Intend { button, until } => Event::RobotIntends { button: name(button), until_ns: until },
-            RobotDeed::Press(button) => Event::Press { agent: Agent::Robot, button: name(button), at_ns: None },
-            RobotDeed::Abort(button, reason) => Event::RobotAborts { button: name(button), reason },
-            RobotDeed::Idle(reason) => Event::RobotIdles { reason },
-            RobotDeed::Move(moment) => Event::RobotMoves(moment),
-            RobotDeed::Safety { mode, force_n, joint } => Event::RobotSafety { mode, force_n, joint },
-            RobotDeed::Touched { force_n } => Event::RobotTouched { force_n },
+            RobotActivity::Intend { button, until } => Event::RobotIntends { button: name(button), until_ns: until },
+            RobotActivity::Press(button) => Event::Press { agent: Agent::Robot, button: name(button), at_ns: None },
+            RobotActivity::Abort(button, reason) => Event::RobotAborts { button: name(button), reason },
+            RobotActivity::Idle(reason) => Event::RobotIdles { reason },
+            RobotActivity::Move(moment) => Event::RobotMoves(moment),
+            RobotActivity::Safety { mode, force_n, joint } => Event::RobotSafety { mode, force_n, joint },
+            RobotActivity::Touched { force_n } => Event::RobotTouched { force_n },
         };
         self.record_own(now, event);
     }
 
     /// What the robot is told of an event that was just applied: what the wizard does to it, and where the human presses;
     /// what it does because of it.
-    pub(super) fn tell_robot(&mut self, stamped: &Stamped) -> Vec<RobotDeed> {
+    pub(super) fn tell_robot(&mut self, stamped: &Stamped) -> Vec<RobotActivity> {
         let kitchen = self.session().kitchen.clone();
         let now = stamped.time;
         let deed = match &stamped.event {

@@ -5,34 +5,34 @@ use std::time::Instant;
 use super::Live;
 use crate::base::time::SessionTime;
 use crate::console::display::DisplayHealth;
-use crate::console::model::Level;
+use crate::console::model::NoticeLevel;
 use crate::display::{Sight, scene, sight};
 use crate::edge::display::{Display, PageScreen};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
-use crate::run::desk::{Desk, PageInput};
+use crate::run::desk::{OperatorDesk, PageInput};
 use crate::session::display::{Answering, DisplayEvent};
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
 use crate::session::{Event, Phase};
 
 /// The display of this recording.
-pub(super) struct OnDisplay {
+pub(super) struct ParticipantDisplay {
     screen: PageScreen,
     /// What it shows.
     shown: Option<Sight>,
 }
 
-impl OnDisplay {
+impl ParticipantDisplay {
     /// The display at the desk, if there is one; with what the wizard has to know of it.
-    pub fn at(desk: &Desk) -> (Option<OnDisplay>, Option<DisplayHealth>) {
+    pub fn at(desk: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<DisplayHealth>) {
         let health = |display: &Display| DisplayHealth {
             url: display.url(),
             code: display.code().map(str::to_string),
             ..DisplayHealth::default()
         };
         let display = desk.wall.display();
-        (display.map(|display| OnDisplay { screen: display.screen(), shown: None }), display.map(health))
+        (display.map(|display| ParticipantDisplay { screen: display.screen(), shown: None }), display.map(health))
     }
 }
 
@@ -80,12 +80,15 @@ impl Live {
         match input {
             PageInput::Connected { width_px, height_px } => {
                 self.input(Event::Display(DisplayEvent::Connected { width_px, height_px }));
-                self.model.say(Level::Done, format!("the participant's display is there, {width_px}x{height_px}"));
+                self.model
+                    .say(NoticeLevel::Done, format!("the participant's display is there, {width_px}x{height_px}"));
             }
             PageInput::Lost => {
                 self.input(Event::Display(DisplayEvent::Lost));
-                self.model
-                    .say(Level::Alarm, "the participant's display is gone: it comes back by itself, or open it again");
+                self.model.say(
+                    NoticeLevel::Alarm,
+                    "the participant's display is gone: it comes back by itself, or open it again",
+                );
             }
             PageInput::Press { button, at } => self.press(button, at),
             PageInput::Pointer { x, y } => {
@@ -110,7 +113,7 @@ impl Live {
     /// of the kitchen until then was there before it; when the button went down stands beside it.
     fn press(&mut self, button: String, at: Instant) {
         if self.engine.session().kitchen.button_named(Agent::Human, &button).is_none() {
-            self.model.say(Level::Refused, "the display told a button that the kitchen does not have");
+            self.model.say(NoticeLevel::Refused, "the display told a button that the kitchen does not have");
             return;
         }
         let at_ns = Some(self.session_time_of(at));

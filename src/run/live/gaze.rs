@@ -13,7 +13,7 @@ use crate::edge::pupil::Order;
 use crate::gaze::GazeSample;
 use crate::gaze::device_clock::DeviceClock;
 use crate::gaze::quality::{DropCounts, RateLimit};
-use crate::run::desk::Tracker;
+use crate::run::desk::GazeTracker;
 use crate::session::tracker::TrackerEvent;
 use crate::session::{Event, Phase, Stamped};
 
@@ -22,7 +22,7 @@ const PACKET: usize = 32;
 
 /// The recording's side of the tracker.
 #[derive(Debug, Default)]
-pub(super) struct GazeIn {
+pub(super) struct GazeInput {
     clock: DeviceClock,
     limit: RateLimit,
     dropped: DropCounts,
@@ -36,7 +36,7 @@ pub(super) struct GazeIn {
 
 impl Live {
     /// Takes up with the tracker at the beginning of a recording: what is known of it is told again.
-    pub(super) fn greet(&mut self, tracker: &Tracker) {
+    pub(super) fn greet(&mut self, tracker: &GazeTracker) {
         self.gaze.file = tracker.file();
         self.gaze.orders = tracker.orders();
         if let Some(file) = &self.gaze.file {
@@ -57,7 +57,7 @@ impl Live {
     }
 
     /// Takes news of the tracker, and what came with them: samples come in packets.
-    pub(super) fn take_all(&mut self, first: GazeNews, tracker: &mut Tracker) {
+    pub(super) fn take_all(&mut self, first: GazeNews, tracker: &mut GazeTracker) {
         let mut next = Some(first);
         for _ in 0..PACKET {
             let Some(news) = next else { return };

@@ -2,26 +2,26 @@
 
 use super::Live;
 use crate::communication::recommendation::Recommendation;
-use crate::console::{Command, Message, update};
+use crate::console::{ConsoleCommand, ConsoleMessage, update};
 use crate::gaze::GazeSample;
-use crate::run::leaving::Leaving;
+use crate::run::leaving::LeavingReason;
 use crate::session::Event;
 
 impl Live {
     /// Takes a message of the terminal; how the wizard leaves the recording, if that is what it says.
-    pub(super) fn take(&mut self, message: Message) -> Option<Leaving> {
+    pub(super) fn take(&mut self, message: ConsoleMessage) -> Option<LeavingReason> {
         self.tick();
-        self.dirty |= !matches!(message, Message::Pointer(..));
+        self.dirty |= !matches!(message, ConsoleMessage::Pointer(..));
         match update(&mut self.model, self.engine.session(), message) {
-            Some(Command::Input(event)) => self.input(event),
-            Some(Command::Start(preflight)) => {
+            Some(ConsoleCommand::Input(event)) => self.input(event),
+            Some(ConsoleCommand::Start(preflight)) => {
                 self.input(preflight);
                 self.input(Event::TrialStarted);
             }
-            Some(Command::Quit) => return Some(Leaving::Quit),
-            Some(Command::Next) => return Some(Leaving::Next),
-            Some(Command::Redo) => return Some(Leaving::Redo),
-            Some(Command::Move(_) | Command::Code) | None => {}
+            Some(ConsoleCommand::Quit) => return Some(LeavingReason::Quit),
+            Some(ConsoleCommand::Next) => return Some(LeavingReason::Next),
+            Some(ConsoleCommand::Redo) => return Some(LeavingReason::Redo),
+            Some(ConsoleCommand::Move(_) | ConsoleCommand::Code) | None => {}
         }
         None
     }
@@ -31,7 +31,7 @@ impl Live {
         let outcome = self.engine.input(self.clock.now(), event);
         self.record(&outcome.events);
         if let Some(reason) = outcome.refused.filter(|_| !is_gaze) {
-            update(&mut self.model, self.engine.session(), Message::Refused(reason));
+            update(&mut self.model, self.engine.session(), ConsoleMessage::Refused(reason));
         }
     }
 

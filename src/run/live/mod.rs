@@ -22,11 +22,11 @@ use std::time::Duration;
 
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
-use self::display::OnDisplay;
-use crate::console::comparison::Compared;
+use self::display::ParticipantDisplay;
+use crate::console::comparison::ComparisonView;
 use crate::console::keys::KeyError;
-use crate::console::model::Recording;
-use crate::console::{Keys, Model};
+use crate::console::model::RecordingStatus;
+use crate::console::{ConsoleModel, KeyBindings};
 use crate::edge::clock::{SessionClock, WallTime};
 use crate::edge::doctor::free_bytes;
 use crate::edge::files::{FileError, key_map};
@@ -34,15 +34,15 @@ use crate::edge::log::{Lock, LogWriter, WriteError};
 use crate::edge::terminal::{Screen, theme};
 use crate::gaze::tags::TagError;
 use crate::run::advisor_desk::{AdvisorDesk, next_advice};
-use crate::run::begun::{Begun, Place};
-use crate::run::compare::{WatchDesk, Watcher};
-use crate::run::desk::Desk;
+use crate::run::begun::{PreparedSession, RecordingPlace};
+use crate::run::compare::{ComparisonDesk, ComparisonFollower};
+use crate::run::desk::OperatorDesk;
 use crate::run::engine::Engine;
-use crate::run::figures::TrialFigures;
-use crate::run::leaving::{Leaving, LiveEnd};
-use crate::run::options::Beginning;
+use crate::run::figures::TrialSummary;
+use crate::run::leaving::{LeavingReason, LiveOutcome};
+use crate::run::options::SessionStart;
 use crate::run::resume::ResumeError;
-use crate::run::standing::Standing;
+use crate::run::standing::ExclusionStatus;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::screen::Screen as OnScreen;
 use crate::session::settings::GazeSource;
@@ -106,21 +106,21 @@ struct Live {
     /// The assistant, if this session asks it.
     advisor: Option<AdvisorDesk>,
     /// Who compares wizard and assistants, if somebody does.
-    watch: Option<WatchDesk>,
+    watch: Option<ComparisonDesk>,
     /// The participant's display, if there is one.
-    display: Option<OnDisplay>,
-    model: Model,
+    display: Option<ParticipantDisplay>,
+    model: ConsoleModel,
     /// Of this recording.
     header: Header,
     log: LogWriter,
     /// What Rerun's viewers see.
-    viewing: Option<viewing::Viewing>,
+    viewing: Option<viewing::StreamedSession>,
     /// The part that is continued is not to be written by anybody else.
     _before: Option<Lock>,
     /// The log cannot be written any more.
     failed: Option<WriteError>,
     clock: SessionClock,
-    gaze: gaze::GazeIn,
+    gaze: gaze::GazeInput,
     /// The signal that no frame shows yet, by its number.
     undrawn: Option<u64>,
     /// What the wizard sees, as it was recorded last.
@@ -135,32 +135,32 @@ struct Live {
 ///
 /// # Errors
 /// The session cannot be recorded, or the terminal is gone.
-pub(in crate::run) async fn run(begun: Begun, desk: &mut Desk) -> Result<LiveEnd, LiveError> {
+pub(in crate::run) async fn run(begun: PreparedSession, desk: &mut OperatorDesk) -> Result<LiveOutcome, LiveError> {
     Live::open(begun, desk)?.run(desk).await
 }
 
 impl Live {
-    fn open(begun: Begun, desk: &Desk) -> Result<Live, LiveError> {
-        let Begun { engine, mut header, first, consent, time, compare, place } = begun;
+    fn open(begun: PreparedSession, desk: &OperatorDesk) -> Result<Live, LiveError> {
+        let PreparedSession { engine, mut header, first, consent, time, compare, place } = begun;
         let (kitchen, spec) = (engine.session().kitchen.clone(), engine.session().spec.clone());
-        let keys = Keys::live(&kitchen, &spec, &key_map(header.keys.as_ref())?)?;
+        let keys = KeyBindings::live(&kitchen, &spec, &key_map(header.keys.as_ref())?)?;
         let keys = if compare.is_some() { keys.with_comparison() } else { keys };
         let wall = WallTime::now();
         header.started = Some(wall.rfc3339());
-        let is_new = matches!(place, Place::In(_));
+        let is_new = matches!(place, RecordingPlace::In(_));
         let (log, before) = match place {
-            Place::In(root) => (LogWriter::create_live(&root, &wall.date(), &header)?, None),
-            Place::After(folder, lock) => (LogWriter::create_part(&folder, &header)?, Some(lock)),
+            RecordingPlace::In(root) => (LogWriter::create_live(&root, &wall.date(), &header)?, None),
+            RecordingPlace::After(folder, lock) => (LogWriter::create_part(&folder, &header)?, Some(lock)),
         };
         let size = Screen::size().map_err(LiveError::Terminal)?;
-        let mut model = Model::new(keys, theme(&spec.console, desk.screen.ground), size);
-        model.recording = Recording::On(log.folder().display().to_string());
-        model.comparison = compare.as_ref().map(|_| Compared::default());
+        let mut model = ConsoleModel::new(keys, theme(&spec.console, desk.screen.ground), size);
+        model.recording = RecordingStatus::On(log.folder().display().to_string());
+        model.comparison = compare.as_ref().map(|_| ComparisonView::default());
         let watch = compare
             .as_ref()
-            .map(|request| Watcher::new(Session::new(kitchen.clone(), spec.clone(), header.trial), request));
+            .map(|request| ComparisonFollower::new(Session::new(kitchen.clone(), spec.clone(), header.trial), request));
         let watch = watch.map(|watcher| watcher.without_causes().on_thread());
-        let (display, health) = OnDisplay::at(desk);
+        let (display, health) = ParticipantDisplay::at(desk);
         model.display = health;
         let clock = SessionClock::start(time);
         let advisor = spec.asks_assistant().then(|| engine.advisor().on_thread());
@@ -176,7 +176,7 @@ impl Live {
             _before: before,
             failed: None,
             clock,
-            gaze: gaze::GazeIn::default(),
+            gaze: gaze::GazeInput::default(),
             undrawn: None,
             seen: None,
             judged: 0,
@@ -195,7 +195,7 @@ impl Live {
         Ok(live)
     }
 
-    async fn run(mut self, desk: &mut Desk) -> Result<LiveEnd, LiveError> {
+    async fn run(mut self, desk: &mut OperatorDesk) -> Result<LiveOutcome, LiveError> {
         let participant = &self.engine.session().spec.participant;
         // With a display, the pointer is on it.
         let with_pointer = participant.gaze == GazeSource::Mouse && self.display.is_none();
@@ -203,7 +203,7 @@ impl Live {
         pointer.set_missed_tick_behavior(MissedTickBehavior::Skip);
         let mut flush = interval(FLUSH);
         let mut watch = interval(WATCH);
-        let mut leaving = Leaving::Quit;
+        let mut leaving = LeavingReason::Quit;
         self.greet(&desk.tracker);
         let mut next_frame = Instant::now();
         let mut next_move = Instant::now();
@@ -266,18 +266,18 @@ impl Live {
     }
 
     /// The same trial in another recording beside this one.
-    fn beginning_again(&self) -> Beginning {
+    fn beginning_again(&self) -> SessionStart {
         let folder = self.log.folder();
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let out = folder.parent().unwrap_or(std::path::Path::new(".")).to_path_buf();
         let header = Header { redoes: Some(name), started: None, continues: None, ..self.header.clone() };
-        Beginning::Again { header: Box::new(header), kitchen: self.engine.session().kitchen.clone(), out }
+        SessionStart::Again { header: Box::new(header), kitchen: self.engine.session().kitchen.clone(), out }
     }
 
-    fn close(mut self, leaving: Leaving) -> Result<LiveEnd, LiveError> {
+    fn close(mut self, leaving: LeavingReason) -> Result<LiveOutcome, LiveError> {
         if self.failed.is_none() {
             // What was left in the middle of a plan is not over: it can be continued.
-            if leaving != Leaving::Quit || self.engine.session().is_step_done() {
+            if leaving != LeavingReason::Quit || self.engine.session().is_step_done() {
                 self.input(Event::SessionEnded);
             }
             self.flush();
@@ -289,10 +289,10 @@ impl Live {
         match self.failed {
             Some(error) => Err(error.into()),
             None => {
-                let again = (leaving == Leaving::Redo).then(|| self.beginning_again());
-                let standing = Standing::at_console(self.engine.session());
-                let figures = TrialFigures::of(&self.engine.into_follower());
-                Ok(LiveEnd { folder, leaving, figures, standing, again })
+                let again = (leaving == LeavingReason::Redo).then(|| self.beginning_again());
+                let standing = ExclusionStatus::at_console(self.engine.session());
+                let figures = TrialSummary::of(&self.engine.into_follower());
+                Ok(LiveOutcome { folder, leaving, figures, standing, again })
             }
         }
     }

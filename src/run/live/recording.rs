@@ -1,8 +1,8 @@
 //! Every event into the log, and to whoever else wants to know of it; what is done when that fails.
 
 use super::Live;
-use crate::console::belief::{self, Moment};
-use crate::console::model::{Level, Recording};
+use crate::console::belief::{self, BeliefSnapshot};
+use crate::console::model::{NoticeLevel, RecordingStatus};
 use crate::console::words;
 use crate::edge::doctor::free_bytes;
 use crate::edge::log::WriteError;
@@ -17,7 +17,7 @@ impl Live {
                 Event::Gaze(sample) => self.model.see(stamped.time, self.engine.session().corrected(sample)),
                 Event::SignalShown { .. } => self.undrawn = Some(stamped.seq),
                 Event::RobotSafety { mode, force_n, joint } if mode.has_stopped_itself() => {
-                    self.model.say(Level::Alarm, words::arm_stopped(mode, force_n, joint));
+                    self.model.say(NoticeLevel::Alarm, words::arm_stopped(mode, force_n, joint));
                 }
                 _ => {}
             }
@@ -35,7 +35,7 @@ impl Live {
         if let Some(last) = events.last() {
             let by_gaze = events.iter().all(|stamped| stamped.event.is_sample());
             let session = self.engine.session();
-            let moment = Moment::new(&session.kitchen, session.state, self.engine.belief(), last.time, by_gaze);
+            let moment = BeliefSnapshot::new(&session.kitchen, session.state, self.engine.belief(), last.time, by_gaze);
             self.model.belief.note(moment);
             self.model.belief.forget(last.time, belief::SHOWN_S);
         }
@@ -65,7 +65,7 @@ impl Live {
         if let Some(by_ms) = self.clock.jump() {
             self.input(Event::ClockJumped { by_ms });
             let text = format!("the clock jumped by {:.1} s: session time did not", by_ms as f64 / 1000.0);
-            self.model.say(Level::Alarm, text);
+            self.model.say(NoticeLevel::Alarm, text);
         }
         self.tell_viewing();
         self.tell_drops();
@@ -86,8 +86,8 @@ impl Live {
             error => (error.to_string(), None),
         };
         let saved = saved.map_or(String::new(), |saved| format!(", saved in {}", saved.display()));
-        self.model.recording = Recording::Lost;
-        self.model.say(Level::Alarm, format!("session over, the recording ends here: {reason}{saved}"));
+        self.model.recording = RecordingStatus::Lost;
+        self.model.say(NoticeLevel::Alarm, format!("session over, the recording ends here: {reason}{saved}"));
         self.failed = Some(error);
         self.dirty = true;
         for event in [Event::RobotStopped, Event::SessionEnded] {

@@ -5,7 +5,7 @@ use std::io;
 use super::Live;
 use crate::console::screen::screen as on_screen;
 use crate::edge::terminal::Screen;
-use crate::run::compare::WatchDesk;
+use crate::run::compare::ComparisonDesk;
 use crate::session::{Event, Phase};
 
 impl Live {
@@ -18,7 +18,7 @@ impl Live {
     pub(super) fn draw(&mut self, screen: &mut Screen) -> io::Result<()> {
         self.tick();
         if let (Some(newest), Some(compared)) =
-            (self.watch.as_ref().and_then(WatchDesk::newest), &mut self.model.comparison)
+            (self.watch.as_ref().and_then(ComparisonDesk::newest), &mut self.model.comparison)
         {
             compared.show(newest);
         }

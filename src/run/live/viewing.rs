@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 
 use super::Live;
 use crate::base::time::SessionTime;
-use crate::console::model::{Level, Viewers};
+use crate::console::model::{NoticeLevel, ViewerStreamStatus};
 use crate::edge::log::{LOG_NAME, LogWriter};
 use crate::edge::rerun::{Identity, uri};
 use crate::edge::rrd::{self, RRD_NAME};
@@ -16,14 +16,14 @@ use crate::session::Stamped;
 const BEHIND: SessionTime = SessionTime(100_000_000);
 
 /// A session that is streamed.
-pub(super) struct Viewing {
+pub(super) struct StreamedSession {
     scene: Scene,
     stream: Stream,
     /// It shows the session from its beginning.
     is_whole: bool,
 }
 
-impl Viewing {
+impl StreamedSession {
     /// Ends the stream. The log is complete by now: a file that shows all of it is sealed.
     pub(super) fn close(self, log: &LogWriter) {
         if let Some(file) = self.stream.close().filter(|_| self.is_whole) {
@@ -59,16 +59,16 @@ impl Live {
                 if let Some(server) = stream.server {
                     self.log.announce(&uri(server));
                 }
-                self.viewing = Some(Viewing { scene, stream, is_whole: is_new });
+                self.viewing = Some(StreamedSession { scene, stream, is_whole: is_new });
             }
-            Err(reason) => self.model.say(Level::Alarm, format!("the session goes on without Rerun: {reason}")),
+            Err(reason) => self.model.say(NoticeLevel::Alarm, format!("the session goes on without Rerun: {reason}")),
         }
         self.tell_viewing();
     }
 
     /// Shows what has just been recorded.
     pub(super) fn view(&mut self, events: &[Stamped]) {
-        let Some(Viewing { scene, stream, .. }) = &mut self.viewing else { return };
+        let Some(StreamedSession { scene, stream, .. }) = &mut self.viewing else { return };
         let judged = self.engine.judged();
         for (index, stamped) in events.iter().enumerate() {
             let belief = (index + 1 == events.len()).then(|| self.engine.belief());
@@ -79,17 +79,17 @@ impl Live {
     /// Shows what moved since the last event.
     pub(super) fn view_motion(&mut self) {
         let until = self.clock.now() - BEHIND;
-        if let Some(Viewing { scene, stream, .. }) = &mut self.viewing {
+        if let Some(StreamedSession { scene, stream, .. }) = &mut self.viewing {
             stream.tell(scene.until(until));
         }
     }
 
     /// Tells the console how the stream fares.
     pub(super) fn tell_viewing(&mut self) {
-        self.model.viewers = self.viewing.as_ref().map(|Viewing { stream, .. }| {
+        self.model.viewers = self.viewing.as_ref().map(|StreamedSession { stream, .. }| {
             let fares = stream.fares();
             let address = stream.server.map(|address| address.to_string());
-            Viewers { address, written: fares.written, dropped: fares.dropped }
+            ViewerStreamStatus { address, written: fares.written, dropped: fares.dropped }
         });
     }
 }

@@ -2,14 +2,14 @@
 
 use super::Live;
 use crate::console::display::DisplayHealth;
-use crate::run::desk::{Desk, PageInput};
+use crate::run::desk::{OperatorDesk, PageInput};
 
 /// No display: this type has no value.
-pub(super) enum OnDisplay {}
+pub(super) enum ParticipantDisplay {}
 
-impl OnDisplay {
+impl ParticipantDisplay {
     /// The display at the desk: there is none.
-    pub fn at(_: &Desk) -> (Option<OnDisplay>, Option<DisplayHealth>) {
+    pub fn at(_: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<DisplayHealth>) {
         (None, None)
     }
 }

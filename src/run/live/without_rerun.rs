@@ -3,14 +3,14 @@
 
 use super::Live;
 use crate::base::features::{Feature, NotBuilt};
-use crate::console::model::Level;
+use crate::console::model::NoticeLevel;
 use crate::edge::log::LogWriter;
 use crate::session::Stamped;
 
 /// No stream: this type has no value.
-pub(super) enum Viewing {}
+pub(super) enum StreamedSession {}
 
-impl Viewing {
+impl StreamedSession {
     /// There is nothing to end.
     pub(super) fn close(self, _: &LogWriter) {
         match self {}
@@ -21,7 +21,8 @@ impl Live {
     /// Tells the wizard that no stream is opened, where the session asks for one.
     pub(super) fn begin_viewing(&mut self, _: bool, _: u64) {
         if self.engine.session().spec.rerun.is_on() {
-            self.model.say(Level::Alarm, format!("the session goes on without Rerun: {}", NotBuilt(Feature::Rerun)));
+            self.model
+                .say(NoticeLevel::Alarm, format!("the session goes on without Rerun: {}", NotBuilt(Feature::Rerun)));
         }
     }
 

@@ -8,10 +8,10 @@ mod tell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use self::reading::{Extent, Reading};
+use self::reading::{AnalysisScope, RecordingAnalysis};
 pub use self::tell::describe;
 use super::parallel;
-use super::replay::OneKitchen;
+use super::replay::SameKitchen;
 use crate::edge::export::{Export, ExportError, Rows};
 use crate::edge::files::FileError;
 use crate::edge::log::LogReader;
@@ -44,25 +44,25 @@ impl From<FileError> for StudyError {
 
 /// What is analysed, and where the results go.
 #[derive(Clone, Debug)]
-pub struct Analysis {
+pub struct AnalysisRequest {
     /// Recordings, or folders with recordings in them.
     pub paths: Vec<PathBuf>,
     pub out: PathBuf,
-    pub extent: Extent,
+    pub extent: AnalysisScope,
 }
 
 /// The recordings of an analysis, each with its name in tables.
 #[derive(Clone, Debug)]
-pub struct Recordings {
+pub struct NamedRecordings {
     found: Vec<(PathBuf, String)>,
 }
 
-impl Recordings {
+impl NamedRecordings {
     /// Those that are meant by paths, each once.
     ///
     /// # Errors
     /// A path is none of a recording or of a folder with recordings.
-    pub fn find(paths: &[PathBuf]) -> Result<Recordings, StudyError> {
+    pub fn find(paths: &[PathBuf]) -> Result<NamedRecordings, StudyError> {
         let mut found: Vec<(PathBuf, String)> = Vec::new();
         for path in paths {
             for recording in recordings::of_folder(path)? {
@@ -79,7 +79,7 @@ impl Recordings {
                 *name = path.display().to_string();
             }
         }
-        Ok(Recordings { found })
+        Ok(NamedRecordings { found })
     }
 
     pub fn number(&self) -> usize {
@@ -98,8 +98,8 @@ fn name(recording: &Path) -> String {
 /// # Errors
 /// A recording cannot be read or applied, or is of another kitchen than the first; results cannot be written.
 pub fn study(
-    analysis: &Analysis,
-    recordings: &Recordings,
+    analysis: &AnalysisRequest,
+    recordings: &NamedRecordings,
     done: impl Fn() + Sync,
 ) -> Result<(StudyFigures, PathBuf), StudyError> {
     let export = Export::create(&analysis.out)?;
@@ -107,7 +107,7 @@ pub fn study(
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
     let work = |&(index, (path, name)): &(usize, &(PathBuf, String))| -> Result<Option<(Trial, Facts)>, StudyError> {
-        let Some((own, Reading { trial, facts, rows })) = reading::read(path, name, analysis.extent)? else {
+        let Some((own, RecordingAnalysis { trial, facts, rows })) = reading::read(path, name, analysis.extent)? else {
             return Ok(None);
         };
         same_kitchen((first, &kitchen), (path, &own))?;
@@ -147,12 +147,12 @@ pub fn study(
 }
 
 fn same_kitchen(first: (&Path, &Arc<Kitchen>), other: (&Path, &Arc<Kitchen>)) -> Result<(), FileError> {
-    let mut one = OneKitchen::default();
+    let mut one = SameKitchen::default();
     one.admit(first.0, first.1)?;
     one.admit(other.0, other.1)
 }
 
-fn nothing(analysis: &Analysis) -> StudyError {
+fn nothing(analysis: &AnalysisRequest) -> StudyError {
     let path = analysis.paths.first().map_or(Path::new("."), PathBuf::as_path);
     let remedy = "at least one recording".to_string();
     StudyError::from(FileError::of(path, "no recording".to_string(), remedy))

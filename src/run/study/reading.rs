@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::rows::{Known, RowGatherer};
-use super::sweep::Sweeper;
+use super::rows::{PressFacts, RowCollector};
+use super::sweep::ConceptSweep;
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
-use crate::console::comparison::What;
+use crate::console::comparison::CommunicationContent;
 use crate::edge::files::FileResult;
 use crate::edge::log::{LogReader, at_line, codes};
 use crate::kitchen::cost_to_go::CostToGo;
@@ -19,9 +19,9 @@ use crate::measures::sequences::{Sequence, sequences, sequences_by_target};
 use crate::measures::{JudgedPress, median};
 use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
-use crate::run::compare::{Request, Watcher};
+use crate::run::compare::{CompareRequest, ComparisonFollower};
 use crate::run::follower::Follower;
-use crate::run::standing::Standing;
+use crate::run::standing::ExclusionStatus;
 use crate::run::wizard::{WizardLog, clock_at};
 use crate::session::apply::ApplyError;
 use crate::session::plan::PhaseSpec;
@@ -34,7 +34,7 @@ use crate::study::trial::{Answered, Basis, Beliefs, Trial};
 
 /// What a recording gives.
 #[derive(Debug)]
-pub struct Reading {
+pub struct RecordingAnalysis {
     pub trial: Trial,
     pub facts: Facts,
     /// Rows of the tables of events.
@@ -43,7 +43,7 @@ pub struct Reading {
 
 /// What is looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Extent {
+pub struct AnalysisScope {
     /// What concepts would have said.
     pub concepts: bool,
     /// The tables of events.
@@ -54,24 +54,26 @@ pub struct Extent {
 enum Pass {
     Plain(Box<Follower>),
     /// With the assistant beside the wizard.
-    Beside(Box<Watcher>),
+    Beside(Box<ComparisonFollower>),
     /// With the concepts that are compared.
-    Swept(Box<Sweeper>),
+    Swept(Box<ConceptSweep>),
 }
 
 impl Pass {
-    fn new(session: Session, extent: Extent) -> Pass {
+    fn new(session: Session, extent: AnalysisScope) -> Pass {
         let (spec, mut session) = (&session.spec.clone(), session);
         let cost = CostToGo::new(session.kitchen.clone());
         let is_simulated = spec.participant.kind == ParticipantKind::Simulated;
         match spec.trial.condition {
             Condition::Wizard if extent.concepts => {
-                let request = Request { with: Vec::new(), window: WINDOW };
+                let request = CompareRequest { with: Vec::new(), window: WINDOW };
                 session.spec.assistant.concept = ConceptName::TomCom;
-                Pass::Beside(Box::new(Watcher::new(session, &request)))
+                Pass::Beside(Box::new(ComparisonFollower::new(session, &request)))
             }
             // What would have been prevented is known only where it is known what was believed.
-            Condition::None if extent.concepts && is_simulated => Pass::Swept(Box::new(Sweeper::new(session, cost))),
+            Condition::None if extent.concepts && is_simulated => {
+                Pass::Swept(Box::new(ConceptSweep::new(session, cost)))
+            }
             _ => Pass::Plain(Box::new(Follower::new(session, cost))),
         }
     }
@@ -132,7 +134,11 @@ fn expected(kitchen: &Kitchen, state: crate::kitchen::State, estimate: &Dirichle
 ///
 /// # Errors
 /// It cannot be read or applied.
-pub fn read(recording: &Path, name: &str, extent: Extent) -> FileResult<Option<(Arc<Kitchen>, Reading)>> {
+pub fn read(
+    recording: &Path,
+    name: &str,
+    extent: AnalysisScope,
+) -> FileResult<Option<(Arc<Kitchen>, RecordingAnalysis)>> {
     let mut log = LogReader::open(recording)?;
     let header = log.header.clone();
     if header.session.step.as_ref().is_some_and(|step| step.period.is_none()) {
@@ -140,7 +146,7 @@ pub fn read(recording: &Path, name: &str, extent: Extent) -> FileResult<Option<(
     }
     let kitchen = log.kitchen.clone();
     let mut pass = Pass::new(log.session(), extent);
-    let mut rows = RowGatherer::new(name);
+    let mut rows = RowCollector::new(name);
     let mut hands = WizardLog::default();
     let mut robot = RobotTally::new(header.session.robot.arm);
     let mut answers = Vec::new();
@@ -169,7 +175,7 @@ pub fn read(recording: &Path, name: &str, extent: Extent) -> FileResult<Option<(
             answers.extend(confirmed(&follower.session));
         }
     }
-    let standing = Standing::of(&pass.follower().session, &log)?;
+    let standing = ExclusionStatus::of(&pass.follower().session, &log)?;
     let raters = raters(&log, pass.follower())?;
     let lanes = lanes(&mut pass);
     let follower = pass.follower();
@@ -190,11 +196,15 @@ pub fn read(recording: &Path, name: &str, extent: Extent) -> FileResult<Option<(
     }
     let follower = pass.follower();
     let errors: Vec<Vec<usize>> = sequence_errors(&judged).into_iter().map(|(_, errors)| errors).collect();
-    let known =
-        Known { judged: &judged, sequences: &errors, by_estimate: by_estimate.as_deref(), raters: raters.as_ref() };
+    let known = PressFacts {
+        judged: &judged,
+        sequences: &errors,
+        by_estimate: by_estimate.as_deref(),
+        raters: raters.as_ref(),
+    };
     let rows = rows.finish(&follower.session, &known, &lanes, WINDOW);
     trial.raters = raters.filter(|_| basis == Some(Basis::Raters));
-    Ok(Some((kitchen, Reading { trial, facts: Facts::of(&header, &follower.session), rows })))
+    Ok(Some((kitchen, RecordingAnalysis { trial, facts: Facts::of(&header, &follower.session), rows })))
 }
 
 /// What was sent, and in a wizard's trial beside it what the assistant would have said.
@@ -217,7 +227,7 @@ fn sent(session: &Session) -> Vec<Said> {
         match &entry.what {
             Happening::Press { agent: Agent::Human, .. } => press += 1,
             Happening::Signal { signal, .. } => {
-                let content = What::Signal(signal.clone()).content(&session.kitchen);
+                let content = CommunicationContent::Signal(signal.clone()).content(&session.kitchen);
                 said.push(Said { press, clock: clock_at(session, entry.time), content });
             }
             _ => {}
@@ -317,13 +327,13 @@ fn confirmed(session: &Session) -> Vec<Answered> {
     questionnaire.items.iter().enumerate().map(answered).collect()
 }
 
-fn trial(name: &str, header: &Header, follower: &Follower, standing: Standing) -> Trial {
+fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionStatus) -> Trial {
     let (session, spec) = (&follower.session, &header.session);
     let step = spec.step.as_ref();
     let is_over = matches!(session.phase, Phase::Over(_) | Phase::Closed);
     let left_out = match standing {
-        Standing { aborted: Some(reason), .. } => Some(format!("aborted: {reason}")),
-        Standing { excluded: Some(reason), .. } => Some(format!("excluded: {reason}")),
+        ExclusionStatus { aborted: Some(reason), .. } => Some(format!("aborted: {reason}")),
+        ExclusionStatus { excluded: Some(reason), .. } => Some(format!("excluded: {reason}")),
         _ if !is_over => Some("cut before the trial's end".to_string()),
         _ if session.presses == [0, 0] => Some("no press in it".to_string()),
         _ => None,

@@ -30,7 +30,7 @@ struct Look {
 
 /// Gathers rows.
 #[derive(Debug)]
-pub struct RowGatherer {
+pub struct RowCollector {
     recording: String,
     rows: [Rows; 4],
     /// When each agent pressed last.
@@ -43,7 +43,7 @@ pub struct RowGatherer {
 
 /// What is known of the presses of the human when all is over.
 #[derive(Clone, Copy, Debug)]
-pub struct Known<'a> {
+pub struct PressFacts<'a> {
     pub judged: &'a [JudgedPress],
     /// Sequences of belief related errors, as indices of presses.
     pub sequences: &'a [Vec<usize>],
@@ -52,7 +52,7 @@ pub struct Known<'a> {
     pub raters: Option<&'a [Codes; 2]>,
 }
 
-impl Known<'_> {
+impl PressFacts<'_> {
     /// Fills in the row of a press.
     fn judge(&self, session: &Session, index: usize, press: &JudgedPress, row: &mut ActionRow) {
         let verdict = &press.verdict;
@@ -88,9 +88,9 @@ fn in_words(code: &Code) -> String {
     code.aspect().map_or(kind.to_string(), |aspect| format!("{kind} {aspect}"))
 }
 
-impl RowGatherer {
-    pub fn new(recording: &str) -> RowGatherer {
-        RowGatherer {
+impl RowCollector {
+    pub fn new(recording: &str) -> RowCollector {
+        RowCollector {
             recording: recording.to_string(),
             rows: Table::OF_EVENTS.map(|_| Rows::default()),
             pressed: [None; 2],
@@ -216,7 +216,7 @@ impl RowGatherer {
     pub fn finish(
         mut self,
         session: &Session,
-        known: &Known,
+        known: &PressFacts,
         lanes: &[(String, Vec<Said>)],
         window: u32,
     ) -> [Vec<u8>; 4] {

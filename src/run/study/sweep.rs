@@ -12,7 +12,7 @@ use crate::communication::tom::Tom;
 use crate::kitchen::Agent;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::measures::attribution::Cause;
-use crate::run::advisor::Question;
+use crate::run::advisor::AdviceRequest;
 use crate::run::compare::follows_at_once;
 use crate::run::engine::changes_task;
 use crate::run::follower::Follower;
@@ -33,7 +33,7 @@ struct Voice {
 
 /// Follows a session, and asks after every press and order change, as the engine does.
 #[derive(Debug)]
-pub struct Sweeper {
+pub struct ConceptSweep {
     pub follower: Follower,
     planner: Planner,
     tom: Tom,
@@ -43,9 +43,9 @@ pub struct Sweeper {
     to_ask: Option<(u64, SessionTime)>,
 }
 
-impl Sweeper {
+impl ConceptSweep {
     /// A sweeper of a session from before its first event on.
-    pub fn new(session: Session, cost: CostToGo) -> Sweeper {
+    pub fn new(session: Session, cost: CostToGo) -> ConceptSweep {
         let (kitchen, spec) = (session.kitchen.clone(), &session.spec);
         // Planned as carefully as the least cost asks for.
         let assistant = AssistantSpec { cost_of_communication: LEAST_COST, ..spec.assistant.clone() };
@@ -57,7 +57,7 @@ impl Sweeper {
         };
         let of_concept = |concept: ConceptName| parameters(concept).into_iter().map(move |one| voice(concept, one));
         let speaking = CONCEPTS.into_iter().filter(|concept| *concept != ConceptName::Dev);
-        Sweeper {
+        ConceptSweep {
             planner: Planner::new(kitchen.clone(), &spec.human, assistant, session.seed()),
             tom: Tom::new(kitchen, 0.0),
             follower: Follower::new(session, cost.clone()),
@@ -98,7 +98,7 @@ impl Sweeper {
         let session = &self.follower.session;
         let (kitchen, state) = (&session.kitchen, session.state);
         let own_hand = session.spec.signals.own_hand;
-        let question = Question::of(&self.follower, seq, time);
+        let question = AdviceRequest::of(&self.follower, seq, time);
         let moment = question.moment();
         let benefits = self.planner.advise(&mut self.cost, &moment).options;
         let deviations = self.tom.advise(&mut self.cost, &moment).options;

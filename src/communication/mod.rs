@@ -56,6 +56,12 @@ pub fn signals(kitchen: &Kitchen, own_hand: bool) -> Vec<(LocationId, Signal)> {
     (0..kitchen.locations.len()).filter_map(signal).collect()
 }
 
+/// The signals that can be sent in a state.
+pub fn available(kitchen: &Kitchen, state: State, own_hand: bool) -> Vec<Signal> {
+    let all = signals(kitchen, own_hand).into_iter().map(|(_, signal)| signal);
+    all.filter(|signal| unavailable(kitchen, state, signal).is_none()).collect()
+}
+
 /// Why a signal cannot be sent now; `None` if it can. Only an order that wants a dish has a recipe to show.
 pub fn unavailable(kitchen: &Kitchen, state: State, signal: &Signal) -> Option<&'static str> {
     let Some(location) = kitchen.location_named(signal.target()) else { return Some("no such location") };

@@ -15,6 +15,13 @@ pub struct Situation<'a> {
     pub robot_press_s: f64,
 }
 
+impl<'a> Situation<'a> {
+    /// A situation in which nothing has just changed and the robot follows its policy, with a press every 2.4 s.
+    pub fn new(state: State, belief: &'a DirichletBelief) -> Situation<'a> {
+        Situation { state, belief, changed: &[], robot: RobotOutlook::Free, robot_press_s: 2.4 }
+    }
+}
+
 /// What the robot is about to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RobotOutlook {

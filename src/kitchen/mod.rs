@@ -109,6 +109,11 @@ impl Kitchen {
         self.locations.iter().position(|location| location.name == name).map(|index| LocationId(index as u8))
     }
 
+    /// The dish of this name.
+    pub fn dish_named(&self, name: &str) -> Option<DishId> {
+        self.dishes.iter().position(|dish| dish.name == name).map(|index| DishId(index as u8))
+    }
+
     /// The content with this name.
     pub fn content_named(&self, name: &str) -> Option<ContentId> {
         self.contents.iter().position(|content| content.name == name).map(|index| ContentId(index as u8))

@@ -12,6 +12,8 @@ pub mod orders;
 pub mod plan;
 pub mod preflight;
 pub mod protocol;
+mod reading;
+mod requirements;
 pub mod robot;
 pub mod screen;
 pub mod settings;

@@ -7,7 +7,6 @@ use super::plan::{PlanSpec, StepSpec};
 pub use super::robot::{ArmKind, RobotSpec};
 use super::stream::RerunSpec;
 use super::tracker::TrackerSpec;
-use crate::base::features::{Feature, NotBuilt};
 use crate::communication::settings::{AssistantSpec, Shadow};
 use crate::mind::model::HumanModel;
 use crate::participant::population::Population;
@@ -65,7 +64,8 @@ fn default_seed() -> u64 {
 const MAX_TRIAL_S: f64 = 86_400.0;
 
 /// A setting that cannot be.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("found {found}, wanted {remedy}")]
 pub struct SettingError {
     /// The setting with the tables around it, from outside; tables in between may be left out: "rerun.address".
     pub path: String,
@@ -90,29 +90,6 @@ impl SettingError {
 }
 
 impl SessionSpec {
-    /// Whether this build can run a session of these settings without a console: it takes the part that moves the arm.
-    ///
-    /// # Errors
-    /// It cannot: the part that it lacks.
-    pub const fn require_built(&self) -> Result<(), NotBuilt> {
-        match self.robot.arm {
-            ArmKind::Physics => Feature::Physics.require(),
-            ArmKind::Timed => Ok(()),
-        }
-    }
-
-    /// Whether this build can run such a session at the console.
-    ///
-    /// # Errors
-    /// It cannot: the part that it lacks.
-    pub fn require_built_live(&self) -> Result<(), NotBuilt> {
-        self.require_built()?;
-        match self.participant.kind {
-            ParticipantKind::Display => Feature::Display.require(),
-            ParticipantKind::Keyboard | ParticipantKind::Simulated => Ok(()),
-        }
-    }
-
     /// Checks what the types do not: ranges, the participant's code, and settings that exclude each other.
     ///
     /// # Errors

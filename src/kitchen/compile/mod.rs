@@ -67,6 +67,24 @@ fn wrong_file(file: SpecFile, found: impl Into<String>, remedy: impl Into<String
 }
 
 impl Kitchen {
+    /// Reads a kitchen from the texts of a layout file and of the recipe file that belongs to it.
+    ///
+    /// # Errors
+    /// One of them is not TOML, or describes no kitchen.
+    pub fn from_toml(layout: &str, recipes: &str) -> Result<Kitchen> {
+        let unreadable = |file: SpecFile| {
+            move |error: toml::de::Error| SpecError {
+                file,
+                span: error.span(),
+                found: error.message().to_string(),
+                remedy: "a file like those in layouts and recipes".to_string(),
+            }
+        };
+        let layout: LayoutSpec = toml::from_str(layout).map_err(unreadable(SpecFile::Layout))?;
+        let recipes: RecipesSpec = toml::from_str(recipes).map_err(unreadable(SpecFile::Recipes))?;
+        Kitchen::compile(&layout, &recipes)
+    }
+
     /// Compiles a kitchen. Errors name the file, the place in it, what was found and what would be right.
     pub fn compile(layout: &LayoutSpec, recipes: &RecipesSpec) -> Result<Kitchen> {
         let items = IngredientItems::read(recipes)?;

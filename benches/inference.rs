@@ -32,7 +32,7 @@ impl Times {
     fn add(&mut self, observation: &Observation, took: Duration) {
         match observation.what {
             Observed::Gaze { .. } => self.gaze.push(took),
-            Observed::Pressed { .. } => self.press.push(took),
+            Observed::Pressed(_) => self.press.push(took),
             _ => {}
         }
     }

@@ -4,6 +4,7 @@
 
 pub mod action;
 pub mod aspect;
+pub mod change;
 pub mod compile;
 pub mod content;
 pub mod cost_to_go;
@@ -16,6 +17,7 @@ pub mod state;
 use crate::base::rng::mix;
 pub use action::{Agent, Button, ButtonAction, ButtonId};
 pub use aspect::{Aspect, AspectId, AspectKind};
+pub use change::{Change, Press};
 pub use content::{Content, ContentId};
 pub use layout::{DisplayArea, Location, LocationId, LocationKind};
 pub use look::Appearance;

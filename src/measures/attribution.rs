@@ -7,7 +7,7 @@
 
 use crate::base::rng::stream;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{AspectId, ButtonId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::kitchen::{AspectId, ButtonId, DishId, Kitchen, LocationId, LocationKind, OrderContent, Press, State};
 use crate::mind::belief::{Belief, Case};
 use crate::mind::decision::DecisionModel;
 
@@ -100,18 +100,11 @@ impl Attributor {
         Attributor { model, seed }
     }
 
-    /// The cause of an error: of pressing `button` in `state`, with this belief. `press`: its number among
-    /// those of both agents, which chance follows from.
-    pub fn cause(
-        &self,
-        kitchen: &Kitchen,
-        cost: &mut CostToGo,
-        belief: &Belief,
-        state: State,
-        button: ButtonId,
-        press: u32,
-    ) -> Cause {
-        let mut random = stream(self.seed, "attribution", u64::from(press));
+    /// The cause of a press that was an error, given the belief before it. `number`: how many presses both agents have
+    /// made, this one included; it seeds the random stream.
+    pub fn cause(&self, kitchen: &Kitchen, cost: &mut CostToGo, belief: &Belief, press: &Press, number: u32) -> Cause {
+        let (state, button) = (press.before, press.button);
+        let mut random = stream(self.seed, "attribution", u64::from(number));
         let cases = self.model.cases(kitchen, belief, &mut random);
         let error = Inquiry { kitchen, model: &self.model, cases, state, button };
         let believed = error.log_p(cost, &error.cases);

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, State};
+use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, Press, State};
 
 /// A press so soon after a change by the robot, or by nobody, at the same place cannot have taken the change into account.
 pub const RACE_S: f64 = 0.3;
@@ -49,16 +49,9 @@ impl Judge {
         }
     }
 
-    /// Judges a press of the human; `after` is equal to `before` if it had no effect.
-    pub fn human_pressed(
-        &self,
-        cost: &mut CostToGo,
-        now: SessionTime,
-        button: ButtonId,
-        before: State,
-        after: State,
-    ) -> Verdict {
-        let kitchen = &self.kitchen;
+    /// Judges a press of the human.
+    pub fn human_pressed(&self, cost: &mut CostToGo, now: SessionTime, press: &Press) -> Verdict {
+        let (kitchen, &Press { button, before, after, .. }) = (&self.kitchen, press);
         let recipes = kitchen.true_recipes();
         let here = cost.all_orders(before, &recipes) as i32;
         let mut regret_to = |state: State| match state == before {

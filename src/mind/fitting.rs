@@ -6,7 +6,7 @@ use super::filter::BeliefFilter;
 use super::model::HumanModel;
 use super::observation::{Observation, Observed};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Kitchen};
+use crate::kitchen::{Agent, Kitchen, Press};
 use std::sync::Arc;
 
 /// The scale of tau ends where 1 / tau is as small as this, in presses.
@@ -149,7 +149,9 @@ pub fn likelihood(
     let mut found = Likelihood::default();
     for observation in observations {
         filter.observe(observation, cost);
-        if let (Observed::Pressed { agent: Agent::Human, .. }, Some(evidence)) = (observation.what, filter.evidence()) {
+        if let (Observed::Pressed(Press { agent: Agent::Human, .. }), Some(evidence)) =
+            (observation.what, filter.evidence())
+        {
             found.presses += 1;
             found.log_p += evidence.log_p;
         }

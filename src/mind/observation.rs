@@ -2,7 +2,7 @@
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
-use crate::kitchen::{Agent, ButtonId, LocationId, State};
+use crate::kitchen::{LocationId, Press, State};
 
 /// Something that happened, and when.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,13 +23,8 @@ pub enum Observed {
         sample: GazeSample,
         taken: SessionTime,
     },
-    /// An agent pressed a button; `after` is `None` if that had no effect.
-    Pressed {
-        agent: Agent,
-        button: ButtonId,
-        before: State,
-        after: Option<State>,
-    },
+    /// An agent pressed a button.
+    Pressed(Press),
     /// The display shows this from now on without anybody having pressed: orders come and go.
     Displayed {
         state: State,

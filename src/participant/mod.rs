@@ -24,7 +24,7 @@ use crate::communication::Signal;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId, LocationKind};
-use crate::kitchen::{OrderContent, State};
+use crate::kitchen::{OrderContent, Press, State};
 use crate::mind::BeliefWitness;
 use attention::Attention;
 use beliefs::{Beliefs, wanted_dish};
@@ -195,16 +195,16 @@ impl SimulatedParticipant {
     }
 
     /// An agent pressed a button: of the robot's press only that it happened is noticed.
-    pub fn on_press(&mut self, now: SessionTime, agent: Agent, button: ButtonId, _before: State, after: Option<State>) {
-        match agent {
+    pub fn on_press(&mut self, now: SessionTime, press: &Press) {
+        match press.agent {
             Agent::Robot => {
                 self.robot_pressed_at = now;
                 self.wonder();
             }
             Agent::Human => {
-                let button = self.meant.take().unwrap_or(button);
-                self.take_in(now, button, after.is_some());
-                if let Some(after) = after {
+                let button = self.meant.take().unwrap_or(press.button);
+                self.take_in(now, button, press.effective);
+                if let Some(after) = press.result() {
                     self.display = after;
                 }
             }

@@ -34,10 +34,12 @@ impl AdviceRequest {
     pub fn of(follower: &Follower, seq: u64, time: SessionTime) -> AdviceRequest {
         let session = &follower.session;
         let robot = match session.robot.intention {
-            _ if session.robot.stopped || session.robot.held && !session.robot.driven => RobotOutlook::Still,
+            _ if session.robot.stopped || session.robot.held && session.robot.driven_to.is_none() => {
+                RobotOutlook::Still
+            }
             Some((button, _, until)) => {
                 let remaining_s = until.secs_since(time).max(0.0);
-                RobotOutlook::Busy { button, remaining_s, driven: session.robot.driven }
+                RobotOutlook::Busy { button, remaining_s, driven: session.robot.driven_to.is_some() }
             }
             None => RobotOutlook::Free,
         };

@@ -7,14 +7,14 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::parallel;
-use super::replay::{Replay, SameKitchen, each_once};
+use super::replay::{Replay, ReplayedEvent, SameKitchen, each_once};
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::edge::files::FileResult;
 use crate::gaze::MIN_CONFIDENCE;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
+use crate::kitchen::{Change, Kitchen, LocationId, Press};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
 use crate::measures::beliefs::{Detection, EstimateView, PressView, TrialView};
@@ -92,26 +92,20 @@ fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView)> {
     let mut held = None;
     let mut before = Before::default();
     loop {
-        before.state = replay.session().state;
-        let Some(line) = replay.step()? else { break };
+        let Some(ReplayedEvent { stamped, change }) = replay.step()? else { break };
         let kitchen = replay.session().kitchen.clone();
-        match &line.stamped.event {
-            Event::ParticipantBelieves(witness) => {
-                let fits = Belief::of_witness(&kitchen, before.state, witness).is_some();
-                held = fits.then(|| witness.aspects.iter().map(|aspect| aspect.p_truth).collect());
-            }
-            Event::Press { agent: Agent::Human, button, .. } => {
-                let counted = replay.follower.judged.last().filter(|press| press.seq == line.stamped.seq).copied();
-                if let (Some(judged), Some(button)) = (counted, kitchen.button_named(Agent::Human, button)) {
-                    let estimated = replay.follower.estimated.as_ref().filter(|one| one.press == line.stamped.seq);
-                    let estimate = estimated.map(|one| EstimateView::of(&one.witness(&kitchen)));
-                    let press = before.press(&kitchen, button, &judged, held.take());
-                    trial.push(PressView { estimate, ..press });
-                }
-            }
-            _ => {}
+        if let Event::ParticipantBelieves(witness) = &stamped.event {
+            let fits = Belief::of_witness(&kitchen, replay.session().state, witness).is_some();
+            held = fits.then(|| witness.aspects.iter().map(|aspect| aspect.p_truth).collect());
         }
-        before.notice(replay.session(), &line.stamped.event);
+        let judged = replay.follower.judged.last().filter(|press| press.seq == stamped.seq).copied();
+        if let (Some(judged), Some(press)) = (judged, change.human_press()) {
+            let estimated = replay.follower.estimated.as_ref().filter(|one| one.press == stamped.seq);
+            let estimate = estimated.map(|one| EstimateView::of(&one.witness(&kitchen)));
+            let view = before.press(&kitchen, &press, &judged, held.take());
+            trial.push(PressView { estimate, ..view });
+        }
+        before.notice(replay.session(), &stamped.event, &change);
     }
     Ok((replay.session().kitchen.clone(), trial))
 }
@@ -119,7 +113,6 @@ fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView)> {
 /// What is known of a session before its next event.
 #[derive(Default)]
 struct Before {
-    state: State,
     /// For each location, whether somebody else changed it since the human last looked at it or changed it itself.
     unseen_change: [bool; MAX_LOCATIONS],
     /// Since when the gaze is in each location's area, and nothing changed there.
@@ -128,12 +121,12 @@ struct Before {
 
 impl Before {
     /// Takes note of what an event changed that was just applied, and of where the human looks.
-    fn notice(&mut self, session: &Session, event: &Event) {
-        let is_own = matches!(event, Event::Press { agent: Agent::Human, .. });
+    fn notice(&mut self, session: &Session, event: &Event, change: &Change) {
+        let is_own = change.human_press().is_some();
         let is_look = matches!(event, Event::Gaze(sample) if sample.confidence >= MIN_CONFIDENCE);
         for index in 0..session.kitchen.locations.len() {
             let location = LocationId(index as u8);
-            if self.state.code(location) != session.state.code(location) {
+            if change.states().is_some_and(|(before, after)| before.code(location) != after.code(location)) {
                 self.unseen_change[index] = !is_own;
                 self.looks_since[index] = None;
             }
@@ -147,10 +140,10 @@ impl Before {
     }
 
     /// The view of a press that came next.
-    fn press(&self, kitchen: &Kitchen, button: ButtonId, judged: &JudgedPress, held: Option<Vec<f64>>) -> PressView {
+    fn press(&self, kitchen: &Kitchen, press: &Press, judged: &JudgedPress, held: Option<Vec<f64>>) -> PressView {
         let mut press = PressView {
-            state: self.state,
-            button,
+            state: press.before,
+            button: press.button,
             held,
             estimate: None,
             unseen_change: self.unseen_change[..kitchen.locations.len()].to_vec(),

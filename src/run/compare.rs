@@ -24,7 +24,7 @@ use crate::console::comparison::{
     Communication, CommunicationContent, CommunicationContext, CommunicationLane, LaneComparison,
 };
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, LocationId, State};
+use crate::kitchen::{Agent, Change, LocationId, State};
 use crate::measures::matching::Said;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::BeliefFilter;
@@ -32,7 +32,7 @@ use crate::mind::observation::{Observation, Observed};
 use crate::session::apply::ApplyError;
 use crate::session::screen::Screen;
 use crate::session::settings::Condition;
-use crate::session::{Event, Session, SessionSpec, Stamped};
+use crate::session::{Applied, Event, Session, SessionSpec, Stamped};
 
 /// What is compared.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -138,15 +138,14 @@ impl ComparisonFollower {
     ///
     /// # Errors
     /// Those of [`Follower::apply`].
-    pub fn apply(&mut self, stamped: &Stamped) -> Result<(), ApplyError> {
+    pub fn apply(&mut self, stamped: &Stamped) -> Result<Change, ApplyError> {
         if self.to_ask.is_some_and(|(_, time)| !follows_at_once(stamped, time)) {
             self.ask();
         }
         let is_sent = matches!(stamped.event, Event::SignalShown { .. });
-        let before = (self.follower.session.state, self.follower.session.is_running());
         let filter = is_sent.then(|| self.follower.filter.clone());
-        self.follower.apply(stamped)?;
-        self.estimate_without(stamped, before);
+        let Applied { change, .. } = self.follower.apply(stamped)?;
+        self.estimate_without(stamped, &change);
         if let (Some(filter), Event::SignalShown { signal, .. }) = (filter, &stamped.event) {
             let (press, state) = (self.presses(), self.follower.session.state);
             self.without.push_back(Without { press, signal: signal.clone(), state, filter });
@@ -154,7 +153,7 @@ impl ComparisonFollower {
             self.sent.push(spoken);
         }
         match &stamped.event {
-            event if event.is_sample() => return Ok(()),
+            event if event.is_sample() => return Ok(change),
             Event::Screen(screen) => self.screen = Some(screen.clone()),
             Event::TrialStarted => {
                 self.shown = Repeats::default();
@@ -166,7 +165,7 @@ impl ComparisonFollower {
         if self.follower.session.is_running() && changes_task(&stamped.event) {
             self.to_ask = Some((stamped.seq, stamped.time));
         }
-        Ok(())
+        Ok(change)
     }
 
     /// Asks what is still to be asked: there will be no more events.
@@ -185,7 +184,7 @@ impl ComparisonFollower {
     }
 
     /// Moves the estimates on that leave signals out. They learn all but signals.
-    fn estimate_without(&mut self, stamped: &Stamped, (before, counts): (State, bool)) {
+    fn estimate_without(&mut self, stamped: &Stamped, change: &Change) {
         let (press, window) = (self.presses(), self.window);
         while let Some(oldest) = self.without.pop_front_if(|oldest| press > oldest.press + window) {
             self.shown.shown(&self.follower.session.kitchen, oldest.state, &oldest.signal);
@@ -193,7 +192,7 @@ impl ComparisonFollower {
         if self.without.is_empty() {
             return;
         }
-        let Some(what) = self.follower.observed(stamped, before, counts) else { return };
+        let Some(what) = self.follower.observed(stamped, change) else { return };
         if matches!(what, Observed::Told { .. }) {
             return;
         }

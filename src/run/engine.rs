@@ -29,7 +29,7 @@ use crate::session::orders::OrderList;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::timers::TimerQueue;
-use crate::session::{Effect, Event, Phase, Session, SessionSpec, Stamped, Timer};
+use crate::session::{Applied, Effect, Event, Phase, Session, SessionSpec, Stamped, Timer};
 use crate::wizard::ScriptedWizard;
 
 /// A running session.
@@ -266,13 +266,12 @@ impl Engine {
             other => other,
         };
         let stamped = Stamped { seq: self.next_seq, time: now, event };
-        let before = self.session().state;
-        let effects = self.follower.apply(&stamped)?;
+        let Applied { effects, change } = self.follower.apply(&stamped)?;
         self.next_seq += 1;
         effects.into_iter().for_each(|effect| self.perform(effect));
-        self.tell_participant(&stamped, before);
-        self.tell_wizard(&stamped, before);
-        let robots = self.tell_robot(&stamped);
+        self.tell_participant(&stamped, &change);
+        self.tell_wizard(&stamped, &change);
+        let robots = self.tell_robot(&stamped, &change);
         if self.session().is_running() && self.session().spec.asks_assistant() && changes_task(&stamped.event) {
             self.to_ask = Some((stamped.seq, now));
         }

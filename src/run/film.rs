@@ -69,11 +69,17 @@ impl SeekableReplay {
     /// Those of [`Replay::step`].
     pub fn read(&mut self) -> FileResult<bool> {
         let before = self.events.len();
-        while let Some(line) = self.replay.step()? {
+        while let Some(event) = self.replay.step()? {
             let (session, belief) = (self.replay.session(), self.replay.follower.filter.belief());
-            let by_gaze = line.stamped.event.is_sample();
-            self.beliefs.note(BeliefSnapshot::new(&session.kitchen, session.state, belief, line.stamped.time, by_gaze));
-            self.events.push(line.stamped);
+            let by_gaze = event.stamped.event.is_sample();
+            self.beliefs.note(BeliefSnapshot::new(
+                &session.kitchen,
+                session.state,
+                belief,
+                event.stamped.time,
+                by_gaze,
+            ));
+            self.events.push(event.stamped);
         }
         let judged = &self.replay.follower.judged;
         let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::communication::repeats::Repeats;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, ButtonId, Kitchen, State};
+use crate::kitchen::{Agent, Change, Kitchen, Press, State};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Attributor;
 use crate::measures::errors::Judge;
@@ -15,7 +15,7 @@ use crate::mind::filter::{BeliefFilter, Evidence};
 use crate::mind::observation::{Observation, Observed};
 use crate::mind::witness::EstimateWitness;
 use crate::session::apply::ApplyError;
-use crate::session::{Effect, Event, Session, Stamped, apply};
+use crate::session::{Applied, Event, Session, Stamped, apply};
 
 /// A session, the errors in it, and their causes.
 #[derive(Clone, Debug)]
@@ -98,12 +98,10 @@ impl Follower {
     ///
     /// # Errors
     /// Those of [`apply`].
-    pub fn apply(&mut self, stamped: &Stamped) -> Result<Vec<Effect>, ApplyError> {
-        let before = self.session.state;
-        let counts = self.session.is_running();
-        let effects = apply(&mut self.session, stamped)?;
-        match &stamped.event {
-            Event::ParticipantBelieves(witness) if self.finds_causes => {
+    pub fn apply(&mut self, stamped: &Stamped) -> Result<Applied, ApplyError> {
+        let applied = apply(&mut self.session, stamped)?;
+        match (&stamped.event, applied.change) {
+            (Event::ParticipantBelieves(witness), _) if self.finds_causes => {
                 let session = &self.session;
                 self.belief = Belief::of_witness(&session.kitchen, session.state, witness);
                 if let Some(belief) = &self.belief {
@@ -111,40 +109,36 @@ impl Follower {
                     self.episodes.believed(&session.kitchen, now, session.state, belief, changed_at);
                 }
             }
-            Event::Press { agent: Agent::Robot, .. } if counts => {
-                self.judge.others_changed(stamped.time, before, self.session.state);
-            }
-            Event::KitchenCorrected { .. } => self.judge.others_changed(stamped.time, before, self.session.state),
-            Event::Press { agent: Agent::Human, button, .. } if counts => {
-                if let Some(button) = self.session.kitchen.button_named(Agent::Human, button) {
-                    self.human_pressed(stamped, button, before);
-                }
-            }
+            (_, Change::Press { press, .. }) => match press.agent {
+                Agent::Robot => self.judge.others_changed(stamped.time, press.before, press.after),
+                Agent::Human => self.human_pressed(stamped, &press),
+            },
+            (_, Change::Correction { before, after, .. }) => self.judge.others_changed(stamped.time, before, after),
             _ => {}
         }
-        self.estimate(stamped, before, counts);
-        Ok(effects)
+        self.estimate(stamped, &applied.change);
+        Ok(applied)
     }
 
-    /// Moves the estimate of the belief on by an event that was just applied; `counts`: the trial ran when it came.
-    fn estimate(&mut self, stamped: &Stamped, before: State, counts: bool) {
-        let Some(what) = self.observed(stamped, before, counts) else { return };
+    /// Moves the estimate of the belief on by an event that was just applied.
+    fn estimate(&mut self, stamped: &Stamped, change: &Change) {
+        let Some(what) = self.observed(stamped, change) else { return };
         let observation = Observation { time: stamped.time, what };
-        let is_human = matches!(what, Observed::Pressed { agent: Agent::Human, .. });
-        let belief = is_human.then(|| self.filter.belief().clone());
+        let human_press = change.human_press();
+        let belief = human_press.map(|_| self.filter.belief().clone());
         let began = self.timing.is_some().then(Instant::now);
         self.filter.observe(&observation, &mut self.cost);
         if let (Some(timing), Some(began)) = (&mut self.timing, began) {
             let took_ns = began.elapsed().as_nanos() as u64;
             match what {
                 Observed::Gaze { .. } => timing.gaze_ns.push(took_ns),
-                Observed::Pressed { .. } => timing.action_ns.push(took_ns),
+                Observed::Pressed(_) => timing.action_ns.push(took_ns),
                 _ => {}
             }
         }
         self.remember(stamped);
-        if let (Some(belief), Some(evidence)) = (belief, self.filter.evidence()) {
-            self.estimated = Some(PressEstimate { press: stamped.seq, state: before, belief, evidence });
+        if let (Some(press), Some(belief), Some(evidence)) = (human_press, belief, self.filter.evidence()) {
+            self.estimated = Some(PressEstimate { press: stamped.seq, state: press.before, belief, evidence });
         }
     }
 
@@ -161,10 +155,16 @@ impl Follower {
     }
 
     /// What an event tells about the human's belief.
-    pub fn observed(&self, stamped: &Stamped, before: State, counts: bool) -> Option<Observed> {
-        let (kitchen, state) = (&self.session.kitchen, self.session.state);
+    pub fn observed(&self, stamped: &Stamped, change: &Change) -> Option<Observed> {
+        match *change {
+            Change::TrialStarted { after, .. } => return Some(Observed::Started { state: after }),
+            Change::Press { press, .. } => return Some(Observed::Pressed(press)),
+            Change::Order { after, .. } | Change::Correction { after, .. } => {
+                return Some(Observed::Displayed { state: after });
+            }
+            Change::None | Change::UncountedPress { .. } => {}
+        }
         match &stamped.event {
-            Event::TrialStarted => Some(Observed::Started { state }),
             Event::TrialPaused => Some(Observed::Paused),
             Event::TrialResumed => Some(Observed::Resumed),
             // What has a fault of its own is recorded, and not read.
@@ -173,18 +173,7 @@ impl Follower {
                 let taken = sample.taken_ns.map_or(stamped.time, |taken| taken.min(stamped.time));
                 Some(Observed::Gaze { sample: self.session.corrected(*sample), taken })
             }
-            Event::Press { agent, button, .. } if counts => {
-                let button = kitchen.button_named(*agent, button)?;
-                // A press that has an effect changes the state.
-                let after = (state != before).then_some(state);
-                Some(Observed::Pressed { agent: *agent, button, before, after })
-            }
-            Event::OrderShown { .. } | Event::OrderCleared { .. } | Event::KitchenCorrected { .. } => {
-                Some(Observed::Displayed { state })
-            }
-            Event::SignalShown { signal, .. } => {
-                Some(Observed::Told { location: kitchen.location_named(signal.target())? })
-            }
+            Event::SignalShown { .. } => Some(Observed::Told { location: self.session.shown.as_ref()?.location }),
             _ => None,
         }
     }
@@ -195,16 +184,16 @@ impl Follower {
     }
 
     /// Judges a press of the human that has just been applied, and finds out why it was an error.
-    fn human_pressed(&mut self, stamped: &Stamped, button: ButtonId, before: State) {
-        let (kitchen, after) = (self.session.kitchen.clone(), self.session.state);
-        let press = self.session.all_presses();
-        let verdict = self.judge.human_pressed(&mut self.cost, stamped.time, button, before, after);
+    fn human_pressed(&mut self, stamped: &Stamped, press: &Press) {
+        let kitchen = self.session.kitchen.clone();
+        let number = self.session.all_presses();
+        let verdict = self.judge.human_pressed(&mut self.cost, stamped.time, press);
         // A belief is told before every press, and is that of this press alone.
         let belief = self.belief.take();
         let cause = belief
             .as_ref()
             .filter(|_| verdict.error)
-            .map(|belief| self.attributor.cause(&kitchen, &mut self.cost, belief, before, button, press));
+            .map(|belief| self.attributor.cause(&kitchen, &mut self.cost, belief, press, number));
         if let Some(cause) = cause {
             self.episodes.erred(&kitchen, cause);
         }

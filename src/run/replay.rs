@@ -7,17 +7,24 @@ use std::sync::Arc;
 use super::advisor::AdviceRequest;
 use super::follower::Follower;
 use crate::edge::files::{FileError, FileResult};
-use crate::edge::log::{LOG_NAME, LogLine, LogReader, at_line};
-use crate::kitchen::Kitchen;
+use crate::edge::log::{LOG_NAME, LogReader, at_line};
 use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Change, Kitchen};
 use crate::mind::observation::Observation;
-use crate::session::{Event, Session};
+use crate::session::{Event, Session, Stamped};
 
 /// A recording and the session at the point up to which it was replayed.
 #[derive(Debug)]
 pub struct Replay {
     log: LogReader,
     pub follower: Follower,
+}
+
+/// An event of a recording that was just applied, and what it changed in the kitchen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReplayedEvent {
+    pub stamped: Stamped,
+    pub change: Change,
 }
 
 impl Replay {
@@ -46,12 +53,13 @@ impl Replay {
     ///
     /// # Errors
     /// A line that is no event, or an event that cannot be at this point.
-    pub fn step(&mut self) -> FileResult<Option<LogLine>> {
+    pub fn step(&mut self) -> FileResult<Option<ReplayedEvent>> {
         let Some(line) = self.log.next_line()? else { return Ok(None) };
-        self.follower
+        let applied = self
+            .follower
             .apply(&line.stamped)
             .map_err(|error| at_line(self.log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
-        Ok(Some(line))
+        Ok(Some(ReplayedEvent { stamped: line.stamped, change: applied.change }))
     }
 
     /// Applies everything that is there.
@@ -70,10 +78,9 @@ impl Replay {
     pub fn observations(&mut self) -> FileResult<Vec<Observation>> {
         let mut observations = Vec::new();
         loop {
-            let (before, counts) = (self.session().state, self.session().is_running());
-            let Some(line) = self.step()? else { return Ok(observations) };
-            if let Some(what) = self.follower.observed(&line.stamped, before, counts) {
-                observations.push(Observation { time: line.stamped.time, what });
+            let Some(event) = self.step()? else { return Ok(observations) };
+            if let Some(what) = self.follower.observed(&event.stamped, &event.change) {
+                observations.push(Observation { time: event.stamped.time, what });
             }
         }
     }
@@ -84,16 +91,13 @@ impl Replay {
     /// Those of [`Replay::step`].
     pub fn next_question(&mut self) -> FileResult<Option<AdviceRequest>> {
         let mut pressed = None;
-        while let Some(line) = self.step()? {
-            match line.stamped.event {
-                Event::Press { .. } if self.session().is_running() => pressed = Some(line.stamped.seq),
-                // By now the robot has made up its mind.
-                Event::Gaze(_) => {
-                    if let Some(seq) = pressed {
-                        return Ok(Some(AdviceRequest::of(&self.follower, seq, line.stamped.time)));
-                    }
-                }
-                _ => {}
+        while let Some(ReplayedEvent { stamped, change }) = self.step()? {
+            if change.press().is_some() {
+                pressed = Some(stamped.seq);
+            }
+            // By the next gaze sample the robot has chosen its press.
+            if let (Event::Gaze(_), Some(seq)) = (stamped.event, pressed) {
+                return Ok(Some(AdviceRequest::of(&self.follower, seq, stamped.time)));
             }
         }
         Ok(None)

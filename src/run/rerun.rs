@@ -292,19 +292,19 @@ impl Playing {
         let mut rows = writer.moment(&self.lane, &self.scene.opening());
         let mut held: Option<(Stamped, Option<DirichletBelief>)> = None;
         loop {
-            let line = self.replay.step()?;
+            let next = self.replay.step()?;
             if let Some((stamped, belief)) = held.take() {
                 // An estimate is shown when everything of its time has happened.
-                let is_last = line.as_ref().is_none_or(|next| next.stamped.time > stamped.time);
+                let is_last = next.as_ref().is_none_or(|next| next.stamped.time > stamped.time);
                 let judged = &self.replay.follower.judged;
                 let derived = Derived { judged, belief: belief.as_ref().filter(|_| is_last) };
                 let moments = self.scene.see(&stamped, derived);
                 rows += moments.iter().map(|moment| writer.moment(&self.lane, moment)).sum::<u64>();
             }
-            let Some(line) = line else { return Ok(rows) };
-            let wants = self.scene.wants_belief(line.stamped.time);
+            let Some(next) = next else { return Ok(rows) };
+            let wants = self.scene.wants_belief(next.stamped.time);
             let belief = wants.then(|| self.replay.follower.filter.belief().clone());
-            held = Some((line.stamped, belief));
+            held = Some((next.stamped, belief));
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::arm::reach::BUTTON_M;
 use crate::arm::reaching::resting_place;
 use crate::base::time::SessionTime;
 use crate::console::words;
-use crate::kitchen::{Agent, Button, ButtonId, Kitchen};
+use crate::kitchen::{Agent, Button, ButtonId, Change, Kitchen, Press};
 use crate::robot::moment::{ArmSample, JointAngles};
 use crate::robot::safety::SafetyMode;
 use crate::session::settings::ArmKind;
@@ -117,9 +117,17 @@ impl ArmScene {
     }
 
     /// What an event that was just applied changes.
-    pub fn follow(&mut self, session: &Session, stamped: &Stamped) -> Vec<Row> {
+    pub fn follow(&mut self, session: &Session, stamped: &Stamped, change: &Change) -> Vec<Row> {
         let now = stamped.time;
         let kitchen = &session.kitchen;
+        if let Change::Press { press: Press { agent, button, .. }, .. } | Change::UncountedPress { agent, button } =
+            *change
+        {
+            return match agent {
+                Agent::Human => vec![Row::new("human/hand", Shown::Points(vec![mark(kitchen, agent, button)]))],
+                Agent::Robot => self.goes_up(now),
+            };
+        }
         match &stamped.event {
             Event::RobotIntends { .. } | Event::TrialResumed => {
                 let Some((button, _, until)) = session.robot.intention else { return Vec::new() };
@@ -144,12 +152,7 @@ impl ArmScene {
                 }
                 rows
             }
-            Event::Press { agent: Agent::Human, button, .. } => {
-                let button = kitchen.button_named(Agent::Human, button);
-                let points = button.map(|button| mark(kitchen, Agent::Human, button));
-                vec![Row::new("human/hand", Shown::Points(points.into_iter().collect()))]
-            }
-            Event::Press { agent: Agent::Robot, .. } | Event::RobotAborts { .. } => self.goes_up(now),
+            Event::RobotAborts { .. } => self.goes_up(now),
             Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded => self.goes_up(now),
             _ => Vec::new(),
         }

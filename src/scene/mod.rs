@@ -11,7 +11,7 @@ mod places;
 pub mod shown;
 
 use crate::base::time::SessionTime;
-use crate::kitchen::State;
+use crate::kitchen::Change;
 use crate::measures::JudgedPress;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::session::{Event, Session, Stamped, apply};
@@ -103,12 +103,9 @@ impl Scene {
             return Vec::new();
         }
         let mut moments = self.until(stamped.time);
-        let before = self.session.state;
-        if apply(&mut self.session, stamped).is_err() {
-            return moments;
-        }
+        let Ok(applied) = apply(&mut self.session, stamped) else { return moments };
         self.next = stamped.seq + 1;
-        let rows = self.changes(stamped, before, derived);
+        let rows = self.changes(stamped, &applied.change, derived);
         if !rows.is_empty() {
             let trial = self.session.trial_clock(stamped.time);
             moments.push(Moment { time: stamped.time, trial, step: stamped.seq, rows });
@@ -124,9 +121,11 @@ impl Scene {
         self.arm.until(time).into_iter().map(moment).collect()
     }
 
-    fn changes(&mut self, stamped: &Stamped, before: State, derived: Derived<'_>) -> Vec<Row> {
+    fn changes(&mut self, stamped: &Stamped, change: &Change, derived: Derived<'_>) -> Vec<Row> {
         let session = &self.session;
-        let mut rows: Vec<Row> = places::contents(&session.kitchen, Some(before), session.state).collect();
+        let changed = change.states().into_iter();
+        let mut rows: Vec<Row> =
+            changed.flat_map(|(before, after)| places::contents(&session.kitchen, Some(before), after)).collect();
         match &stamped.event {
             Event::Gaze(sample) => rows.push(places::gaze(session, *sample)),
             Event::SignalShown { .. } | Event::SignalEnded { .. } => rows.extend(places::shown_signal(session)),
@@ -142,7 +141,7 @@ impl Scene {
         self.told = session.timeline.len();
         rows.extend(happenings::in_order(&rows));
         rows.extend(error.map(|_| happenings::mark()));
-        rows.extend(self.arm.follow(session, stamped));
+        rows.extend(self.arm.follow(session, stamped, change));
         rows.extend(self.belief.follow(session, stamped, derived.belief));
         rows
     }

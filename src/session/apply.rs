@@ -1,17 +1,14 @@
-//! `apply(&mut Session, &Stamped) -> Vec<Effect>`: the only way in which a session changes.
+//! `apply(&mut Session, &Stamped) -> Applied`: the only way in which a session changes.
 
 use super::admit::admit;
 use super::event::{EndReason, Event, SignalEnd, Stamped};
+use super::gaze_status::take_sample;
 use super::{Entry, Happening, Phase, Served, Session, ShownSignal};
 use super::{calibration, protocol, robot};
 use crate::base::time::SessionTime;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
-use crate::gaze::{GazeSample, MIN_CONFIDENCE};
-use crate::kitchen::{Agent, ButtonAction, ButtonId, ContentId, DishId, LocationId, OrderContent, State};
-
-/// After so many seconds without a gaze sample its rate is measured anew.
-const GAP_S: f64 = 0.5;
+use crate::kitchen::{Agent, ButtonAction, ButtonId, Change, ContentId, DishId, LocationId, OrderContent, State};
 
 /// What has to be done because of an event, by whoever runs the session. A replay does none of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,22 +51,27 @@ pub struct ApplyError {
     pub remedy: String,
 }
 
-type Applied = Result<Vec<Effect>, ApplyError>;
+/// What came of an event: what has to be done because of it, and what it changed in the kitchen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Applied {
+    pub effects: Vec<Effect>,
+    pub change: Change,
+}
 
 /// Moves the session on by one event.
 ///
 /// # Errors
 /// Names that the kitchen does not have, times that run backwards, and events that cannot be at this point (see
 /// [`admit`]); the session is unchanged then.
-pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
+pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyError> {
     check(session, stamped)?;
     let now = stamped.time;
     let named = Named { session, seq: stamped.seq };
-    let mut effects = Vec::new();
+    let (mut effects, mut change) = (Vec::new(), Change::None);
     match &stamped.event {
         Event::TrialStarted => {
             session.cue = Some(stamped.seq);
-            start(session, now, &mut effects);
+            change = start(session, now, &mut effects);
         }
         Event::TrialPaused => pause(session, now),
         Event::TrialResumed => resume(session, now, &mut effects),
@@ -88,21 +90,21 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
         }
         Event::FocusLost => note(session, now, Happening::Focus(false)),
         Event::FocusRegained => note(session, now, Happening::Focus(true)),
-        Event::Gaze(sample) => gaze(session, now, *sample),
+        Event::Gaze(sample) => take_sample(session, now, *sample),
         Event::Tracker(event) => session.tracker.apply(now, event),
         Event::Calibration(event) => calibration::apply(session, now, event),
         Event::Press { agent, button, .. } => {
             let button = named.button(*agent, button)?;
-            press(session, now, *agent, button, &mut effects);
+            change = press(session, now, *agent, button, &mut effects);
         }
         Event::OrderShown { order, dish } => {
             let (order, dish) = (named.order(order)?, named.dish(dish)?);
-            change(session, now, |state| state.set_order(order, OrderContent::Dish(dish)));
+            change = set_order(session, now, order, OrderContent::Dish(dish));
             note(session, now, Happening::OrderShown { order });
         }
         Event::OrderCleared { order } => {
             let order = named.order(order)?;
-            change(session, now, |state| state.set_order(order, OrderContent::None));
+            change = set_order(session, now, order, OrderContent::None);
         }
         Event::RobotIntends { button, until_ns } => {
             let button = named.button(Agent::Robot, button)?;
@@ -127,19 +129,20 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
         }
         Event::RobotDriven { button, .. } => {
             let button = named.button(Agent::Robot, button)?;
-            session.robot.driven = true;
+            session.robot.driven_to = Some(button);
             note(session, now, Happening::RobotDriven(button));
         }
         Event::KitchenCorrected { location, content } => {
             let (location, content) = (named.location(location)?, named.content(content)?);
-            change(session, now, |state| state.set_content(location, content));
+            let (before, after) = update(session, now, |state| state.set_content(location, content));
+            change = Change::Correction { location, before, after };
             note(session, now, Happening::Corrected { location });
         }
         Event::Advised(advice) => advise(session, advice.clone()),
         Event::SignalShown { by, signal, .. } => {
-            named.location(signal.target())?;
+            let location = named.location(signal.target())?;
             session.cue = Some(stamped.seq);
-            show(session, now, *by, signal, &mut effects);
+            show(session, now, *by, (signal, location), &mut effects);
         }
         Event::SignalEnded { reason } => end_signal(session, now, *reason, &mut effects),
         Event::Marker { note: text } => note(session, now, Happening::Marker(text.clone())),
@@ -150,7 +153,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Applied {
         Event::SessionEnded => close(session, now, &mut effects),
     }
     session.time = now;
-    Ok(effects)
+    Ok(Applied { effects, change })
 }
 
 /// Whether the event can come next.
@@ -215,29 +218,36 @@ pub(super) fn note(session: &mut Session, time: SessionTime, what: Happening) {
     session.timeline.push(Entry { time, what });
 }
 
-/// Changes the task state and remembers which locations changed.
-fn change(session: &mut Session, now: SessionTime, how: impl FnOnce(&mut State)) {
+/// Changes the task state, remembers which locations changed, and returns the state before and after.
+fn update(session: &mut Session, now: SessionTime, how: impl FnOnce(&mut State)) -> (State, State) {
     let before = session.state;
     how(&mut session.state);
     for location in session.kitchen.changed(before, session.state) {
         session.changed_at[location.index()] = now;
     }
+    (before, session.state)
 }
 
-fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
+fn set_order(session: &mut Session, now: SessionTime, order: LocationId, content: OrderContent) -> Change {
+    let (before, after) = update(session, now, |state| state.set_order(order, content));
+    Change::Order { order, before, after }
+}
+
+fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) -> Change {
     session.phase = Phase::Running;
     session.trial_start = now;
     session.paused_total = SessionTime::ZERO;
     session.presses = [0; 2];
     session.served.clear();
     let empty = session.kitchen.empty_state();
-    change(session, now, |state| *state = empty);
+    let (before, after) = update(session, now, |state| *state = empty);
     note(session, now, Happening::Trial(Phase::Running));
     let end = now + SessionTime::from_secs_f64(session.spec.trial.seconds);
     effects.push(Effect::At { time: end, timer: Timer::EndTrial });
     for &order in &session.kitchen.orders {
         effects.push(Effect::At { time: now, timer: Timer::NewOrder(order) });
     }
+    Change::TrialStarted { before, after }
 }
 
 fn pause(session: &mut Session, now: SessionTime) {
@@ -295,9 +305,15 @@ fn close(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
     effects.push(Effect::Close);
 }
 
-fn show(session: &mut Session, now: SessionTime, by: Sender, signal: &Signal, effects: &mut Vec<Effect>) {
+fn show(
+    session: &mut Session,
+    now: SessionTime,
+    by: Sender,
+    (signal, location): (&Signal, LocationId),
+    effects: &mut Vec<Effect>,
+) {
     let until = now + SessionTime::from_secs_f64(session.spec.signals.shown_s);
-    session.shown = Some(ShownSignal { signal: signal.clone(), by, since: now, until });
+    session.shown = Some(ShownSignal { signal: signal.clone(), location, by, since: now, until });
     if by == Sender::Wizard {
         session.signalled_at = Some(now);
         if let Some(advice) = &mut session.advice {
@@ -326,23 +342,22 @@ fn end_signal(session: &mut Session, now: SessionTime, reason: SignalEnd, effect
     }
 }
 
-fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId, effects: &mut Vec<Effect>) {
+fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId, effects: &mut Vec<Effect>) -> Change {
     if agent == Agent::Robot {
         session.robot.intention = None;
-        session.robot.driven = false;
+        session.robot.driven_to = None;
     }
     if !session.is_running() {
-        return;
+        return Change::UncountedPress { agent, button };
     }
     let kitchen = session.kitchen.clone();
-    let after = kitchen.press(session.state, &kitchen.true_recipes(), agent, button);
+    let press = kitchen.try_press(session.state, agent, button);
     session.presses[agent.index()] += 1;
-    note(session, now, Happening::Press { agent, button, effective: after.is_some() });
-    if let Some(after) = after {
-        let before = session.state;
-        change(session, now, |state| *state = after);
+    note(session, now, Happening::Press { agent, button, effective: press.effective });
+    if press.effective {
+        update(session, now, |state| *state = press.after);
         if let (ButtonAction::Serve(order), OrderContent::Dish(dish)) =
-            (kitchen.button(agent, button).action, served_dish(&kitchen.button(agent, button).action, before))
+            (kitchen.button(agent, button).action, served_dish(&kitchen.button(agent, button).action, press.before))
         {
             let presses = session.all_presses();
             session.served.push(Served { time: now, dish, presses });
@@ -358,6 +373,7 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
     if session.all_presses() >= session.spec.trial.presses {
         effects.push(Effect::At { time: now, timer: Timer::EndTrialByPresses });
     }
+    Change::Press { press, presses: session.presses }
 }
 
 /// The dish that a serve action served, from the state before it.
@@ -365,42 +381,5 @@ fn served_dish(action: &ButtonAction, before: State) -> OrderContent {
     match action {
         ButtonAction::Serve(order) => before.order(*order),
         _ => OrderContent::None,
-    }
-}
-
-fn gaze(session: &mut Session, now: SessionTime, sample: GazeSample) {
-    let status = &mut session.gaze;
-    status.samples += 1;
-    let interval_s = status.arrived.map_or(GAP_S, |last| now.secs_since(last));
-    status.arrived = Some(now);
-    match status.steady_since.filter(|_| interval_s < GAP_S) {
-        Some(since) => {
-            // The mean since the last gap; after a second of it, of about the last second. A few milliseconds at least,
-            // so that samples of one packet are no rate.
-            let window_s = now.secs_since(since).clamp(0.005, 1.0);
-            status.rate_hz += ((1.0 - interval_s * status.rate_hz) / window_s).max(-status.rate_hz);
-        }
-        None => {
-            status.rate_hz = 0.0;
-            status.steady_since = Some(now);
-        }
-    }
-    status.fault = status.judge.judge(&sample, now);
-    if status.fault.is_some() {
-        return;
-    }
-    calibration::gaze(session, sample.taken_ns.unwrap_or(now).min(now), sample);
-    let sample = session.corrected(sample);
-    let status = &mut session.gaze;
-    let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
-    if !on_display || sample.confidence < MIN_CONFIDENCE {
-        status.unusable += 1;
-        return;
-    }
-    status.last = Some((now, sample));
-    for (index, location) in session.kitchen.locations.iter().enumerate() {
-        if location.display.distance_m([sample.x, sample.y], session.kitchen.display_m) == 0.0 {
-            status.looked_at[index] = Some(now);
-        }
     }
 }

@@ -6,6 +6,7 @@ pub mod apply;
 pub mod calibration;
 pub mod display;
 pub mod event;
+mod gaze_status;
 mod hands;
 pub mod header;
 pub mod orders;
@@ -27,13 +28,12 @@ use crate::base::rng::of_trial;
 use crate::base::time::SessionTime;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
-use crate::gaze::GazeSample;
-use crate::gaze::quality::{GazeFault, SampleChecker};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
 use crate::robot::safety::SafetyMode;
-pub use apply::{Effect, Timer, apply};
+pub use apply::{Applied, Effect, Timer, apply};
 pub use event::{Event, Stamped};
+pub use gaze_status::GazeStatus;
 pub use header::Header;
 pub use robot::RobotStatus;
 pub use settings::SessionSpec;
@@ -119,30 +119,11 @@ pub struct Served {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownSignal {
     pub signal: Signal,
+    /// The location that the signal is about.
+    pub location: LocationId,
     pub by: Sender,
     pub since: SessionTime,
     pub until: SessionTime,
-}
-
-/// The participant's gaze as far as the console needs it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct GazeStatus {
-    /// When the newest sample came, usable or not.
-    pub arrived: Option<SessionTime>,
-    pub last: Option<(SessionTime, GazeSample)>,
-    /// When each location was last looked at (gaze inside its area), indexed by location.
-    pub looked_at: [Option<SessionTime>; MAX_LOCATIONS],
-    /// Samples so far; those with too low a confidence or outside of the display are counted apart.
-    pub samples: u64,
-    pub unusable: u64,
-    /// Those that were recorded and are not read, by kind.
-    pub judge: SampleChecker,
-    /// What is wrong with the newest sample.
-    pub fault: Option<GazeFault>,
-    /// Samples a second, smoothed over about a second: see [`Session::gaze_hz`].
-    pub(crate) rate_hz: f64,
-    /// Since when samples come without a gap; nothing after a pause.
-    pub(crate) steady_since: Option<SessionTime>,
 }
 
 /// An entry of the timeline.

@@ -63,8 +63,8 @@ pub struct RobotStatus {
     pub stopped: bool,
     /// Held by the wizard before its next press.
     pub held: bool,
-    /// The wizard chose the press that it is on its way to.
-    pub driven: bool,
+    /// The press that the wizard drives the robot to, until it is made or given up.
+    pub driven_to: Option<ButtonId>,
     /// Why it does nothing, if it does nothing.
     pub idle: Option<IdleReason>,
     /// The arm in the physics.
@@ -96,13 +96,13 @@ impl RobotStatus {
     pub(super) fn gives_up(&mut self, reason: AbortReason) {
         self.intention = None;
         // What the wizard drives it to is still to come.
-        self.driven &= reason == AbortReason::Driven;
+        self.driven_to = self.driven_to.filter(|_| reason == AbortReason::Driven);
     }
 
     /// The trial is over.
     pub(super) fn rests(&mut self) {
         self.intention = None;
-        self.driven = false;
+        self.driven_to = None;
         self.idle = None;
     }
 }

@@ -21,7 +21,7 @@ use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::communication::{self, Signal};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent, State};
+use crate::kitchen::{ContentId, DishId, Kitchen, LocationId, OrderContent, Press, State};
 use seen::{Pressed, Seen, explain, misleads};
 use settings::WizardSpec;
 
@@ -86,15 +86,8 @@ impl ScriptedWizard {
     }
 
     /// The participant pressed something; `is_error`: it cost more than the best press would have.
-    pub fn on_human_press(
-        &mut self,
-        now: SessionTime,
-        button: ButtonId,
-        before: State,
-        after: State,
-        is_error: bool,
-        cost: &mut CostToGo,
-    ) {
+    pub fn on_human_press(&mut self, now: SessionTime, press: &Press, is_error: bool, cost: &mut CostToGo) {
+        let &Press { button, before, after, .. } = press;
         if self.presses.len() == KEPT {
             self.presses.pop_front();
         }

@@ -95,13 +95,13 @@ fn check(layout: &str, there: &[&str], falsely: &[&str], pressed: &str, why: &[&
     let mut cost = CostToGo::new(kitchen.clone());
     let state = state(&kitchen, there);
     let button = kitchen.button_named(Agent::Human, pressed).expect("a button");
-    let after = kitchen.press(state, &kitchen.true_recipes(), Agent::Human, button).unwrap_or(state);
-    let verdict = Judge::new(kitchen.clone()).human_pressed(&mut cost, at(1.0), button, state, after);
+    let press = kitchen.try_press(state, Agent::Human, button);
+    let verdict = Judge::new(kitchen.clone()).human_pressed(&mut cost, at(1.0), &press);
     assert!(verdict.error, "{pressed} is no error: {verdict:?}");
     let attributor = Attributor::new(DecisionModel::default(), 1);
     for (sure, index) in [(1.0, 0), (0.97, 1), (0.97, 2), (0.97, 3)] {
         let belief = belief(&kitchen, state, falsely, sure);
-        let cause = attributor.cause(&kitchen, &mut cost, &belief, state, button, index);
+        let cause = attributor.cause(&kitchen, &mut cost, &belief, &press, index);
         let found: Vec<String> = match cause {
             Cause::Slip => vec!["slip".to_string()],
             Cause::Belief { target, with, .. } => {

@@ -11,7 +11,7 @@ use tomcom::edge::files::read_kitchen;
 use tomcom::gaze::{GazeSample, MIN_CONFIDENCE, nearest_location};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, AspectKind, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent};
-use tomcom::kitchen::{Recipes, State};
+use tomcom::kitchen::{Press, Recipes, State};
 use tomcom::mind::BeliefWitness;
 use tomcom::participant::population::{Experience, Population, Spread};
 use tomcom::participant::{Deed, SimulatedParticipant};
@@ -268,6 +268,11 @@ impl Bench {
         self.one.beliefs().p_truth(&self.kitchen, self.state, AspectId(index as u8))
     }
 
+    /// A press that left the kitchen as it is now.
+    fn press(&self, agent: Agent, button: ButtonId, effective: bool) -> Press {
+        Press { agent, button, before: self.state, after: self.state, effective }
+    }
+
     /// Lets so much time pass; presses have their effect.
     fn pass(&mut self, seconds: f64) {
         let end = self.now + SessionTime::from_secs_f64(seconds);
@@ -278,11 +283,10 @@ impl Bench {
                 Some(Deed::Gaze(sample)) => self.samples.push(sample),
                 Some(Deed::Press { button, belief }) => {
                     assert!(!belief.cause.is_empty());
-                    let before = self.state;
-                    let after = self.kitchen.press(before, &self.kitchen.true_recipes(), Agent::Human, button);
-                    self.state = after.unwrap_or(before);
+                    let press = self.kitchen.try_press(self.state, Agent::Human, button);
+                    self.state = press.after;
                     self.presses.push((due.as_secs_f64(), button));
-                    self.one.on_press(due, Agent::Human, button, before, after);
+                    self.one.on_press(due, &press);
                 }
                 None => {}
             }
@@ -354,9 +358,9 @@ fn a_change_that_was_not_seen_stays_unknown_until_it_is_looked_at() {
 #[test]
 fn of_a_robot_press_it_knows_only_that_it_happened() {
     let mut bench = Bench::new(&unmoved(), 1);
-    let after = bench.state;
+    let press = bench.press(Agent::Robot, ButtonId(0), true);
     for _ in 0..3 {
-        bench.one.on_press(bench.now, Agent::Robot, ButtonId(0), bench.state, Some(after));
+        bench.one.on_press(bench.now, &press);
     }
     assert!(bench.p_truth("robot_hand") < 0.9 && bench.p_truth("robot_hand") > 0.4, "unsure of the robot's hand");
     assert!(bench.p_truth("counter") > 0.8, "not of the places that were empty");
@@ -419,16 +423,15 @@ fn it_learns_from_a_press_without_effect() {
     let mut bench = Bench::new(&unmoved(), 1);
     let pot = bench.kitchen.button_named(Agent::Human, "cooking_pot").expect("a button");
     let take = bench.kitchen.button_named(Agent::Human, "take rice").expect("a button");
-    let before = bench.state;
     bench.put("human_hand", "rice raw");
-    bench.one.on_press(bench.now, Agent::Human, take, before, Some(bench.state));
+    bench.one.on_press(bench.now, &bench.press(Agent::Human, take, true));
     bench.put("cooking_pot", "crab raw");
     let empty = |bench: &Bench| {
         let aspect = AspectId(bench.location("cooking_pot").0);
         bench.one.beliefs().distribution(aspect)[0]
     };
     assert!(empty(&bench) > 0.9);
-    bench.one.on_press(bench.now, Agent::Human, pot, bench.state, None);
+    bench.one.on_press(bench.now, &bench.press(Agent::Human, pot, false));
     assert!(empty(&bench) < 0.6, "{}", empty(&bench));
     bench.check_beliefs();
 }

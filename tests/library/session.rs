@@ -221,7 +221,7 @@ fn what_cannot_be_is_refused_with_its_reason() {
 /// `after_s` after the one before it; orders of these dishes are present.
 fn verdict(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> Verdict {
     let kitchen = kitchen();
-    let (recipes, mut cost) = (kitchen.true_recipes(), CostToGo::new(kitchen.clone()));
+    let mut cost = CostToGo::new(kitchen.clone());
     let mut judge = Judge::new(kitchen.clone());
     let mut state = kitchen.empty_state();
     for (order, dish) in kitchen.orders.iter().zip(dishes) {
@@ -233,12 +233,12 @@ fn verdict(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> Verdict 
         let button = kitchen.button_named(*agent, name).expect("a button");
         let is_last = index + 1 == presses.len();
         let now = at(if is_last { index as f64 - 1.0 + after_s } else { index as f64 });
-        let after = kitchen.press(state, &recipes, *agent, button).unwrap_or(state);
+        let press = kitchen.try_press(state, *agent, button);
         match agent {
-            Agent::Robot => judge.others_changed(now, state, after),
-            Agent::Human => last = Some(judge.human_pressed(&mut cost, now, button, state, after)),
+            Agent::Robot => judge.others_changed(now, press.before, press.after),
+            Agent::Human => last = Some(judge.human_pressed(&mut cost, now, &press)),
         }
-        state = after;
+        state = press.after;
     }
     last.expect("a press of the human")
 }
@@ -328,10 +328,10 @@ fn a_driven_robot_does_the_press_that_the_wizard_chose_also_while_it_is_held() {
     for (seconds, button) in [(0.5, "trash"), (20.0, "take nori")] {
         let kinds = check(&mut engine, &[(seconds, driven(button))]);
         assert_eq!(kinds.last(), Some(&("robot_intends", seconds)), "{kinds:?}");
-        assert!(engine.session().robot.driven);
+        assert!(engine.session().robot.driven_to.is_some());
         let kinds = run_on(&mut engine, seconds + 15.0);
         assert_eq!(kinds.iter().filter(|(kind, _)| *kind == "press").count(), 1, "{kinds:?}");
-        assert!(!engine.session().robot.driven && engine.session().robot.intention.is_none());
+        assert!(engine.session().robot.driven_to.is_none() && engine.session().robot.intention.is_none());
     }
     let hand = engine.session().kitchen.hands[Agent::Robot.index()];
     let nori = engine.session().kitchen.content_named("nori").expect("a content");

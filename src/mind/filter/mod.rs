@@ -121,17 +121,17 @@ impl BeliefFilter {
                 self.show(now, state);
             }
             Observed::Gaze { .. } => {}
-            Observed::Pressed { agent, button, before, after } => {
+            Observed::Pressed(press) => {
                 self.presses += 1;
                 let mut random = stream(self.seed, "belief", self.presses);
-                match agent {
-                    Agent::Human => self.human_pressed(button, after.is_some(), cost, &mut random),
+                match press.agent {
+                    Agent::Human => self.human_pressed(press.button, press.effective, cost, &mut random),
                     Agent::Robot => {
                         let (draws, foresight) = (self.model.inference.predictions, self.model.transition.foresight);
                         robot_press::predict(&self.kitchen, cost, &mut self.belief, draws, foresight, &mut random);
                     }
                 }
-                self.show(now, after.unwrap_or(before));
+                self.show(now, press.after);
             }
             Observed::Displayed { state } => {
                 self.expect_cleared(state);

@@ -81,7 +81,7 @@ impl ReferenceFilter {
         }
         let weights = self.people.experience(observation, cost, &mut random);
         self.looked = is_gaze;
-        if let Observed::Pressed { agent: Agent::Human, .. } = observation.what {
+        if matches!(observation.what, Observed::Pressed(press) if press.agent == Agent::Human) {
             self.log_p = Some((weights.iter().sum::<f64>() / weights.len() as f64).ln());
         }
         if !is_gaze {

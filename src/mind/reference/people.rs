@@ -63,15 +63,15 @@ impl People {
         match observation.what {
             Observed::Started { state } => self.start(now, state, self.of.len(), random),
             Observed::Gaze { .. } => {}
-            Observed::Pressed { agent, button, before, after } => {
-                let weights = match agent {
-                    Agent::Human => Some(self.human_pressed(button, after.is_some(), cost, random)),
+            Observed::Pressed(press) => {
+                let weights = match press.agent {
+                    Agent::Human => Some(self.human_pressed(press.button, press.effective, cost, random)),
                     Agent::Robot => None,
                 };
-                if agent == Agent::Robot {
+                if press.agent == Agent::Robot {
                     self.robot_pressed(cost, random);
                 }
-                self.show(now, after.unwrap_or(before));
+                self.show(now, press.after);
                 if let Some(weights) = weights {
                     return weights;
                 }

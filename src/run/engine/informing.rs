@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Engine;
-use crate::kitchen::{Agent, Kitchen, State};
+use crate::kitchen::{Change, Kitchen};
 use crate::participant::SimulatedParticipant;
 use crate::participant::population::Experience;
 use crate::session::calibration::Check;
@@ -21,22 +21,19 @@ pub(super) fn participant_of(kitchen: Arc<Kitchen>, spec: &SessionSpec, trial: u
 }
 
 impl Engine {
-    /// What the participant may notice of an event that was just applied; `before` is the state that it met.
-    pub(super) fn tell_participant(&mut self, stamped: &Stamped, before: State) {
+    /// What the participant may notice of an event that was just applied.
+    pub(super) fn tell_participant(&mut self, stamped: &Stamped, change: &Change) {
         let Some(participant) = &mut self.participant else { return };
         let session = &self.follower.session;
-        let (now, state, kitchen) = (stamped.time, session.state, &session.kitchen);
+        let (now, state) = (stamped.time, session.state);
+        if let Some(press) = change.press() {
+            participant.on_press(now, &press);
+        }
         match &stamped.event {
             Event::TrialStarted => participant.on_trial_start(now, state),
-            Event::Press { agent, button, .. } if session.is_running() => {
-                if let Some(button) = kitchen.button_named(*agent, button) {
-                    // A press that has an effect changes the state.
-                    participant.on_press(now, *agent, button, before, (state != before).then_some(state));
-                }
-            }
             Event::SignalShown { signal, .. } => {
-                if let Some(location) = kitchen.location_named(signal.target()) {
-                    participant.on_signal(now, location, signal, state);
+                if let Some(shown) = &session.shown {
+                    participant.on_signal(now, shown.location, signal, state);
                 }
             }
             Event::SignalEnded { .. } => participant.on_signal_end(now),
@@ -46,27 +43,28 @@ impl Engine {
     }
 
     /// What a scripted wizard sees of an event that was just applied: kitchen, presses and gaze.
-    pub(super) fn tell_wizard(&mut self, stamped: &Stamped, before: State) {
+    pub(super) fn tell_wizard(&mut self, stamped: &Stamped, change: &Change) {
         let Some(wizard) = &mut self.wizard else { return };
         let session = &self.follower.session;
-        let (now, state, kitchen) = (stamped.time, session.state, &session.kitchen);
+        let (now, state) = (stamped.time, session.state);
+        if let Some(press) = change.human_press() {
+            let judged = self.follower.judged.last().filter(|press| press.seq == stamped.seq);
+            let is_error = judged.is_some_and(|press| press.verdict.error);
+            return wizard.on_human_press(now, &press, is_error, &mut self.follower.cost);
+        }
         match &stamped.event {
             Event::TrialStarted => wizard.on_trial_start(state),
             Event::Gaze(_) => wizard.on_gaze(now, session.looked_at(now), state),
-            Event::Press { agent: Agent::Human, button, .. } if session.is_running() => {
-                let judged = self.follower.judged.last().filter(|press| press.seq == stamped.seq);
-                let is_error = judged.is_some_and(|press| press.verdict.error);
-                if let Some(button) = kitchen.button_named(Agent::Human, button) {
-                    wizard.on_human_press(now, button, before, state, is_error, &mut self.follower.cost);
+            Event::SignalShown { .. } => {
+                if let Some(shown) = &session.shown {
+                    wizard.on_signal(now, shown.location, state);
                 }
             }
-            Event::SignalShown { signal, .. } => {
-                if let Some(location) = kitchen.location_named(signal.target()) {
-                    wizard.on_signal(now, location, state);
+            _ => {
+                if let Some((before, after)) = change.states() {
+                    wizard.on_change(now, before, after);
                 }
             }
-            _ if state != before => wizard.on_change(now, before, state),
-            _ => {}
         }
     }
 }

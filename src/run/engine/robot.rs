@@ -9,7 +9,7 @@ use crate::arm::worker::Robot;
 #[cfg(not(feature = "physics"))]
 use crate::base::features::{Feature, NotBuilt};
 use crate::base::time::SessionTime;
-use crate::kitchen::{Agent, ButtonId, Kitchen};
+use crate::kitchen::{Agent, ButtonId, Change, Kitchen};
 use crate::participant::SimulatedParticipant;
 use crate::robot::RobotActivity;
 use crate::session::settings::ArmKind;
@@ -74,9 +74,12 @@ impl Engine {
 
     /// What the robot is told of an event that was just applied: what the wizard does to it, and where the human presses;
     /// what it does because of it.
-    pub(super) fn tell_robot(&mut self, stamped: &Stamped) -> Vec<RobotActivity> {
+    pub(super) fn tell_robot(&mut self, stamped: &Stamped, change: &Change) -> Vec<RobotActivity> {
         let kitchen = self.session().kitchen.clone();
         let now = stamped.time;
+        if let Some(press) = change.human_press() {
+            self.robot.human_pressed(now, kitchen.button(Agent::Human, press.button).at_m);
+        }
         let deed = match &stamped.event {
             Event::RobotStopped => return self.robot.stop(),
             Event::RobotResumed => self.robot.resume(now),
@@ -89,19 +92,13 @@ impl Engine {
                 None
             }
             Event::RobotSkipped { .. } => self.robot.skip(now),
-            Event::RobotDriven { button, .. } => {
-                let button = kitchen.button_named(Agent::Robot, button);
+            Event::RobotDriven { .. } => {
+                let button = self.session().robot.driven_to;
                 button.and_then(|button| self.robot.drive(button))
             }
             Event::KitchenCorrected { .. } => {
                 let state = self.session().state;
                 self.robot.reconsider(&kitchen, &mut self.follower.cost, state)
-            }
-            Event::Press { agent: Agent::Human, button, .. } if self.session().is_running() => {
-                if let Some(button) = kitchen.button_named(Agent::Human, button) {
-                    self.robot.human_pressed(now, kitchen.button(Agent::Human, button).at_m);
-                }
-                None
             }
             _ => None,
         };

@@ -11,7 +11,7 @@ use crate::console::comparison::CommunicationContent;
 use crate::edge::files::FileResult;
 use crate::edge::log::{LogReader, at_line, codes};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, Kitchen};
+use crate::kitchen::{Agent, AspectId, Change, Kitchen};
 use crate::measures::attribution::{Attributor, Cause};
 use crate::measures::coding::{Codable, Codes, Kind};
 use crate::measures::matching::{Said, WINDOW};
@@ -78,9 +78,9 @@ impl Pass {
         }
     }
 
-    fn apply(&mut self, stamped: &Stamped) -> Result<(), ApplyError> {
+    fn apply(&mut self, stamped: &Stamped) -> Result<Change, ApplyError> {
         match self {
-            Pass::Plain(follower) => follower.apply(stamped).map(|_| ()),
+            Pass::Plain(follower) => follower.apply(stamped).map(|applied| applied.change),
             Pass::Beside(watcher) => watcher.apply(stamped),
             Pass::Swept(sweeper) => sweeper.apply(stamped),
         }
@@ -104,17 +104,15 @@ struct ByEstimate {
 
 impl ByEstimate {
     /// Takes note of an event that was just applied.
-    fn note(&mut self, stamped: &Stamped, follower: &Follower) {
-        let Event::Press { agent: Agent::Human, button, .. } = &stamped.event else { return };
+    fn note(&mut self, stamped: &Stamped, change: &Change, follower: &Follower) {
+        let Some(press) = change.human_press() else { return };
         let (kitchen, judged) = (&follower.session.kitchen, follower.judged.last());
         let estimated = follower.estimated.as_ref().filter(|estimated| estimated.press == stamped.seq);
         let is_error = judged.is_some_and(|press| press.seq == stamped.seq && press.verdict.error);
-        if let (Some(estimated), Some(button), true) = (estimated, kitchen.button_named(Agent::Human, button), is_error)
-        {
+        if let (Some(estimated), true) = (estimated, is_error) {
             let belief = expected(kitchen, estimated.state, &estimated.belief);
-            let (cost, state) = (&mut self.cost, estimated.state);
-            let press = follower.session.all_presses();
-            let cause = self.attributor.cause(kitchen, cost, &belief, state, button, press);
+            let number = follower.session.all_presses();
+            let cause = self.attributor.cause(kitchen, &mut self.cost, &belief, &press, number);
             self.causes.push((stamped.seq, cause));
         }
     }
@@ -158,18 +156,19 @@ pub fn read(
     });
     while let Some(line) = log.next_line()? {
         let session = &pass.follower().session;
-        let (before, was_running) = (session.state, session.is_running());
+        let was_running = session.is_running();
         let was_on = was_running || session.phase == Phase::Paused;
-        pass.apply(&line.stamped)
+        let change = pass
+            .apply(&line.stamped)
             .map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
         let follower = pass.follower();
         hands.note(&line.stamped, &follower.session);
         robot.note(&line.stamped.event, follower.session.trial_clock(line.stamped.time), was_on);
         if let Some(by_estimate) = &mut by_estimate {
-            by_estimate.note(&line.stamped, follower);
+            by_estimate.note(&line.stamped, &change, follower);
         }
         if extent.events {
-            rows.note(&line.stamped, follower, was_running, follower.session.state != before);
+            rows.note(&line.stamped, &change, follower, was_running);
         }
         if matches!(line.stamped.event, Event::Protocol(ProtocolEvent::AnswersConfirmed)) {
             answers.extend(confirmed(&follower.session));

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::base::time::SessionTime;
 use crate::edge::export::Rows;
 use crate::gaze::{MIN_CONFIDENCE, nearest_location};
-use crate::kitchen::{Agent, AspectId, LocationId};
+use crate::kitchen::{Agent, AspectId, Change, LocationId, Press};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
 use crate::measures::coding::{Code, Codes};
@@ -34,7 +34,7 @@ pub struct RowCollector {
     recording: String,
     rows: [Rows; 4],
     /// When each agent pressed last.
-    pressed: [Option<SessionTime>; 2],
+    pressed_at: [Option<SessionTime>; 2],
     /// Presses, of which those of the human are judged later.
     actions: Vec<ActionRow>,
     witness: Option<BeliefWitness>,
@@ -93,7 +93,7 @@ impl RowCollector {
         RowCollector {
             recording: recording.to_string(),
             rows: Table::OF_EVENTS.map(|_| Rows::default()),
-            pressed: [None; 2],
+            pressed_at: [None; 2],
             actions: Vec::new(),
             witness: None,
             look: None,
@@ -106,37 +106,14 @@ impl RowCollector {
         }
     }
 
-    /// Takes note of an event that was just applied; `was_running`: the trial ran when it came, in which `effective` says
-    /// whether it changed the kitchen.
-    pub fn note(&mut self, stamped: &Stamped, follower: &Follower, was_running: bool, effective: bool) {
+    /// Takes note of an event that was just applied; `was_running`: the trial ran when it came.
+    pub fn note(&mut self, stamped: &Stamped, change: &Change, follower: &Follower, was_running: bool) {
         let session = &follower.session;
+        if let Change::Press { press, presses } = change {
+            self.pressed(stamped, press, presses[press.agent.index()], follower);
+        }
         match &stamped.event {
             Event::ParticipantBelieves(witness) => self.witness = Some(witness.clone()),
-            Event::Press { agent, button, .. } if was_running => {
-                let time_s = seconds(session, stamped.time);
-                let before = self.pressed[agent.index()].replace(stamped.time);
-                let since = before.map(|before| session.age(before, stamped.time).as_secs_f64());
-                let estimated = follower.estimated.as_ref().filter(|estimated| estimated.press == stamped.seq);
-                self.actions.push(ActionRow {
-                    recording: self.recording.clone(),
-                    seq: stamped.seq,
-                    time_s,
-                    agent: match agent {
-                        Agent::Human => "human",
-                        Agent::Robot => "robot",
-                    },
-                    press: u64::from(session.presses[agent.index()]),
-                    button: button.clone(),
-                    effective,
-                    since_s: since.map(rounded),
-                    log_p: estimated.map(|estimated| rounded(estimated.evidence.log_p)),
-                    ..ActionRow::default()
-                });
-                let witness = if *agent == Agent::Human { self.witness.take() } else { None };
-                if let Some(estimated) = estimated {
-                    self.believed(stamped.seq, &estimated.witness(&session.kitchen), estimated.state, witness, session);
-                }
-            }
             Event::Gaze(sample) if was_running && session.gaze.fault.is_none() => {
                 let sample = session.corrected(*sample);
                 let taken = sample.taken_ns.map_or(stamped.time, |taken| taken.min(stamped.time));
@@ -152,6 +129,33 @@ impl RowCollector {
                 );
             }
             _ => {}
+        }
+    }
+
+    /// Adds a press to the actions; `number`: its number among those of its agent.
+    fn pressed(&mut self, stamped: &Stamped, press: &Press, number: u32, follower: &Follower) {
+        let session = &follower.session;
+        let before = self.pressed_at[press.agent.index()].replace(stamped.time);
+        let since = before.map(|before| session.age(before, stamped.time).as_secs_f64());
+        let estimated = follower.estimated.as_ref().filter(|estimated| estimated.press == stamped.seq);
+        self.actions.push(ActionRow {
+            recording: self.recording.clone(),
+            seq: stamped.seq,
+            time_s: seconds(session, stamped.time),
+            agent: match press.agent {
+                Agent::Human => "human",
+                Agent::Robot => "robot",
+            },
+            press: u64::from(number),
+            button: session.kitchen.button(press.agent, press.button).name.clone(),
+            effective: press.effective,
+            since_s: since.map(rounded),
+            log_p: estimated.map(|estimated| rounded(estimated.evidence.log_p)),
+            ..ActionRow::default()
+        });
+        let witness = if press.agent == Agent::Human { self.witness.take() } else { None };
+        if let Some(estimated) = estimated {
+            self.believed(stamped.seq, &estimated.witness(&session.kitchen), estimated.state, witness, session);
         }
     }
 

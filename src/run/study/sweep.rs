@@ -9,15 +9,15 @@ use crate::communication::recommendation::{SignalOption, aspects_told};
 use crate::communication::repeats::Repeats;
 use crate::communication::settings::AssistantSpec;
 use crate::communication::tom::Tom;
-use crate::kitchen::Agent;
 use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, Change};
 use crate::measures::attribution::Cause;
 use crate::run::advisor::AdviceRequest;
 use crate::run::compare::follows_at_once;
 use crate::run::engine::changes_task;
 use crate::run::follower::Follower;
 use crate::session::apply::ApplyError;
-use crate::session::{Event, Session, Stamped};
+use crate::session::{Applied, Event, Session, Stamped};
 use crate::study::prevention::{PressTruth, Sent, SequenceTruth, SpellTruth, Truth};
 use crate::study::roc::{CONCEPTS, LEAST_COST, Swept, parameters};
 
@@ -71,13 +71,13 @@ impl ConceptSweep {
     ///
     /// # Errors
     /// Those of [`Follower::apply`].
-    pub fn apply(&mut self, stamped: &Stamped) -> Result<(), ApplyError> {
+    pub fn apply(&mut self, stamped: &Stamped) -> Result<Change, ApplyError> {
         if self.to_ask.is_some_and(|(_, time)| !follows_at_once(stamped, time)) {
             self.ask();
         }
-        self.follower.apply(stamped)?;
+        let Applied { change, .. } = self.follower.apply(stamped)?;
         if stamped.event.is_sample() {
-            return Ok(());
+            return Ok(change);
         }
         let session = &self.follower.session;
         for voice in &mut self.voices {
@@ -89,7 +89,7 @@ impl ConceptSweep {
         if session.is_running() && changes_task(&stamped.event) {
             self.to_ask = Some((stamped.seq, stamped.time));
         }
-        Ok(())
+        Ok(change)
     }
 
     /// What every concept would say now.

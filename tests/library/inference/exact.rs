@@ -1,7 +1,7 @@
 //! On a kitchen small enough to go through all beliefs on a grid.
 
-use tomcom::kitchen::Kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::kitchen::{Kitchen, Press};
 use tomcom::mind::dirichlet::DirichletBelief;
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
@@ -95,8 +95,8 @@ fn the_estimate_is_close_to_exact_assumed_density_filtering() {
 
 fn told(kitchen: &Kitchen, what: &Observed) -> String {
     match what {
-        Observed::Pressed { agent, button, after, .. } => {
-            let effect = if after.is_some() { "" } else { " (nothing)" };
+        Observed::Pressed(Press { agent, button, effective, .. }) => {
+            let effect = if *effective { "" } else { " (nothing)" };
             format!("{} {}{effect}", agent.name(), kitchen.button(*agent, *button).name)
         }
         Observed::Displayed { .. } => "the display changes".to_string(),

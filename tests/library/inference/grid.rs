@@ -82,7 +82,7 @@ impl GridFilter {
                 self.sight.show(now, state);
                 return;
             }
-            Observed::Pressed { before, after, .. } => self.sight.show(now, after.unwrap_or(before)),
+            Observed::Pressed(press) => self.sight.show(now, press.after),
             Observed::Displayed { state } => self.sight.show(now, state),
             _ => {}
         }
@@ -94,7 +94,7 @@ impl GridFilter {
         weights.iter_mut().zip(&likelihoods).for_each(|(weight, p)| *weight *= p);
         let after = self.people.projected(&weights);
         let share = match observation.what {
-            Observed::Pressed { agent: Agent::Robot, .. } => self.model.transition.foresight,
+            Observed::Pressed(press) if press.agent == Agent::Robot => self.model.transition.foresight,
             _ => 1.0,
         };
         for (of, after) in self.belief.aspects.iter_mut().zip(&after.aspects) {

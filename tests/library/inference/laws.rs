@@ -9,7 +9,7 @@ use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
 use tomcom::gaze::GazeSample;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent, State};
+use tomcom::kitchen::{Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent, Press, State};
 use tomcom::mind::dirichlet::{Dirichlet, LEAST_MEAN, PRECISIONS};
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::{HumanModel, InferenceModel};
@@ -76,10 +76,9 @@ impl Bench {
 
     fn press(&mut self, seconds: f64, agent: Agent, name: &str) {
         let button = self.kitchen.button_named(agent, name).expect("a button");
-        let before = self.state;
-        let after = self.kitchen.press(before, &self.kitchen.true_recipes(), agent, button);
-        self.state = after.unwrap_or(before);
-        self.observe(seconds, Observed::Pressed { agent, button, before, after });
+        let press = self.kitchen.try_press(self.state, agent, button);
+        self.state = press.after;
+        self.observe(seconds, Observed::Pressed(press));
     }
 
     /// Looks at the middle of a location for some time, `hz` samples a second.
@@ -150,7 +149,13 @@ fn anything(kitchen: &Kitchen, time: SessionTime, random: &mut Stream) -> Observ
             let button = ButtonId(random.random_range(0..kitchen.buttons[agent.index()].len()) as u8);
             let before = any_state(kitchen, random);
             let after = random.random::<bool>().then(|| any_state(kitchen, random));
-            Observed::Pressed { agent, button, before, after }
+            Observed::Pressed(Press {
+                agent,
+                button,
+                before,
+                after: after.unwrap_or(before),
+                effective: after.is_some(),
+            })
         }
         _ => {
             let [x, y, confidence] = [(); 3].map(|()| any_number(random));

@@ -23,9 +23,8 @@ pub fn recorded(kitchen: &Arc<Kitchen>, seed: u64, presses: u32) -> Vec<Observat
     let mut events = engine.input(SessionTime::ZERO, Event::TrialStarted).events;
     loop {
         for stamped in &events {
-            let (before, counts) = (follower.session.state, follower.session.is_running());
-            follower.apply(stamped).expect("an event of the session");
-            if let Some(what) = follower.observed(stamped, before, counts) {
+            let applied = follower.apply(stamped).expect("an event of the session");
+            if let Some(what) = follower.observed(stamped, &applied.change) {
                 observations.push(Observation { time: stamped.time, what });
             }
         }

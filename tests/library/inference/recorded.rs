@@ -1,7 +1,7 @@
 //! The fast filter against the plain reference on recorded steps.
 
-use tomcom::kitchen::Agent;
 use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::kitchen::{Agent, Press};
 use tomcom::mind::dirichlet::DirichletBelief;
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
@@ -37,7 +37,7 @@ fn the_fast_filter_and_the_reference_agree_on_recorded_steps() {
         for observation in &observations {
             fast.observe(observation, &mut cost);
             reference.observe(observation, &mut cost);
-            if let Observed::Pressed { agent, .. } = observation.what {
+            if let Observed::Pressed(Press { agent, .. }) = observation.what {
                 let apart = mean_distance(&means(fast.belief()), &means(&reference.belief()));
                 (sum, most, steps) = (sum + apart, most.max(apart), steps + 1);
                 if let (Agent::Human, Some(evidence), Some(plain)) = (agent, fast.evidence(), reference.log_p()) {

@@ -160,8 +160,8 @@ impl World {
 
     fn press(&mut self, now: f64, agent: Agent, button: ButtonId) -> Observation {
         let before = self.state;
-        let after = self.kitchen.press(before, &self.kitchen.true_recipes(), agent, button);
-        self.state = after.unwrap_or(before);
+        let press = self.kitchen.try_press(before, agent, button);
+        self.state = press.after;
         for &order in &self.kitchen.orders.clone() {
             if self.state.order(order) == OrderContent::Served && before.order(order) != OrderContent::Served {
                 let dish = DishId(self.chance.random_range(0..self.kitchen.dishes.len()) as u8);
@@ -169,7 +169,7 @@ impl World {
                 self.changes.push((now + self.kitchen.new_order_after_s, order, OrderContent::Dish(dish)));
             }
         }
-        self.observation(now, Observed::Pressed { agent, button, before, after })
+        self.observation(now, Observed::Pressed(press))
     }
 }
 
@@ -216,7 +216,7 @@ pub fn live(
     loop {
         each(&observation, human, &mut world.cost);
         human.experience(&observation, &mut world.cost);
-        if let Observed::Pressed { agent: Agent::Human, .. } = observation.what {
+        if matches!(observation.what, Observed::Pressed(press) if press.agent == Agent::Human) {
             left -= 1;
         }
         if left == 0 {

@@ -1,0 +1,76 @@
+//! What an event changed in the kitchen, with every name resolved.
+
+use super::{Agent, ButtonId, Kitchen, LocationId, State};
+
+/// A press of either agent, and what it did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Press {
+    pub agent: Agent,
+    pub button: ButtonId,
+    /// The kitchen before the press.
+    pub before: State,
+    /// The kitchen after the press; the same as before if the press had no effect.
+    pub after: State,
+    /// Whether the button's action was available.
+    pub effective: bool,
+}
+
+/// What an applied event did to the kitchen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// The event does not concern the kitchen.
+    None,
+    /// The trial started with an empty kitchen.
+    TrialStarted { before: State, after: State },
+    /// An agent pressed a button during the trial. `presses`: how many presses each agent has made, this one included,
+    /// indexed by [`Agent::index`].
+    Press { press: Press, presses: [u32; 2] },
+    /// A press while no trial ran: it has no effect and does not count.
+    UncountedPress { agent: Agent, button: ButtonId },
+    /// An order appeared, or stopped showing that it was served.
+    Order { order: LocationId, before: State, after: State },
+    /// The wizard corrected what the program believes of a location.
+    Correction { location: LocationId, before: State, after: State },
+}
+
+impl Kitchen {
+    /// What a press does to `state` under the true recipes.
+    pub fn try_press(&self, state: State, agent: Agent, button: ButtonId) -> Press {
+        let after = self.press(state, &self.true_recipes(), agent, button);
+        Press { agent, button, before: state, after: after.unwrap_or(state), effective: after.is_some() }
+    }
+}
+
+impl Press {
+    /// The kitchen after the press if it had an effect.
+    pub fn result(&self) -> Option<State> {
+        self.effective.then_some(self.after)
+    }
+}
+
+impl Change {
+    /// A press of either agent that counts.
+    pub fn press(&self) -> Option<Press> {
+        match self {
+            Change::Press { press, .. } => Some(*press),
+            _ => None,
+        }
+    }
+
+    /// A press of the human that counts.
+    pub fn human_press(&self) -> Option<Press> {
+        self.press().filter(|press| press.agent == Agent::Human)
+    }
+
+    /// The kitchen before and after, if the event concerns the kitchen and changed something.
+    pub fn states(&self) -> Option<(State, State)> {
+        let (before, after) = match self {
+            Change::None | Change::UncountedPress { .. } => return None,
+            Change::Press { press, .. } => (press.before, press.after),
+            Change::TrialStarted { before, after }
+            | Change::Order { before, after, .. }
+            | Change::Correction { before, after, .. } => (*before, *after),
+        };
+        (before != after).then_some((before, after))
+    }
+}

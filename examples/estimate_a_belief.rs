@@ -34,8 +34,8 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     print_belief("an order appears", &kitchen, &filter, aspect);
 
     // The person takes a shrimp, which the order does not need: the order was not read, or misread.
-    let after = kitchen.press(state, &kitchen.true_recipes(), Agent::Human, take_shrimp);
-    let pressed = Observed::Pressed { agent: Agent::Human, button: take_shrimp, before: state, after };
+    let press = kitchen.try_press(state, Agent::Human, take_shrimp);
+    let pressed = Observed::Pressed(press);
     filter.observe(&Observation { time: SessionTime::from_secs_f64(3.0), what: pressed }, &mut cost);
     print_belief("the person takes a shrimp", &kitchen, &filter, aspect);
     let misread = filter.belief().p_truth(&kitchen, state, aspect);
@@ -48,7 +48,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         filter.observe(&Observation { time, what: looks }, &mut cost);
     }
     print_belief("the person looks at the order", &kitchen, &filter, aspect);
-    assert!(filter.belief().p_truth(&kitchen, after.unwrap_or(state), aspect) > misread);
+    assert!(filter.belief().p_truth(&kitchen, press.after, aspect) > misread);
     Ok(())
 }
 

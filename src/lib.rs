@@ -66,11 +66,11 @@
 //! let button = kitchen.button_named(Agent::Human, "take shrimp").ok_or("no such button")?;
 //! let mut before = kitchen.empty_state();
 //! before.set_order(order, OrderContent::Dish(dish));
-//! let after = kitchen.press(before, &kitchen.true_recipes(), Agent::Human, button);
+//! let press = kitchen.try_press(before, Agent::Human, button);
 //! let events = [
 //!     (0.0, Observed::Started { state: kitchen.empty_state() }),
 //!     (1.0, Observed::Displayed { state: before }),
-//!     (3.0, Observed::Pressed { agent: Agent::Human, button, before, after }),
+//!     (3.0, Observed::Pressed(press)),
 //! ];
 //!
 //! // What the person believes now.
@@ -78,7 +78,7 @@
 //! for (seconds, what) in events {
 //!     filter.observe(&Observation { time: SessionTime::from_secs_f64(seconds), what }, &mut cost);
 //! }
-//! let state = after.ok_or("a press without effect")?;
+//! let state = press.result().ok_or("a press without effect")?;
 //! let p_truth = filter.belief().p_truth(&kitchen, state, AspectId::of_location(order));
 //! assert!(p_truth < 0.5, "the person does not know the order: {p_truth}");
 //!

@@ -30,7 +30,9 @@ use crate::base::features::{Feature, NotBuilt};
 use crate::communication::concept::ConceptName;
 use crate::console;
 use crate::edge::doctor;
-use crate::edge::files::{self, FileError};
+use crate::edge::file_error::FileError;
+use crate::edge::files;
+use crate::edge::key_file;
 use crate::edge::log::{self, RulingError, WriteError};
 use crate::run::compare::CompareRequest;
 use crate::run::error::RunError;
@@ -323,7 +325,7 @@ fn examine(args: &DoctorArgs) -> Result<(), Failure> {
 
 fn keys(args: &KeysArgs) -> Result<(), Failure> {
     let files = options::session_or_default(args.session.as_deref())?;
-    let map = files::key_map(files.keys.as_ref())?;
+    let map = key_file::key_map(files.keys.as_ref())?;
     let lines = console::keys::lines(&files.kitchen.kitchen, &map)
         .map_err(|error| Failure::Wrong(miette::miette!(help = error.remedy, "{}", error.found)))?;
     Ok(std::io::stdout().write_all(console::keymap::write(&lines).as_bytes())?)

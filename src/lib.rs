@@ -105,6 +105,7 @@ pub mod display;
 #[cfg(feature = "cli")]
 pub mod edge;
 pub mod gaze;
+pub mod history;
 pub mod kitchen;
 pub mod measures;
 pub mod mind;

@@ -3,7 +3,7 @@
 use super::message::ConsoleCommand;
 use super::model::{ConsoleModel, NoticeLevel};
 use super::playback::ReplayKey;
-use super::words;
+use crate::history::wording;
 use crate::kitchen::{Kitchen, LocationId};
 use crate::measures::coding::{Code, Codes, Kind};
 use crate::session::{Happening, Session};
@@ -58,7 +58,7 @@ impl RaterSession {
 pub fn press(kitchen: &Kitchen, what: &Happening) -> String {
     let Happening::Press { agent, button, effective } = what else { return String::new() };
     let effect = if *effective { "with" } else { "without" };
-    format!("\"{}\" {effect} effect", words::button(kitchen, *agent, *button))
+    format!("\"{}\" {effect} effect", wording::button(kitchen, *agent, *button))
 }
 
 fn describe(kitchen: &Kitchen, code: &Code) -> String {

@@ -5,8 +5,8 @@ use super::model::{ConsoleModel, Dialog, NoticeLevel};
 use super::note::TextInput;
 use super::picker::{Picker, PickerAnswer, PickerOutcome, PickerQuestion};
 use super::update::send;
-use super::words;
 use crate::communication::Sender;
+use crate::history::wording;
 use crate::kitchen::Agent;
 use crate::session::{Event, Phase, Session};
 use crossterm::event::KeyCode;
@@ -155,7 +155,7 @@ pub(super) fn pick(
             send(model, session, event, NoticeLevel::Done, &words)
         }
         (_, PickerAnswer::Button(button)) => {
-            let words = format!("the robot sets out for {}", words::button(kitchen, Agent::Robot, button));
+            let words = format!("the robot sets out for {}", wording::button(kitchen, Agent::Robot, button));
             let button = kitchen.button(Agent::Robot, button).name.clone();
             send(model, session, Event::RobotDriven { by: Sender::Wizard, button }, NoticeLevel::Done, &words)
         }

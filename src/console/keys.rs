@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::chord::KeyChord;
 use super::coding::RaterKey;
-use super::comparison::ComparisonKey;
+use super::compared::ComparisonKey;
 use super::hands::ManualAction;
 use super::keymap::KeyMap;
 use super::panels::PanelKey;

@@ -2,11 +2,10 @@
 //! [`view`] that only reads. What affects participant, robot or analysis leaves as an event; the rest stays in the [`ConsoleModel`].
 
 pub mod arrange;
-pub mod belief;
 pub mod calibration;
 pub mod chord;
 pub mod coding;
-pub mod comparison;
+pub mod compared;
 pub mod display;
 pub mod form;
 pub mod hands;
@@ -25,7 +24,6 @@ pub mod screen;
 mod table;
 pub mod update;
 pub mod view;
-pub mod words;
 
 pub use keymap::KeyMap;
 pub use keys::KeyBindings;

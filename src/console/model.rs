@@ -4,9 +4,8 @@ use std::collections::VecDeque;
 
 use crossterm::event::KeyCode;
 
-use super::belief::BeliefHistory;
 use super::coding::RaterSession;
-use super::comparison::ComparisonView;
+use super::compared::ComparisonView;
 use super::display::DisplayHealth;
 use super::keys::{KeyBindings, KeyLayer};
 use super::lesson::TrainingPanel;
@@ -17,7 +16,8 @@ use super::playback::Playback;
 use super::view::theme::Theme;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
-use crate::kitchen::Agent;
+use crate::history::belief_track::BeliefHistory;
+use crate::kitchen::{Agent, AspectId};
 use crate::session::settings::GazeSource;
 use crate::session::{Entry, Happening};
 
@@ -135,6 +135,8 @@ pub struct ConsoleModel {
     pub errors: Vec<SessionTime>,
     /// What is estimated of the participant's belief.
     pub belief: BeliefHistory,
+    /// The aspect whose belief is shown over time.
+    pub belief_focus: Option<AspectId>,
     /// Wizard and assistants side by side, where that is asked for.
     pub comparison: Option<ComparisonView>,
     /// Set when a wizard is trained.
@@ -174,6 +176,7 @@ impl ConsoleModel {
             display: None,
             errors: Vec::new(),
             belief: BeliefHistory::default(),
+            belief_focus: None,
             comparison: None,
             lesson: None,
             coding: None,
@@ -194,6 +197,16 @@ impl ConsoleModel {
             self.trail.pop_front();
         }
         self.trail.push_back((at, sample));
+    }
+
+    /// Shows the belief in the aspect that follows in this order over time; after the last one that of none.
+    pub fn focus_next_belief(&mut self, ranked: &[usize]) {
+        let at = self.belief_focus.and_then(|focus| ranked.iter().position(|&aspect| aspect == focus.index()));
+        let next = match (self.belief_focus, at) {
+            (None, _) => ranked.first(),
+            (Some(_), at) => at.and_then(|at| ranked.get(at + 1)),
+        };
+        self.belief_focus = next.map(|&aspect| AspectId(aspect as u8));
     }
 
     /// Whether this entry of the timeline is a press of the human that was an error.

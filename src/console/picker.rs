@@ -3,7 +3,7 @@
 
 use crossterm::event::KeyCode;
 
-use super::words;
+use crate::history::wording;
 use crate::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind};
 use crate::session::Session;
 
@@ -157,7 +157,7 @@ fn buttons(session: &Session) -> Vec<PickerEntry> {
     let choice = |id: ButtonId| {
         let does = kitchen.press(session.state, &recipes, Agent::Robot, id).is_some();
         let remark = if does { "" } else { "no effect now" }.to_string();
-        PickerEntry { answer: PickerAnswer::Button(id), label: words::button(kitchen, Agent::Robot, id), remark }
+        PickerEntry { answer: PickerAnswer::Button(id), label: wording::button(kitchen, Agent::Robot, id), remark }
     };
     let mut choices: Vec<PickerEntry> = ids.map(choice).collect();
     // What does something comes first.

@@ -1,20 +1,10 @@
 //! Where a replay stands: position, speed, and how a key moves it.
 
 use crate::base::time::SessionTime;
+use crate::history::landmark::ReplayLandmark;
 
 /// The speeds of a replay, as multiples of real time; infinity is as fast as it goes.
 pub const SPEEDS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, f64::INFINITY];
-
-/// What is looked for in a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReplayLandmark {
-    /// A press that was an error.
-    Error,
-    Signal,
-    Marker,
-    /// Something is believed wrong from here on, as it is estimated.
-    FalseBelief,
-}
 
 /// What a key asks of a replay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

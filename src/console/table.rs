@@ -6,12 +6,13 @@ use crossterm::event::KeyCode::{
 
 use super::chord::KeyChord;
 use super::coding::RaterKey;
-use super::comparison::ComparisonKey;
+use super::compared::ComparisonKey;
 use super::hands::ManualAction;
 use super::keys::{KeyAction, KeyBinding, KeyLayer, KeySection};
 use super::panels::PanelKey;
-use super::playback::{ReplayKey, ReplayLandmark};
+use super::playback::ReplayKey;
 use crate::communication::{self, Signal};
+use crate::history::landmark::ReplayLandmark;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId};
 use crate::measures::coding::Kind;
 use crate::session::settings::MAX_NOTES;

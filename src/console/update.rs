@@ -3,10 +3,9 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
 use super::arrange::KitchenMap;
-use super::belief;
 use super::chord::KeyChord;
 use super::coding;
-use super::comparison::ComparisonKey;
+use super::compared::ComparisonKey;
 use super::form::{self, sheet};
 use super::hands::{self, ManualAction};
 use super::keys::{KeyAction, KeyLayer};
@@ -16,8 +15,9 @@ use super::panels::{self, PanelKey};
 use super::preflight;
 use super::view::dialog::{help_pages, report_rest};
 use super::view::regions::Regions;
-use super::words;
 use crate::communication::Sender;
+use crate::history::belief_track;
+use crate::history::wording;
 use crate::kitchen::Agent;
 use crate::session::admit::{admit, hygiene, may_send};
 use crate::session::event::{EndReason, SignalEnd};
@@ -288,7 +288,7 @@ fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand>
         model.say(NoticeLevel::Refused, "not accepted: nothing is recommended");
         return None;
     };
-    let words = format!("accepted: {}", words::signal(&signal));
+    let words = format!("accepted: {}", wording::signal(&signal));
     let event = Event::SignalShown { by: Sender::Wizard, signal, accepted: Some(advice.for_seq) };
     send(model, session, event, NoticeLevel::Done, &words)
 }
@@ -296,7 +296,7 @@ fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand>
 pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option<ConsoleCommand> {
     match action {
         KeyAction::Signal(_, signal) => {
-            let words = format!("shown: {}", words::signal(&signal));
+            let words = format!("shown: {}", wording::signal(&signal));
             send(
                 model,
                 session,
@@ -351,8 +351,8 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
             None
         }
         KeyAction::Belief => {
-            let ranked = belief::ranked(model.belief.until(model.now));
-            model.belief.focus_next(&ranked);
+            let ranked = belief_track::ranked(model.belief.until(model.now));
+            model.focus_next_belief(&ranked);
             None
         }
         KeyAction::Differ(step) => {

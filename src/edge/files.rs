@@ -1,91 +1,21 @@
 //! Reads session, layout and recipe files. Every error names the file, the line, what was found and what would be right.
 
-use std::io;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use miette::{Diagnostic, NamedSource, SourceSpan};
-use toml::Spanned;
-
+use super::file_error::{FileError, FileResult, missing, read_text};
+use super::key_file::check_keys;
 use super::language::read_words;
 use super::parse::parse;
 use super::place::place_of;
-use crate::base::features::{Feature, NotBuilt};
-use crate::console::KeyMap;
-use crate::console::keys::{self, KeyError, KeyLayer, KeyPlace};
 use crate::kitchen::Kitchen;
 use crate::kitchen::compile::{SpecError, SpecFile};
-use crate::kitchen::layout::{LayoutSpec, is_same_key};
+use crate::kitchen::layout::LayoutSpec;
 use crate::kitchen::recipe::RecipesSpec;
 use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
 use crate::session::header::FileText;
 use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study};
 use crate::session::settings::SettingError;
-
-/// What reading a file gives.
-pub type FileResult<T> = Result<T, FileError>;
-
-/// Something is wrong with a file.
-#[derive(Debug, thiserror::Error, Diagnostic)]
-pub enum FileError {
-    #[error("{}: cannot be read: {reason}", path.display())]
-    Unreadable {
-        path: PathBuf,
-        reason: io::Error,
-        #[help]
-        remedy: String,
-    },
-    /// A folder or an option of the command line, or a file as a whole.
-    #[error("{name}: found {found}")]
-    Unfit {
-        name: String,
-        found: String,
-        #[help]
-        remedy: String,
-    },
-    #[error("{name}:{line}: found {found}")]
-    Wrong {
-        name: String,
-        line: usize,
-        found: String,
-        #[source_code]
-        text: Arc<NamedSource<String>>,
-        #[label("here")]
-        span: Option<SourceSpan>,
-        #[help]
-        remedy: String,
-    },
-}
-
-impl FileError {
-    /// An error at a place of a file's text.
-    pub fn at(path: &Path, text: &str, span: Option<Range<usize>>, found: String, remedy: String) -> FileError {
-        let name = path.display().to_string();
-        let start = span.as_ref().map_or(0, |span| span.start.min(text.len()));
-        let line = text.as_bytes()[..start].iter().filter(|&&byte| byte == b'\n').count() + 1;
-        let source = NamedSource::new(&name, text.to_string());
-        FileError::Wrong { name, line, found, text: Arc::new(source), span: span.map(SourceSpan::from), remedy }
-    }
-
-    /// An error that has no place in a text: of a folder, an option, a file as a whole.
-    pub fn of(what: &Path, found: String, remedy: String) -> FileError {
-        FileError::Unfit { name: what.display().to_string(), found, remedy }
-    }
-
-    /// The error about a session or a recording that takes a part of the program which this build does not have.
-    pub fn not_built(what: &Path, missing: NotBuilt) -> FileError {
-        let instead = if missing.0 == Feature::Physics { "; or, for a new session, --arm timed" } else { "" };
-        let remedy = format!("{}{instead}", missing.remedy());
-        FileError::of(what, format!("a session for another build; this one is {missing}"), remedy)
-    }
-
-    /// An error of a file that cannot be read or written.
-    pub fn unreadable(path: &Path, reason: io::Error, remedy: &str) -> FileError {
-        FileError::Unreadable { path: path.to_path_buf(), reason, remedy: remedy.to_string() }
-    }
-}
 
 /// A session file with its kitchen and its key file.
 #[derive(Clone, Debug)]
@@ -155,20 +85,6 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     let mut kitchen = read_kitchen_with(&layout_path, keys.as_ref())?;
     kitchen.layout.path.clone_from(&spec.layout);
     Ok(SessionFiles { spec, kitchen, keys, questionnaires })
-}
-
-/// The error about a file that a session file names and that cannot be read: the path of the setting, which of them it is (0
-/// the first), and the name of the file.
-pub(super) fn missing(
-    session: &Path,
-    text: &str,
-    (path, nth, file): (&str, usize, &str),
-    reason: io::Error,
-    remedy: &str,
-) -> FileError {
-    let key = path.rsplit('.').next().unwrap_or(path);
-    let found = format!("{key} = \"{file}\", which cannot be read: {reason}");
-    FileError::at(session, text, place_of(text, path, nth), found, remedy.to_string())
 }
 
 /// Reads the questionnaires of a plan, in its order and in the session's language.
@@ -269,36 +185,8 @@ fn read_kitchen_with(layout_path: &Path, keys: Option<&FileText>) -> FileResult<
         FileError::at(layout_path, &layout_text, Some(layout.recipes.span()), found, remedy)
     })?;
     let files = compile_kitchen((layout_path, layout_text), (&recipes_path, recipes_text))?;
-    check_keys(layout_path, &layout, &files, keys)?;
+    check_keys((layout_path, &files.layout.text), &layout, &files.kitchen, keys)?;
     Ok(files)
-}
-
-/// Whether the console can take the keys of a layout, changed by a key file.
-fn check_keys(path: &Path, layout: &LayoutSpec, files: &KitchenFiles, keys: Option<&FileText>) -> FileResult<()> {
-    let map = key_map(keys)?;
-    let Err(KeyError { place, found, remedy }) = keys::lines(&files.kitchen, &map) else { return Ok(()) };
-    match (place, keys) {
-        (KeyPlace::File(span), Some(keys)) => {
-            Err(FileError::at(Path::new(&keys.path), &keys.text, Some(span), found, remedy))
-        }
-        (KeyPlace::Layout(layer, letter), _) => {
-            let is_it = |key: &&Spanned<char>| is_same_key(*key.get_ref(), letter);
-            let key = match layer {
-                KeyLayer::Wizard => layout.signal_keys().map(|(_, key)| key).find(is_it),
-                KeyLayer::Participant => layout.button_keys().find(is_it),
-            };
-            Err(FileError::at(path, &files.layout.text, key.map(Spanned::span), found, remedy))
-        }
-        (KeyPlace::File(_), None) => Ok(()),
-    }
-}
-
-/// What a key file says; nothing, if there is none.
-///
-/// # Errors
-/// It is no key file.
-pub fn key_map(keys: Option<&FileText>) -> FileResult<KeyMap> {
-    keys.map_or(Ok(KeyMap::default()), |keys| parse(Path::new(&keys.path), &keys.text))
 }
 
 /// Compiles a kitchen from texts; the paths only serve error messages.
@@ -333,10 +221,4 @@ fn check_reach(path: &Path, text: &str, layout: &LayoutSpec, kitchen: &Kitchen) 
     let found = format!("the robot's button \"{}\" at x = {x} m, y = {y} m, {}", button.name, why.words());
     let remedy = "a place about 0.2 to 0.75 m from the robot's base, and not beside or behind it".to_string();
     Err(FileError::at(path, text, place, found, remedy))
-}
-
-/// The text of a file.
-pub fn read_text(path: &Path) -> FileResult<String> {
-    std::fs::read_to_string(path)
-        .map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::files::{FileError, FileResult};
+use super::file_error::{FileError, FileResult};
 use super::log::{LOG_NAME, Lock, SETTINGS_NAME, WriteError};
 use super::training::TrainingRecord;
 

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
-use super::files::{FileError, FileResult};
+use super::file_error::{FileError, FileResult};
 use super::log::{LogReader, at_line};
 use crate::gaze::GazeSample;
 use crate::gaze::surface::SurfaceMap;

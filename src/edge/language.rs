@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::files::{FileResult, missing, read_text};
+use super::file_error::{FileResult, missing, read_text};
 use super::parse::{Kind, OfKind, parse};
 use crate::session::SessionSpec;
 use crate::session::display::DisplaySpec;

@@ -4,9 +4,8 @@ use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
-use super::files::{FileError, FileResult};
+use super::file_error::{FileError, FileResult};
 use super::type_error::{in_words, message};
-use crate::console::KeyMap;
 use crate::kitchen::layout::LayoutSpec;
 use crate::kitchen::recipe::RecipesSpec;
 use crate::mind::model::HumanModel;
@@ -91,10 +90,6 @@ impl OfKind for Questionnaire {
 
 impl OfKind for HumanModel {
     const KIND: Kind = Kind::HumanModel;
-}
-
-impl OfKind for KeyMap {
-    const KIND: Kind = Kind::Keys;
 }
 
 /// Parses TOML into `T`.

@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-use super::files::{FileError, FileResult};
+use super::file_error::{FileError, FileResult};
 use super::log::{LOG_NAME, ruling};
 use crate::session::plan::{Made, Outcome, StepSpec};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};

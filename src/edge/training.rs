@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::files::{FileError, FileResult};
+use super::file_error::{FileError, FileResult};
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::measures::wizard::{TrainingCriterion, WizardMeasures};

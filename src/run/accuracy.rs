@@ -18,7 +18,7 @@ use crate::base::words::count;
 use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
 use crate::communication::reference::{ReferencePlanner, Worth};
-use crate::edge::files::FileResult;
+use crate::edge::file_error::FileResult;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::Session;

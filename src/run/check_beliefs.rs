@@ -10,7 +10,7 @@ use super::parallel;
 use super::replay::{Replay, ReplayedEvent, SameKitchen, each_once};
 use crate::base::time::SessionTime;
 use crate::base::words::count;
-use crate::edge::files::FileResult;
+use crate::edge::file_error::FileResult;
 use crate::gaze::MIN_CONFIDENCE;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::state::MAX_LOCATIONS;

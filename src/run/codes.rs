@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::error::RunError;
 use super::replay::Replay;
 use crate::base::words::count;
-use crate::edge::files::FileResult;
+use crate::edge::file_error::FileResult;
 use crate::edge::log::codes;
 use crate::measures::coding::{Agreement, AgreementTable, Codable, Codes};
 use crate::session::settings::{ParticipantKind, is_code};

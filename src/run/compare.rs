@@ -19,8 +19,8 @@ use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::repeats::Repeats;
-use crate::console::belief::BeliefSnapshot;
-use crate::console::comparison::{
+use crate::history::belief_track::BeliefSnapshot;
+use crate::history::comparison::{
     Communication, CommunicationContent, CommunicationContext, CommunicationLane, LaneComparison,
 };
 use crate::kitchen::cost_to_go::CostToGo;

@@ -1,6 +1,6 @@
 //! Why something could not be done with recordings.
 
-use crate::edge::files::FileError;
+use crate::edge::file_error::FileError;
 use crate::edge::log::WriteError;
 
 /// What is needed cannot be read, or what comes of it cannot be written.

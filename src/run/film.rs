@@ -6,9 +6,9 @@ use std::path::Path;
 use super::replay::Replay;
 use super::standing::ExclusionStatus;
 use crate::base::time::SessionTime;
-use crate::console::belief::{BeliefHistory, BeliefSnapshot};
-use crate::console::playback::ReplayLandmark;
-use crate::edge::files::FileResult;
+use crate::edge::file_error::FileResult;
+use crate::history::belief_track::{BeliefHistory, BeliefSnapshot};
+use crate::history::landmark::ReplayLandmark;
 use crate::session::settings::Visibility;
 use crate::session::{Event, Session, Stamped, apply};
 

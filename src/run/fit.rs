@@ -15,7 +15,7 @@ use super::parallel;
 use super::replay::{Replay, SameKitchen, each_once};
 use crate::base::ascent::{BoundReached, FittedVariable, Maximum, ascend};
 use crate::base::words::count;
-use crate::edge::files::FileResult;
+use crate::edge::file_error::FileResult;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::mind::fitting::{Likelihood, Parameter, likelihood};

@@ -8,9 +8,9 @@ use serde::Serialize;
 use crate::base::words::count;
 use crate::communication::recommendation::{aspects_told, phrase};
 use crate::communication::{Signal, signals, unavailable};
-use crate::console::words;
-use crate::edge::files::FileResult;
+use crate::edge::file_error::FileResult;
 use crate::edge::training::{self, JudgedBelief, JudgedRecording, JudgedSignal, TrainingRecord};
+use crate::history::wording;
 use crate::kitchen::{AspectId, Kitchen};
 use crate::measures::matching::{Content, Kind, Said, Tally, WINDOW};
 use crate::measures::wizard::{Spell, TrainingCriterion, WizardMeasures};
@@ -105,7 +105,7 @@ pub fn about(belief: &JudgedBelief) -> String {
 /// What would have been right.
 pub fn right(belief: &JudgedBelief) -> String {
     belief.signal.as_ref().map_or("no signal could tell it".to_string(), |signal| {
-        format!("right would have been: {}", words::signal(signal))
+        format!("right would have been: {}", wording::signal(signal))
     })
 }
 
@@ -166,13 +166,13 @@ fn told(belief: &JudgedBelief, signals: &[JudgedSignal]) -> [String; 2] {
     let head = format!("{} to {end}  {}; {errors}", belief.began_ns, about(belief));
     if let Some(signal) = belief.hit_by.and_then(|index| signals.get(index)) {
         let after_s = signal.clock_ns.secs_since(belief.began_ns);
-        return [head, format!("    hit after {after_s:.1} s by: {}", words::signal(&signal.signal))];
+        return [head, format!("    hit after {after_s:.1} s by: {}", wording::signal(&signal.signal))];
     }
     let meanwhile = signals.iter().filter(|signal| {
         belief.began_ns <= signal.clock_ns && belief.corrected_ns.is_none_or(|end| signal.clock_ns < end)
     });
     let sent: Vec<String> = meanwhile
-        .map(|signal| format!("{} at {} ({})", words::signal(&signal.signal), signal.clock_ns, signal.worth))
+        .map(|signal| format!("{} at {} ({})", wording::signal(&signal.signal), signal.clock_ns, signal.worth))
         .collect();
     let sent = if sent.is_empty() { "nothing".to_string() } else { sent.join(", ") };
     [head, format!("    missed; {}; sent meanwhile: {sent}", right(belief))]

@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use super::compare::CompareRequest;
 use crate::communication::concept::ConceptName;
-use crate::edge::files::{self, FileResult, SessionFiles};
+use crate::edge::file_error::FileResult;
+use crate::edge::files::{self, SessionFiles};
 use crate::kitchen::Kitchen;
 use crate::session::Header;
 use crate::session::plan::PlanSpec;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::advisor::AdviceRequest;
 use super::follower::Follower;
-use crate::edge::files::{FileError, FileResult};
+use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, LogReader, at_line};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Change, Kitchen};

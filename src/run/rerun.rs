@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::replay::Replay;
 use crate::base::time::SessionTime;
-use crate::edge::files::{FileError, FileResult};
+use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, Lock, LogReader};
 use crate::edge::rerun::{Identity, Lane, Outlets, WebViewer, Writer, uri};
 use crate::edge::rrd::{self, RRD_NAME, RrdState};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::engine::Engine;
 use super::verify::RerunRecording;
 use crate::base::time::SessionTime;
-use crate::edge::files::FileError;
+use crate::edge::file_error::FileError;
 use crate::edge::log::{LOG_NAME, Lock, LogReader, WriteError, check_continued};
 use crate::session::header::Continues;
 use crate::session::{Event, Header, Stamped};

@@ -14,9 +14,9 @@ use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
-use crate::console::comparison::{LaneComparison, UnmatchedCommunication};
-use crate::edge::files::{FileError, FileResult};
+use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogReader, at_line};
+use crate::history::comparison::{LaneComparison, UnmatchedCommunication};
 use crate::kitchen::{AspectId, Kitchen};
 use crate::measures::matching::{Level, Said, Similarity, Tally, WINDOW};
 use crate::session::screen::Screen;
@@ -232,7 +232,7 @@ impl RecordingComparison {
 }
 
 impl CommunicationSummary {
-    fn of(spoken: &crate::console::comparison::Communication) -> CommunicationSummary {
+    fn of(spoken: &crate::history::comparison::Communication) -> CommunicationSummary {
         let (press, clock_s) = (spoken.said.press, spoken.said.clock.as_secs_f64());
         CommunicationSummary { press, clock_s, says: spoken.what.words() }
     }
@@ -248,7 +248,7 @@ impl UnmatchedSummary {
         let comparison = &watched.comparison;
         let spoken = comparison.spoken(difference);
         let knew = spoken.known.as_ref().map(|known| {
-            let held = |(index, held): (usize, &crate::console::belief::AspectSnapshot)| {
+            let held = |(index, held): (usize, &crate::history::belief_track::AspectSnapshot)| {
                 let aspect = &watched.kitchen().aspects[index];
                 let truth = watched.kitchen().true_value(known.state, AspectId(index as u8));
                 AspectContext {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::edge::files::FileResult;
+use crate::edge::file_error::FileResult;
 use crate::edge::log::{LogReader, Ruling, ruling};
 use crate::session::{Event, Session};
 

@@ -13,7 +13,7 @@ use super::kitchen::plan_lengths;
 use super::simulate::{Shard, SimulationRequest, each_trial};
 use crate::communication::concept::ConceptName;
 use crate::communication::settings::Shadow;
-use crate::edge::files::FileError;
+use crate::edge::file_error::FileError;
 use crate::edge::log::WriteError;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::SessionSpec;

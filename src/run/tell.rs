@@ -9,8 +9,8 @@ use super::standing::ExclusionStatus;
 use crate::base::words::count;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
-use crate::console::words::{self, location as said};
 use crate::edge::log::Ending;
+use crate::history::wording::{self, location as said};
 use crate::kitchen::{Agent, Kitchen};
 use crate::measures::attribution::Cause;
 use crate::measures::sequences::FALSE_BELOW;
@@ -142,7 +142,7 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         // That it slows near a hand and speeds up again is no news.
         Event::RobotSafety { mode: SafetyMode::Normal | SafetyMode::Reduced, .. } => return None,
         Event::RobotSafety { mode, force_n, joint } => {
-            format!("robot's arm: {}", words::arm_stopped(*mode, *force_n, *joint))
+            format!("robot's arm: {}", wording::arm_stopped(*mode, *force_n, *joint))
         }
         Event::RobotTouched { force_n } => format!("robot's arm was touched, with {force_n:.0} N"),
         Event::RobotHeld { .. } => "robot held by the wizard before its next press".to_string(),
@@ -156,13 +156,13 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::RobotResumed => "robot goes on".to_string(),
         // Advice is worth a line where something should be said.
         Event::Advised(advice) => advised(advice, follower.session.spec.assistant.concept)?,
-        Event::SignalShown { signal: shown, .. } => format!("signal: {}", words::signal(shown)),
+        Event::SignalShown { signal: shown, .. } => format!("signal: {}", wording::signal(shown)),
         Event::SignalEnded { reason: SignalEnd::Elapsed } => "signal ends".to_string(),
         Event::SignalEnded { reason: SignalEnd::TakenBack } => "signal taken back".to_string(),
         Event::Marker { note } => format!("marker: {note}"),
-        Event::Protocol(event) => words::protocol(event),
-        Event::Tracker(event) => words::tracker(event)?,
-        Event::Calibration(event) => words::calibration(event),
+        Event::Protocol(event) => wording::protocol(event),
+        Event::Tracker(event) => wording::tracker(event)?,
+        Event::Calibration(event) => wording::calibration(event),
         Event::ClockJumped { by_ms } => format!("the wall clock jumped by {:.1} s", *by_ms as f64 / 1000.0),
         Event::ParticipantBelieves(belief) => believes(belief),
         Event::SessionEnded => "session over".to_string(),
@@ -254,7 +254,7 @@ fn advised(advice: &Recommendation, by: ConceptName) -> Option<String> {
         return Some(format!("proposed after the error: {}", presses.join(", ")));
     }
     let best = advice.top().filter(|option| Some(&option.signal) == advice.best.as_ref())?;
-    let what = words::signal(&best.signal);
+    let what = wording::signal(&best.signal);
     let worth = match by {
         ConceptName::Tom => format!("belief off by {:.2}", best.benefit),
         _ => format!("saves {:.1} presses (±{:.1})", best.benefit, best.standard_error),

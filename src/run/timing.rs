@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::advisor::Advisor;
 use super::follower::InferenceTiming;
 use super::replay::Replay;
-use crate::edge::files::FileResult;
+use crate::edge::file_error::FileResult;
 use crate::kitchen::cost_to_go::CostToGo;
 
 /// What `--timing` prints, in microseconds. Null is what the recording does not have.

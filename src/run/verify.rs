@@ -12,7 +12,7 @@ use super::engine::Engine;
 use super::follower::Follower;
 use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
-use crate::edge::files::{FileError, FileResult};
+use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{Ending, LogLine, LogReader, at_line, event_line};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::admit::is_external;

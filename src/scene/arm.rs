@@ -11,7 +11,7 @@ use crate::arm::physics::hand::HandPose;
 use crate::arm::reach::BUTTON_M;
 use crate::arm::reaching::resting_place;
 use crate::base::time::SessionTime;
-use crate::console::words;
+use crate::history::wording;
 use crate::kitchen::{Agent, Button, ButtonId, Change, Kitchen, Press};
 use crate::robot::moment::{ArmSample, JointAngles};
 use crate::robot::safety::SafetyMode;
@@ -224,7 +224,7 @@ fn mark(kitchen: &Kitchen, agent: Agent, button: ButtonId) -> Point {
     Point {
         at_m: [x, y, kitchen.table_height_m + BUTTON_M],
         radius_m: MARK_M,
-        words: format!("{}: {}", agent.name(), words::button(kitchen, agent, button)),
+        words: format!("{}: {}", agent.name(), wording::button(kitchen, agent, button)),
         colour: colours::of(agent),
     }
 }

@@ -3,7 +3,7 @@
 use super::colours;
 use super::shown::{Row, Series, Shown, slug};
 use crate::base::time::SessionTime;
-use crate::console::words;
+use crate::history::wording;
 use crate::kitchen::{Aspect, AspectId, Kitchen, State};
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::dirichlet::DirichletBelief;
@@ -49,7 +49,7 @@ pub fn fixed(kitchen: &Kitchen) -> Vec<Row> {
     let mut rows = Vec::new();
     for (nth, aspect) in kitchen.aspects.iter().enumerate() {
         let colour = colours::of_aspect(AspectId(nth as u8));
-        let series = Series { name: words::location(&aspect.name), colour };
+        let series = Series { name: wording::location(&aspect.name), colour };
         rows.push(Row::new(estimated(&aspect.name), Shown::Line(series.clone())));
         rows.push(Row::new(held_truly(&aspect.name), Shown::Line(series)));
     }
@@ -136,7 +136,7 @@ fn page(session: &Session, held: &[Held]) -> String {
     doubtful.sort_by(|&a, &b| held[a].p_truth.total_cmp(&held[b].p_truth));
     let wrong = doubtful.iter().filter(|&&index| held[index].p_truth < FALSE_BELOW);
     let unsure = doubtful.iter().filter(|&&index| held[index].p_truth >= FALSE_BELOW);
-    let name = |index: usize| words::location(&kitchen.aspects[index].name);
+    let name = |index: usize| wording::location(&kitchen.aspects[index].name);
     let percent = |index: usize| (held[index].p_truth * 100.0).round();
     let line = |&index: &usize| {
         let (believes, truth) = (taken_for_what(session, index, &held[index]), truth(kitchen, session.state, index));

@@ -6,7 +6,7 @@ use super::shown::{Level, Series, Shown, slug};
 use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, signals};
-use crate::console::words;
+use crate::history::wording;
 use crate::kitchen::{Agent, AspectId};
 use crate::measures::JudgedPress;
 use crate::session::event::SignalEnd;
@@ -34,7 +34,7 @@ pub fn fixed(session: &Session) -> Vec<Row> {
         .map(|(_, signal)| {
             let place = kitchen.location_named(signal.target());
             let colour = place.map_or(colours::QUIET, |place| colours::of_aspect(AspectId::of_location(place)));
-            line(benefit(signal.target()), words::signal(signal), colour)
+            line(benefit(signal.target()), wording::signal(signal), colour)
         })
         .collect();
     let worth = format!("worth its cost ({}) above this line", assistant.price());
@@ -56,7 +56,7 @@ pub fn in_order(rows: &[Row]) -> Vec<Row> {
 
 /// A new entry of the timeline. A press that was just judged an error says so.
 pub fn entry(session: &Session, entry: &Entry, error: Option<&JudgedPress>) -> Row {
-    let (who, text) = words::happening(&session.kitchen, &entry.what);
+    let (who, text) = wording::happening(&session.kitchen, &entry.what);
     let text = if who.is_empty() { text } else { format!("{who}: {text}") };
     match entry.what {
         Happening::Press { agent, effective, .. } => {
@@ -84,7 +84,7 @@ pub fn entry(session: &Session, entry: &Entry, error: Option<&JudgedPress>) -> R
 
 /// What happened around the trial.
 pub fn protocol(event: &ProtocolEvent) -> Row {
-    say("trial/events", Level::Info, words::protocol(event), colours::QUIET)
+    say("trial/events", Level::Info, wording::protocol(event), colours::QUIET)
 }
 
 /// The press that was just judged, if it was an error.
@@ -109,7 +109,7 @@ pub fn advice(advice: &Recommendation) -> Vec<Row> {
     if let Some(best) = &advice.best {
         let net = advice.top().map_or(0.0, |top| top.net);
         let why = advice.reason.as_ref().map_or_else(String::new, |reason| format!("; {}", reason.words()));
-        let text = format!("assistant advises: {} (net {net:+.2}){why}", words::signal(best));
+        let text = format!("assistant advises: {} (net {net:+.2}){why}", wording::signal(best));
         rows.push(say("assistant/advice", Level::Info, text, colours::ASSISTANT));
     }
     rows

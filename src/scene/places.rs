@@ -4,8 +4,8 @@
 use super::colours::{self, Colour};
 use super::shown::{Area, Disc, Row, Shown, slug};
 use crate::communication::Signal;
-use crate::console::words;
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
+use crate::history::wording;
 use crate::kitchen::layout::Storage;
 use crate::kitchen::{
     self, Agent, AspectId, ContentId, Kitchen, Location, LocationId, LocationKind, OrderContent, State,
@@ -141,7 +141,7 @@ pub fn shown_signal(session: &Session) -> Vec<Row> {
     let words = match signal {
         Signal::Highlight(_) => "look here".to_string(),
         Signal::ShowRecipe(_) => {
-            words::recipe(session, location).map_or_else(String::new, |recipe| format!("recipe: {recipe}"))
+            wording::recipe(session, location).map_or_else(String::new, |recipe| format!("recipe: {recipe}"))
         }
     };
     let inner = area(&session.kitchen, session.kitchen.location(location).display, colours::SIGNAL);

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The rooms from the ground up; a room imports only from rooms of lower floors.
-const FLOORS: [&[&str]; 14] = [
+const FLOORS: [&[&str]; 15] = [
     &["base"],
     &["kitchen"],
     &["robot", "gaze"],
@@ -12,6 +12,7 @@ const FLOORS: [&[&str]; 14] = [
     &["communication"],
     &["participant", "wizard", "arm"],
     &["session"],
+    &["history"],
     &["console", "study", "display"],
     &["scene"],
     &["edge"],
@@ -20,7 +21,7 @@ const FLOORS: [&[&str]; 14] = [
     &["main", "lib"],
 ];
 /// The first floor that touches the outside.
-const EDGE: usize = 10;
+const EDGE: usize = 11;
 /// Files stay under about 400 lines.
 const MAX_LINES: usize = 420;
 

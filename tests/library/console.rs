@@ -14,11 +14,8 @@ use tomcom::communication::recommendation::{Reason, Recommendation, SignalOption
 use tomcom::communication::settings::Shadow;
 use tomcom::communication::{Sender, Signal};
 use tomcom::console::arrange::{KitchenMap, MapElement};
-use tomcom::console::belief::{self, BeliefSnapshot};
 use tomcom::console::calibration::CalibrationAdvice;
-use tomcom::console::comparison::{
-    Communication, CommunicationContent, CommunicationContext, CommunicationLane, ComparisonView, LaneComparison,
-};
+use tomcom::console::compared::ComparisonView;
 use tomcom::console::keys::{KeyLayer, KeyPlace};
 use tomcom::console::lesson::{TrainingFeedback, TrainingPanel};
 use tomcom::console::model::{Dialog, NoticeLevel, RecordingStatus};
@@ -33,6 +30,10 @@ use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings,
 use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::gaze::GazeSample;
 use tomcom::gaze::calibration::{GazeAccuracy, TargetAccuracy};
+use tomcom::history::belief_track::{self, BeliefSnapshot};
+use tomcom::history::comparison::{
+    Communication, CommunicationContent, CommunicationContext, CommunicationLane, LaneComparison,
+};
 use tomcom::kitchen::{Agent, Kitchen, LocationKind};
 use tomcom::measures::matching::Said;
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
@@ -222,12 +223,12 @@ fn a_running_session_at_three_sizes() {
 #[test]
 fn one_belief_is_looked_at_over_time_and_then_the_next() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    let ranked = belief::ranked(stage.model.belief.until(stage.model.now));
+    let ranked = belief_track::ranked(stage.model.belief.until(stage.model.now));
     let name = |index: usize| stage.session.kitchen.aspects[index].name.clone();
     let wrong: Vec<String> = ranked.iter().take(3).map(|&index| name(index)).collect();
     assert_eq!(wrong, ["order_2", "recipe of tuna nigiri", "robot_hand"], "the longest first");
     stage.control('b');
-    assert_eq!(stage.model.belief.focus.map(|aspect| aspect.index()), ranked.first().copied());
+    assert_eq!(stage.model.belief_focus.map(|aspect| aspect.index()), ranked.first().copied());
     stage.wait(1.0);
     stage.control('b');
     stage.wait(1.0);
@@ -239,7 +240,7 @@ fn one_belief_is_looked_at_over_time_and_then_the_next() {
         stage.wait(1.0);
         stage.control('b');
     }
-    assert_eq!(stage.model.belief.focus, None, "after the last one none");
+    assert_eq!(stage.model.belief_focus, None, "after the last one none");
 }
 
 #[test]
@@ -1214,15 +1215,15 @@ fn the_belief_forgets_what_no_panel_shows() {
         stage.model.now = SessionTime::from_secs_f64(f64::from(second));
         let p = if second % 2 == 0 { 0.8 } else { 0.9 };
         stage.estimate(&[("cooking_pot", "rice raw", p)], false);
-        stage.model.belief.forget(stage.model.now, belief::SHOWN_S);
+        stage.model.belief.forget(stage.model.now, belief_track::SHOWN_S);
         let moments = stage.model.belief.until(stage.model.now);
         assert!(moments.len() <= 200, "{} moments", moments.len());
-        assert!(second < 70 || moments[0].time.as_secs_f64() <= f64::from(second) - belief::SHOWN_S);
-        assert_eq!(belief::wrong_since(moments, aspect), Some(SessionTime::from_secs_f64(1.0)));
+        assert!(second < 70 || moments[0].time.as_secs_f64() <= f64::from(second) - belief_track::SHOWN_S);
+        assert_eq!(belief_track::wrong_since(moments, aspect), Some(SessionTime::from_secs_f64(1.0)));
     }
     stage.model.now = SessionTime::from_secs_f64(3700.0);
     stage.estimate(&[("cooking_pot", "empty", 0.9)], true);
-    assert_eq!(belief::wrong_since(stage.model.belief.until(stage.model.now), aspect), None);
+    assert_eq!(belief_track::wrong_since(stage.model.belief.until(stage.model.now), aspect), None);
 }
 
 /// The sushi kitchen, compared: the wizard with so many assistants.

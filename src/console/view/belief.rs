@@ -7,13 +7,13 @@ use super::regions::Regions;
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::communication::recommendation::phrase;
-use crate::console::belief::{self, AspectSnapshot, BeliefSnapshot};
 use crate::console::model::ConsoleModel;
+use crate::history::belief_track::{self, AspectSnapshot, BeliefSnapshot};
 use crate::kitchen::{AspectId, AspectKind, Kitchen};
 use crate::session::{Phase, Session};
 
 /// The chart of one aspect goes back so far, in seconds; the small ones beside each aspect half as far.
-const COURSE_S: f64 = belief::SHOWN_S;
+const COURSE_S: f64 = belief_track::SHOWN_S;
 /// From so many columns on, an aspect with all that is told of it takes one line, and from so many its course too.
 const ONE_LINE: u16 = 66;
 const WITH_COURSE: u16 = 72;
@@ -55,7 +55,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         }
         return;
     };
-    let panel = Panel { session, now, moments, held: &last.held, focus: model.belief.focus };
+    let panel = Panel { session, now, moments, held: &last.held, focus: model.belief_focus };
     match area.height < FRAMED {
         true => panel.lines(brush, area.x, area.y, area.width, area.height),
         false => panel.panel(brush, area),
@@ -72,7 +72,7 @@ impl Panel<'_> {
         let remark = if wrong == 0 { "estimated".to_string() } else { format!("estimated, {wrong} wrong") };
         let inside = brush.panel(area, "Belief", &remark);
         let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
-        let ranked = belief::ranked(self.moments);
+        let ranked = belief_track::ranked(self.moments);
         let rows_of = |aspect: usize| match columns < ONE_LINE && self.held[aspect].is_false() {
             true => 1 + self.told(aspect, columns).len() as u16,
             false => 1,
@@ -198,12 +198,12 @@ impl Panel<'_> {
 
     /// Since when it is wrong, or that the gaze has just been there.
     fn since(&self, brush: &mut Painter, aspect: usize, x: u16, y: u16) {
-        if belief::read_at(self.moments, aspect, self.now).is_some() {
+        if belief_track::read_at(self.moments, aspect, self.now).is_some() {
             let style = brush.style(TextRole::Gaze);
             let sign = brush.theme.signs().gaze;
             brush.text(x, y, 1, sign, style);
         }
-        if let Some(since) = belief::wrong_since(self.moments, aspect) {
+        if let Some(since) = belief_track::wrong_since(self.moments, aspect) {
             let style = brush.style(TextRole::FalseBelief);
             let age = self.session.age(since, self.now).to_string();
             brush.text_right(x + 6, y, 5, &age, style);
@@ -219,7 +219,7 @@ impl Panel<'_> {
             return self.chart(brush, focus, x, y, columns, rows);
         }
         let wrong: Vec<usize> =
-            belief::ranked(self.moments).into_iter().filter(|&aspect| self.held[aspect].is_false()).collect();
+            belief_track::ranked(self.moments).into_iter().filter(|&aspect| self.held[aspect].is_false()).collect();
         if wrong.is_empty() {
             brush.text(x, y, columns, "nothing is estimated to be believed wrong", quiet);
         }
@@ -228,7 +228,7 @@ impl Panel<'_> {
             let more = wrong.len() - row - 1;
             let is_last = row as u16 + 1 == rows && more > 0;
             let note = if is_last { format!("+{more}  ") } else { String::new() };
-            let age = belief::wrong_since(self.moments, aspect).map(|since| self.session.age(since, self.now));
+            let age = belief_track::wrong_since(self.moments, aspect).map(|since| self.session.age(since, self.now));
             let end = format!("{note}{} {:>5}", share(held.p), age.unwrap_or_default().to_string());
             let style = brush.style(TextRole::FalseBelief);
             brush.text_right(x + columns, y, columns, &end, style);
@@ -266,7 +266,7 @@ impl Panel<'_> {
     fn curve(&self, brush: &mut Painter, aspect: usize, area: Rect, seconds: f64) {
         let Rect { x, y, width: columns, height: rows } = area;
         let levels = brush.theme.signs().levels;
-        let course = belief::course(self.moments, aspect, self.now, seconds, usize::from(columns));
+        let course = belief_track::course(self.moments, aspect, self.now, seconds, usize::from(columns));
         for (column, p) in course.iter().enumerate() {
             let Some(p) = p else { continue };
             let is_false = *p < crate::measures::sequences::FALSE_BELOW;

@@ -8,11 +8,10 @@ use super::regions::{ROOMY_COLUMNS, Regions, ScreenSize};
 use super::theme::TextRole;
 use super::timeline::{axis, until};
 use crate::base::time::SessionTime;
-use crate::console::comparison::{
-    Communication, CommunicationContent, ComparisonKey, LaneComparison, UnmatchedCommunication,
-};
+use crate::console::compared::ComparisonKey;
 use crate::console::keys::KeyAction;
 use crate::console::model::ConsoleModel;
+use crate::history::comparison::{Communication, CommunicationContent, LaneComparison, UnmatchedCommunication};
 use crate::session::Session;
 
 /// The width of a column in seconds.

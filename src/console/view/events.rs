@@ -4,7 +4,7 @@ use super::paint::Painter;
 use super::regions::Regions;
 use super::theme::TextRole;
 use crate::console::model::ConsoleModel;
-use crate::console::words;
+use crate::history::wording;
 use crate::kitchen::Agent;
 use crate::session::{Happening, Session};
 
@@ -25,7 +25,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     for (row, entry) in newest.take(usize::from(inside.height)).enumerate() {
         let y = inside.y + row as u16;
         let age = session.age(entry.time, model.now).to_string();
-        let (who, what) = words::happening(&session.kitchen, &entry.what);
+        let (who, what) = wording::happening(&session.kitchen, &entry.what);
         let is_error = model.is_error(entry);
         let role = match &entry.what {
             Happening::Press { agent: Agent::Human, .. } => TextRole::Human,

@@ -4,7 +4,7 @@ use super::paint::{Painter, width};
 use super::regions::{ROOMY_COLUMNS, Regions, ScreenSize};
 use super::theme::TextRole;
 use crate::console::model::{ConsoleModel, RecordingStatus, ViewerStreamStatus};
-use crate::console::words;
+use crate::history::wording;
 use crate::robot::safety::SafetyMode;
 use crate::session::settings::{Condition, GazeSource};
 use crate::session::tracker::Link;
@@ -22,7 +22,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let name = if is_tight { "" } else { "tomcom" };
     let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
     let badge = brush.theme.badge(phase_role(session.phase));
-    let stage = if model.lesson.is_some() { "TRAINING".to_string() } else { words::stage(session) };
+    let stage = if model.lesson.is_some() { "TRAINING".to_string() } else { wording::stage(session) };
     x = brush.text(x, area.y, 19, &format!(" {stage} "), badge) + gap;
     if let (Some(label), None) = (series(session), &model.playback) {
         x = brush.text(x, area.y, area.right() - x, &label, strong) + gap;

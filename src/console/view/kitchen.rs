@@ -11,7 +11,7 @@ use crate::base::time::SessionTime;
 use crate::console::arrange::{KitchenMap, MapElement};
 use crate::console::keys::KeyLayer;
 use crate::console::model::ConsoleModel;
-use crate::console::words;
+use crate::history::wording;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
 use crate::session::Session;
 use crate::session::settings::{Condition, ParticipantKind};
@@ -140,7 +140,7 @@ impl<'a> Place<'a> {
         };
         let at = session.changed_at[id.index()];
         let age_s = session.age(at, model.now).as_secs_f64();
-        let fresh = (at > SessionTime::ZERO && age_s < FRESH_S).then(|| (age_s, words::changed_by(session, at)));
+        let fresh = (at > SessionTime::ZERO && age_s < FRESH_S).then(|| (age_s, wording::changed_by(session, at)));
         let is_shown = session.shown.as_ref().is_some_and(|shown| shown.signal.target() == kitchen.location(id).name);
         Place { session, model, id, kitchen, content, is_empty, fresh, is_shown }
     }
@@ -261,14 +261,14 @@ impl<'a> Place<'a> {
         let end = brush.text(room.x, room.y, room.width.saturating_sub(6), &text, style);
         if is_wanted {
             let gap = if room.height > 1 { 2 } else { 1 };
-            let unseen = if words::is_unseen(self.session, self.id) { "unseen" } else { "" };
+            let unseen = if wording::is_unseen(self.session, self.id) { "unseen" } else { "" };
             let left = |x: u16| room.right().saturating_sub(x);
             let x = brush.parts(end + gap, room.y, left(end + gap), &[(&age.to_string(), TextRole::Quiet)]) + gap;
             if width(unseen) <= left(x) {
                 brush.parts(x, room.y, left(x), &[(unseen, TextRole::Gaze)]);
             }
         }
-        if let (true, true, Some(recipe)) = (self.is_shown, room.height > 1, words::recipe(self.session, self.id)) {
+        if let (true, true, Some(recipe)) = (self.is_shown, room.height > 1, wording::recipe(self.session, self.id)) {
             let style = brush.style(TextRole::Signal);
             brush.text(room.x, room.y + 1, room.width, &squeeze(&recipe, room.width), style);
         }
@@ -279,14 +279,14 @@ impl<'a> Place<'a> {
         let signs = brush.theme.signs();
         let mut news: Vec<(String, TextRole)> = Vec::new();
         if let Some((button, _, _)) = self.session.robot.intention
-            && words::place(self.kitchen, Agent::Robot, button) == self.id
+            && wording::place(self.kitchen, Agent::Robot, button) == self.id
             && !self.session.robot.stopped
         {
             news.push((format!("{}robot", signs.to), TextRole::Robot));
         }
         if let Some((age_s, by)) = self.fresh {
             news.push((format!("{}{age_s:.0}s", signs.changed), agent_role(by)));
-        } else if words::is_unseen(self.session, self.id) {
+        } else if wording::is_unseen(self.session, self.id) {
             let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
             news.push((format!("unseen {age}"), TextRole::Gaze));
         }

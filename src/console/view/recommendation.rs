@@ -11,7 +11,7 @@ use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::{Proposal, Recommendation, SignalOption};
 use crate::console::keys::KeyAction;
 use crate::console::model::ConsoleModel;
-use crate::console::words;
+use crate::history::wording;
 use crate::session::Session;
 use crate::session::admit::may_send;
 
@@ -102,7 +102,7 @@ fn proposal(brush: &mut Painter, inside: Rect, advice: &Recommendation) -> u16 {
 }
 
 fn proposed(proposal: &Proposal) -> String {
-    let presses: Vec<String> = proposal.presses.iter().map(|press| words::location(press)).collect();
+    let presses: Vec<String> = proposal.presses.iter().map(|press| wording::location(press)).collect();
     format!("error: next would be good {} (no signal says so)", presses.join(", then "))
 }
 
@@ -132,7 +132,7 @@ fn line(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel
             };
             parts.push((worth, TextRole::Strong));
             parts.push((key(option, session, model), TextRole::Signal));
-            parts.push((words::signal(&option.signal), TextRole::Strong));
+            parts.push((wording::signal(&option.signal), TextRole::Strong));
             if let Some(reason) = &advice.reason {
                 parts.push((format!(": {}", reason.words()), TextRole::Quiet));
             }
@@ -187,7 +187,7 @@ fn option_line(
     let role = if is_best { TextRole::Strong } else { TextRole::Quiet };
     let worth = worth(option, session);
     let mut x = brush.parts(inside.x, y, inside.width, &[(worth.as_str(), role)]);
-    let (key, words) = (key(option, session, model), words::signal(&option.signal));
+    let (key, words) = (key(option, session, model), wording::signal(&option.signal));
     // What a signal says comes before how it looks as a bar.
     if inside.right().saturating_sub(x) >= GAUGE + 1 + LONGEST_SIGNAL {
         x = gauge(brush, x, y, option, session, role);

@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use crate::console::comparison::ComparisonView;
+use crate::console::compared::ComparisonView;
 use crate::console::model::ConsoleModel;
 use crate::console::panels::Panel;
 use crate::session::Session;

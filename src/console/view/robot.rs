@@ -9,7 +9,7 @@ use crate::base::words::count;
 use crate::console::hands::ManualAction;
 use crate::console::keys::KeyAction;
 use crate::console::model::ConsoleModel;
-use crate::console::words;
+use crate::history::wording;
 use crate::kitchen::Agent;
 use crate::robot::IdleReason;
 use crate::robot::moment::ArmSample;
@@ -75,7 +75,7 @@ fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mom
     let signs = brush.theme.signs();
     let bar = |angle: &f64| signs.levels[((angle / TAU + 0.5) * 8.0).clamp(0.0, 7.0) as usize];
     let bars: String = moment.joints.iter().map(bar).collect();
-    let phase = if session.robot.stopped { "stands" } else { words::arm_phase(moment.phase) };
+    let phase = if session.robot.stopped { "stands" } else { wording::arm_phase(moment.phase) };
     let phase = format!("{phase:<10} ");
     let hand = match moment.hand_away_m {
         away_m if away_m < 0.005 => " hand at arm".to_string(),
@@ -145,7 +145,7 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     let now = if session.is_running() { model.now } else { session.paused_at };
     let whole_s = until.secs_since(since).max(1e-3);
     let left_s = until.secs_since(now);
-    let label = format!("{} {}", brush.theme.signs().to, words::button(&session.kitchen, Agent::Robot, button));
+    let label = format!("{} {}", brush.theme.signs().to, wording::button(&session.kitchen, Agent::Robot, button));
     let bar = 8.min(columns / 4);
     let by = if session.robot.driven_to.is_some() { " driven" } else { "" };
     brush.parts(x, y, columns.saturating_sub(bar + 7), &[(&label, TextRole::Robot), (by, TextRole::Signal)]);

@@ -6,7 +6,7 @@ use super::theme::TextRole;
 use crate::communication::Signal;
 use crate::console::keys::KeyAction;
 use crate::console::model::ConsoleModel;
-use crate::console::words;
+use crate::history::wording;
 use crate::session::{Phase, Session, ShownSignal};
 
 /// Draws what the participant is shown.
@@ -48,13 +48,13 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     };
     let title = match (&shown.signal, columns > 60) {
         (Signal::ShowRecipe(_), true) => says(session, &shown.signal),
-        _ => words::signal(&shown.signal),
+        _ => wording::signal(&shown.signal),
     };
     let (left_s, share) = left(session, shown, model);
     let bar = if columns < 44 { 4 } else { 8 };
     let room = columns.saturating_sub(bar + 7);
     let end = brush.parts(x, y, room, &[(&title, TextRole::Signal)]);
-    let by = format!(" by {}", words::sender(shown.by));
+    let by = format!(" by {}", wording::sender(shown.by));
     if end + width(&by) <= x + room {
         brush.parts(end, y, room, &[(&by, TextRole::Quiet)]);
     }
@@ -75,7 +75,7 @@ fn says(session: &Session, signal: &Signal) -> String {
     let Some(location) = kitchen.location_named(signal.target()) else { return String::new() };
     let content = kitchen.content_label(session.state, location);
     match signal {
-        Signal::ShowRecipe(_) => match words::recipe(session, location) {
+        Signal::ShowRecipe(_) => match wording::recipe(session, location) {
             Some(recipe) => format!("{content} = {recipe}"),
             None => format!("{}: {content}", kitchen.location(location).label()),
         },

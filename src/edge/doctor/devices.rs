@@ -5,7 +5,7 @@ use std::net::{Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
 
 use crate::base::words::count;
-use crate::edge::files::FileError;
+use crate::edge::file_error::FileError;
 use crate::edge::{gaze_file, pupil};
 use crate::gaze::surface::SurfaceMap;
 use crate::session::SessionSpec;

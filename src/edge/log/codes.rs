@@ -6,7 +6,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::WriteError;
-use crate::edge::files::{FileError, FileResult};
+use crate::edge::file_error::{FileError, FileResult};
 use crate::measures::coding::{Codable, Code, Codes, Kind};
 use crate::session::settings::is_code;
 
@@ -89,7 +89,7 @@ pub fn write(folder: &Path, rater: &str, codes: &Codes) -> Result<(), WriteError
 /// # Errors
 /// It cannot be read, or is none.
 pub fn read_export(path: &Path) -> FileResult<(String, Vec<Row>)> {
-    let text = crate::edge::files::read_text(path)?;
+    let text = crate::edge::file_error::read_text(path)?;
     let row = |(line, before, press, code): ParsedRow| {
         let [recording, rater] = [before[0].clone(), before[1].clone()];
         Row { line, recording, rater, press, code }

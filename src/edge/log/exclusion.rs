@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Lock, LogReader, WriteError, check_continued};
 use crate::edge::clock::WallTime;
-use crate::edge::files::{FileError, FileResult};
+use crate::edge::file_error::{FileError, FileResult};
 
 /// The name of the file in the folder of a recording.
 pub const EXCLUSION_NAME: &str = "exclusion.toml";

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::{LOG_NAME, Lock};
-use crate::edge::files::{FileError, FileResult, compile_kitchen};
+use crate::edge::file_error::{FileError, FileResult};
+use crate::edge::files::compile_kitchen;
 use crate::kitchen::Kitchen;
 use crate::session::header::{Continues, FORMAT, VERSION};
 use crate::session::{Event, Header, Session, Stamped};

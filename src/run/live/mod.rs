@@ -23,13 +23,14 @@ use std::time::Duration;
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
 use self::display::ParticipantDisplay;
-use crate::console::comparison::ComparisonView;
+use crate::console::compared::ComparisonView;
 use crate::console::keys::KeyError;
 use crate::console::model::RecordingStatus;
 use crate::console::{ConsoleModel, KeyBindings};
 use crate::edge::clock::{SessionClock, WallTime};
 use crate::edge::doctor::free_bytes;
-use crate::edge::files::{FileError, key_map};
+use crate::edge::file_error::FileError;
+use crate::edge::key_file::key_map;
 use crate::edge::log::{Lock, LogWriter, WriteError};
 use crate::edge::terminal::{Screen, theme};
 use crate::gaze::tags::TagError;

@@ -1,11 +1,11 @@
 //! Every event into the log, and to whoever else wants to know of it; what is done when that fails.
 
 use super::Live;
-use crate::console::belief::{self, BeliefSnapshot};
 use crate::console::model::{NoticeLevel, RecordingStatus};
-use crate::console::words;
 use crate::edge::doctor::free_bytes;
 use crate::edge::log::WriteError;
+use crate::history::belief_track::{self, BeliefSnapshot};
+use crate::history::wording;
 use crate::session::{Event, Phase, Stamped};
 
 impl Live {
@@ -17,7 +17,7 @@ impl Live {
                 Event::Gaze(sample) => self.model.see(stamped.time, self.engine.session().corrected(sample)),
                 Event::SignalShown { .. } => self.undrawn = Some(stamped.seq),
                 Event::RobotSafety { mode, force_n, joint } if mode.has_stopped_itself() => {
-                    self.model.say(NoticeLevel::Alarm, words::arm_stopped(mode, force_n, joint));
+                    self.model.say(NoticeLevel::Alarm, wording::arm_stopped(mode, force_n, joint));
                 }
                 _ => {}
             }
@@ -37,7 +37,7 @@ impl Live {
             let session = self.engine.session();
             let moment = BeliefSnapshot::new(&session.kitchen, session.state, self.engine.belief(), last.time, by_gaze);
             self.model.belief.note(moment);
-            self.model.belief.forget(last.time, belief::SHOWN_S);
+            self.model.belief.forget(last.time, belief_track::SHOWN_S);
         }
         for question in self.engine.take_questions() {
             if let Some(advisor) = &self.advisor {

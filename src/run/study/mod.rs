@@ -13,7 +13,7 @@ pub use self::tell::describe;
 use super::parallel;
 use super::replay::SameKitchen;
 use crate::edge::export::{Export, ExportError, Rows};
-use crate::edge::files::FileError;
+use crate::edge::file_error::FileError;
 use crate::edge::log::LogReader;
 use crate::edge::recordings;
 use crate::kitchen::Kitchen;

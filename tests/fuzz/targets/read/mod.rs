@@ -4,8 +4,10 @@
 
 use std::path::{Path, PathBuf};
 
-use tomcom::edge::files::{FileResult, compile_kitchen, key_map};
+use tomcom::edge::file_error::FileResult;
+use tomcom::edge::files::compile_kitchen;
 use tomcom::edge::gaze_json;
+use tomcom::edge::key_file::key_map;
 use tomcom::edge::log::LogReader;
 use tomcom::edge::parse::parse;
 use tomcom::edge::pupil::message;

@@ -69,12 +69,10 @@ impl BeliefSnapshot {
     }
 }
 
-/// The estimate from moment to moment, and the aspect that is looked at more closely.
+/// The estimate from moment to moment.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefHistory {
     moments: Vec<BeliefSnapshot>,
-    /// Shown over time.
-    pub focus: Option<AspectId>,
 }
 
 impl BeliefHistory {
@@ -116,17 +114,6 @@ impl BeliefHistory {
         let known = self.moments.len().min(other.moments.len());
         self.moments.extend_from_slice(&other.moments[known..]);
     }
-
-    /// Looks at the aspect that follows in this order, after the last one at none.
-    pub fn focus_next(&mut self, ranked: &[usize]) {
-        let at = self.focus.and_then(|focus| ranked.iter().position(|&aspect| aspect == focus.index()));
-        let next = match (self.focus, at) {
-            (None, _) => ranked.first(),
-            (Some(_), at) => at.and_then(|at| ranked.get(at + 1)),
-        };
-        self.focus = next.map(|&aspect| AspectId(aspect as u8));
-    }
-
     /// The moments until and with this time.
     pub fn until(&self, time: SessionTime) -> &[BeliefSnapshot] {
         &self.moments[..self.moments.partition_point(|moment| moment.time <= time)]

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use super::belief::AspectSnapshot;
-use super::words;
+use super::belief_track::AspectSnapshot;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::{Recommendation, SignalOption};
+use crate::history::wording;
 use crate::kitchen::{AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::measures::matching::{Content, Kind, Likeness, Said, Similarity, Tally, matched};
 use crate::measures::sequences::FALSE_BELOW;
@@ -60,9 +60,9 @@ impl CommunicationContent {
     /// In words.
     pub fn words(&self) -> String {
         match self {
-            CommunicationContent::Signal(signal) => words::signal(signal),
+            CommunicationContent::Signal(signal) => wording::signal(signal),
             CommunicationContent::Proposal(presses) => {
-                let presses: Vec<String> = presses.iter().map(|press| words::location(press)).collect();
+                let presses: Vec<String> = presses.iter().map(|press| wording::location(press)).collect();
                 format!("press {}", presses.join(", then "))
             }
         }
@@ -212,65 +212,20 @@ impl LaneComparison {
     }
 }
 
-/// What a key asks of the list of differences.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ComparisonKey {
-    Next,
-    Last,
-    /// Shows what each knew then.
-    Open,
-}
-
-/// The comparison at the console, and the difference that is looked at.
-#[derive(Clone, Debug, Default)]
-pub struct ComparisonView {
-    /// None until the first press or order.
-    pub seen: Option<LaneComparison>,
-    /// None: the newest.
-    chosen: Option<UnmatchedCommunication>,
-}
-
-impl ComparisonView {
-    /// Takes over what was compared meanwhile; what was chosen stays chosen.
-    pub fn show(&mut self, newest: LaneComparison) {
-        self.chosen = self.chosen.filter(|chosen| newest.differences.contains(chosen));
-        self.seen = Some(newest);
-    }
-
-    /// The difference that is looked at: its place in the list, and the comparison.
-    pub fn chosen(&self) -> Option<(usize, &LaneComparison)> {
-        let seen = self.seen.as_ref()?;
-        let newest = seen.differences.len().checked_sub(1)?;
-        let is_it = |chosen: UnmatchedCommunication| seen.differences.iter().position(|one| *one == chosen);
-        Some((self.chosen.and_then(is_it).unwrap_or(newest), seen))
-    }
-
-    /// Goes on to the next difference, or back to the last; at the newest the newest is followed.
-    pub fn choose(&mut self, step: ComparisonKey) {
-        let Some((at, seen)) = self.chosen() else { return };
-        let to = match step {
-            ComparisonKey::Next => at + 1,
-            ComparisonKey::Last => at.saturating_sub(1),
-            ComparisonKey::Open => at,
-        };
-        self.chosen = seen.differences.get(to).copied().filter(|_| to + 1 < seen.differences.len());
-    }
-}
-
 /// What an assistant thought, in words; ToM thinks of deviations.
 fn thought(advice: &Recommendation, is_tom: bool) -> String {
     if let Some(proposal) = &advice.proposal {
         return CommunicationContent::Proposal(proposal.presses.clone()).words();
     }
     let option = |option: &SignalOption| {
-        let (signal, SignalOption { benefit, standard_error, net, .. }) = (words::signal(&option.signal), option);
+        let (signal, SignalOption { benefit, standard_error, net, .. }) = (wording::signal(&option.signal), option);
         match is_tom {
             true => format!("{signal} {benefit:.2} (above threshold {net:+.2})"),
             false => format!("{signal} {benefit:.2} ±{standard_error:.2} (net {net:+.2})"),
         }
     };
     let options: Vec<String> = advice.options.iter().take(3).map(option).collect();
-    let best = advice.best.as_ref().map_or("say nothing".to_string(), words::signal);
+    let best = advice.best.as_ref().map_or("say nothing".to_string(), wording::signal);
     let reason = advice.reason.as_ref().map_or(String::new(), |reason| format!("; the human {}", reason.words()));
     match options.is_empty() {
         true => best,
@@ -289,7 +244,7 @@ fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
     let told = |&(index, held): &(usize, &AspectSnapshot)| {
         let aspect = &kitchen.aspects[index];
         let truth = kitchen.true_value(known.state, AspectId(index as u8));
-        let name = words::location(&aspect.name);
+        let name = wording::location(&aspect.name);
         let (believes, truth_label) = (&aspect.labels[usize::from(held.believes)], &aspect.labels[truth]);
         match usize::from(held.believes) == truth {
             true => format!("{name}: most likely {truth_label}, but only {:.2}", held.p_truth),
@@ -297,7 +252,7 @@ fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
         }
     };
     let doubted = |&(index, held): &(usize, &AspectSnapshot)| {
-        format!("{} {:.2}", words::location(&kitchen.aspects[index].name), held.p_truth)
+        format!("{} {:.2}", wording::location(&kitchen.aspects[index].name), held.p_truth)
     };
     let list = |told: Vec<String>| if told.is_empty() { "nothing".to_string() } else { told.join("; ") };
     [

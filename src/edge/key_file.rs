@@ -1,0 +1,53 @@
+//! Reads key files: which keys of the console a session changes.
+
+use std::path::Path;
+
+use toml::Spanned;
+
+use super::file_error::{FileError, FileResult};
+use super::parse::{Kind, OfKind, parse};
+use crate::console::KeyMap;
+use crate::console::keys::{self, KeyError, KeyLayer, KeyPlace};
+use crate::kitchen::Kitchen;
+use crate::kitchen::layout::{LayoutSpec, is_same_key};
+use crate::session::header::FileText;
+
+impl OfKind for KeyMap {
+    const KIND: Kind = Kind::Keys;
+}
+
+/// Whether the console can take the keys of a layout, changed by a key file.
+///
+/// # Errors
+/// A key is taken twice, or the key file is wrong.
+pub(super) fn check_keys(
+    (path, text): (&Path, &str),
+    layout: &LayoutSpec,
+    kitchen: &Kitchen,
+    keys: Option<&FileText>,
+) -> FileResult<()> {
+    let map = key_map(keys)?;
+    let Err(KeyError { place, found, remedy }) = keys::lines(kitchen, &map) else { return Ok(()) };
+    match (place, keys) {
+        (KeyPlace::File(span), Some(keys)) => {
+            Err(FileError::at(Path::new(&keys.path), &keys.text, Some(span), found, remedy))
+        }
+        (KeyPlace::Layout(layer, letter), _) => {
+            let is_it = |key: &&Spanned<char>| is_same_key(*key.get_ref(), letter);
+            let key = match layer {
+                KeyLayer::Wizard => layout.signal_keys().map(|(_, key)| key).find(is_it),
+                KeyLayer::Participant => layout.button_keys().find(is_it),
+            };
+            Err(FileError::at(path, text, key.map(Spanned::span), found, remedy))
+        }
+        (KeyPlace::File(_), None) => Ok(()),
+    }
+}
+
+/// What a key file says; nothing, if there is none.
+///
+/// # Errors
+/// It is no key file.
+pub fn key_map(keys: Option<&FileText>) -> FileResult<KeyMap> {
+    keys.map_or(Ok(KeyMap::default()), |keys| parse(Path::new(&keys.path), &keys.text))
+}

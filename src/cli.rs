@@ -235,7 +235,7 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
         let found = "a session without a plan".to_string();
         return Err(wrong_argument(&args.session, found, "a session file with a [plan], like sessions/study.toml"));
     };
-    let figures = StudyPlanSummary::of(&study, &args.out)?;
+    let figures = StudyPlanSummary::from_study(&study, &args.out)?;
     print(args.format, &figures, || plan::describe(&figures))
 }
 
@@ -282,8 +282,8 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         }
         std::thread::sleep(FOLLOW_INTERVAL);
     }
-    let standing = ExclusionStatus::of(replay.session(), replay.log())?;
-    let figures = tell::RecordingSummary::of(&replay.follower, events, replay.log().ending(), standing);
+    let standing = ExclusionStatus::from_recording(replay.session(), replay.log())?;
+    let figures = tell::RecordingSummary::from_follower(&replay.follower, events, replay.log().ending(), standing);
     print(args.format, &figures, || figures.describe())
 }
 
@@ -300,7 +300,7 @@ fn progress(of: u64, what: &str) -> ProgressBar {
 
 fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
     let kitchen = Arc::new(files::read_kitchen(&args.layout)?.kitchen);
-    let figures = kitchen::KitchenSummary::of(&kitchen);
+    let figures = kitchen::KitchenSummary::from_kitchen(&kitchen);
     print(args.format, &figures, || kitchen::describe(&kitchen, &figures))
 }
 

@@ -29,7 +29,7 @@ pub struct CapsuleDistance {
 
 impl Capsule {
     /// The capsule in a solid; of a box the one along its longest side.
-    fn of(solid: &CollisionSolid, base_from_link: &Isometry3<f64>) -> Capsule {
+    fn from_solid(solid: &CollisionSolid, base_from_link: &Isometry3<f64>) -> Capsule {
         let (half_m, radius_m, axis) = match solid.shape {
             LinkShape::Cylinder { radius_m, length_m } => ((length_m / 2.0 - radius_m).max(0.0), radius_m, 2),
             LinkShape::Sphere { radius_m } => (0.0, radius_m, 2),
@@ -86,7 +86,9 @@ impl Arm {
         let places = self.forward(joints);
         let links = self.links.iter().zip(&places).enumerate();
         links
-            .flat_map(|(at, (link, place))| link.solids.iter().map(move |solid| (at, Capsule::of(solid, place))))
+            .flat_map(|(at, (link, place))| {
+                link.solids.iter().map(move |solid| (at, Capsule::from_solid(solid, place)))
+            })
             .collect()
     }
 

@@ -47,7 +47,7 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
     if let Some(file) = &args.export {
         codes::export(&recordings, file)?;
     }
-    let figures = CodesSummary::of(&recordings);
+    let figures = CodesSummary::from_recordings(&recordings);
     print(args.format, &figures, || codes::describe(&figures))
 }
 

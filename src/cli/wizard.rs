@@ -118,9 +118,9 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let bar = progress((args.paths.len() * windows.len()) as u64, "recordings");
     let watch = |window: u32| similarity::watch(&args.paths, &request(window), || bar.inc(1));
     let first = watch(windows[0])?;
-    let mut figures = ComparisonSummary::of(&first);
+    let mut figures = ComparisonSummary::from_recordings(&first);
     for &window in &windows[1..] {
-        figures.pairs.extend(ComparisonSummary::of(&watch(window)?).pairs);
+        figures.pairs.extend(ComparisonSummary::from_recordings(&watch(window)?).pairs);
     }
     if !args.only.is_empty() {
         let only: Vec<ConceptName> = args.only.iter().map(|&concept| concept.into()).collect();

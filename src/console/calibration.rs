@@ -39,7 +39,7 @@ pub enum CalibrationAdvice {
 
 impl CalibrationAdvice {
     /// Of what was found.
-    pub fn of(found: Option<&GazeAccuracy>) -> CalibrationAdvice {
+    pub fn for_result(found: Option<&GazeAccuracy>) -> CalibrationAdvice {
         match found {
             Some(found) if found.accuracy_deg.min(found.corrected_deg) > USABLE_DEG => CalibrationAdvice::Repeat,
             Some(found) if found.corrected_deg < found.accuracy_deg => CalibrationAdvice::Corrected,
@@ -58,7 +58,7 @@ pub(super) fn answer(
 ) -> Option<ConsoleCommand> {
     let outcome = session.calibration.as_ref().and_then(|check| check.result.as_ref());
     let found = outcome.and_then(|outcome| outcome.found.as_ref());
-    let code = match (code, CalibrationAdvice::of(found)) {
+    let code = match (code, CalibrationAdvice::for_result(found)) {
         (KeyCode::Enter, CalibrationAdvice::Corrected) => KeyCode::Char(CORRECTED),
         (KeyCode::Enter, CalibrationAdvice::AsItIs) => KeyCode::Char(AS_IT_IS),
         (KeyCode::Enter, CalibrationAdvice::Repeat) => KeyCode::Char(REPEAT),

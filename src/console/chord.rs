@@ -54,7 +54,7 @@ impl KeyChord {
     }
 
     /// The chord of a key event. Capitals count as their small letters, so that caps lock does no harm.
-    pub fn of(key: &KeyEvent) -> KeyChord {
+    pub fn from_event(key: &KeyEvent) -> KeyChord {
         let code = match key.code {
             KeyCode::Char(letter) => KeyCode::Char(small(letter)),
             other => other,

@@ -147,7 +147,8 @@ impl KeyBindings {
     /// # Errors
     /// A key with two meanings, or a line of the key file that cannot be.
     pub fn live(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyMap) -> Result<KeyBindings, KeyError> {
-        let Consoles { comparing, mut bindings, .. } = Consoles::of(lines(kitchen, map)?, KeySection::Console);
+        let Consoles { comparing, mut bindings, .. } =
+            Consoles::from_bindings(lines(kitchen, map)?, KeySection::Console);
         let marks = marks(kitchen, &bindings);
         let at_keyboard = spec.participant.kind == ParticipantKind::Keyboard;
         bindings.retain(|line| match &line.action {
@@ -188,7 +189,8 @@ impl KeyBindings {
     /// # Errors
     /// As of [`KeyBindings::live`].
     pub fn replay(kitchen: &Kitchen, map: &KeyMap) -> Result<KeyBindings, KeyError> {
-        let Consoles { comparing, coding, mut bindings } = Consoles::of(lines(kitchen, map)?, KeySection::Replay);
+        let Consoles { comparing, coding, mut bindings } =
+            Consoles::from_bindings(lines(kitchen, map)?, KeySection::Replay);
         let marks = marks(kitchen, &bindings);
         bindings.retain(|line| line.section == KeySection::Replay && !line.chords.is_empty());
         Ok(KeyBindings { bindings, marks, comparing, coding })
@@ -226,7 +228,7 @@ impl KeyBindings {
 
     /// The key with which a rater says that something was believed wrong about a location.
     pub fn of_belief(&self, location: LocationId) -> Option<KeyChord> {
-        self.of(&KeyAction::Rate(RaterKey::Belief(location)))
+        self.chord_for(&KeyAction::Rate(RaterKey::Belief(location)))
     }
 
     /// How the signal about a location is written in the timeline, also in a replay, where no key sends it.
@@ -236,11 +238,11 @@ impl KeyBindings {
 
     /// The participant's key of a button.
     pub fn of_button(&self, button: ButtonId) -> Option<KeyChord> {
-        self.of(&KeyAction::Press(button))
+        self.chord_for(&KeyAction::Press(button))
     }
 
     /// The key of an action of the console.
-    pub fn of(&self, action: &KeyAction) -> Option<KeyChord> {
+    pub fn chord_for(&self, action: &KeyAction) -> Option<KeyChord> {
         self.bindings.iter().find(|line| line.action == *action).and_then(|line| line.chords.first().copied())
     }
 }
@@ -253,7 +255,7 @@ struct Consoles {
 }
 
 impl Consoles {
-    fn of(lines: Vec<KeyBinding>, section: KeySection) -> Consoles {
+    fn from_bindings(lines: Vec<KeyBinding>, section: KeySection) -> Consoles {
         let (mut comparing, others): (Vec<KeyBinding>, Vec<KeyBinding>) =
             lines.into_iter().partition(|line| matches!(line.action, KeyAction::Differ(_)));
         let (mut coding, bindings): (Vec<KeyBinding>, Vec<KeyBinding>) =

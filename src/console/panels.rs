@@ -46,7 +46,7 @@ impl Panel {
 
     /// The panel under a cell.
     fn at(regions: &Regions, cell: (u16, u16)) -> Option<Panel> {
-        Panel::ALL.into_iter().find(|panel| regions.of(*panel).contains(cell.into()))
+        Panel::ALL.into_iter().find(|panel| regions.panel_area(*panel).contains(cell.into()))
     }
 }
 

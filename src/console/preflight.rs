@@ -31,7 +31,7 @@ pub fn all_ok(checks: &[Check]) -> bool {
 
 /// The key of an action.
 fn key(model: &ConsoleModel, action: &KeyAction) -> String {
-    model.keys.of(action).map(|key| key.to_string()).unwrap_or_default()
+    model.keys.chord_for(action).map(|key| key.to_string()).unwrap_or_default()
 }
 
 fn robot(session: &Session, model: &ConsoleModel) -> Check {

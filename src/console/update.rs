@@ -75,7 +75,7 @@ fn pressed(model: &mut ConsoleModel, session: &Session, key: &KeyEvent) -> Optio
     if touch == Touch::Release {
         return None;
     }
-    let chord = KeyChord::of(key);
+    let chord = KeyChord::from_event(key);
     let action = model.keys.find(model.layer, chord).map(|line| line.action.clone());
     match action {
         // Only where the trial is paused, and the robot stands, does the space bar type a space.

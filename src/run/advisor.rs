@@ -31,7 +31,7 @@ pub struct AdviceRequest {
 
 impl AdviceRequest {
     /// The question after an event of this number and time.
-    pub fn of(follower: &Follower, seq: u64, time: SessionTime) -> AdviceRequest {
+    pub fn from_follower(follower: &Follower, seq: u64, time: SessionTime) -> AdviceRequest {
         let session = &follower.session;
         let robot = match session.robot.intention {
             _ if session.robot.stopped || session.robot.held && session.robot.driven_to.is_none() => {

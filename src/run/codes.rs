@@ -85,7 +85,7 @@ pub struct RaterPairSummary {
 
 impl CodesSummary {
     /// Sums up recordings.
-    pub fn of(recordings: &[CodedRecording]) -> CodesSummary {
+    pub fn from_recordings(recordings: &[CodedRecording]) -> CodesSummary {
         let mut pairs: BTreeMap<(String, String), AgreementTable> = BTreeMap::new();
         let mut known: BTreeMap<String, AgreementTable> = BTreeMap::new();
         for one in recordings {

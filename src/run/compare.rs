@@ -237,7 +237,7 @@ impl ComparisonFollower {
         self.asked += 1;
         let session = &self.follower.session;
         let (kitchen, own_hand) = (session.kitchen.clone(), session.spec.signals.own_hand);
-        let question = AdviceRequest::of(&self.follower, seq, time);
+        let question = AdviceRequest::from_follower(&self.follower, seq, time);
         let belief = estimate(&self.follower, &self.without);
         let shown = &self.shown;
         let answer = |voice: &mut Voice| {

@@ -234,7 +234,7 @@ impl Engine {
     fn settle(&mut self, now: SessionTime) {
         self.let_follow(now);
         if let Some((seq, time)) = self.to_ask.take().filter(|_| self.session().is_running()) {
-            self.questions.push(AdviceRequest::of(&self.follower, seq, time));
+            self.questions.push(AdviceRequest::from_follower(&self.follower, seq, time));
         }
     }
 

@@ -30,7 +30,7 @@ pub struct TrialSummary {
 
 impl TrialSummary {
     /// The figures of a session so far.
-    pub fn of(follower: &Follower) -> TrialSummary {
+    pub fn from_follower(follower: &Follower) -> TrialSummary {
         let session = &follower.session;
         let mut before = 0;
         let served = session.served.iter().map(|served| {
@@ -46,7 +46,7 @@ impl TrialSummary {
             errors: follower.errors() as u64,
             races: follower.judged.iter().filter(|press| press.verdict.race).count() as u64,
             signals: signals.count() as u64,
-            beliefs: TrialBeliefErrors::of(follower),
+            beliefs: TrialBeliefErrors::from_follower(follower),
             served,
             seconds: session.trial_clock(session.time).as_secs_f64(),
         }
@@ -68,7 +68,7 @@ pub struct TrialBeliefErrors {
 
 impl TrialBeliefErrors {
     /// Those of a session so far; none if it is not known for every press what the human believed.
-    fn of(follower: &Follower) -> Option<TrialBeliefErrors> {
+    fn from_follower(follower: &Follower) -> Option<TrialBeliefErrors> {
         let judged = &follower.judged;
         let is_simulated = follower.session.spec.participant.kind == ParticipantKind::Simulated;
         if !is_simulated || judged.iter().any(|press| !press.belief_known) {
@@ -104,7 +104,7 @@ pub struct BeliefErrorSummary {
 
 impl BeliefErrorSummary {
     /// Sums up trials.
-    pub fn of<'a>(trials: impl IntoIterator<Item = &'a TrialSummary>) -> BeliefErrorSummary {
+    pub fn from_trials<'a>(trials: impl IntoIterator<Item = &'a TrialSummary>) -> BeliefErrorSummary {
         let mut sums = BeliefSums::default();
         trials.into_iter().for_each(|trial| sums.add(trial.beliefs.as_ref()));
         sums.figures()

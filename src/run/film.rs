@@ -96,9 +96,9 @@ impl SeekableReplay {
     /// Whether it counts.
     ///
     /// # Errors
-    /// Those of [`ExclusionStatus::of`].
+    /// Those of [`ExclusionStatus::from_recording`].
     pub fn standing(&self) -> FileResult<ExclusionStatus> {
-        ExclusionStatus::of(self.replay.session(), self.replay.log())
+        ExclusionStatus::from_recording(self.replay.session(), self.replay.log())
     }
 
     /// The time of the last event, and the number of events.

@@ -77,7 +77,7 @@ pub struct FittedParameter {
 }
 
 impl FittedParameter {
-    fn of(parameter: Parameter, before: f64, found: &FittedVariable) -> FittedParameter {
+    fn from_variable(parameter: Parameter, before: f64, found: &FittedVariable) -> FittedParameter {
         let value = parameter.from_scale(found.at);
         let [low, high] = parameter.bounds().map(|end| parameter.to_scale(end));
         let told = |end: f64| (low..=high).contains(&end).then(|| parameter.from_scale(end));
@@ -218,7 +218,7 @@ pub fn fit(trials: &FitTrials, plan: &FitPlan, tried: impl Fn()) -> FitSummary {
         begins_with_recordings: plan.start.is_none(),
         recordings_differ: trials.differ,
         converged,
-        parameters: fitted.map(|(one, found)| FittedParameter::of(*one, one.get(begin), found)).collect(),
+        parameters: fitted.map(|(one, found)| FittedParameter::from_variable(*one, one.get(begin), found)).collect(),
         model,
     }
 }

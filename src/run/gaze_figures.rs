@@ -30,7 +30,7 @@ pub struct GazeSummary {
 }
 
 impl GazeSummary {
-    pub fn of(session: &Session) -> GazeSummary {
+    pub fn from_session(session: &Session) -> GazeSummary {
         let (gaze, tracker) = (&session.gaze, &session.tracker);
         let calibrated = session.calibrated.as_ref();
         GazeSummary {

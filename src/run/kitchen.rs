@@ -42,7 +42,7 @@ pub struct TagSummary {
 }
 
 impl TagsSummary {
-    fn of(tags: &DisplayTags) -> TagsSummary {
+    fn from_tags(tags: &DisplayTags) -> TagsSummary {
         let row = |row: &[bool; CELLS]| row.iter().map(|black| if *black { '#' } else { '.' }).collect();
         let tag = |tag: &DisplayTag| {
             let area = [tag.area.x, tag.area.y, tag.area.w, tag.area.h];
@@ -71,7 +71,7 @@ pub struct ShortestPlanSummary {
 
 impl KitchenSummary {
     /// Computes the figures of a kitchen.
-    pub fn of(kitchen: &Arc<Kitchen>) -> KitchenSummary {
+    pub fn from_kitchen(kitchen: &Arc<Kitchen>) -> KitchenSummary {
         let mut cost = CostToGo::new(kitchen.clone());
         let aspects = kitchen.aspects.iter();
         let aspects = aspects.map(|aspect| AspectSummary { name: aspect.name.clone(), values: aspect.values.len() });
@@ -81,7 +81,7 @@ impl KitchenSummary {
             states: kitchen.state_count().to_string(),
             aspects: aspects.collect(),
             plans: plans.collect(),
-            tags: DisplayTags::place(kitchen).ok().as_ref().map(TagsSummary::of),
+            tags: DisplayTags::place(kitchen).ok().as_ref().map(TagsSummary::from_tags),
         }
     }
 }

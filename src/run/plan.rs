@@ -27,7 +27,7 @@ impl StudyPlanSummary {
     ///
     /// # Errors
     /// Recordings that cannot be read, or that the plan would not have asked for.
-    pub fn of(study: &Study, out: &Path) -> Result<StudyPlanSummary, LiveError> {
+    pub fn from_study(study: &Study, out: &Path) -> Result<StudyPlanSummary, LiveError> {
         let made = recordings::of_plan(out, &study.plan.name)?;
         let codes = study.plan.codes();
         if let Some(stranger) = made.iter().find(|made| !codes.contains(&made.code)) {

@@ -67,7 +67,7 @@ pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
     log.header.session.require_built_live().map_err(|missing| FileError::not_built(&folder, missing))?;
     let lock = Lock::take(&folder)?;
     check_continued(&folder)?;
-    let RerunRecording { log, mut again, difference, .. } = RerunRecording::of(log)?;
+    let RerunRecording { log, mut again, difference, .. } = RerunRecording::from_log(log)?;
     if let Some(difference) = difference {
         return Err(ResumeError::Differs { log: difference.log, seq: difference.seq });
     }

@@ -141,7 +141,7 @@ impl ComparedRecording {
             hands.note(&line.stamped, &watcher.follower.session);
         }
         watcher.finish();
-        let standing = ExclusionStatus::of(&watcher.follower.session, &log)?;
+        let standing = ExclusionStatus::from_recording(&watcher.follower.session, &log)?;
         let comparison = watcher.comparison(true);
         let is_wizards = log.header.session.trial.condition == Condition::Wizard;
         let wizard = is_wizards.then(|| hands.figures(&watcher.follower));
@@ -168,7 +168,7 @@ pub fn watch(
 
 impl ComparisonSummary {
     /// Sums recordings up. Of several, those that are excluded are left out of the pairs.
-    pub fn of(watched: &[ComparedRecording]) -> ComparisonSummary {
+    pub fn from_recordings(watched: &[ComparedRecording]) -> ComparisonSummary {
         let counting: Vec<&ComparedRecording> =
             watched.iter().filter(|one| watched.len() == 1 || one.standing.counts()).collect();
         let mut pairs: Vec<(LanePairSummary, Tally)> = Vec::new();
@@ -193,7 +193,7 @@ impl ComparisonSummary {
         let pairs = pairs.into_iter().map(|(pair, tally)| LanePairSummary { similarity: tally.similarity(), ..pair });
         ComparisonSummary {
             pairs: pairs.collect(),
-            recordings: watched.iter().map(RecordingComparison::of).collect(),
+            recordings: watched.iter().map(RecordingComparison::from_recording).collect(),
             training: None,
         }
     }
@@ -213,11 +213,11 @@ impl ComparisonSummary {
 }
 
 impl RecordingComparison {
-    fn of(watched: &ComparedRecording) -> RecordingComparison {
+    fn from_recording(watched: &ComparedRecording) -> RecordingComparison {
         let comparison = &watched.comparison;
         let lanes = comparison.lanes.iter().map(|lane| LaneSummary {
             name: lane.name.clone(),
-            communications: lane.spoken.iter().map(CommunicationSummary::of).collect(),
+            communications: lane.spoken.iter().map(CommunicationSummary::from_communication).collect(),
         });
         let differences = comparison.differences.iter().enumerate();
         RecordingComparison {
@@ -226,13 +226,15 @@ impl RecordingComparison {
             human_actions: u64::from(watched.watcher.presses()),
             lanes: lanes.collect(),
             wizard: watched.wizard.clone(),
-            differences: differences.map(|(index, one)| UnmatchedSummary::of(watched, index, one)).collect(),
+            differences: differences
+                .map(|(index, one)| UnmatchedSummary::from_unmatched(watched, index, one))
+                .collect(),
         }
     }
 }
 
 impl CommunicationSummary {
-    fn of(spoken: &crate::history::comparison::Communication) -> CommunicationSummary {
+    fn from_communication(spoken: &crate::history::comparison::Communication) -> CommunicationSummary {
         let (press, clock_s) = (spoken.said.press, spoken.said.clock.as_secs_f64());
         CommunicationSummary { press, clock_s, says: spoken.what.words() }
     }
@@ -244,7 +246,11 @@ impl UnmatchedSummary {
         (self.pair, !self.by_sender, self.number)
     }
 
-    fn of(watched: &ComparedRecording, index: usize, difference: &UnmatchedCommunication) -> UnmatchedSummary {
+    fn from_unmatched(
+        watched: &ComparedRecording,
+        index: usize,
+        difference: &UnmatchedCommunication,
+    ) -> UnmatchedSummary {
         let comparison = &watched.comparison;
         let spoken = comparison.spoken(difference);
         let knew = spoken.known.as_ref().map(|known| {
@@ -271,7 +277,7 @@ impl UnmatchedSummary {
             not_by: comparison.lanes[difference.not].name.clone(),
             pair: difference.lane.max(difference.not),
             by_sender: difference.lane == 0,
-            spoken: CommunicationSummary::of(spoken),
+            spoken: CommunicationSummary::from_communication(spoken),
             knew,
         }
     }

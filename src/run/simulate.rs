@@ -218,7 +218,7 @@ fn simulate_trial(
             engine.into_follower()
         }
     };
-    let figures = TrialSummary::of(&follower);
+    let figures = TrialSummary::from_follower(&follower);
     Ok((SimulatedTrial { folder, condition, figures, found }, follower.cost))
 }
 

@@ -36,7 +36,7 @@ impl ExclusionStatus {
     ///
     /// # Errors
     /// The file beside the log is broken.
-    pub fn of(session: &Session, log: &LogReader) -> FileResult<ExclusionStatus> {
+    pub fn from_recording(session: &Session, log: &LogReader) -> FileResult<ExclusionStatus> {
         let at_console = ExclusionStatus::at_console(session);
         Ok(match ruling(log.folder())? {
             Some(Ruling { excluded, reason, .. }) => {

@@ -53,8 +53,13 @@ pub struct RecordingSummary {
 }
 
 impl RecordingSummary {
-    pub fn of(follower: &Follower, events: u64, ending: Ending, standing: ExclusionStatus) -> RecordingSummary {
-        let trial = TrialSummary::of(follower);
+    pub fn from_follower(
+        follower: &Follower,
+        events: u64,
+        ending: Ending,
+        standing: ExclusionStatus,
+    ) -> RecordingSummary {
+        let trial = TrialSummary::from_follower(follower);
         RecordingSummary {
             events,
             cut: ending == Ending::Cut,
@@ -64,12 +69,12 @@ impl RecordingSummary {
             robot_actions: trial.robot_actions,
             errors: trial.errors,
             races: trial.races,
-            beliefs: BeliefErrorSummary::of([&trial]),
+            beliefs: BeliefErrorSummary::from_trials([&trial]),
             signals: trial.signals,
             unblinded: follower.session.unblinded,
             orders_served: trial.served.len() as u64,
             trial_s: trial.seconds,
-            gaze: GazeSummary::of(&follower.session),
+            gaze: GazeSummary::from_session(&follower.session),
             gaze_faults: gaze_figures::describe(&follower.session),
         }
     }

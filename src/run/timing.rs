@@ -36,7 +36,7 @@ pub struct DurationPercentiles {
 
 impl DurationPercentiles {
     /// Of times in nanoseconds, in microseconds; none of nothing. The percentiles are times that occurred (nearest rank).
-    pub fn of(mut times_ns: Vec<u64>) -> Option<DurationPercentiles> {
+    pub fn from_nanoseconds(mut times_ns: Vec<u64>) -> Option<DurationPercentiles> {
         times_ns.sort_unstable();
         let (&max, n) = (times_ns.last()?, times_ns.len());
         let us = |ns: u64| ns as f64 / 1000.0;
@@ -67,10 +67,10 @@ pub fn measure(recording: &Path) -> FileResult<TimingSummary> {
     let wall_s = began.elapsed().as_secs_f64();
     let timing = replay.follower.timing.take().unwrap_or_default();
     Ok(TimingSummary {
-        gaze_us: DurationPercentiles::of(timing.gaze_ns),
-        action_us: DurationPercentiles::of(timing.action_ns),
-        plan_us: DurationPercentiles::of(plan_ns),
-        step_us: DurationPercentiles::of(step_ns),
+        gaze_us: DurationPercentiles::from_nanoseconds(timing.gaze_ns),
+        action_us: DurationPercentiles::from_nanoseconds(timing.action_ns),
+        plan_us: DurationPercentiles::from_nanoseconds(plan_ns),
+        step_us: DurationPercentiles::from_nanoseconds(step_ns),
         session_s: replay.session().time.as_secs_f64(),
         wall_s,
     })

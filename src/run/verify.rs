@@ -52,7 +52,7 @@ pub struct VerificationDifference {
 /// # Errors
 /// A recording that cannot be read, or whose events cannot be applied.
 pub fn verify(recording: &Path) -> FileResult<Verification> {
-    let RerunRecording { log, again, replayed, difference } = RerunRecording::of(LogReader::open(recording)?)?;
+    let RerunRecording { log, again, replayed, difference } = RerunRecording::from_log(LogReader::open(recording)?)?;
     let same_end = difference.is_some() || log.is_cut() || again.ends_like(&replayed);
     let verified = difference.is_none() && same_end;
     let (cut, running) = (log.is_cut(), log.ending() == Ending::Running);
@@ -74,7 +74,7 @@ impl RerunRecording {
     ///
     /// # Errors
     /// It cannot be read, or its events cannot be applied.
-    pub fn of(mut log: LogReader) -> FileResult<RerunRecording> {
+    pub fn from_log(mut log: LogReader) -> FileResult<RerunRecording> {
         let (kitchen, header) = (log.kitchen.clone(), log.header.clone());
         header.session.require_built().map_err(|missing| FileError::not_built(log.path(), missing))?;
         let cost = CostToGo::new(kitchen.clone());

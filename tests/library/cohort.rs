@@ -318,7 +318,7 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     assert_eq!(read_all(&recording, &coded[0].codable).expect("readable")["R1"], truth);
 
     coded = vec![CodedRecording::open(&recording).expect("a recording")];
-    let figures = CodesSummary::of(&coded);
+    let figures = CodesSummary::from_recordings(&coded);
     assert_eq!(figures.agreements.len(), 1);
     let right: Vec<(&str, u64)> =
         figures.known.iter().map(|pair| (pair.of.as_str(), pair.agreement.same_cause)).collect();

@@ -1367,12 +1367,12 @@ fn enter_takes_the_better_gaze_and_none_that_is_too_far_off() {
     let best = |accuracy_deg, corrected_deg| {
         let found =
             GazeAccuracy { accuracy_deg, corrected_deg, precision_deg: 0.2, offset: [0.0, 0.0], targets: Vec::new() };
-        CalibrationAdvice::of(Some(&found))
+        CalibrationAdvice::for_result(Some(&found))
     };
     assert_eq!(best(2.0, 0.5), CalibrationAdvice::Corrected);
     assert_eq!(best(1.0, 1.4), CalibrationAdvice::AsItIs);
     assert_eq!(best(8.5, 9.7), CalibrationAdvice::Repeat);
-    assert_eq!(CalibrationAdvice::of(None), CalibrationAdvice::Repeat);
+    assert_eq!(CalibrationAdvice::for_result(None), CalibrationAdvice::Repeat);
 }
 
 #[test]

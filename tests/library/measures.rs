@@ -347,7 +347,7 @@ fn a_belief_can_be_told_from_its_witness() {
         assert_eq!(spoilt(|witness| witness.aspects[1].values.extend([("a shoe".to_string(), 0.5)])), None);
         // The session that ran and its replay say the same.
         let (ran, replayed) = (engine.into_follower(), replay);
-        assert_eq!(TrialSummary::of(&ran), TrialSummary::of(&replayed));
+        assert_eq!(TrialSummary::from_follower(&ran), TrialSummary::from_follower(&replayed));
     }
 }
 
@@ -357,7 +357,7 @@ fn what_nobody_knows_stays_unknown() {
     let figures = |participant: &str| {
         let follower =
             Follower::new(Session::new(kitchen.clone(), settings(participant), 0), CostToGo::new(kitchen.clone()));
-        BeliefErrorSummary::of([&TrialSummary::of(&follower)])
+        BeliefErrorSummary::from_trials([&TrialSummary::from_follower(&follower)])
     };
     let nobody = figures("kind = \"keyboard\"\ngaze = \"none\"");
     assert_eq!(nobody, BeliefErrorSummary::default(), "a person tells no beliefs");

@@ -308,7 +308,7 @@ impl Panel<'_> {
 
     fn widths(&self, columns: u16) -> Widths {
         let names = (0..self.held.len()).map(|aspect| width(&self.name(aspect)));
-        Widths::of(columns, names.max().unwrap_or(0))
+        Widths::fitting(columns, names.max().unwrap_or(0))
     }
 
     fn label(&self, aspect: usize, value: usize) -> &str {
@@ -338,7 +338,7 @@ struct Widths {
 
 impl Widths {
     /// Of so many columns in all, with names of at most `longest` columns.
-    fn of(columns: u16, longest: u16) -> Widths {
+    fn fitting(columns: u16, longest: u16) -> Widths {
         let (course, bar) = if columns >= WITH_COURSE { (COURSE + 1, 6) } else { (0, 4) };
         let text = columns - course - bar - 14;
         let name = longest.min(text * 9 / 20);

@@ -70,7 +70,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session) {
     );
     line(brush, "precision", &format!("{:.2} deg from sample to sample", found.precision_deg), TextRole::Text);
     line(brush, "targets", &targets(found), TextRole::Text);
-    let best = CalibrationAdvice::of(Some(found));
+    let best = CalibrationAdvice::for_result(Some(found));
     let rows = [
         (CORRECTED, "takes it with the offset taken off", CalibrationAdvice::Corrected),
         (AS_IT_IS, "takes it as it is", CalibrationAdvice::AsItIs),

@@ -186,7 +186,7 @@ fn differences(
         let is_chosen = index == at;
         let number = format!("{:>3}/{}  ", index + 1, seen.differences.len());
         let role = if is_chosen { TextRole::Strong } else { TextRole::Quiet };
-        let open = model.keys.of(&KeyAction::Differ(ComparisonKey::Open)).filter(|_| is_chosen);
+        let open = model.keys.chord_for(&KeyAction::Differ(ComparisonKey::Open)).filter(|_| is_chosen);
         let open = open.map_or(String::new(), |key| format!("  {key} opens it"));
         let headline = seen.headline(difference);
         let room = area.width.saturating_sub(width(&open) + 1);

@@ -35,7 +35,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
                 _ => &["The session ends, the recording is kept."],
             };
             let is_running = matches!(session.phase, Phase::Running | Phase::Paused);
-            let again = model.keys.of(&KeyAction::Quit).filter(|_| !is_running);
+            let again = model.keys.chord_for(&KeyAction::Quit).filter(|_| !is_running);
             let yes = again.map_or("y".to_string(), |chord| format!("y or {chord}"));
             ask(brush, screen, "Quit tomcom?", lines, &yes);
         }

@@ -42,7 +42,7 @@ pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &C
             y += 1;
         }
     }
-    let start = model.keys.of(&KeyAction::Advance).map(|key| key.to_string()).unwrap_or_default();
+    let start = model.keys.chord_for(&KeyAction::Advance).map(|key| key.to_string()).unwrap_or_default();
     let anyway = OVERRIDE.to_string();
     let (key, does) = match (session.phase, all_ok(&checks)) {
         (Phase::Ready, true) => (start.as_str(), " starts the trial   "),

@@ -264,7 +264,7 @@ fn cost_line(
     let role = if advice.best.is_none() { TextRole::Strong } else { TextRole::Quiet };
     let accept = model
         .keys
-        .of(&KeyAction::Accept)
+        .chord_for(&KeyAction::Accept)
         .filter(|_| advice.best.is_some() && may_send(session, Sender::Wizard).is_ok());
     let accept = accept.map_or(String::new(), |chord| format!("  [{}] accepts", chord.name()));
     brush.parts(inside.x, y, inside.width, &[(left.as_str(), role), (accept.as_str(), TextRole::Signal)]);

@@ -136,7 +136,7 @@ impl Regions {
     }
 
     /// Where a panel is.
-    pub fn of(&self, panel: Panel) -> Rect {
+    pub fn panel_area(&self, panel: Panel) -> Rect {
         match panel {
             Panel::Kitchen => self.kitchen,
             Panel::Belief => self.belief,

@@ -104,7 +104,7 @@ fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session,
         mode if mode.has_stopped_itself() => (format!(" {} ", mode.name()), "resumes"),
         _ => (" STOPPED ".to_string(), "lets it go on"),
     };
-    let key = model.keys.of(&KeyAction::ResumeRobot).filter(|_| session.phase != Phase::Closed);
+    let key = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| session.phase != Phase::Closed);
     let resume = key.map(|key| format!(" {key} {goes_on}")).unwrap_or_default();
     let force = arm.stopped_by_n.map(|force_n| format!(" {force_n:.0} N")).unwrap_or_default();
     let badge = brush.theme.badge(TextRole::Alarm);
@@ -155,7 +155,11 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
 
 /// The key that releases the robot.
 fn release(model: &ConsoleModel) -> String {
-    model.keys.of(&KeyAction::Hand(ManualAction::HoldRobot)).map(|key| format!("{key} releases it")).unwrap_or_default()
+    model
+        .keys
+        .chord_for(&KeyAction::Hand(ManualAction::HoldRobot))
+        .map(|key| format!("{key} releases it"))
+        .unwrap_or_default()
 }
 
 /// Says that the robot is held; where the line goes on, and how much room is left.

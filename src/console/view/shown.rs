@@ -20,7 +20,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
         return;
     }
-    let back = model.keys.of(&KeyAction::TakeBack).map(|key| format!("{key} takes it back"));
+    let back = model.keys.chord_for(&KeyAction::TakeBack).map(|key| format!("{key} takes it back"));
     let remark = session.shown.as_ref().and(back).unwrap_or_default();
     let inside = brush.panel(area, "On the participant's display", &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
@@ -35,7 +35,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
 
 /// The signal with its remaining time in one line.
 fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
-    let start = model.keys.of(&KeyAction::Advance).filter(|_| session.phase == Phase::Ready);
+    let start = model.keys.chord_for(&KeyAction::Advance).filter(|_| session.phase == Phase::Ready);
     if let Some(key) = start {
         let key = key.to_string();
         let parts = [("press ", TextRole::Strong), (&key, TextRole::Signal), (" to start the trial", TextRole::Strong)];

@@ -57,7 +57,7 @@ impl Assignment {
         if goal.targets.len() > 1 {
             choice.exchange(ground, goal, state);
         }
-        choice.demand = PressDemand::of(ground, goal, state, choice.tasks[..choice.count].iter().copied());
+        choice.demand = PressDemand::from_tasks(ground, goal, state, choice.tasks[..choice.count].iter().copied());
         choice
     }
 

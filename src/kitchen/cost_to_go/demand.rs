@@ -24,7 +24,7 @@ pub struct PressDemand {
 
 impl PressDemand {
     /// Of these tasks as their items lie now.
-    pub fn of(
+    pub fn from_tasks(
         ground: &KitchenTables,
         goal: &ServingGoal,
         state: &ContentClasses,

@@ -89,7 +89,7 @@ impl<'a> PressPlan<'a> {
     fn is_over(&self, limit: u32) -> bool {
         let rest = || {
             let tasks = self.tasks().map(|(_, task)| task);
-            PressDemand::of(self.ground, self.goal, &self.state, tasks).bound(self.ground, &self.state)
+            PressDemand::from_tasks(self.ground, self.goal, &self.state, tasks).bound(self.ground, &self.state)
         };
         limit < BLOCKED && self.presses + rest() > limit
     }

@@ -292,7 +292,7 @@ impl Live {
             None => {
                 let again = (leaving == LeavingReason::Redo).then(|| self.beginning_again());
                 let standing = ExclusionStatus::at_console(self.engine.session());
-                let figures = TrialSummary::of(&self.engine.into_follower());
+                let figures = TrialSummary::from_follower(&self.engine.into_follower());
                 Ok(LiveOutcome { folder, leaving, figures, standing, again })
             }
         }

@@ -174,7 +174,7 @@ pub fn read(
             answers.extend(confirmed(&follower.session));
         }
     }
-    let standing = ExclusionStatus::of(&pass.follower().session, &log)?;
+    let standing = ExclusionStatus::from_recording(&pass.follower().session, &log)?;
     let raters = raters(&log, pass.follower())?;
     let lanes = lanes(&mut pass);
     let follower = pass.follower();

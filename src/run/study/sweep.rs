@@ -98,7 +98,7 @@ impl ConceptSweep {
         let session = &self.follower.session;
         let (kitchen, state) = (&session.kitchen, session.state);
         let own_hand = session.spec.signals.own_hand;
-        let question = AdviceRequest::of(&self.follower, seq, time);
+        let question = AdviceRequest::from_follower(&self.follower, seq, time);
         let moment = question.moment();
         let benefits = self.planner.advise(&mut self.cost, &moment).options;
         let deviations = self.tom.advise(&mut self.cost, &moment).options;

@@ -26,6 +26,7 @@ use miette::MietteHandlerOpts;
 use serde::Serialize;
 
 use self::args::*;
+use crate::analysis::watcher::CompareRequest;
 use crate::base::features::{Feature, NotBuilt};
 use crate::communication::concept::ConceptName;
 use crate::console;
@@ -34,7 +35,6 @@ use crate::edge::file_error::FileError;
 use crate::edge::files;
 use crate::edge::key_file;
 use crate::edge::log::{self, RulingError, WriteError};
-use crate::run::compare::CompareRequest;
 use crate::run::error::RunError;
 use crate::run::live::LiveError;
 use crate::run::options::{self, SessionStart, SettingOverrides, TrialSeries};

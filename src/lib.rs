@@ -93,6 +93,7 @@
 //! # }
 //! ```
 
+pub mod analysis;
 pub mod arm;
 pub mod base;
 #[cfg(feature = "cli")]

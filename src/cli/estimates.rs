@@ -2,6 +2,7 @@
 
 use super::args::{FitArgs, ReplayArgs};
 use super::{Failure, print, progress};
+use crate::analysis::{belief_check, fitting};
 use crate::edge::files;
 use crate::run::accuracy::AccuracySample;
 use crate::run::{accuracy, check_beliefs, fit};
@@ -11,7 +12,7 @@ pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
     let bar = progress(args.recordings.len() as u64, "recordings");
     let found = check_beliefs::check(&args.recordings, None, || bar.inc(1))?;
     bar.finish_and_clear();
-    print(args.format, &found, || check_beliefs::describe(&found))
+    print(args.format, &found, || belief_check::describe(&found))
 }
 
 /// `tomcom replay RECORDING... --accuracy`.
@@ -32,15 +33,15 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
     parameters.sort_unstable();
     parameters.dedup();
     let trials = fit::FitTrials::read(&args.recordings)?;
-    let plan = fit::FitPlan { parameters, start, most_tries: args.tries as usize };
+    let plan = fitting::FitPlan { parameters, start, most_tries: args.tries as usize };
     let bar = progress(plan.most_tries as u64, "tries at most");
     let found = fit::fit(&trials, &plan, || bar.inc(1));
     bar.finish_and_clear();
     if let Some(path) = &args.out {
-        files::write_human_model(path, &found.model, &fit::comment(&found)).map_err(|error| {
+        files::write_human_model(path, &found.model, &fitting::comment(&found)).map_err(|error| {
             let help = "a place where a file can be written";
             Failure::Failed(miette::miette!(help = help, "{}: cannot be written: {error}", path.display()))
         })?;
     }
-    print(args.format, &found, || fit::describe(&found))
+    print(args.format, &found, || fitting::describe(&found))
 }

@@ -11,9 +11,9 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::advisor::{AdviceRequest, Advisor};
 use super::parallel;
 use super::replay::{Replay, SameKitchen, each_once};
+use crate::analysis::advisor::{AdviceRequest, Advisor};
 use crate::base::words::count;
 use crate::communication::Signal;
 use crate::communication::concept::ConceptName;

@@ -5,7 +5,7 @@ use std::thread;
 
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
-use super::advisor::{AdviceRequest, Advisor};
+use crate::analysis::advisor::{AdviceRequest, Advisor};
 use crate::communication::recommendation::Recommendation;
 
 impl Advisor {

@@ -1,46 +1,15 @@
-//! `tomcom replay RECORDING... --check-beliefs`: holds what was estimated before each press against what the participant
-//! believed, and against what it pressed.
+//! `tomcom replay RECORDING... --check-beliefs`: replays recordings for [`crate::analysis::belief_check`].
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use serde::Serialize;
-
 use super::parallel;
-use super::replay::{Replay, ReplayedEvent, SameKitchen, each_once};
-use crate::base::time::SessionTime;
-use crate::base::words::count;
+use super::replay::{Replay, SameKitchen, each_once};
+use crate::analysis::belief_check::{BeliefCheck, PressViews};
 use crate::edge::file_error::FileResult;
-use crate::gaze::MIN_CONFIDENCE;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{Change, Kitchen, LocationId, Press};
-use crate::measures::JudgedPress;
-use crate::measures::attribution::Cause;
-use crate::measures::beliefs::{Detection, EstimateView, PressView, TrialView};
-use crate::measures::flags::{MOST_FALSE_FLAGS, Thresholds};
-use crate::measures::likelihood::LogLikelihood;
-use crate::mind::belief::Belief;
-use crate::mind::decision::DecisionModel;
-use crate::session::{Event, Session};
-
-/// The seed of the bootstrap: the same recordings give the same interval.
-const SEED: u64 = 1;
-
-/// The baseline takes what was looked at for so long for seen, in seconds.
-const LOOK_S: f64 = 0.1;
-
-/// What `--check-beliefs` prints.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BeliefCheck {
-    pub recordings: u64,
-    /// Presses of the human in the trials.
-    pub human_actions: u64,
-    #[serde(flatten)]
-    pub detection: Detection,
-    /// Per press, in nats.
-    pub log_likelihood: LogLikelihood,
-}
+use crate::kitchen::Kitchen;
+use crate::measures::beliefs::TrialView;
+use crate::measures::flags::Thresholds;
 
 /// Checks recordings of one kitchen, all together. `done` is called after each is read.
 ///
@@ -52,13 +21,7 @@ pub fn check(
     done: impl Fn() + Sync,
 ) -> FileResult<BeliefCheck> {
     let BeliefCheckTrials { kitchen, trials } = views(recordings, done)?;
-    let mut cost = CostToGo::new(kitchen.clone());
-    Ok(BeliefCheck {
-        recordings: trials.len() as u64,
-        human_actions: trials.iter().map(Vec::len).sum::<usize>() as u64,
-        detection: Detection::of(&kitchen, &trials, thresholds),
-        log_likelihood: LogLikelihood::of(&kitchen, &mut cost, &DecisionModel::default(), &trials, SEED),
-    })
+    Ok(BeliefCheck::from_trials(&kitchen, &trials, thresholds))
 }
 
 /// Recorded trials of one kitchen.
@@ -88,142 +51,9 @@ pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Belie
 /// The presses of one recording.
 fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView)> {
     let mut replay = Replay::open(recording)?;
-    let mut trial = TrialView::new();
-    let mut held = None;
-    let mut before = Before::default();
-    loop {
-        let Some(ReplayedEvent { stamped, change }) = replay.step()? else { break };
-        let kitchen = replay.session().kitchen.clone();
-        if let Event::ParticipantBelieves(witness) = &stamped.event {
-            let fits = Belief::of_witness(&kitchen, replay.session().state, witness).is_some();
-            held = fits.then(|| witness.aspects.iter().map(|aspect| aspect.p_truth).collect());
-        }
-        let judged = replay.follower.judged.last().filter(|press| press.seq == stamped.seq).copied();
-        if let (Some(judged), Some(press)) = (judged, change.human_press()) {
-            let estimated = replay.follower.estimated.as_ref().filter(|one| one.press == stamped.seq);
-            let estimate = estimated.map(|one| EstimateView::of(&one.witness(&kitchen)));
-            let view = before.press(&kitchen, &press, &judged, held.take());
-            trial.push(PressView { estimate, ..view });
-        }
-        before.notice(replay.session(), &stamped.event, &change);
+    let mut views = PressViews::default();
+    while let Some(replayed) = replay.step()? {
+        views.add(&replay.follower, &replayed.stamped, &replayed.change);
     }
-    Ok((replay.session().kitchen.clone(), trial))
-}
-
-/// What is known of a session before its next event.
-#[derive(Default)]
-struct Before {
-    /// For each location, whether somebody else changed it since the human last looked at it or changed it itself.
-    unseen_change: [bool; MAX_LOCATIONS],
-    /// Since when the gaze is in each location's area, and nothing changed there.
-    looks_since: [Option<SessionTime>; MAX_LOCATIONS],
-}
-
-impl Before {
-    /// Takes note of what an event changed that was just applied, and of where the human looks.
-    fn notice(&mut self, session: &Session, event: &Event, change: &Change) {
-        let is_own = change.human_press().is_some();
-        let is_look = matches!(event, Event::Gaze(sample) if sample.confidence >= MIN_CONFIDENCE);
-        for index in 0..session.kitchen.locations.len() {
-            let location = LocationId(index as u8);
-            if change.states().is_some_and(|(before, after)| before.code(location) != after.code(location)) {
-                self.unseen_change[index] = !is_own;
-                self.looks_since[index] = None;
-            }
-            if is_look {
-                let is_there = session.gaze.looked_at[index] == Some(session.time);
-                self.looks_since[index] = is_there.then(|| self.looks_since[index].unwrap_or(session.time));
-                let is_seen = |since: SessionTime| session.time.secs_since(since) >= LOOK_S;
-                self.unseen_change[index] &= !self.looks_since[index].is_some_and(is_seen);
-            }
-        }
-    }
-
-    /// The view of a press that came next.
-    fn press(&self, kitchen: &Kitchen, press: &Press, judged: &JudgedPress, held: Option<Vec<f64>>) -> PressView {
-        let mut press = PressView {
-            state: press.before,
-            button: press.button,
-            held,
-            estimate: None,
-            unseen_change: self.unseen_change[..kitchen.locations.len()].to_vec(),
-            errs_about: Vec::new(),
-        };
-        if let Some(Cause::Belief { target, with, .. }) = judged.cause {
-            let targets = [Some(target), with].into_iter().flatten();
-            let about = targets.flat_map(|target| target.aspects(kitchen));
-            press.errs_about = about.filter(|aspect| press.is_wrong(aspect.index()) == Some(true)).collect();
-        }
-        press
-    }
-}
-
-/// The figures for people.
-pub fn describe(check: &BeliefCheck) -> String {
-    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.3}"));
-    let (found, flags, likely) = (&check.detection, &check.detection.flags, &check.log_likelihood);
-    let thresholds = flags.thresholds.map_or(String::new(), |at| {
-        format!(" (thresholds {:.3} for locations, {:.3} for recipes)", at.locations, at.recipes)
-    });
-    // One recording has no spread.
-    let interval = likely.gain_interval.filter(|_| check.recordings > 1);
-    let interval = interval.map_or(String::new(), |[from, to]| format!(" ({from:.3} to {to:.3})"));
-    let informed = match (likely.informed_tau, likely.informed_lapse) {
-        (Some(tau), Some(lapse)) => format!(" (tau {tau:.2}, lapse {lapse:.3})"),
-        _ => String::new(),
-    };
-    let mut text = format!(
-        "{}, {} of the human\n\
-         what is believed wrong, area under the ROC: {} in the mean (locations {}, where knowing only what changed unseen \
-         gives {}; recipes {})\n\
-         false belief episodes of two or more errors flagged before the third: {} of {}, {} false flags per 20 presses, \
-         wrongly flagged {} of the time{thresholds}\n\
-         expected calibration error between 0.05 and 0.95: {}\n\
-         log likelihood per press: {} (informed human {}{informed}, uniform {}); gain {}{interval} nats\n\
-         \n{:<32}{:>8}{:>8}\n",
-        count(check.recordings, "recording", "recordings"),
-        count(check.human_actions, "press", "presses"),
-        number(found.auc),
-        number(found.auc_locations),
-        number(found.auc_baseline),
-        number(found.auc_recipes),
-        number(flags.flagged_before_third_error),
-        flags.episodes.map_or("-".to_string(), |episodes| episodes.to_string()),
-        number(flags.false_flags_per_20_actions),
-        number(flags.wrongly_flagged),
-        number(found.ece),
-        number(likely.model),
-        number(likely.informed),
-        number(likely.uniform),
-        number(likely.gain),
-        "aspect",
-        "ROC",
-        "wrong",
-    );
-    for aspect in &found.aspects {
-        text.push_str(&format!("{:<32}{:>8}{:>8.3}\n", aspect.aspect, number(aspect.auc), aspect.wrong));
-    }
-    text + &legend(check)
-}
-
-/// From so many recordings on the figures of single aspects are worth a look.
-const TELLING: u64 = 20;
-
-/// How the figures are to be read.
-fn legend(check: &BeliefCheck) -> String {
-    let few = match check.recordings {
-        TELLING.. => String::new(),
-        few => format!(
-            "\n{} little about single aspects, least about recipes, which are seldom wrong: take {TELLING} or more.",
-            count(few, "recording says", "recordings say")
-        ),
-    };
-    format!(
-        "\nROC: how surely the estimate tells an aspect that is believed wrong from one that is not; 1 always, 0.5 no better \
-         than chance.\nwrong: the share of the presses before which the aspect was believed wrong.\nflagged: the estimate \
-         passes the threshold that catches most, with at most {MOST_FALSE_FLAGS} false flags per 20 presses of the human.\n\
-         calibration error: how far the estimated probabilities are from how often they are right; 0 is \
-         best.\ngain: by how much the estimate predicts presses better than a human who knows everything; above 0 it knows \
-         something of beliefs (0.1 nats: presses are 10 % likelier).{few}\n"
-    )
+    Ok((replay.session().kitchen.clone(), views.trial))
 }

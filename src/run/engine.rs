@@ -11,8 +11,8 @@ use std::sync::Arc;
 
 use self::informing::participant_of;
 use self::robot::robot_of;
-use super::advisor::{AdviceRequest, Advisor};
-use super::follower::Follower;
+use crate::analysis::advisor::{AdviceRequest, Advisor, changes_task};
+use crate::analysis::follower::Follower;
 use crate::arm::worker::Robot;
 use crate::base::time::SessionTime;
 use crate::communication::Sender;
@@ -347,12 +347,4 @@ impl Engine {
             Effect::Close => {}
         }
     }
-}
-
-/// Whether the assistant is asked after such an event: a press of either agent, and what changes the task without one.
-pub(super) fn changes_task(event: &Event) -> bool {
-    matches!(
-        event,
-        Event::Press { .. } | Event::OrderShown { .. } | Event::OrderCleared { .. } | Event::KitchenCorrected { .. }
-    )
 }

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::figures::TrialSummary;
 use super::options::SessionStart;
 use super::standing::ExclusionStatus;
+use crate::analysis::trial_summary::TrialSummary;
 use crate::base::words::count;
 
 /// How the wizard left a recording.

@@ -2,31 +2,19 @@
 
 #[cfg(feature = "cli")]
 pub mod accuracy;
-pub mod advisor;
 #[cfg(feature = "cli")]
 mod advisor_desk;
-#[cfg(feature = "cli")]
-mod begun;
 #[cfg(feature = "cli")]
 pub mod check_beliefs;
 #[cfg(feature = "cli")]
 pub mod codes;
-#[cfg(feature = "cli")]
-pub mod compare;
 #[cfg(feature = "cli")]
 mod desk;
 pub mod engine;
 #[cfg(feature = "cli")]
 pub mod error;
 #[cfg(feature = "cli")]
-pub mod figures;
-#[cfg(feature = "cli")]
-pub mod film;
-#[cfg(feature = "cli")]
 pub mod fit;
-pub mod follower;
-#[cfg(feature = "cli")]
-pub mod gaze_figures;
 pub mod headless;
 #[cfg(feature = "cli")]
 pub mod kitchen;
@@ -51,6 +39,8 @@ pub mod resume;
 #[cfg(feature = "cli")]
 pub mod review;
 #[cfg(feature = "cli")]
+pub mod seekable_replay;
+#[cfg(feature = "cli")]
 pub mod series;
 #[cfg(feature = "cli")]
 pub mod similarity;
@@ -69,6 +59,8 @@ pub mod timing;
 #[cfg(feature = "cli")]
 pub mod train;
 #[cfg(feature = "cli")]
+mod unfinished_recording;
+#[cfg(feature = "cli")]
 pub mod verify;
 #[cfg(feature = "cli")]
-pub mod wizard;
+mod watch_desk;

@@ -4,7 +4,7 @@ use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::compare::CompareRequest;
+use crate::analysis::watcher::CompareRequest;
 use crate::communication::concept::ConceptName;
 use crate::edge::file_error::FileResult;
 use crate::edge::files::{self, SessionFiles};

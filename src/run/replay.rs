@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::advisor::AdviceRequest;
-use super::follower::Follower;
+use crate::analysis::advisor::AdviceRequest;
+use crate::analysis::follower::Follower;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, LogReader, at_line};
 use crate::kitchen::cost_to_go::CostToGo;

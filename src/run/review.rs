@@ -6,8 +6,9 @@ use std::time::Duration;
 
 use tokio::time::{Instant, sleep_until};
 
-use super::compare::{CompareRequest, ComparisonDesk, ComparisonFollower};
-use super::film::SeekableReplay;
+use super::seekable_replay::SeekableReplay;
+use super::watch_desk::ComparisonDesk;
+use crate::analysis::watcher::{CompareRequest, ComparisonFollower};
 use crate::base::time::SessionTime;
 use crate::console::coding::RaterSession;
 use crate::console::compared::ComparisonView;

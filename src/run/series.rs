@@ -1,12 +1,12 @@
 //! The loop over recordings: one recording is one run of at most one trial, and what a participant goes through is a
 //! series of them, made at the same desk without leaving the console.
 
-use super::begun::PreparedSession;
-use super::compare::CompareRequest;
 use super::desk::OperatorDesk;
 use super::leaving::{LeavingReason, LiveOutcome};
 use super::live::{self, LiveError};
 use super::options::{SessionStart, TrialSeries};
+use super::unfinished_recording::PreparedSession;
+use crate::analysis::watcher::CompareRequest;
 use crate::console::question::QuestionPage;
 use crate::edge::files::SessionFiles;
 use crate::edge::recordings;

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::compare::{CompareRequest, ComparisonFollower};
 use super::lesson_report::TrainingSummary;
 use super::parallel;
 use super::replay::each_once;
 use super::standing::ExclusionStatus;
-use super::wizard::{self, WizardLog, WizardSummary};
+use crate::analysis::watcher::{CompareRequest, ComparisonFollower};
+use crate::analysis::wizard_log::{self, WizardLog, WizardSummary};
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::concept::ConceptName;
@@ -319,7 +319,7 @@ pub fn describe(figures: &ComparisonSummary, request: &CompareRequest) -> String
         if !one.standing.counts() {
             text += &format!("left out of the analysis: {}\n", one.standing.describe());
         }
-        text += &one.wizard.as_ref().map_or(String::new(), wizard::describe);
+        text += &one.wizard.as_ref().map_or(String::new(), wizard_log::describe);
         text += &describe_differences(&one.differences);
         // That of the session's own concept, if there is one.
         if let Some(first) = one.differences.iter().min_by_key(|one| one.rank()) {

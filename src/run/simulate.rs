@@ -7,10 +7,10 @@ use std::time::Instant;
 
 use super::engine::Engine;
 use super::error::RunError;
-use super::figures::{ConditionSummary, SimulationSummary, SimulationSums, TrialSummary};
 use super::parallel::WorkerPool;
 use super::replay::Replay;
 use super::{headless, kitchen, options};
+use crate::analysis::trial_summary::{ConditionSummary, SimulationSummary, SimulationSums, TrialSummary};
 use crate::base::words::count;
 use crate::communication::settings::Shadow;
 use crate::edge::file_error::FileError;

@@ -8,9 +8,9 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::error::RunError;
-use super::figures::{SimulationSummary, SimulationSums, TrialSummary};
 use super::kitchen::plan_lengths;
 use super::simulate::{Shard, SimulationRequest, each_trial};
+use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
 use crate::communication::concept::ConceptName;
 use crate::communication::settings::Shadow;
 use crate::edge::file_error::FileError;

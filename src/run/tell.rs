@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::figures::{BeliefErrorSummary, TrialSummary};
-use super::follower::Follower;
-use super::gaze_figures::{self, GazeSummary};
 use super::standing::ExclusionStatus;
+use crate::analysis::follower::Follower;
+use crate::analysis::gaze_summary::{self, GazeSummary};
+use crate::analysis::trial_summary::{BeliefErrorSummary, TrialSummary};
 use crate::base::words::count;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
@@ -75,7 +75,7 @@ impl RecordingSummary {
             orders_served: trial.served.len() as u64,
             trial_s: trial.seconds,
             gaze: GazeSummary::from_session(&follower.session),
-            gaze_faults: gaze_figures::describe(&follower.session),
+            gaze_faults: gaze_summary::describe(&follower.session),
         }
     }
 

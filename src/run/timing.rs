@@ -1,13 +1,14 @@
 //! `tomcom replay RECORDING --timing`: how long inference and planning take, event by event, on this machine.
 
 use std::path::Path;
+use std::sync::LazyLock;
 use std::time::Instant;
 
 use serde::Serialize;
 
-use super::advisor::Advisor;
-use super::follower::InferenceTiming;
 use super::replay::Replay;
+use crate::analysis::advisor::Advisor;
+use crate::analysis::follower::InferenceTiming;
 use crate::edge::file_error::FileResult;
 use crate::kitchen::cost_to_go::CostToGo;
 
@@ -45,13 +46,19 @@ impl DurationPercentiles {
     }
 }
 
+/// Nanoseconds since the first call, on the monotonic clock.
+fn monotonic_ns() -> u64 {
+    static BEGAN: LazyLock<Instant> = LazyLock::new(Instant::now);
+    BEGAN.elapsed().as_nanos() as u64
+}
+
 /// Replays a recording and takes the time.
 ///
 /// # Errors
 /// Those of [`Replay::run`].
 pub fn measure(recording: &Path) -> FileResult<TimingSummary> {
     let mut replay = Replay::open(recording)?;
-    replay.follower.timing = Some(InferenceTiming::default());
+    replay.follower.timing = Some(InferenceTiming::with_clock(monotonic_ns));
     let session = replay.session();
     let mut advisor = Advisor::new(session, CostToGo::new(session.kitchen.clone()));
     let began = Instant::now();
@@ -65,10 +72,11 @@ pub fn measure(recording: &Path) -> FileResult<TimingSummary> {
         step_ns.extend(inference.map(|inference| inference + took_ns));
     }
     let wall_s = began.elapsed().as_secs_f64();
-    let timing = replay.follower.timing.take().unwrap_or_default();
+    let measured = replay.follower.timing.take().map(|timing| (timing.gaze_ns, timing.action_ns));
+    let (gaze_ns, action_ns) = measured.unwrap_or_default();
     Ok(TimingSummary {
-        gaze_us: DurationPercentiles::from_nanoseconds(timing.gaze_ns),
-        action_us: DurationPercentiles::from_nanoseconds(timing.action_ns),
+        gaze_us: DurationPercentiles::from_nanoseconds(gaze_ns),
+        action_us: DurationPercentiles::from_nanoseconds(action_ns),
         plan_us: DurationPercentiles::from_nanoseconds(plan_ns),
         step_us: DurationPercentiles::from_nanoseconds(step_ns),
         session_s: replay.session().time.as_secs_f64(),

@@ -8,10 +8,10 @@ use std::time::Duration;
 
 use tokio::time::{Instant, sleep_until};
 
-use super::film::SeekableReplay;
 use super::lesson_report;
 use super::review::ReviewError;
-use super::wizard::spells;
+use super::seekable_replay::SeekableReplay;
+use crate::analysis::wizard_log::spells;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::recommendation::aspects_told;

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::advisor::{AdviceRequest, Advisor};
 use super::engine::Engine;
-use super::follower::Follower;
+use crate::analysis::advisor::{AdviceRequest, Advisor};
+use crate::analysis::follower::Follower;
 use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
 use crate::edge::file_error::{FileError, FileResult};

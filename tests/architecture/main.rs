@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The rooms from the ground up; a room imports only from rooms of lower floors.
-const FLOORS: [&[&str]; 15] = [
+const FLOORS: [&[&str]; 16] = [
     &["base"],
     &["kitchen"],
     &["robot", "gaze"],
@@ -13,6 +13,7 @@ const FLOORS: [&[&str]; 15] = [
     &["participant", "wizard", "arm"],
     &["session"],
     &["history"],
+    &["analysis"],
     &["console", "study", "display"],
     &["scene"],
     &["edge"],
@@ -21,7 +22,7 @@ const FLOORS: [&[&str]; 15] = [
     &["main", "lib"],
 ];
 /// The first floor that touches the outside.
-const EDGE: usize = 11;
+const EDGE: usize = 12;
 /// Files stay under about 400 lines.
 const MAX_LINES: usize = 420;
 

@@ -42,7 +42,12 @@ fn paper(presses: u32) -> SessionFiles {
     files
 }
 
-fn run(files: &SessionFiles, trials: u64, shard: Shard, out: &Path) -> tomcom::run::figures::SimulationSummary {
+fn run(
+    files: &SessionFiles,
+    trials: u64,
+    shard: Shard,
+    out: &Path,
+) -> tomcom::analysis::trial_summary::SimulationSummary {
     let simulation = SimulationRequest { files: files.clone(), trials, shard, out: out.to_path_buf() };
     simulate(&simulation, || ()).expect("the folder can be written")
 }
@@ -100,7 +105,7 @@ trait Length {
     fn mean_length(&self) -> Option<f64>;
 }
 
-impl Length for tomcom::run::figures::SimulationSummary {
+impl Length for tomcom::analysis::trial_summary::SimulationSummary {
     fn mean_length(&self) -> Option<f64> {
         self.beliefs.mean_sequence_length
     }
@@ -119,10 +124,8 @@ fn a_folder_that_was_begun_is_gone_on_with() {
     let again = run(&files, 4, Shard::WHOLE, &out);
     assert_eq!(again.found, 2, "what is whole is read");
     assert!(below(&out) == before, "and the rest is made as it would have been");
-    let bare = |figures: &tomcom::run::figures::SimulationSummary| tomcom::run::figures::SimulationSummary {
-        wall_s: 0.0,
-        found: 0,
-        ..figures.clone()
+    let bare = |figures: &tomcom::analysis::trial_summary::SimulationSummary| {
+        tomcom::analysis::trial_summary::SimulationSummary { wall_s: 0.0, found: 0, ..figures.clone() }
     };
     assert_eq!(bare(&first), bare(&again), "what is read counts as what is made");
 }

@@ -5,6 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
+use tomcom::analysis::follower::Follower;
+use tomcom::analysis::trial_summary::{BeliefErrorSummary, TrialSummary};
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
@@ -24,8 +26,6 @@ use tomcom::mind::BeliefWitness;
 use tomcom::mind::belief::Belief;
 use tomcom::mind::decision::DecisionModel;
 use tomcom::run::engine::Engine;
-use tomcom::run::figures::{BeliefErrorSummary, TrialSummary};
-use tomcom::run::follower::Follower;
 use tomcom::run::headless;
 use tomcom::session::{Event, Session, SessionSpec, Stamped};
 

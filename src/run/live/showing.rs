@@ -5,7 +5,7 @@ use std::io;
 use super::Live;
 use crate::console::screen::screen as on_screen;
 use crate::edge::terminal::Screen;
-use crate::run::compare::ComparisonDesk;
+use crate::run::watch_desk::ComparisonDesk;
 use crate::session::{Event, Phase};
 
 impl Live {

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::analysis::follower::Follower;
+use crate::analysis::wizard_log::clock_at;
 use crate::base::time::SessionTime;
 use crate::edge::export::Rows;
 use crate::gaze::{MIN_CONFIDENCE, nearest_location};
@@ -12,8 +14,6 @@ use crate::measures::coding::{Code, Codes};
 use crate::measures::matching::{Kind, Likeness, Said, matched};
 use crate::mind::BeliefWitness;
 use crate::mind::witness::{EstimateWitness, rounded};
-use crate::run::follower::Follower;
-use crate::run::wizard::clock_at;
 use crate::session::{Event, Session, Stamped};
 use crate::study::tables::{ActionRow, BeliefRow, CommunicationRow, GazeRow, Table};
 

@@ -2,6 +2,10 @@
 //! dear part, the planning, is done once a moment, and all costs are swept over the same benefits.
 
 use super::reading::sequence_errors;
+use crate::analysis::advisor::AdviceRequest;
+use crate::analysis::advisor::changes_task;
+use crate::analysis::follower::Follower;
+use crate::analysis::watcher::follows_at_once;
 use crate::base::time::SessionTime;
 use crate::communication::concept::{Concept, ConceptName};
 use crate::communication::planner::Planner;
@@ -12,10 +16,6 @@ use crate::communication::tom::Tom;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Change};
 use crate::measures::attribution::Cause;
-use crate::run::advisor::AdviceRequest;
-use crate::run::compare::follows_at_once;
-use crate::run::engine::changes_task;
-use crate::run::follower::Follower;
 use crate::session::apply::ApplyError;
 use crate::session::{Applied, Event, Session, Stamped};
 use crate::study::prevention::{PressTruth, Sent, SequenceTruth, SpellTruth, Truth};

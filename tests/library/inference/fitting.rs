@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use tomcom::analysis::fitting::{FitPlan, FitSummary, describe};
 use tomcom::kitchen::Kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::mind::fitting::Parameter;
 use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::Observation;
-use tomcom::run::fit::{FitPlan, FitSummary, FitTrials, describe, fit};
+use tomcom::run::fit::{FitTrials, fit};
 
 use super::world::{Human, World, kitchen, live};
 

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
+use tomcom::analysis::follower::Follower;
 use tomcom::base::time::SessionTime;
 use tomcom::kitchen::Kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::mind::observation::Observation;
 use tomcom::run::engine::Engine;
-use tomcom::run::follower::Follower;
 use tomcom::session::{Event, Session, SessionSpec};
 
 /// All observations of an unassisted trial, until so many presses of both agents.

@@ -9,7 +9,7 @@ use crate::communication::situation::{RobotOutlook, Situation};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{AspectId, State};
 use crate::mind::dirichlet::DirichletBelief;
-use crate::session::Session;
+use crate::session::{Event, Session};
 
 /// What the assistant is asked: the session as it was after an event and all that followed from it at once.
 #[derive(Clone, Debug)]
@@ -99,4 +99,12 @@ impl Advisor {
     pub fn answer(&mut self, question: &AdviceRequest) -> Recommendation {
         self.concept.advise(&mut self.cost, &question.moment())
     }
+}
+
+/// Whether the assistant is asked after such an event: a press of either agent, and what changes the task without one.
+pub fn changes_task(event: &Event) -> bool {
+    matches!(
+        event,
+        Event::Press { .. } | Event::OrderShown { .. } | Event::OrderCleared { .. } | Event::KitchenCorrected { .. }
+    )
 }

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::compare::CompareRequest;
 use super::engine::Engine;
 use super::live::LiveError;
 use super::options::SessionStart;
 use super::resume::resume;
+use crate::analysis::watcher::CompareRequest;
 use crate::base::time::SessionTime;
 use crate::edge::log::Lock;
 use crate::kitchen::Kitchen;

@@ -99,7 +99,7 @@ pub fn spells(follower: &Follower) -> Option<Vec<Spell>> {
 }
 
 /// The trial's clock at an earlier time of a session.
-pub(super) fn clock_at(session: &Session, time: SessionTime) -> SessionTime {
+pub fn clock_at(session: &Session, time: SessionTime) -> SessionTime {
     let paused = session.pauses.iter().map(|&(from, until)| until.min(time) - from);
     paused.fold(time - session.trial_start, |clock, pause| clock - pause)
 }

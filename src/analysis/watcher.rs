@@ -8,11 +8,9 @@
 
 use std::collections::VecDeque;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::thread;
 
+use super::advisor::changes_task;
 use super::advisor::{AdviceRequest, Advisor};
-use super::engine::changes_task;
 use super::follower::Follower;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
@@ -178,6 +176,12 @@ impl ComparisonFollower {
         self.known.as_ref()
     }
 
+    /// How often the concepts were asked, and how many signals were sent: one of them grows whenever the comparison
+    /// changes in a running trial.
+    pub fn progress(&self) -> (u64, usize) {
+        (self.asked, self.sent.len())
+    }
+
     /// Presses of the human so far.
     pub fn presses(&self) -> u32 {
         self.follower.session.presses[Agent::Human.index()]
@@ -289,27 +293,6 @@ impl ComparisonFollower {
         }));
         LaneComparison::new(lanes, self.window, self.presses(), over)
     }
-
-    /// Follows on a thread of its own, which ends with the desk that tells it the events.
-    pub fn on_thread(mut self) -> ComparisonDesk {
-        let (tell, events) = channel::<Stamped>();
-        let (show, views) = channel();
-        thread::spawn(move || {
-            while let Ok(stamped) = events.recv() {
-                let (asked, sent) = (self.asked, self.sent.len());
-                // The session took this event, so it fits; if it does not, there is nothing to compare any more.
-                if self.apply(&stamped).is_err() {
-                    return;
-                }
-                let is_over = matches!(stamped.event, Event::TrialEnded { .. } | Event::TrialAborted { .. });
-                let is_news = is_over || self.asked > asked || self.sent.len() > sent;
-                if is_news && show.send(self.comparison(is_over)).is_err() {
-                    return;
-                }
-            }
-        });
-        ComparisonDesk { tell, views }
-    }
 }
 
 /// The estimate without what was sent within the window.
@@ -318,7 +301,7 @@ fn estimate<'a>(follower: &'a Follower, without: &'a VecDeque<Without>) -> &'a D
 }
 
 /// Whether an event belongs to what the event at `time` led to at once.
-pub(super) fn follows_at_once(stamped: &Stamped, time: SessionTime) -> bool {
+pub fn follows_at_once(stamped: &Stamped, time: SessionTime) -> bool {
     let is_new = matches!(
         stamped.event,
         Event::Gaze(_)
@@ -331,30 +314,4 @@ pub(super) fn follows_at_once(stamped: &Stamped, time: SessionTime) -> bool {
             | Event::Screen(_)
     );
     stamped.time == time && !is_new
-}
-
-/// Where a running console tells events, and where the comparisons come.
-#[derive(Debug)]
-pub struct ComparisonDesk {
-    tell: Sender<Stamped>,
-    views: Receiver<LaneComparison>,
-}
-
-impl ComparisonDesk {
-    /// Tells an event.
-    pub fn tell(&self, stamped: &Stamped) {
-        // A thread that is gone compares nothing more, and the session goes on.
-        let _ = self.tell.send(stamped.clone());
-    }
-
-    /// The last comparison, when all that was told is taken in; no more can be told.
-    pub fn last(self) -> Option<LaneComparison> {
-        drop(self.tell);
-        self.views.into_iter().last()
-    }
-
-    /// The newest comparison since this was called last.
-    pub fn newest(&self) -> Option<LaneComparison> {
-        self.views.try_iter().last()
-    }
 }

@@ -1,7 +1,5 @@
 //! A session with what is derived from it press by press. Live runs and replays go through it alike.
 
-use std::time::Instant;
-
 use crate::communication::repeats::Repeats;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Change, Kitchen, Press, State};
@@ -31,7 +29,7 @@ pub struct Follower {
     pub repeats: Repeats,
     /// How long the estimate took, where that is measured.
     pub timing: Option<InferenceTiming>,
-    pub(super) cost: CostToGo,
+    pub(crate) cost: CostToGo,
     judge: Judge,
     attributor: Attributor,
     /// What the participant believes before its next press.
@@ -61,11 +59,20 @@ impl PressEstimate {
 }
 
 /// Nanoseconds that single steps of the inference took.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct InferenceTiming {
+    /// The caller's monotonic clock, in nanoseconds.
+    now_ns: fn() -> u64,
     pub gaze_ns: Vec<u64>,
     /// Presses of the human and of the robot.
     pub action_ns: Vec<u64>,
+}
+
+impl InferenceTiming {
+    /// No steps yet; they are measured with this monotonic clock, in nanoseconds.
+    pub fn with_clock(now_ns: fn() -> u64) -> InferenceTiming {
+        InferenceTiming { now_ns, gaze_ns: Vec::new(), action_ns: Vec::new() }
+    }
 }
 
 impl Follower {
@@ -126,10 +133,10 @@ impl Follower {
         let observation = Observation { time: stamped.time, what };
         let human_press = change.human_press();
         let belief = human_press.map(|_| self.filter.belief().clone());
-        let began = self.timing.is_some().then(Instant::now);
+        let began = self.timing.as_ref().map(|timing| (timing.now_ns)());
         self.filter.observe(&observation, &mut self.cost);
         if let (Some(timing), Some(began)) = (&mut self.timing, began) {
-            let took_ns = began.elapsed().as_nanos() as u64;
+            let took_ns = (timing.now_ns)().saturating_sub(began);
             match what {
                 Observed::Gaze { .. } => timing.gaze_ns.push(took_ns),
                 Observed::Pressed(_) => timing.action_ns.push(took_ns),

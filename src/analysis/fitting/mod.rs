@@ -1,0 +1,258 @@
+//! The human model's parameters under which recorded presses are likeliest.
+//!
+//! Maximum likelihood: the sum over all presses of ln p(press | estimate before it), on a scale without bounds, looked for
+//! between bounds. The filter's chance makes the likelihood rough by some nats, so the search goes from one quadratic surface
+//! through tries all around to the next ([`ascent`]). The last one's curvature, the observed information, and what
+//! chance leaves unknown of its maximum give the standard errors. A parameter that is best at its bound is not identified:
+//! what is told of it is from where on it is not rejected.
+
+pub mod ascent;
+pub mod linear;
+pub mod surface;
+
+use serde::Serialize;
+
+use self::ascent::{BoundReached, FittedVariable, Maximum, ascend};
+use crate::base::words::count;
+use crate::mind::fitting::{Likelihood, Parameter};
+use crate::mind::model::HumanModel;
+
+/// Half the width of an interval of 95 %, in standard errors.
+const HALF_WIDTH: f64 = 1.96;
+
+/// The recordings that a model is fitted to, apart from what was observed in them.
+#[derive(Clone, Copy, Debug)]
+pub struct FittedRecordings<'a> {
+    /// How many there are.
+    pub number: u64,
+    /// The parameters of the human model that stand in the first recording.
+    pub model: &'a HumanModel,
+    /// Whether another recording has other parameters.
+    pub differ: bool,
+}
+
+/// What to fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FitPlan {
+    pub parameters: Vec<Parameter>,
+    /// Where to begin; what is not fitted stays as it is here. None: with what stands in the recordings.
+    pub start: Option<HumanModel>,
+    /// The search ends after so many tries.
+    pub most_tries: usize,
+}
+
+/// What `tomcom fit` prints.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FitSummary {
+    pub recordings: u64,
+    /// Presses of the human.
+    pub human_actions: u64,
+    /// Log likelihood per press, in nats, with the parameters from before, and with those that were found.
+    pub log_likelihood_before: f64,
+    pub log_likelihood: f64,
+    pub tries: u64,
+    /// The search was to end after so many tries.
+    pub most_tries: u64,
+    /// It began with the parameters that stand in the recordings, and not with those of a file.
+    pub begins_with_recordings: bool,
+    /// The recordings were made with different parameters, of which those of the first are meant.
+    pub recordings_differ: bool,
+    /// Whether the search came to its end before the tries were used up.
+    pub converged: bool,
+    pub parameters: Vec<FittedParameter>,
+    /// All parameters, with those that were found.
+    #[serde(skip)]
+    pub model: HumanModel,
+}
+
+/// A parameter that was fitted.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FittedParameter {
+    pub name: &'static str,
+    pub unit: &'static str,
+    pub before: f64,
+    pub value: f64,
+    /// Whether the recordings tell it from both sides, within the bounds of the search.
+    pub identified: bool,
+    /// Null where it is not identified, where the likelihood is not curved in every direction (the recordings do not tell
+    /// parameters apart), and where the search did not come to its end.
+    pub standard_error: Option<f64>,
+    /// 95 %: symmetric on the scale on which it was fitted; of a parameter that is best at a bound, the end of its profile
+    /// likelihood interval. An end beyond the bounds of the search is null.
+    pub interval: Option<[Option<f64>; 2]>,
+}
+
+impl FittedParameter {
+    fn from_variable(parameter: Parameter, before: f64, found: &FittedVariable) -> FittedParameter {
+        let value = parameter.from_scale(found.at);
+        let [low, high] = parameter.bounds().map(|end| parameter.to_scale(end));
+        let told = |end: f64| (low..=high).contains(&end).then(|| parameter.from_scale(end));
+        let around =
+            found.standard_error.map(|error| [-HALF_WIDTH, HALF_WIDTH].map(|width| told(found.at + width * error)));
+        let limit = found.limit.map(|limit| parameter.from_scale(limit));
+        let interval = match found.end {
+            None => around,
+            Some(BoundReached::High) => limit.map(|limit| [Some(limit), None]),
+            Some(BoundReached::Low) => limit.map(|limit| [None, Some(limit)]),
+        };
+        let identified = matches!(interval, Some([Some(_), Some(_)]));
+        let error = found.standard_error.filter(|_| identified);
+        FittedParameter {
+            name: parameter.name(),
+            unit: parameter.unit(),
+            before,
+            value,
+            identified,
+            standard_error: error.map(|error| parameter.error_of(value, error)),
+            interval,
+        }
+    }
+
+    /// The interval in words.
+    fn span(&self) -> String {
+        match self.interval {
+            None => "-".to_string(),
+            Some([Some(from), Some(to)]) => format!("{from:.4} to {to:.4}"),
+            Some([Some(from), None]) => format!("above {from:.4}"),
+            Some([None, Some(to)]) => format!("below {to:.4}"),
+            Some([None, None]) => "not told".to_string(),
+        }
+    }
+}
+
+/// Fits the parameters of a plan. `likelihood` is that of all trials under a model; `tried` is called after each try.
+pub fn fit(
+    trials: FittedRecordings<'_>,
+    plan: &FitPlan,
+    likelihood: impl Fn(&HumanModel) -> Likelihood,
+    tried: impl Fn(),
+) -> FitSummary {
+    let begin = plan.start.as_ref().unwrap_or(trials.model);
+    let with = |at: &[f64]| {
+        let mut model = begin.clone();
+        plan.parameters.iter().zip(at).for_each(|(parameter, &scaled)| {
+            parameter.set(&mut model, parameter.from_scale(scaled));
+        });
+        model
+    };
+    let loss = |at: &[f64]| {
+        let model = with(at);
+        // Where the model cannot be, it cannot be best.
+        let loss = if model.fault().is_some() { f64::INFINITY } else { -likelihood(&model).log_p };
+        tried();
+        loss
+    };
+    let scaled = |parameter: &Parameter, value: f64| parameter.to_scale(value);
+    let start: Vec<f64> = plan.parameters.iter().map(|one| scaled(one, one.get(begin))).collect();
+    let bounds: Vec<[f64; 2]> = plan.parameters.iter().map(|one| one.bounds().map(|end| scaled(one, end))).collect();
+    let before = likelihood(begin);
+    let Maximum { mut variables, evaluations, converged } = ascend(loss, &start, &bounds, plan.most_tries);
+    let mut model = with(&variables.iter().map(|variable| variable.at).collect::<Vec<f64>>());
+    let mut log_p = likelihood(&model).log_p;
+    // An unfinished search may have been on its way through worse places.
+    if !converged && log_p < before.log_p {
+        variables.iter_mut().zip(&start).for_each(|(variable, &start)| variable.at = start);
+        (model, log_p) = (begin.clone(), before.log_p);
+    }
+    let presses = before.presses.max(1) as f64;
+    let fitted = plan.parameters.iter().zip(&variables);
+    FitSummary {
+        recordings: trials.number,
+        human_actions: before.presses,
+        log_likelihood_before: before.log_p / presses,
+        log_likelihood: log_p / presses,
+        tries: evaluations as u64,
+        most_tries: plan.most_tries as u64,
+        begins_with_recordings: plan.start.is_none(),
+        recordings_differ: trials.differ,
+        converged,
+        parameters: fitted.map(|(one, found)| FittedParameter::from_variable(*one, one.get(begin), found)).collect(),
+        model,
+    }
+}
+
+/// What stands above the parameters in a file.
+pub fn comment(fit: &FitSummary) -> String {
+    let values = fit.parameters.iter().map(|one| match (one.standard_error, one.interval) {
+        (Some(error), _) => format!("{} = {:.4}, standard error {error:.4}", one.name, one.value),
+        (None, Some(_)) => {
+            format!(
+                "{}, {}: the recordings do not tell it; {:.4} is where the search ended",
+                one.name,
+                one.span(),
+                one.value
+            )
+        }
+        (None, None) if !fit.converged => {
+            format!("{} = {:.4}, from a search that did not come to its end", one.name, one.value)
+        }
+        (None, None) => format!("{} = {:.4}, which the recordings do not tell surely", one.name, one.value),
+    });
+    let values: Vec<String> = values.collect();
+    format!(
+        "Parameters of the human model, fitted to {} with {} of the human:\n{}",
+        count(fit.recordings, "recording", "recordings"),
+        count(fit.human_actions, "press", "presses"),
+        values.join("\n")
+    )
+}
+
+/// The figures for people.
+pub fn describe(fit: &FitSummary) -> String {
+    let lost = fit.log_likelihood_before - fit.log_likelihood;
+    let end = match fit.converged {
+        true if lost > 0.0 => format!(
+            "\nless likely than before by {:.1} nats over all presses: not more than the search can tell from chance in the \
+             estimate; more samples ([inference] in a file for --start) or recordings tell more",
+            lost * fit.human_actions as f64
+        ),
+        true => String::new(),
+        false => format!(
+            "\nthe search did not come to its end: its next step takes more than is left of the {} that --tries allows",
+            count(fit.most_tries, "try", "tries")
+        ),
+    };
+    let begin = match (fit.begins_with_recordings, fit.recordings_differ) {
+        (false, _) => "the parameters of --start",
+        (true, false) => "the parameters that stand in the recordings",
+        (true, true) => "the parameters that stand in the first recording (others were made with others)",
+    };
+    let mut text = format!(
+        "{}, {} of the human: log likelihood per press {:.4}, before {:.4}, after {}{end}\nbefore: {begin}; what is not \
+         fitted stays as it is there\n\n{:<24}{:>10}{:>12}{:>10}{:>22}\n",
+        count(fit.recordings, "recording", "recordings"),
+        count(fit.human_actions, "press", "presses"),
+        fit.log_likelihood,
+        fit.log_likelihood_before,
+        count(fit.tries, "try", "tries"),
+        "parameter",
+        "before",
+        "fitted",
+        "error",
+        "95 %",
+    );
+    for one in &fit.parameters {
+        let error = one.standard_error.map_or("-".to_string(), |error| format!("{error:.4}"));
+        let interval = one.span();
+        let name = format!("{} ({})", one.name, one.unit);
+        text.push_str(&format!("{name:<24}{:>10.4}{:>12.4}{error:>10}{interval:>22}\n", one.before, one.value));
+    }
+    text + &untold(fit)
+}
+
+/// Which parameters the recordings do not tell, and what their values are then.
+fn untold(fit: &FitSummary) -> String {
+    let untold: Vec<&str> = fit.parameters.iter().filter(|one| !one.identified).map(|one| one.name).collect();
+    if untold.is_empty() {
+        return String::new();
+    }
+    let (why, remedy) = match fit.converged {
+        true => ("not told by these recordings", "More recordings may tell them"),
+        false => ("not known, since the search did not come to its end", "A larger --tries may tell them"),
+    };
+    format!(
+        "\n{why}: {}. Their values are the best that the search knew, and no findings; a file (--out) has them all the same. \
+         {remedy}, or keep them as they are: leave them out of --parameters.\n",
+        untold.join(", ")
+    )
+}

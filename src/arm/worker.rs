@@ -10,7 +10,7 @@ use super::controller::PhysicalArm;
 use super::report::PressFailure;
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
-use crate::kitchen::cost_to_go::{Care, CostToGo};
+use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{ButtonId, Kitchen, State};
 use crate::robot::policy::{self, PolicyDecision};
 use crate::robot::{AbortReason, IdleReason, RobotActivity};
@@ -315,6 +315,7 @@ impl Robot {
 
 /// Whether a press is still one of the best, or the wizard chose it.
 fn is_useful(kitchen: &Kitchen, cost: &mut CostToGo, state: State, errand: OngoingPress) -> bool {
-    let best = |cost: &mut CostToGo| policy::best_presses(kitchen, cost, Care::Exact, state, &kitchen.true_recipes());
+    let best =
+        |cost: &mut CostToGo| policy::best_presses(kitchen, cost, Fidelity::Exact, state, &kitchen.true_recipes());
     errand.driven || best(cost).contains(&errand.button)
 }

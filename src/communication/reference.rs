@@ -16,7 +16,7 @@ use super::settings::AssistantSpec;
 use super::situation::RobotOutlook;
 use super::{Signal, unavailable};
 use crate::base::rng::{Stream, stream};
-use crate::kitchen::cost_to_go::{Care, CostToGo};
+use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, LocationId, State};
 use crate::mind::model::HumanModel;
 use crate::mind::reference::person::{Person, pick, press_chances};
@@ -130,7 +130,7 @@ impl ReferencePlanner {
         let (kitchen, recipes) = (&self.kitchen, self.kitchen.true_recipes());
         loop {
             if future.errand.is_none() {
-                let choices = policy::choices(kitchen, cost, Care::Exact, future.state, &recipes);
+                let choices = policy::choices(kitchen, cost, Fidelity::Exact, future.state, &recipes);
                 if !choices.is_empty() {
                     let button = choices[random.random_range(0..choices.len())];
                     future.errand = Some((button, future.now_s + press_s, false));
@@ -138,7 +138,8 @@ impl ReferencePlanner {
             }
             let Some((button, due_s, driven)) = future.errand.filter(|(_, due_s, _)| *due_s <= until_s) else { return };
             (future.now_s, future.errand) = (due_s, None);
-            if driven || policy::best_presses(kitchen, cost, Care::Exact, future.state, &recipes).contains(&button) {
+            if driven || policy::best_presses(kitchen, cost, Fidelity::Exact, future.state, &recipes).contains(&button)
+            {
                 let before = future.state;
                 future.state = kitchen.press(before, &recipes, Agent::Robot, button).unwrap_or(before);
                 future.presses += 1;

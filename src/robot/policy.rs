@@ -4,7 +4,7 @@ use rand::RngExt;
 
 use super::IdleReason;
 use crate::base::rng::Stream;
-use crate::kitchen::cost_to_go::{Care, CostToGo};
+use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, Recipes, State};
 
 /// What the robot does next.
@@ -18,11 +18,11 @@ pub enum PolicyDecision {
 pub fn best_presses(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
-    care: Care,
+    fidelity: Fidelity,
     state: State,
     recipes: &Recipes,
 ) -> Vec<ButtonId> {
-    let nearer = cost.nearer(care, state, recipes, Agent::Robot);
+    let nearer = cost.nearer(fidelity, state, recipes, Agent::Robot);
     let buttons = (0..kitchen.buttons[Agent::Robot.index()].len()).map(|index| ButtonId(index as u8));
     buttons.filter(|button| nearer >> button.0 & 1 == 1).collect()
 }
@@ -32,7 +32,7 @@ pub fn best_presses(
 fn for_the_nearer_order(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
-    care: Care,
+    fidelity: Fidelity,
     state: State,
     recipes: &Recipes,
     presses: Vec<ButtonId>,
@@ -41,7 +41,7 @@ fn for_the_nearer_order(
         return presses;
     }
     let mut orders: Vec<(u32, LocationId)> =
-        kitchen.wanted(state).map(|(order, _)| (cost.order_with(care, state, recipes, order), order)).collect();
+        kitchen.wanted(state).map(|(order, _)| (cost.order_with(fidelity, state, recipes, order), order)).collect();
     orders.sort_unstable();
     let [(presses_left, nearer), (others, _)] = orders[..] else { return presses };
     if presses_left == others {
@@ -49,7 +49,7 @@ fn for_the_nearer_order(
     }
     let helps = |button: &ButtonId| {
         let next = kitchen.press(state, recipes, Agent::Robot, *button);
-        next.is_some_and(|next| cost.order_is_below(care, next, recipes, nearer, presses_left))
+        next.is_some_and(|next| cost.order_is_below(fidelity, next, recipes, nearer, presses_left))
     };
     let helping: Vec<ButtonId> = presses.iter().copied().filter(helps).collect();
     if helping.is_empty() { presses } else { helping }
@@ -57,21 +57,27 @@ fn for_the_nearer_order(
 
 /// What the robot may press in this state if these are the recipes, each as likely; nothing if no press brings the goal
 /// nearer.
-pub fn choices(kitchen: &Kitchen, cost: &mut CostToGo, care: Care, state: State, recipes: &Recipes) -> Vec<ButtonId> {
-    let best = best_presses(kitchen, cost, care, state, recipes);
-    chosen(kitchen, cost, care, state, recipes, best)
+pub fn choices(
+    kitchen: &Kitchen,
+    cost: &mut CostToGo,
+    fidelity: Fidelity,
+    state: State,
+    recipes: &Recipes,
+) -> Vec<ButtonId> {
+    let best = best_presses(kitchen, cost, fidelity, state, recipes);
+    chosen(kitchen, cost, fidelity, state, recipes, best)
 }
 
 /// Of these best presses those that the robot decides between.
 pub fn chosen(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
-    care: Care,
+    fidelity: Fidelity,
     state: State,
     recipes: &Recipes,
     best: Vec<ButtonId>,
 ) -> Vec<ButtonId> {
-    let best = for_the_nearer_order(kitchen, cost, care, state, recipes, best);
+    let best = for_the_nearer_order(kitchen, cost, fidelity, state, recipes, best);
     // What serves no order is thrown away: put down somewhere, it would soon be in the way again.
     let trash = best.iter().copied().find(|&button| kitchen.button(Agent::Robot, button).action == ButtonAction::Trash);
     trash.map_or(best, |trash| vec![trash])
@@ -90,12 +96,12 @@ pub fn decide(
         return PolicyDecision::Idle(IdleReason::NoOrder);
     }
     let recipes = kitchen.true_recipes();
-    let all = best_presses(kitchen, cost, Care::Exact, state, &recipes);
+    let all = best_presses(kitchen, cost, Fidelity::Exact, state, &recipes);
     let best: Vec<ButtonId> = all.iter().copied().filter(|button| !skipped.contains(button)).collect();
     if best.len() < all.len() && best.is_empty() {
         return PolicyDecision::Idle(IdleReason::Skipped);
     }
-    match chosen(kitchen, cost, Care::Exact, state, &recipes, best)[..] {
+    match chosen(kitchen, cost, Fidelity::Exact, state, &recipes, best)[..] {
         [] => PolicyDecision::Idle(IdleReason::HumanTurn),
         // What is thrown away is no choice, and draws nothing.
         [only] if kitchen.button(Agent::Robot, only).action == ButtonAction::Trash => PolicyDecision::Press(only),

@@ -4,7 +4,7 @@
 //! people hold point-like beliefs, so few different ones are left.
 
 use super::robot::{Choices, RobotPolicy};
-use crate::kitchen::cost_to_go::{Care, CostToGo, MAX_BUTTONS};
+use crate::kitchen::cost_to_go::{CostToGo, Fidelity, MAX_BUTTONS};
 use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, ContentId, Kitchen, OrderContent, Recipes, State};
 use crate::mind::decision::{DecisionModel, Slips};
 
@@ -125,7 +125,7 @@ impl Cases {
         let n = self.count();
         for index in 0..self.all.len() {
             let Case { state, recipes, count } = self.all[index];
-            let choices: Choices = policy.choices(kitchen, cost, care(count, n), state, &recipes);
+            let choices: Choices = policy.choices(kitchen, cost, fidelity(count, n), state, &recipes);
             let ways = choices.count();
             if ways == 0 {
                 continue;
@@ -144,8 +144,8 @@ impl Cases {
 }
 
 /// How closely a case of `count` among `n` draws is looked at.
-fn care(count: u32, n: u32) -> Care {
-    if count * HARDLY >= n { Care::Close } else { Care::Rough }
+fn fidelity(count: u32, n: u32) -> Fidelity {
+    if count * HARDLY >= n { Fidelity::PlanBound } else { Fidelity::LowerBound }
 }
 
 /// How the human decides, with what that needs again and again.
@@ -190,7 +190,7 @@ impl Decider {
         let n = cases.count();
         let mut here = 0u32;
         for case in &cases.all {
-            let decision = cost.decision_with(care(case.count, n), case.state, &case.recipes, Agent::Human);
+            let decision = cost.decision_with(fidelity(case.count, n), case.state, &case.recipes, Agent::Human);
             here += case.count * u32::from(decision.here);
             for (sum, &after) in sums.iter_mut().zip(&decision.after) {
                 *sum += case.count * u32::from(after);

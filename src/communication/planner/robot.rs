@@ -1,6 +1,6 @@
 //! The robot in a rollout: its task policy, remembered by state, and its arm in time.
 
-use crate::kitchen::cost_to_go::{Care, CostToGo};
+use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{Agent, ButtonId, Kitchen, OrderContent, Recipes, State};
 use crate::robot::policy;
 
@@ -30,11 +30,11 @@ impl Choices {
     }
 }
 
-/// The robot's task policy, remembered by care, state and wanted recipes: what was asked before changes the time it takes and
+/// The robot's task policy, remembered by fidelity, state and wanted recipes: what was asked before changes the time it takes and
 /// never the answer.
 #[derive(Clone, Debug)]
 pub struct RobotPolicy {
-    known: Vec<Option<(Care, State, Recipes, Choices)>>,
+    known: Vec<Option<(Fidelity, State, Recipes, Choices)>>,
 }
 
 impl Default for RobotPolicy {
@@ -50,24 +50,24 @@ impl RobotPolicy {
         &mut self,
         kitchen: &Kitchen,
         cost: &mut CostToGo,
-        care: Care,
+        fidelity: Fidelity,
         state: State,
         recipes: &Recipes,
     ) -> Choices {
         let wanted = wanted_recipes(kitchen, state, recipes);
-        let place = (crate::base::rng::mix(hash(state, &wanted) ^ care as u64) >> (64 - BITS)) as usize;
-        if let Some((of_care, known, of, choices)) = self.known[place]
-            && of_care == care
+        let place = (crate::base::rng::mix(hash(state, &wanted) ^ fidelity as u64) >> (64 - BITS)) as usize;
+        if let Some((of_fidelity, known, of, choices)) = self.known[place]
+            && of_fidelity == fidelity
             && known == state
             && of == wanted
         {
             return choices;
         }
         let bits = |buttons: &[ButtonId]| buttons.iter().fold(0, |bits, button| bits | 1u64 << button.0);
-        let best = policy::best_presses(kitchen, cost, care, state, recipes);
+        let best = policy::best_presses(kitchen, cost, fidelity, state, recipes);
         let useful = bits(&best);
-        let choices = Choices { choices: bits(&policy::chosen(kitchen, cost, care, state, recipes, best)), useful };
-        self.known[place] = Some((care, state, wanted, choices));
+        let choices = Choices { choices: bits(&policy::chosen(kitchen, cost, fidelity, state, recipes, best)), useful };
+        self.known[place] = Some((fidelity, state, wanted, choices));
         choices
     }
 }

@@ -11,7 +11,7 @@ use super::robot::{self, Choices, Errand, RobotPolicy};
 use crate::base::rng::Stream;
 use crate::communication::settings::RolloutModel;
 use crate::communication::situation::{RobotOutlook, Situation};
-use crate::kitchen::cost_to_go::{Care, CostToGo};
+use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, Recipes, State};
 
@@ -214,7 +214,7 @@ impl Rollout<'_> {
 
     /// What the robot's policy says to the state as it truly is.
     fn choices(&mut self, state: State) -> Choices {
-        self.policy.choices(self.stage.kitchen, self.cost, Care::Exact, state, &self.stage.recipes)
+        self.policy.choices(self.stage.kitchen, self.cost, Fidelity::Exact, state, &self.stage.recipes)
     }
 
     /// A free arm sets out for what the policy says.

@@ -8,19 +8,20 @@ use super::goal::MAX_TARGETS;
 use super::plan::BLOCKED;
 use super::rating::AssignmentRating;
 use super::search::{self, BestFirstSearch};
-use super::{CostToGo, Look, SLOT_BITS, UNREACHABLE};
+use super::{CostToGo, SLOT_BITS, UNREACHABLE};
 use crate::kitchen::{Agent, ButtonAction, ContentId, LocationId, Recipes, State};
 
-/// How much care is taken of a decision.
+/// How exactly a cost to go is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Care {
-    /// Where bounds and plans do not agree, it is searched for.
+pub enum Fidelity {
+    /// By a search where the lower bound and the best plan do not agree.
     Exact,
-    /// What follows from bounds and plans, without a search: for what people decide by. A few values are a press or two off,
-    /// most of them of presses that lead away.
-    Close,
-    /// The bounds: mostly exact, else a press or two too low. For what hardly counts.
-    Rough,
+    /// By bounds and plans, without a search: for human decisions. A single value is the length of the best plan, an upper
+    /// bound (searched for where no plan comes to an end). In a decision a few values are a press or two off, mostly those
+    /// of presses that lead away from the goal.
+    PlanBound,
+    /// By the lower bound: mostly exact, else a press or two too low. For worlds of little weight.
+    LowerBound,
 }
 
 /// Where the value of a state is kept.
@@ -47,21 +48,27 @@ impl CostToGo {
     /// decisions, inference and rollouts need.
     #[inline]
     pub fn decision(&mut self, state: State, recipes: &Recipes, agent: Agent) -> &DecisionCosts {
-        self.decision_with(Care::Exact, state, recipes, agent)
+        self.decision_with(Fidelity::Exact, state, recipes, agent)
     }
 
-    /// The same with more or less care. What is known of one is not used for the other, so that a value never depends on
+    /// The same at a given fidelity. What is known at one fidelity is not used for another, so that a value never depends on
     /// what was asked before.
     #[inline]
-    pub fn decision_with(&mut self, care: Care, state: State, recipes: &Recipes, agent: Agent) -> &DecisionCosts {
+    pub fn decision_with(
+        &mut self,
+        fidelity: Fidelity,
+        state: State,
+        recipes: &Recipes,
+        agent: Agent,
+    ) -> &DecisionCosts {
         let (mut targets, count) = self.targets(state, recipes);
-        let question = question(&targets, care, agent);
+        let question = question(&targets, fidelity, agent);
         let (index, known) = self.decisions.find(state, question);
         if !known {
             let alike = self.stand_in(state, &mut targets[..count]);
             let (there, known) = self.decisions.find(alike, question);
             if !known {
-                self.decide(there, question, care, alike, recipes, agent);
+                self.decide(there, question, fidelity, alike, recipes, agent);
             }
             let found = *self.decisions.get(there);
             self.decisions.set(index, state, question, found.here, found.after);
@@ -69,24 +76,24 @@ impl CostToGo {
         self.decisions.get(index)
     }
 
-    /// Has the memory fetch what is remembered of a decision that is asked for soon.
+    /// Prefetches the cache line of a decision that is asked for soon.
     #[inline]
-    pub fn announce(&self, care: Care, state: State, recipes: &Recipes, agent: Agent) {
-        let question = question(&self.targets(state, recipes).0, care, agent);
+    pub fn prefetch(&self, fidelity: Fidelity, state: State, recipes: &Recipes, agent: Agent) {
+        let question = question(&self.targets(state, recipes).0, fidelity, agent);
         std::hint::black_box(self.decisions.fetch(state, question));
     }
 
     /// The buttons of `agent` that bring the goal nearer, one bit each.
-    pub fn nearer(&mut self, care: Care, state: State, recipes: &Recipes, agent: Agent) -> u64 {
-        if care != Care::Exact {
+    pub fn nearer(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes, agent: Agent) -> u64 {
+        if fidelity != Fidelity::Exact {
             let buttons = self.kitchen.buttons[agent.index()].len();
-            let decision = self.decision_with(care, state, recipes, agent);
+            let decision = self.decision_with(fidelity, state, recipes, agent);
             let after = decision.after[..buttons].iter().enumerate();
             return after.map(|(button, &after)| u64::from(after < decision.here) << button).sum();
         }
         let kept = self.kept(state, recipes);
         let nexts = self.nexts(state, kept, recipes, agent);
-        let here = self.value_kept(Look::Exact, state, kept);
+        let here = self.value_kept(Fidelity::Exact, state, kept);
         let mut nearer = 0;
         for next in &nexts {
             nearer |= u64::from(self.is_below(here, next.state, next.kept)) << next.button;
@@ -114,24 +121,32 @@ impl CostToGo {
     }
 
     /// Puts a decision together and keeps it.
-    fn decide(&mut self, index: usize, question: u32, care: Care, state: State, recipes: &Recipes, agent: Agent) {
+    fn decide(
+        &mut self,
+        index: usize,
+        question: u32,
+        fidelity: Fidelity,
+        state: State,
+        recipes: &Recipes,
+        agent: Agent,
+    ) {
         self.counts.decisions_missed += 1;
-        let (here, after) = match care {
-            Care::Exact => self.each(Look::Exact, state, recipes, agent),
-            Care::Close => self.close(state, recipes, agent),
-            Care::Rough => self.each(Look::Bound, state, recipes, agent),
+        let (here, after) = match fidelity {
+            Fidelity::Exact => self.each(Fidelity::Exact, state, recipes, agent),
+            Fidelity::PlanBound => self.close(state, recipes, agent),
+            Fidelity::LowerBound => self.each(Fidelity::LowerBound, state, recipes, agent),
         };
         self.decisions.set(index, state, question, here, after);
     }
 
     /// The values one by one.
-    fn each(&mut self, look: Look, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
+    fn each(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
         let kept = self.kept(state, recipes);
         let nexts = self.nexts(state, kept, recipes, agent);
-        let here = self.value_kept(look, state, kept) as u8;
+        let here = self.value_kept(fidelity, state, kept) as u8;
         let mut after = [here; MAX_BUTTONS];
         for next in &nexts {
-            after[next.button] = self.value_kept(look, next.state, next.kept) as u8;
+            after[next.button] = self.value_kept(fidelity, next.state, next.kept) as u8;
         }
         self.nexts = nexts;
         (here, after)
@@ -225,27 +240,27 @@ impl CostToGo {
             CacheSlot::At(slot, key) => (slot, key),
             CacheSlot::Always(value) => return (value, Some(value)),
         };
-        let known = self.known(Look::Bound, key);
+        let known = self.known(Fidelity::LowerBound, key);
         if let Some(lower) = known {
             if lower > most {
                 return (lower, None);
             }
-            if let Some(upper) = self.known(Look::Plan, key) {
+            if let Some(upper) = self.known(Fidelity::PlanBound, key) {
                 return (lower, Some(upper));
             }
         }
         let Some(goal) = self.goals[slot].clone() else { return (UNREACHABLE, None) };
         let classes = self.classes(&goal, state);
         let rating = AssignmentRating::new(&self.ground, &goal, &classes);
-        let lower = known.unwrap_or_else(|| self.keep(Look::Bound, key, rating.lower));
+        let lower = known.unwrap_or_else(|| self.keep(Fidelity::LowerBound, key, rating.lower));
         if lower > most {
             return (lower, None);
         }
         let upper = match rating.close_upper(&self.ground, &goal, &classes) {
-            BLOCKED => self.solve(Look::Plan, slot, &goal, &classes),
+            BLOCKED => self.solve(Fidelity::PlanBound, slot, &goal, &classes),
             upper => upper,
         };
-        (lower, Some(self.keep(Look::Plan, key, upper)))
+        (lower, Some(self.keep(Fidelity::PlanBound, key, upper)))
     }
 
     /// Whether the value of a state is below `limit`, which is at most one press above it.
@@ -285,10 +300,10 @@ impl CostToGo {
         }
     }
 
-    fn value_kept(&mut self, look: Look, state: State, kept: CacheSlot) -> u32 {
+    fn value_kept(&mut self, fidelity: Fidelity, state: State, kept: CacheSlot) -> u32 {
         match kept {
             CacheSlot::At(slot, key) => {
-                self.known(look, key).unwrap_or_else(|| self.compute_for(look, key, slot, state))
+                self.known(fidelity, key).unwrap_or_else(|| self.compute_for(fidelity, key, slot, state))
             }
             CacheSlot::Always(value) => value,
         }
@@ -297,6 +312,6 @@ impl CostToGo {
 
 /// What is asked about a state, in the order of its orders.
 #[inline]
-fn question(targets: &[ContentId; MAX_TARGETS], care: Care, agent: Agent) -> u32 {
-    u32::from(targets[0].0) | u32::from(targets[1].0) << 8 | (agent as u32) << 16 | (care as u32) << 17
+fn question(targets: &[ContentId; MAX_TARGETS], fidelity: Fidelity, agent: Agent) -> u32 {
+    u32::from(targets[0].0) | u32::from(targets[1].0) << 8 | (agent as u32) << 16 | (fidelity as u32) << 17
 }

@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 use self::cache::{DecisionCache, ValueCache};
 pub use self::cache::{DecisionCosts, MAX_BUTTONS};
-pub use self::decide::Care;
+pub use self::decide::Fidelity;
 use self::decide::SuccessorState;
 use self::goal::{ContentClasses, ServingGoal};
 use self::ground::KitchenTables;
@@ -62,17 +62,6 @@ pub struct CostToGo {
     takes: [Vec<bool>; 2],
     /// By agent, whether it can throw away what it has taken.
     trashes: [bool; 2],
-}
-
-/// How closely a single value is looked at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Look {
-    /// Where bound and plans do not agree, it is searched for.
-    Exact,
-    /// The lower bound.
-    Bound,
-    /// What the best plan takes, an upper bound; where none comes to an end, it is searched for.
-    Plan,
 }
 
 /// How often what was done since the start.
@@ -113,23 +102,18 @@ impl CostToGo {
     /// C(s, recipes): presses until all present orders are served; 0 if there is none, [`UNREACHABLE`] if they never can be.
     pub fn all_orders(&mut self, state: State, recipes: &Recipes) -> u32 {
         let (mut targets, count) = self.targets(state, recipes);
-        self.cost(Look::Exact, state, &mut targets[..count])
+        self.cost(Fidelity::Exact, state, &mut targets[..count])
     }
 
     /// C_k(s, recipes): presses until the order at this location is served; 0 if it wants nothing.
     pub fn order(&mut self, state: State, recipes: &Recipes, order: LocationId) -> u32 {
-        self.order_with(Care::Exact, state, recipes, order)
+        self.order_with(Fidelity::Exact, state, recipes, order)
     }
 
-    /// The same with more or less care.
-    pub fn order_with(&mut self, care: Care, state: State, recipes: &Recipes, order: LocationId) -> u32 {
-        let look = match care {
-            Care::Exact => Look::Exact,
-            Care::Close => Look::Plan,
-            Care::Rough => Look::Bound,
-        };
+    /// The same at a given fidelity.
+    pub fn order_with(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes, order: LocationId) -> u32 {
         match state.order(order) {
-            OrderContent::Dish(dish) => self.cost(look, state, &mut [recipes.get(dish)]),
+            OrderContent::Dish(dish) => self.cost(fidelity, state, &mut [recipes.get(dish)]),
             _ => 0,
         }
     }
@@ -137,18 +121,18 @@ impl CostToGo {
     /// Whether the order's value is below `limit`, which is at most one press above it; cheaper than the value.
     pub fn order_is_below(
         &mut self,
-        care: Care,
+        fidelity: Fidelity,
         state: State,
         recipes: &Recipes,
         order: LocationId,
         limit: u32,
     ) -> bool {
         match state.order(order) {
-            OrderContent::Dish(dish) if care == Care::Exact => {
+            OrderContent::Dish(dish) if fidelity == Fidelity::Exact => {
                 let kept = self.kept_for(state, &mut [recipes.get(dish)]);
                 self.is_below(limit, state, kept)
             }
-            _ => self.order_with(care, state, recipes, order) < limit,
+            _ => self.order_with(fidelity, state, recipes, order) < limit,
         }
     }
 
@@ -171,21 +155,21 @@ impl CostToGo {
         (targets, count)
     }
 
-    fn cost(&mut self, look: Look, state: State, targets: &mut [ContentId]) -> u32 {
+    fn cost(&mut self, fidelity: Fidelity, state: State, targets: &mut [ContentId]) -> u32 {
         if targets.is_empty() {
             return 0;
         }
         let Some((slot, key)) = self.key_of_state(state, targets) else { return UNREACHABLE };
-        if let Some(value) = self.known(look, key) {
+        if let Some(value) = self.known(fidelity, key) {
             return value;
         }
-        self.compute_for(look, key, slot, state)
+        self.compute_for(fidelity, key, slot, state)
     }
 
-    fn compute_for(&mut self, look: Look, key: u64, slot: usize, state: State) -> u32 {
+    fn compute_for(&mut self, fidelity: Fidelity, key: u64, slot: usize, state: State) -> u32 {
         let Some(goal) = self.goals[slot].clone() else { return UNREACHABLE };
         let classes = self.classes(&goal, state);
-        self.compute(look, key, slot, &goal, &classes)
+        self.compute(fidelity, key, slot, &goal, &classes)
     }
 
     /// A state's key together with these targets (at least one), and their slot.
@@ -207,16 +191,16 @@ impl CostToGo {
     }
 
     #[inline]
-    fn known(&mut self, look: Look, key: u64) -> Option<u32> {
+    fn known(&mut self, fidelity: Fidelity, key: u64) -> Option<u32> {
         self.counts.values += 1;
-        self.cache.get(key | look as u64)
+        self.cache.get(key | fidelity as u64)
     }
 
     #[inline]
-    fn keep(&mut self, look: Look, key: u64, value: u32) -> u32 {
+    fn keep(&mut self, fidelity: Fidelity, key: u64, value: u32) -> u32 {
         self.counts.values_missed += 1;
         let value = value.min(UNREACHABLE);
-        self.cache.insert(key | look as u64, value);
+        self.cache.insert(key | fidelity as u64, value);
         value
     }
 
@@ -235,21 +219,28 @@ impl CostToGo {
             classes[location] = rest.class_of[goal.content[usize::from(state[location])].index()];
         }
         let key = self.key(slot, &rest, &classes);
-        self.cache.get(key).unwrap_or_else(|| self.compute(Look::Exact, key, slot, &rest, &classes))
+        self.cache.get(key).unwrap_or_else(|| self.compute(Fidelity::Exact, key, slot, &rest, &classes))
     }
 
-    fn compute(&mut self, look: Look, key: u64, slot: usize, goal: &ServingGoal, state: &ContentClasses) -> u32 {
-        let value = self.solve(look, slot, goal, state);
-        self.keep(look, key, value)
+    fn compute(
+        &mut self,
+        fidelity: Fidelity,
+        key: u64,
+        slot: usize,
+        goal: &ServingGoal,
+        state: &ContentClasses,
+    ) -> u32 {
+        let value = self.solve(fidelity, slot, goal, state);
+        self.keep(fidelity, key, value)
     }
 
-    fn solve(&mut self, look: Look, slot: usize, goal: &ServingGoal, state: &ContentClasses) -> u32 {
-        if look == Look::Bound {
+    fn solve(&mut self, fidelity: Fidelity, slot: usize, goal: &ServingGoal, state: &ContentClasses) -> u32 {
+        if fidelity == Fidelity::LowerBound {
             return AssignmentRating::bound(&self.ground, goal, state);
         }
         let rating = AssignmentRating::new(&self.ground, goal, state);
         let upper = rating.close_upper(&self.ground, goal, state);
-        if upper <= rating.lower || look == Look::Plan && upper < BLOCKED {
+        if upper <= rating.lower || fidelity == Fidelity::PlanBound && upper < BLOCKED {
             return upper;
         }
         self.counts.searches += 1;

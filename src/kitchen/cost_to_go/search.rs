@@ -10,7 +10,7 @@ use super::goal::{ContentClasses, ServingGoal};
 use super::ground::successors;
 use super::plan::{BLOCKED, PressPlan};
 use super::rating::AssignmentRating;
-use super::{CostToGo, Look};
+use super::{CostToGo, Fidelity};
 
 /// How far a search goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,7 +131,7 @@ impl<'a> BestFirstSearch<'a> {
     /// The presses of the best way that is found; none below `lower` is looked for.
     fn best(mut self, start: &ContentClasses, lower: u32) -> u32 {
         let rating = AssignmentRating::new(&self.costs.ground, self.goal, start);
-        self.look(start, rating, 0, lower);
+        self.fidelity(start, rating, 0, lower);
         if self.open.is_empty() {
             self.keep(lower, 0, 0, start);
         }
@@ -142,7 +142,7 @@ impl<'a> BestFirstSearch<'a> {
             }
             if next.gap == UNSEEN {
                 let rating = AssignmentRating::new(&self.costs.ground, self.goal, &next.state);
-                self.look(&next.state, rating, next.presses, next.bound);
+                self.fidelity(&next.state, rating, next.presses, next.bound);
                 continue;
             }
             expansions += 1;
@@ -193,12 +193,12 @@ impl<'a> BestFirstSearch<'a> {
         if !self.is_new(key, presses) {
             return;
         }
-        let (known, mut rating) = (self.costs.known(Look::Bound, key), None);
+        let (known, mut rating) = (self.costs.known(Fidelity::LowerBound, key), None);
         let lower = known.unwrap_or_else(|| {
             let new = AssignmentRating::new(&self.costs.ground, self.goal, state);
             let lower = new.lower;
             rating = Some(new);
-            self.costs.keep(Look::Bound, key, lower)
+            self.costs.keep(Fidelity::LowerBound, key, lower)
         });
         let lower = presses + lower;
         if lower >= self.best {
@@ -209,11 +209,11 @@ impl<'a> BestFirstSearch<'a> {
             return self.keep(lower, UNSEEN, presses, state);
         }
         let rating = rating.unwrap_or_else(|| AssignmentRating::new(&self.costs.ground, self.goal, state));
-        self.look(state, rating, presses, bound);
+        self.fidelity(state, rating, presses, bound);
     }
 
     /// A closer look at a state: does what is certain to be right, and plans from there.
-    fn look(&mut self, state: &ContentClasses, mut rating: AssignmentRating, presses: u32, bound: u32) {
+    fn fidelity(&mut self, state: &ContentClasses, mut rating: AssignmentRating, presses: u32, bound: u32) {
         let goal = self.goal;
         let plan = PressPlan::new(&self.costs.ground, goal, state, rating.best_choice());
         let (settling, settled, served) = plan.settle();

@@ -1,14 +1,14 @@
 //! The different ways the kitchen may be among all draws of a press, and the costs of the human's decision in each.
 
 use crate::base::rng::mix;
-use crate::kitchen::cost_to_go::{Care, CostToGo, MAX_BUTTONS};
+use crate::kitchen::cost_to_go::{CostToGo, Fidelity, MAX_BUTTONS};
 use crate::kitchen::{Agent, Recipes, State};
 
 /// At least this share of all draws, or of the weight that they have after the press, has to be of a case for plans to be
 /// made for its costs.
 const COUNTS: f64 = 0.01;
 
-/// So many cases ahead it is announced what will be asked for.
+/// So many cases ahead a decision is prefetched.
 const AHEAD: usize = 4;
 
 /// Cases with their numbers of draws.
@@ -24,8 +24,8 @@ struct Case {
     state: State,
     recipes: Recipes,
     draws: u32,
-    /// C after each button, once it is known, and with how much care.
-    after: Option<([u8; MAX_BUTTONS], Care)>,
+    /// C after each button, once it is known, and its fidelity.
+    after: Option<([u8; MAX_BUTTONS], Fidelity)>,
 }
 
 impl Cases {
@@ -65,14 +65,16 @@ impl Cases {
 
     /// Finds the costs of all cases that have none yet, of `draws` draws in all.
     pub fn rate(&mut self, cost: &mut CostToGo, draws: usize) {
-        let care = |case: &Case| if f64::from(case.draws) >= COUNTS * draws as f64 { Care::Close } else { Care::Rough };
+        let fidelity = |case: &Case| {
+            if f64::from(case.draws) >= COUNTS * draws as f64 { Fidelity::PlanBound } else { Fidelity::LowerBound }
+        };
         for index in 0..self.known.len() {
             if let Some(later) = self.known.get(index + AHEAD).filter(|later| later.after.is_none()) {
-                cost.announce(care(later), later.state, &later.recipes, Agent::Human);
+                cost.prefetch(fidelity(later), later.state, &later.recipes, Agent::Human);
             }
             let case = &mut self.known[index];
             if case.after.is_none() {
-                case.rate(cost, care(case));
+                case.rate(cost, fidelity(case));
             }
         }
     }
@@ -82,8 +84,8 @@ impl Cases {
     pub fn rate_again(&mut self, cost: &mut CostToGo, weights: &[f64], sum: f64) -> bool {
         let mut any = false;
         for (case, &weight) in self.known.iter_mut().zip(weights) {
-            if weight >= COUNTS * sum && case.after.is_some_and(|(_, care)| care == Care::Rough) {
-                case.rate(cost, Care::Close);
+            if weight >= COUNTS * sum && case.after.is_some_and(|(_, fidelity)| fidelity == Fidelity::LowerBound) {
+                case.rate(cost, Fidelity::PlanBound);
                 any = true;
             }
         }
@@ -104,7 +106,7 @@ impl Cases {
 }
 
 impl Case {
-    fn rate(&mut self, cost: &mut CostToGo, care: Care) {
-        self.after = Some((cost.decision_with(care, self.state, &self.recipes, Agent::Human).after, care));
+    fn rate(&mut self, cost: &mut CostToGo, fidelity: Fidelity) {
+        self.after = Some((cost.decision_with(fidelity, self.state, &self.recipes, Agent::Human).after, fidelity));
     }
 }

@@ -267,7 +267,7 @@ impl Sampler {
         &self.runs[sample.runs[0]..sample.runs[1]]
     }
 
-    /// Takes more care of the cases that hardly counted before the press, and do now; whether there were any.
+    /// Plans for the cases that hardly counted before the press, and do now; whether there were any.
     fn rate_again(&mut self, cost: &mut CostToGo, states: usize) -> bool {
         self.case_weights.clear();
         self.case_weights.resize(self.cases.len(), 0.0);

@@ -7,7 +7,7 @@
 //! they are.
 
 use crate::base::rng::Stream;
-use crate::kitchen::cost_to_go::{Care, CostToGo};
+use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, Recipes, State};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::robot::policy;
@@ -46,8 +46,8 @@ pub fn predict(
                 occurred[value] += count;
             }
         }
-        let care = if count >= COUNTS * draws as f64 { Care::Close } else { Care::Rough };
-        let choices = policy::choices(kitchen, cost, care, state, &recipes);
+        let fidelity = if count >= COUNTS * draws as f64 { Fidelity::PlanBound } else { Fidelity::LowerBound };
+        let choices = policy::choices(kitchen, cost, fidelity, state, &recipes);
         let weight = count / choices.len().max(1) as f64;
         for next in choices.iter().filter_map(|&button| kitchen.press(state, &recipes, Agent::Robot, button)) {
             note_changes(kitchen, state, next, weight, &mut flows);

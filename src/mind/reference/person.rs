@@ -9,7 +9,7 @@ use rand_distr::{Distribution, Gamma};
 
 use super::sight::Glance;
 use crate::base::rng::Stream;
-use crate::kitchen::cost_to_go::{Care, CostToGo};
+use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{Agent, AspectId, AspectKind, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId};
 use crate::kitchen::{OrderContent, Recipes, State};
 use crate::mind::decision::DecisionModel;
@@ -183,7 +183,7 @@ impl Person {
         let square = |index: usize| vec![vec![0.0; self.of[index].len()]; self.of[index].len()];
         let mut turned: Vec<Vec<Vec<f64>>> = (0..locations).map(square).collect();
         for way in self.ways(kitchen, states, random) {
-            let choices = policy::choices(kitchen, cost, Care::Exact, way.state, &way.recipes);
+            let choices = policy::choices(kitchen, cost, Fidelity::Exact, way.state, &way.recipes);
             let after: Vec<State> = choices
                 .iter()
                 .map(|&button| kitchen.press(way.state, &way.recipes, Agent::Robot, button).unwrap_or(way.state))

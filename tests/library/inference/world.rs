@@ -9,7 +9,7 @@ use tomcom::base::rng::{Stream, stream};
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
 use tomcom::gaze::GazeSample;
-use tomcom::kitchen::cost_to_go::{Care, CostToGo};
+use tomcom::kitchen::cost_to_go::{CostToGo, Fidelity};
 use tomcom::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, Observed};
@@ -100,7 +100,7 @@ impl World {
             _ => {
                 self.press_at[1] = now + self.between(PRESS_S);
                 let recipes = self.kitchen.true_recipes();
-                let choices = policy::choices(&self.kitchen, &mut self.cost, Care::Exact, self.state, &recipes);
+                let choices = policy::choices(&self.kitchen, &mut self.cost, Fidelity::Exact, self.state, &recipes);
                 match choices.is_empty() {
                     true => self.next(choose),
                     false => {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use tomcom::base::time::SessionTime;
 use tomcom::communication::available;
-use tomcom::communication::concept::{Concept, Moment};
+use tomcom::communication::concept::{Concept, DecisionPoint};
 use tomcom::communication::planner::Planner;
 use tomcom::communication::settings::AssistantSpec;
 use tomcom::communication::situation::Situation;
@@ -38,7 +38,8 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     (spec.rollout.rollouts, spec.rollout.least_rollouts) = (32, 32);
     let mut planner = Planner::new(kitchen.clone(), &human, spec, 1);
     let situation = Situation::new(state, &belief);
-    let moment = Moment { seq: 0, time: SessionTime::ZERO, presses: 0, situation, signals: &signals, error: None };
+    let moment =
+        DecisionPoint { seq: 0, time: SessionTime::ZERO, presses: 0, situation, signals: &signals, error: None };
     let advice = planner.advise(&mut CostToGo::new(kitchen.clone()), &moment);
 
     println!("{:<28} {:>8} {:>8}", "signal", "benefit", "net");

@@ -34,7 +34,7 @@ use crate::edge::doctor;
 use crate::edge::file_error::FileError;
 use crate::edge::files;
 use crate::edge::key_file;
-use crate::edge::log::{self, RulingError, WriteError};
+use crate::edge::log::{self, ExclusionError, WriteError};
 use crate::run::error::RunError;
 use crate::run::live::LiveError;
 use crate::run::options::{self, SessionStart, SettingOverrides, TrialSeries};
@@ -85,10 +85,10 @@ impl From<WriteError> for Failure {
     }
 }
 
-impl From<RulingError> for Failure {
-    fn from(error: RulingError) -> Failure {
+impl From<ExclusionError> for Failure {
+    fn from(error: ExclusionError) -> Failure {
         match error {
-            RulingError::Recording(error) => Failure::from(error),
+            ExclusionError::Recording(error) => Failure::from(error),
             error => Failure::Wrong(miette::Report::new(error)),
         }
     }

@@ -3,9 +3,9 @@
 use super::follower::Follower;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
-use crate::communication::concept::{Concept, ConceptName, Moment, concept};
+use crate::communication::concept::{Concept, ConceptName, DecisionPoint, concept};
 use crate::communication::recommendation::Recommendation;
-use crate::communication::situation::{RobotOutlook, Situation};
+use crate::communication::situation::{RobotIntent, Situation};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{AspectId, State};
 use crate::mind::dirichlet::DirichletBelief;
@@ -21,7 +21,7 @@ pub struct AdviceRequest {
     state: State,
     belief: DirichletBelief,
     changed: Vec<AspectId>,
-    robot: RobotOutlook,
+    robot: RobotIntent,
     robot_press_s: f64,
     /// What may be said.
     signals: Vec<Signal>,
@@ -34,14 +34,12 @@ impl AdviceRequest {
     pub fn from_follower(follower: &Follower, seq: u64, time: SessionTime) -> AdviceRequest {
         let session = &follower.session;
         let robot = match session.robot.intention {
-            _ if session.robot.stopped || session.robot.held && session.robot.driven_to.is_none() => {
-                RobotOutlook::Still
-            }
+            _ if session.robot.stopped || session.robot.held && session.robot.driven_to.is_none() => RobotIntent::Still,
             Some((button, _, until)) => {
                 let remaining_s = until.secs_since(time).max(0.0);
-                RobotOutlook::Busy { button, remaining_s, driven: session.robot.driven_to.is_some() }
+                RobotIntent::Busy { button, remaining_s, driven: session.robot.driven_to.is_some() }
             }
-            None => RobotOutlook::Free,
+            None => RobotIntent::Free,
         };
         let (state, robot_press_s) = (session.state, session.spec.robot.press_s);
         let belief = follower.filter.belief().clone();
@@ -53,7 +51,7 @@ impl AdviceRequest {
     }
 
     /// What there is to decide about.
-    pub fn moment(&self) -> Moment<'_> {
+    pub fn moment(&self) -> DecisionPoint<'_> {
         let AdviceRequest {
             seq,
             time,
@@ -67,7 +65,7 @@ impl AdviceRequest {
             error,
         } = *self;
         let situation = Situation { state, belief, changed, robot, robot_press_s };
-        Moment { seq, time, presses, situation, signals, error }
+        DecisionPoint { seq, time, presses, situation, signals, error }
     }
 
     /// The same question about another estimate, and with other things that may be said.

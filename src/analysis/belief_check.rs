@@ -45,8 +45,8 @@ impl BeliefCheck {
         BeliefCheck {
             recordings: trials.len() as u64,
             human_actions: trials.iter().map(Vec::len).sum::<usize>() as u64,
-            detection: Detection::of(kitchen, trials, thresholds),
-            log_likelihood: LogLikelihood::of(kitchen, &mut cost, &DecisionModel::default(), trials, SEED),
+            detection: Detection::from_trials(kitchen, trials, thresholds),
+            log_likelihood: LogLikelihood::from_trials(kitchen, &mut cost, &DecisionModel::default(), trials, SEED),
         }
     }
 }
@@ -72,7 +72,7 @@ impl PressViews {
         let judged = follower.judged.last().filter(|press| press.seq == stamped.seq).copied();
         if let (Some(judged), Some(press)) = (judged, change.human_press()) {
             let estimated = follower.estimated.as_ref().filter(|one| one.press == stamped.seq);
-            let estimate = estimated.map(|one| EstimateView::of(&one.witness(kitchen)));
+            let estimate = estimated.map(|one| EstimateView::from_witness(&one.witness(kitchen)));
             let view = self.before.press(kitchen, &press, &judged, self.held.take());
             self.trial.push(PressView { estimate, ..view });
         }

@@ -5,7 +5,7 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Change, Kitchen, Press, State};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Attributor;
-use crate::measures::errors::Judge;
+use crate::measures::errors::PressJudge;
 use crate::measures::sequences::Episodes;
 use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
@@ -30,7 +30,7 @@ pub struct Follower {
     /// How long the estimate took, where that is measured.
     pub timing: Option<InferenceTiming>,
     pub(crate) cost: CostToGo,
-    judge: Judge,
+    judge: PressJudge,
     attributor: Attributor,
     /// What the participant believes before its next press.
     belief: Option<Belief>,
@@ -79,7 +79,7 @@ impl Follower {
     /// From before the first event of this session on.
     pub fn new(session: Session, cost: CostToGo) -> Follower {
         let (kitchen, spec, seed) = (session.kitchen.clone(), &session.spec, session.seed());
-        let judge = Judge::new(kitchen.clone());
+        let judge = PressJudge::new(kitchen.clone());
         let attributor = Attributor::new(spec.human.decision.clone(), seed);
         let filter = BeliefFilter::new(kitchen, spec.human.clone(), seed);
         let (judged, episodes) = (Vec::new(), Episodes::default());

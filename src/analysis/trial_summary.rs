@@ -9,7 +9,7 @@ use crate::base::words::count;
 use crate::kitchen::{Agent, DishId};
 use crate::measures::attribution::Cause;
 use crate::measures::sequences::{Sequence, sequences, sequences_by_target};
-use crate::session::Happening;
+use crate::session::TimelineEvent;
 use crate::session::settings::{Condition, ParticipantKind};
 
 /// The figures of one trial.
@@ -39,7 +39,7 @@ impl TrialSummary {
             (served.dish, presses)
         });
         let served = served.collect();
-        let signals = session.timeline.iter().filter(|entry| matches!(entry.what, Happening::Signal { .. }));
+        let signals = session.timeline.iter().filter(|entry| matches!(entry.what, TimelineEvent::Signal { .. }));
         TrialSummary {
             human_actions: u64::from(session.presses[Agent::Human.index()]),
             robot_actions: u64::from(session.presses[Agent::Robot.index()]),

@@ -23,12 +23,12 @@ use crate::history::comparison::{
 };
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Change, LocationId, State};
-use crate::measures::matching::Said;
+use crate::measures::matching::CommunicationEvent;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::BeliefFilter;
 use crate::mind::observation::{Observation, Observed};
 use crate::session::apply::ApplyError;
-use crate::session::screen::Screen;
+use crate::session::screen::VisibleScreen;
 use crate::session::settings::Condition;
 use crate::session::{Applied, Event, Session, SessionSpec, Stamped};
 
@@ -95,7 +95,7 @@ pub struct ComparisonFollower {
     /// The newest event after which is asked, when all that follows at once has happened.
     to_ask: Option<(u64, SessionTime)>,
     known: Option<Arc<CommunicationContext>>,
-    screen: Option<Screen>,
+    screen: Option<VisibleScreen>,
     /// How often was asked.
     asked: u64,
 }
@@ -231,7 +231,7 @@ impl ComparisonFollower {
     fn spoken(&self, what: CommunicationContent, time: SessionTime) -> Communication {
         let session = &self.follower.session;
         let (press, content) = (self.presses(), what.content(&session.kitchen));
-        let said = Said { press, clock: session.trial_clock(time), content };
+        let said = CommunicationEvent { press, clock: session.trial_clock(time), content };
         Communication { said, time, what, known: self.known.clone() }
     }
 

@@ -7,17 +7,17 @@ use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::Sender;
 use crate::communication::recommendation::aspects_told;
-use crate::measures::wizard::{Sent, Spell, WizardMeasures};
+use crate::measures::wizard::{FalseBeliefPeriod, WizardMeasures, WizardSignal};
 use crate::session::event::SignalEnd;
-use crate::session::screen::Screen;
+use crate::session::screen::VisibleScreen;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Event, Session, Stamped};
 
 /// The wizard's signals, and what was on the screen when they were sent.
 #[derive(Clone, Debug, Default)]
 pub struct WizardLog {
-    sent: Vec<(u64, SessionTime, Sent)>,
-    screen: Option<Screen>,
+    sent: Vec<(u64, SessionTime, WizardSignal)>,
+    screen: Option<VisibleScreen>,
     seen: Vec<SignalsPerScreen>,
 }
 
@@ -25,7 +25,7 @@ pub struct WizardLog {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SignalsPerScreen {
     /// Null before the first frame, and without a console.
-    pub screen: Option<Screen>,
+    pub screen: Option<VisibleScreen>,
     pub signals: u64,
 }
 
@@ -46,7 +46,7 @@ impl WizardLog {
         match &stamped.event {
             Event::Screen(screen) => self.screen = Some(screen.clone()),
             Event::SignalShown { by: Sender::Wizard, signal, .. } => {
-                let sent = Sent {
+                let sent = WizardSignal {
                     clock: session.trial_clock(stamped.time),
                     press: session.presses[crate::kitchen::Agent::Human.index()],
                     aspects: aspects_told(&session.kitchen, session.state, signal),
@@ -75,20 +75,20 @@ impl WizardLog {
 
     /// The figures of a session that was followed to its end.
     pub fn figures(&self, follower: &Follower) -> WizardSummary {
-        let sent: Vec<Sent> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
-        let measures = WizardMeasures::of(&sent, spells(follower).as_deref());
+        let sent: Vec<WizardSignal> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
+        let measures = WizardMeasures::from_signals(&sent, spells(follower).as_deref());
         WizardSummary { measures, screens: self.seen.clone(), unblinded: follower.session.unblinded }
     }
 }
 
 /// What was believed wrong when, on the trial's clock; none where nobody knows what was believed.
-pub fn spells(follower: &Follower) -> Option<Vec<Spell>> {
+pub fn spells(follower: &Follower) -> Option<Vec<FalseBeliefPeriod>> {
     let session = &follower.session;
     let known = session.spec.participant.kind == ParticipantKind::Simulated
         && follower.judged.iter().all(|press| press.belief_known);
     let spell = |episode: &crate::measures::sequences::Episode| {
         let presses = |time: SessionTime| follower.judged.partition_point(|press| press.time < time) as u32;
-        Spell {
+        FalseBeliefPeriod {
             aspect: episode.aspect,
             began: clock_at(session, episode.began),
             corrected: episode.corrected.map(|time| (clock_at(session, time), presses(time))),

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::args::OutputFormat;
 use super::{Failure, print, progress};
 use crate::base::words::count;
-use crate::edge::forget::{self, Found};
+use crate::edge::forget::{self, ParticipantData};
 use crate::run::codes::{self, CodedRecording, CodesSummary};
 use crate::run::review;
 use crate::session::settings::is_code;
@@ -92,7 +92,7 @@ struct Forgotten<'a> {
     code: &'a str,
     deleted: bool,
     #[serde(flatten)]
-    found: &'a Found,
+    found: &'a ParticipantData,
 }
 
 pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
@@ -116,7 +116,7 @@ pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
 }
 
 /// Shows what would be deleted, and asks for the code.
-fn is_meant(args: &ForgetArgs, found: &Found) -> Result<bool, Failure> {
+fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure> {
     let (mut out, input) = (std::io::stderr(), std::io::stdin());
     writeln!(out, "{}", listed(found))?;
     if !input.is_terminal() {
@@ -130,7 +130,7 @@ fn is_meant(args: &ForgetArgs, found: &Found) -> Result<bool, Failure> {
     Ok(answer.trim() == args.code)
 }
 
-fn listed(found: &Found) -> String {
+fn listed(found: &ParticipantData) -> String {
     let line = |path: &Path, what: &str| format!("  {}{what}\n", path.display());
     let recordings = found.recordings.iter().map(|path| line(path, " (recording)"));
     let files = found.files.iter().map(|path| line(path, ""));

@@ -8,12 +8,12 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::Signal;
-use super::dev::Dev;
+use super::dev::DevConcept;
 use super::planner::Planner;
 use super::recommendation::Recommendation;
 use super::settings::AssistantSpec;
 use super::situation::Situation;
-use super::tom::Tom;
+use super::tom::TomConcept;
 use crate::base::time::SessionTime;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
@@ -61,7 +61,7 @@ impl ConceptName {
 
 /// A moment at which something could be said.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment<'a> {
+pub struct DecisionPoint<'a> {
     /// The number and the time of the event that brought it about.
     pub seq: u64,
     pub time: SessionTime,
@@ -78,7 +78,7 @@ pub struct Moment<'a> {
 /// one moment to the next changes the time that it takes, and nothing else.
 pub trait Concept: fmt::Debug + Send {
     /// What to say now, if anything, what else could be said, and why.
-    fn advise(&mut self, cost: &mut CostToGo, moment: &Moment) -> Recommendation;
+    fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation;
 }
 
 /// The concept of this name with the settings of a session. Chance follows from `seed` and the moment's presses.
@@ -91,18 +91,18 @@ pub fn concept(
 ) -> Box<dyn Concept> {
     match name {
         ConceptName::TomCom => Box::new(Planner::new(kitchen, human, spec.clone(), seed)),
-        ConceptName::Tom => Box::new(Tom::new(kitchen, spec.belief_threshold)),
-        ConceptName::Dev => Box::new(Dev::new(kitchen, spec.proposed_presses)),
-        ConceptName::None => Box::new(Silent),
+        ConceptName::Tom => Box::new(TomConcept::new(kitchen, spec.belief_threshold)),
+        ConceptName::Dev => Box::new(DevConcept::new(kitchen, spec.proposed_presses)),
+        ConceptName::None => Box::new(SilentConcept),
     }
 }
 
 /// Says nothing: the unassisted condition as a concept.
 #[derive(Clone, Copy, Debug)]
-pub struct Silent;
+pub struct SilentConcept;
 
-impl Concept for Silent {
-    fn advise(&mut self, _: &mut CostToGo, moment: &Moment) -> Recommendation {
+impl Concept for SilentConcept {
+    fn advise(&mut self, _: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
         Recommendation::silent(moment.seq, moment.time)
     }
 }

@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use super::concept::{Concept, Moment};
+use super::concept::{Concept, DecisionPoint};
 use super::recommendation::{Proposal, Recommendation};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonId, Kitchen, State};
@@ -19,15 +19,15 @@ const MOST_AHEAD: usize = 40;
 
 /// Proposes presses after errors.
 #[derive(Clone, Debug)]
-pub struct Dev {
+pub struct DevConcept {
     kitchen: Arc<Kitchen>,
     presses: usize,
 }
 
-impl Dev {
+impl DevConcept {
     /// Proposes so many presses at a time.
-    pub fn new(kitchen: Arc<Kitchen>, presses: usize) -> Dev {
-        Dev { kitchen, presses }
+    pub fn new(kitchen: Arc<Kitchen>, presses: usize) -> DevConcept {
+        DevConcept { kitchen, presses }
     }
 
     /// The next good presses of the human: each lowers the cost to go of all orders; where none of the human's does, a
@@ -57,9 +57,9 @@ impl Dev {
     }
 }
 
-impl Concept for Dev {
+impl Concept for DevConcept {
     /// The proposal stands, and is kept up to date, until the human's next press.
-    fn advise(&mut self, cost: &mut CostToGo, moment: &Moment) -> Recommendation {
+    fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
         let name = |button: ButtonId| self.kitchen.button(Agent::Human, button).name.clone();
         let proposal = moment.error.map(|error| {
             let presses = self.good(cost, moment.situation.state).into_iter().map(name).collect();

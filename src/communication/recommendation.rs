@@ -105,12 +105,12 @@ pub fn phrase(label: &str) -> String {
 
 impl Reason {
     /// Of what a signal is about, that which is known least.
-    pub fn of(kitchen: &Kitchen, state: State, belief: &DirichletBelief, signal: &Signal) -> Option<Reason> {
+    pub fn for_signal(kitchen: &Kitchen, state: State, belief: &DirichletBelief, signal: &Signal) -> Option<Reason> {
         let p_truth = |aspect: &AspectId| belief.p_truth(kitchen, state, *aspect);
         let aspects = aspects_told(kitchen, state, signal);
         let aspect = aspects.into_iter().min_by(|a, b| p_truth(a).total_cmp(&p_truth(b)))?;
         let truth = kitchen.true_value(state, aspect);
-        let mean = belief.of(aspect).mean();
+        let mean = belief.aspect(aspect).mean();
         let others = (0..mean.len()).filter(|&value| value != truth);
         let believed = others.reduce(|best, value| if mean[value] > mean[best] { value } else { best })?;
         let told = &kitchen.aspects[aspect.index()];

@@ -3,28 +3,28 @@
 //! rules, the robot's policy and the parameters.
 //!
 //! Every rollout has an explicit belief, every component of it drawn by a gamma draw, which is moved on by the human model
-//! ([`Person`]); Q is thought through anew, over states drawn from that belief, at every decision. All signals are rolled out
+//! ([`Particle`]); Q is thought through anew, over states drawn from that belief, at every decision. All signals are rolled out
 //! as often as silence, in full, with the random numbers of a rollout the same for all of them.
 
 use std::sync::Arc;
 
 use rand::RngExt;
 
-use super::concept::Moment;
+use super::concept::DecisionPoint;
 use super::recommendation::aspects_told;
 use super::settings::AssistantSpec;
-use super::situation::RobotOutlook;
+use super::situation::RobotIntent;
 use super::{Signal, unavailable};
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, LocationId, State};
 use crate::mind::model::HumanModel;
-use crate::mind::reference::person::{Person, pick, press_chances};
+use crate::mind::reference::person::{Particle, pick, press_chances};
 use crate::robot::policy;
 
 /// What a signal is worth.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Worth {
+pub struct ReferenceBenefit {
     pub signal: Signal,
     /// Presses of both agents that it saves.
     pub benefit: f64,
@@ -43,7 +43,7 @@ pub struct ReferencePlanner {
 /// A rollout that is under way.
 struct Future {
     state: State,
-    person: Person,
+    person: Particle,
     /// The button that the arm is on its way to, when it is there, and whether it is pressed there in any case.
     errand: Option<(ButtonId, f64, bool)>,
     now_s: f64,
@@ -67,7 +67,7 @@ impl ReferencePlanner {
     }
 
     /// What each signal of a moment is worth; those that cannot be sent are left out.
-    pub fn advise(&self, cost: &mut CostToGo, moment: &Moment) -> Vec<Worth> {
+    pub fn advise(&self, cost: &mut CostToGo, moment: &DecisionPoint) -> Vec<ReferenceBenefit> {
         let situation = &moment.situation;
         let possible =
             moment.signals.iter().filter(|signal| unavailable(&self.kitchen, situation.state, signal).is_none());
@@ -84,7 +84,7 @@ impl ReferencePlanner {
             let benefit = saved.iter().sum::<f64>() / n;
             let spread = saved.iter().map(|one| (one - benefit).powi(2)).sum::<f64>();
             let standard_error = (spread / (n - 1.0).max(1.0) / n).sqrt();
-            Worth { signal: (*signal).clone(), benefit, standard_error }
+            ReferenceBenefit { signal: (*signal).clone(), benefit, standard_error }
         };
         signals.iter().zip(&saved).map(worth).collect()
     }
@@ -95,10 +95,10 @@ impl ReferencePlanner {
     }
 
     /// Presses of both agents and the cost to go at the end of one rollout.
-    fn roll_out(&self, cost: &mut CostToGo, moment: &Moment, signal: Option<&Signal>, rollout: u64) -> f64 {
-        let Moment { situation, presses, .. } = *moment;
+    fn roll_out(&self, cost: &mut CostToGo, moment: &DecisionPoint, signal: Option<&Signal>, rollout: u64) -> f64 {
+        let DecisionPoint { situation, presses, .. } = *moment;
         let mut random = self.chance("plain belief", presses, rollout, 0);
-        let mut person = Person::draw(&self.kitchen, situation.belief, &mut random);
+        let mut person = Particle::draw(&self.kitchen, situation.belief, &mut random);
         let first_s = random.random::<f64>() * self.spec.rollout.human_press_s;
         let sees = random.random::<f64>() < self.spec.rollout.capture;
         for aspect in signal.map_or(Vec::new(), |signal| aspects_told(&self.kitchen, situation.state, signal)) {
@@ -108,13 +108,13 @@ impl ReferencePlanner {
             person.settle(aspect, self.kitchen.true_value(situation.state, aspect));
         }
         let errand = match situation.robot {
-            RobotOutlook::Busy { button, remaining_s, driven } => Some((button, remaining_s, driven)),
-            RobotOutlook::Free | RobotOutlook::Still => None,
+            RobotIntent::Busy { button, remaining_s, driven } => Some((button, remaining_s, driven)),
+            RobotIntent::Free | RobotIntent::Still => None,
         };
         let mut future = Future { state: situation.state, person, errand, now_s: 0.0, presses: 0 };
         for step in 0..self.spec.rollout.horizon {
             let until_s = first_s + step as f64 * self.spec.rollout.human_press_s;
-            if situation.robot != RobotOutlook::Still {
+            if situation.robot != RobotIntent::Still {
                 let mut random = self.chance("plain robot", presses, rollout, step as u64);
                 self.robot_until(cost, &mut future, until_s, situation.robot_press_s, &mut random);
             }
@@ -191,7 +191,7 @@ impl ReferencePlanner {
     }
 
     /// What the human does by a draw from 0 to 1: nothing (it waits), or a press, slips included.
-    fn deed(&self, cost: &mut CostToGo, person: &Person, draw: f64, random: &mut Stream) -> Option<ButtonId> {
+    fn deed(&self, cost: &mut CostToGo, person: &Particle, draw: f64, random: &mut Stream) -> Option<ButtonId> {
         let (kitchen, decision) = (&self.kitchen, &self.human.decision);
         let (here, after) = person.prospects(kitchen, cost, self.spec.rollout.states, random);
         let least = after.iter().copied().fold(f64::INFINITY, f64::min);

@@ -10,7 +10,7 @@ pub struct Situation<'a> {
     pub belief: &'a DirichletBelief,
     /// The locations that have changed at this very moment, which may draw the eye.
     pub changed: &'a [AspectId],
-    pub robot: RobotOutlook,
+    pub robot: RobotIntent,
     /// How long a press of the robot takes, in seconds.
     pub robot_press_s: f64,
 }
@@ -18,13 +18,13 @@ pub struct Situation<'a> {
 impl<'a> Situation<'a> {
     /// A situation in which nothing has just changed and the robot follows its policy, with a press every 2.4 s.
     pub fn new(state: State, belief: &'a DirichletBelief) -> Situation<'a> {
-        Situation { state, belief, changed: &[], robot: RobotOutlook::Free, robot_press_s: 2.4 }
+        Situation { state, belief, changed: &[], robot: RobotIntent::Free, robot_press_s: 2.4 }
     }
 }
 
 /// What the robot is about to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RobotOutlook {
+pub enum RobotIntent {
     /// Its arm is on its way to a button, which it will touch in so many seconds; `driven`: useful or not.
     Busy { button: ButtonId, remaining_s: f64, driven: bool },
     /// It follows its policy.

@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use super::concept::{Concept, Moment};
+use super::concept::{Concept, DecisionPoint};
 use super::recommendation::{Reason, Recommendation, SignalOption, aspects_told};
 use super::{Signal, unavailable};
 use crate::kitchen::Kitchen;
@@ -16,28 +16,28 @@ use crate::mind::witness::rounded;
 
 /// Tells what deviates most.
 #[derive(Clone, Debug)]
-pub struct Tom {
+pub struct TomConcept {
     kitchen: Arc<Kitchen>,
     threshold: f64,
 }
 
-impl Tom {
+impl TomConcept {
     /// Speaks where the expected deviation of a belief is above `threshold`, a probability.
-    pub fn new(kitchen: Arc<Kitchen>, threshold: f64) -> Tom {
-        Tom { kitchen, threshold }
+    pub fn new(kitchen: Arc<Kitchen>, threshold: f64) -> TomConcept {
+        TomConcept { kitchen, threshold }
     }
 
     /// The largest deviation among the aspects that a signal is about.
-    fn deviation(&self, moment: &Moment, signal: &Signal) -> f64 {
+    fn deviation(&self, moment: &DecisionPoint, signal: &Signal) -> f64 {
         let (kitchen, state, belief) = (&self.kitchen, moment.situation.state, moment.situation.belief);
         let aspects = aspects_told(kitchen, state, signal).into_iter();
         aspects.map(|aspect| 1.0 - belief.p_truth(kitchen, state, aspect)).fold(0.0, f64::max)
     }
 }
 
-impl Concept for Tom {
+impl Concept for TomConcept {
     /// The options' benefits are deviations, and their net benefits what these are above the threshold.
-    fn advise(&mut self, _: &mut CostToGo, moment: &Moment) -> Recommendation {
+    fn advise(&mut self, _: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
         let (kitchen, state) = (&self.kitchen, moment.situation.state);
         let possible = moment.signals.iter().filter(|signal| unavailable(kitchen, state, signal).is_none());
         let mut ranked: Vec<(f64, &Signal)> = possible.map(|signal| (self.deviation(moment, signal), signal)).collect();
@@ -54,7 +54,7 @@ impl Concept for Tom {
         Recommendation {
             options: ranked.iter().map(option).collect(),
             best: best.map(|(_, signal)| (*signal).clone()),
-            reason: best.and_then(|(_, signal)| Reason::of(kitchen, state, moment.situation.belief, signal)),
+            reason: best.and_then(|(_, signal)| Reason::for_signal(kitchen, state, moment.situation.belief, signal)),
             ..Recommendation::silent(moment.seq, moment.time)
         }
     }

@@ -5,8 +5,8 @@ use super::model::{ConsoleModel, NoticeLevel};
 use super::playback::ReplayKey;
 use crate::history::wording;
 use crate::kitchen::{Kitchen, LocationId};
-use crate::measures::coding::{Code, Codes, Kind};
-use crate::session::{Happening, Session};
+use crate::measures::coding::{CauseKind, Code, Codes};
+use crate::session::{Session, TimelineEvent};
 
 /// What a key asks of a rater's console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub enum RaterKey {
     /// The participant believed something wrong about this place, or the order there and the recipe of its dish.
     Belief(LocationId),
     /// Another cause.
-    Cause(Kind),
+    Cause(CauseKind),
     /// Nothing is said about the error after all.
     Clear,
 }
@@ -55,8 +55,8 @@ impl RaterSession {
 }
 
 /// A press in words: its button, and whether it did anything.
-pub fn press(kitchen: &Kitchen, what: &Happening) -> String {
-    let Happening::Press { agent, button, effective } = what else { return String::new() };
+pub fn press(kitchen: &Kitchen, what: &TimelineEvent) -> String {
+    let TimelineEvent::Press { agent, button, effective } = what else { return String::new() };
     let effect = if *effective { "with" } else { "without" };
     format!("\"{}\" {effect} effect", wording::button(kitchen, *agent, *button))
 }

@@ -1,7 +1,7 @@
 //! The participant's display, as far as the wizard has to know: where it is, whether somebody is there, how quick it is.
 
 use crate::session::Session;
-use crate::session::preflight::{Check, Verdict};
+use crate::session::preflight::{PreflightCheck, PreflightVerdict};
 use crate::session::settings::ParticipantKind;
 
 /// The participant's display.
@@ -40,11 +40,16 @@ impl DisplayHealth {
     }
 
     /// What is looked at before a trial.
-    pub fn check(&self) -> Check {
+    pub fn check(&self) -> PreflightCheck {
         let Some([width, height]) = self.page else {
             let code = self.code.as_ref().map_or(String::new(), |code| format!(", pairing code {code}"));
             let open = format!("open {} in a browser, full screen", self.url);
-            return Check::new("display", Verdict::Failed, format!("no page is connected{code}"), open);
+            return PreflightCheck::new(
+                "display",
+                PreflightVerdict::Failed,
+                format!("no page is connected{code}"),
+                open,
+            );
         };
         let trip = self.round_trip_ms.map_or(String::new(), |ms| format!(", {ms:.0} ms there and back"));
         let others = match self.watching {
@@ -59,11 +64,11 @@ impl DisplayHealth {
         let is_small = width < SMALL_PX[0] || height < SMALL_PX[1];
         let is_slow = self.round_trip_ms.is_some_and(|ms| ms > SLOW_MS);
         let (verdict, remedy) = match (is_small, is_slow) {
-            (true, _) => (Verdict::Warning, "full screen (F11) on a display of at least 1280x720"),
-            (false, true) => (Verdict::Warning, "a page on this computer, or a wire instead of radio"),
-            (false, false) => (Verdict::Ok, ""),
+            (true, _) => (PreflightVerdict::Warning, "full screen (F11) on a display of at least 1280x720"),
+            (false, true) => (PreflightVerdict::Warning, "a page on this computer, or a wire instead of radio"),
+            (false, false) => (PreflightVerdict::Ok, ""),
         };
-        Check::new("display", verdict, found, remedy)
+        PreflightCheck::new("display", verdict, found, remedy)
     }
 }
 

@@ -19,7 +19,7 @@ use crate::gaze::GazeSample;
 use crate::history::belief_track::BeliefHistory;
 use crate::kitchen::{Agent, AspectId};
 use crate::session::settings::GazeSource;
-use crate::session::{Entry, Happening};
+use crate::session::{TimelineEntry, TimelineEvent};
 
 /// How many gaze samples the trail of the gaze map keeps.
 const TRAIL: usize = 240;
@@ -210,8 +210,8 @@ impl ConsoleModel {
     }
 
     /// Whether this entry of the timeline is a press of the human that was an error.
-    pub fn is_error(&self, entry: &Entry) -> bool {
-        matches!(entry.what, Happening::Press { agent: Agent::Human, .. })
+    pub fn is_error(&self, entry: &TimelineEntry) -> bool {
+        matches!(entry.what, TimelineEvent::Press { agent: Agent::Human, .. })
             && self.errors.binary_search(&entry.time).is_ok()
     }
 

@@ -9,14 +9,14 @@ use super::keys::KeyAction;
 use super::message::ConsoleCommand;
 use super::model::{ConsoleModel, Dialog, NoticeLevel, RecordingStatus, ViewerStreamStatus};
 use crate::session::admit::admit;
-use crate::session::preflight::{Check, Verdict, participant, space};
+use crate::session::preflight::{PreflightCheck, PreflightVerdict, participant, space};
 use crate::session::{Event, Session};
 
 /// The key that starts a trial although not all is ok.
 pub const OVERRIDE: char = 'o';
 
 /// Looks at everything.
-pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<Check> {
+pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     let mut checks = participant(session, model.now, &key(model, &KeyAction::Hand(ManualAction::Calibrate)));
     checks.extend(model.display.as_ref().map(DisplayHealth::check));
     checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);
@@ -25,8 +25,8 @@ pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<Check> {
 }
 
 /// Whether all is as it should be.
-pub fn all_ok(checks: &[Check]) -> bool {
-    checks.iter().all(|check| check.verdict == Verdict::Ok)
+pub fn all_ok(checks: &[PreflightCheck]) -> bool {
+    checks.iter().all(|check| check.verdict == PreflightVerdict::Ok)
 }
 
 /// The key of an action.
@@ -34,51 +34,58 @@ fn key(model: &ConsoleModel, action: &KeyAction) -> String {
     model.keys.chord_for(action).map(|key| key.to_string()).unwrap_or_default()
 }
 
-fn robot(session: &Session, model: &ConsoleModel) -> Check {
+fn robot(session: &Session, model: &ConsoleModel) -> PreflightCheck {
     match (session.robot.stopped, session.robot.held) {
         (true, _) => {
             let resume = key(model, &KeyAction::ResumeRobot);
-            Check::new("robot", Verdict::Failed, "stopped", format!("{resume} lets it go on"))
+            PreflightCheck::new("robot", PreflightVerdict::Failed, "stopped", format!("{resume} lets it go on"))
         }
         (false, true) => {
             let release = key(model, &KeyAction::Hand(ManualAction::HoldRobot));
-            Check::new("robot", Verdict::Warning, "held before its first press", format!("{release} releases it"))
+            PreflightCheck::new(
+                "robot",
+                PreflightVerdict::Warning,
+                "held before its first press",
+                format!("{release} releases it"),
+            )
         }
-        (false, false) => Check::ok("robot", "ready"),
+        (false, false) => PreflightCheck::ok("robot", "ready"),
     }
 }
 
-fn recording(model: &ConsoleModel) -> Check {
+fn recording(model: &ConsoleModel) -> PreflightCheck {
     match &model.recording {
-        RecordingStatus::On(folder) => Check::ok("recording", folder.clone()),
+        RecordingStatus::On(folder) => PreflightCheck::ok("recording", folder.clone()),
         RecordingStatus::Off => {
-            Check::new("recording", Verdict::Failed, "nothing is recorded", "start the program anew")
+            PreflightCheck::new("recording", PreflightVerdict::Failed, "nothing is recorded", "start the program anew")
         }
         RecordingStatus::Lost => {
-            Check::new("recording", Verdict::Failed, "it cannot be written", "start the program anew")
+            PreflightCheck::new("recording", PreflightVerdict::Failed, "it cannot be written", "start the program anew")
         }
     }
 }
 
-fn viewers(viewers: &ViewerStreamStatus) -> Check {
+fn viewers(viewers: &ViewerStreamStatus) -> PreflightCheck {
     let ViewerStreamStatus { address, dropped, .. } = viewers;
     let found = match address {
         Some(address) => format!("viewers connect at {address}"),
         None => "recorded, no viewer can connect".to_string(),
     };
     match dropped {
-        0 => Check::ok("rerun", found),
+        0 => PreflightCheck::ok("rerun", found),
         dropped => {
             let remedy = "end what else keeps the processor busy; tomcom review makes the stream from the log";
-            Check::new("rerun", Verdict::Warning, format!("{found}; {dropped} rows dropped"), remedy)
+            PreflightCheck::new("rerun", PreflightVerdict::Warning, format!("{found}; {dropped} rows dropped"), remedy)
         }
     }
 }
 
-fn keyboard(model: &ConsoleModel) -> Check {
+fn keyboard(model: &ConsoleModel) -> PreflightCheck {
     match model.focused {
-        true => Check::ok("keyboard", "keys arrive here"),
-        false => Check::new("keyboard", Verdict::Failed, "keys go elsewhere", "click into this window"),
+        true => PreflightCheck::ok("keyboard", "keys arrive here"),
+        false => {
+            PreflightCheck::new("keyboard", PreflightVerdict::Failed, "keys go elsewhere", "click into this window")
+        }
     }
 }
 

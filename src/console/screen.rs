@@ -5,10 +5,10 @@ use super::model::{ConsoleModel, Dialog};
 use super::picker::PickerQuestion;
 use super::view::regions::{LEAST, Regions, ScreenSize};
 use crate::session::Session;
-use crate::session::screen::Screen;
+use crate::session::screen::VisibleScreen;
 
 /// What is on the screen.
-pub fn screen(session: &Session, model: &ConsoleModel) -> Screen {
+pub fn screen(session: &Session, model: &ConsoleModel) -> VisibleScreen {
     let visibility = session.spec.console.visibility;
     let fits = model.size.0 >= LEAST.0 && model.size.1 >= LEAST.1;
     let regions = Regions::showing(model.size, session, model);
@@ -21,7 +21,7 @@ pub fn screen(session: &Session, model: &ConsoleModel) -> Screen {
     let dialog = model.dialog.as_ref().map(name);
     let sheet = sheet(session).map(|sheet| sheet.name());
     let panels = if fits { regions.panels() } else { Vec::new() };
-    Screen {
+    VisibleScreen {
         visibility,
         room: room.to_string(),
         panels: panels.into_iter().map(str::to_string).collect(),

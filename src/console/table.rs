@@ -14,7 +14,7 @@ use super::playback::ReplayKey;
 use crate::communication::{self, Signal};
 use crate::history::landmark::ReplayLandmark;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId};
-use crate::measures::coding::Kind;
+use crate::measures::coding::CauseKind;
 use crate::session::settings::MAX_NOTES;
 
 const SIGNALS: &str = "Signals to the participant";
@@ -201,9 +201,12 @@ fn codes() -> [KeyBinding; 6] {
     [
         code("code_next", KeyChord::plain(Enter), RaterKey::Next, "to the next error", Some("next error")),
         code("code_last", KeyChord::plain(Backspace), RaterKey::Last, "to the error before", None),
-        KeyBinding { footer: Some("slip"), ..cause("slip", '1', Kind::Slip, "a slip: nothing was believed wrong") },
-        KeyBinding { footer: Some("race"), ..cause("race", '2', Kind::Race, "a race: the robot was quicker") },
-        KeyBinding { footer: Some("other"), ..cause("other_cause", '3', Kind::Other, "another cause") },
+        KeyBinding {
+            footer: Some("slip"),
+            ..cause("slip", '1', CauseKind::Slip, "a slip: nothing was believed wrong")
+        },
+        KeyBinding { footer: Some("race"), ..cause("race", '2', CauseKind::Race, "a race: the robot was quicker") },
+        KeyBinding { footer: Some("other"), ..cause("other_cause", '3', CauseKind::Other, "another cause") },
         code("clear_code", KeyChord::plain(Delete), RaterKey::Clear, "not coded after all", None),
     ]
 }

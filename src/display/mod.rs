@@ -6,5 +6,5 @@ mod scene;
 mod sight;
 pub mod words;
 
-pub use scene::{Scene, scene};
-pub use sight::{Sight, Stage, sight};
+pub use scene::{DisplayScene, scene};
+pub use sight::{DisplayStage, DisplayUpdate, sight};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::words::Words;
+use super::words::DisplayWords;
 use crate::gaze::tags::DisplayTags;
 use crate::kitchen::{Agent, Appearance, ButtonAction, Kitchen, LocationKind};
 use crate::session::display::Names;
@@ -16,22 +16,22 @@ type Rect = [f64; 4];
 
 /// The display as it is built once.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Scene {
+pub struct DisplayScene {
     pub title: String,
     /// "en": for the browser.
     pub language: String,
     /// Width and height in metres.
     pub display_m: [f64; 2],
-    /// In the order of [`super::Sight::contents`].
-    pub locations: Vec<Spot>,
-    pub storages: Vec<Shelf>,
+    /// In the order of [`super::DisplayUpdate::contents`].
+    pub locations: Vec<DisplayLocation>,
+    pub storages: Vec<DisplayStorage>,
     /// The human's.
-    pub buttons: Vec<Knob>,
+    pub buttons: Vec<DisplayButton>,
     /// AprilTags: none, if the session wants none or there is no room for them.
-    pub tags: Vec<Mark>,
+    pub tags: Vec<TagPicture>,
     /// How items and dishes look, by their names. No dish says here what it is made of.
-    pub items: BTreeMap<String, Picture>,
-    pub dishes: BTreeMap<String, Picture>,
+    pub items: BTreeMap<String, LabelledAppearance>,
+    pub dishes: BTreeMap<String, LabelledAppearance>,
     /// The page's own words.
     pub words: BTreeMap<String, String>,
     pub names: Names,
@@ -43,14 +43,14 @@ pub struct Scene {
 
 /// An AprilTag with its white border: rows from the top, "#" for black cells.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Mark {
+pub struct TagPicture {
     pub area: Rect,
     pub rows: Vec<String>,
 }
 
 /// A location.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Spot {
+pub struct DisplayLocation {
     pub name: String,
     pub label: String,
     /// "order", "human_hand", "robot_hand", "place".
@@ -61,7 +61,7 @@ pub struct Spot {
 
 /// A storage.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Shelf {
+pub struct DisplayStorage {
     pub agent: Agent,
     pub item: String,
     pub label: String,
@@ -70,37 +70,37 @@ pub struct Shelf {
 
 /// A button of the human.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Knob {
+pub struct DisplayButton {
     pub name: String,
     pub label: String,
     pub key: Option<char>,
     pub gamepad: Option<u8>,
     /// What it does: "take", "use", "process", "trash", "serve".
     pub does: &'static str,
-    /// The location that it is at; of a storage, its place in [`Scene::storages`].
+    /// The location that it is at; of a storage, its place in [`DisplayScene::storages`].
     pub at: usize,
 }
 
 /// How something looks, and what it is called.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Picture {
+pub struct LabelledAppearance {
     pub label: String,
     pub look: Option<Appearance>,
 }
 
 /// The scene of a session.
-pub fn scene(session: &Session) -> Scene {
+pub fn scene(session: &Session) -> DisplayScene {
     let (kitchen, spec) = (&session.kitchen, &session.spec);
-    let words = Words::of(&spec.display);
+    let words = DisplayWords::for_display(&spec.display);
     let rect = |area: crate::kitchen::DisplayArea| [area.x, area.y, area.w, area.h];
-    let spot = |location: &crate::kitchen::Location| Spot {
+    let spot = |location: &crate::kitchen::Location| DisplayLocation {
         name: location.name.clone(),
         label: words.of_name(&location.name),
         kind: kind(location.kind),
         area: rect(location.display),
         look: location.look.clone(),
     };
-    let shelf = |storage: &crate::kitchen::layout::Storage| Shelf {
+    let shelf = |storage: &crate::kitchen::layout::Storage| DisplayStorage {
         agent: storage.agent,
         item: kitchen.content(storage.item).name.clone(),
         label: words.of_name(&storage.label),
@@ -108,9 +108,9 @@ pub fn scene(session: &Session) -> Scene {
     };
     let items = kitchen.contents.iter().filter(|content| content.items.len() == 1);
     let picture = |name: &str, look: &Option<Appearance>| {
-        (name.to_string(), Picture { label: words.of_name(name), look: look.clone() })
+        (name.to_string(), LabelledAppearance { label: words.of_name(name), look: look.clone() })
     };
-    Scene {
+    DisplayScene {
         title: words.of_name(&kitchen.title),
         language: words.language.clone(),
         display_m: kitchen.display_m,
@@ -141,17 +141,17 @@ fn kind(kind: LocationKind) -> &'static str {
     }
 }
 
-fn marks(kitchen: &Kitchen) -> Vec<Mark> {
+fn marks(kitchen: &Kitchen) -> Vec<TagPicture> {
     let Ok(tags) = DisplayTags::place(kitchen) else { return Vec::new() };
     let row = |cells: &[bool]| cells.iter().map(|is_black| if *is_black { '#' } else { ' ' }).collect();
-    let mark = |tag: &crate::gaze::tags::DisplayTag| Mark {
+    let mark = |tag: &crate::gaze::tags::DisplayTag| TagPicture {
         area: [tag.area.x, tag.area.y, tag.area.w, tag.area.h],
         rows: tag.cells().iter().map(|cells| row(cells)).collect(),
     };
     tags.corners.iter().map(mark).collect()
 }
 
-fn knobs(kitchen: &Kitchen, words: &Words) -> Vec<Knob> {
+fn knobs(kitchen: &Kitchen, words: &DisplayWords) -> Vec<DisplayButton> {
     let hand = kitchen.hands[Agent::Human.index()].index();
     let shelf = |item| {
         let is_it = |storage: &crate::kitchen::layout::Storage| storage.agent == Agent::Human && storage.item == item;
@@ -171,7 +171,7 @@ fn knobs(kitchen: &Kitchen, words: &Words) -> Vec<Knob> {
             "serve" => words.of_name("serve"),
             _ => words.of_name(&button.name),
         };
-        Knob { name: button.name.clone(), label, key: button.key, gamepad: button.gamepad, does, at }
+        DisplayButton { name: button.name.clone(), label, key: button.key, gamepad: button.gamepad, does, at }
     };
     kitchen.buttons[Agent::Human.index()].iter().map(knob).collect()
 }

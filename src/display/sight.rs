@@ -2,33 +2,33 @@
 
 use serde::Serialize;
 
-use super::words::Words;
+use super::words::DisplayWords;
 use crate::communication::Signal;
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind, OrderContent};
-use crate::session::calibration::Check;
+use crate::session::calibration::RunningGazeCheck;
 use crate::session::display::Answering;
 use crate::session::plan::PhaseSpec;
-use crate::session::protocol::Answer;
-use crate::session::{Happening, Phase, Session};
+use crate::session::protocol::ItemAnswer;
+use crate::session::{Phase, Session, TimelineEvent};
 
 /// What the participant sees of the session now; always the whole of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Sight {
-    pub stage: Stage,
+pub struct DisplayUpdate {
+    pub stage: DisplayStage,
     /// It is for practice.
     pub practice: bool,
-    /// What each location shows, in the order of [`super::Scene::locations`].
-    pub contents: Vec<Shown>,
+    /// What each location shows, in the order of [`super::DisplayScene::locations`].
+    pub contents: Vec<ShownContent>,
     /// Orders served in this trial.
     pub served: usize,
     /// The last press of the human and of the robot, by [`Agent::index`].
-    pub presses: [Option<Pressed>; 2],
+    pub presses: [Option<DisplayedPress>; 2],
     /// Where the robot is about to press, if the session shows it.
-    pub intention: Option<Spot>,
-    pub signal: Option<Told>,
+    pub intention: Option<DisplayPlace>,
+    pub signal: Option<DisplayedSignal>,
     /// The number of the newest event to be marked by a flash.
     pub cue: Option<u64>,
-    pub question: Option<Question>,
+    pub question: Option<DisplayedItem>,
     /// Where the eyes are asked to look while the gaze is checked, in fractions of the display.
     pub target: Option<[f64; 2]>,
     /// The gaze is being checked: nothing else is shown.
@@ -38,7 +38,7 @@ pub struct Sight {
 /// What the display is for now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Stage {
+pub enum DisplayStage {
     Welcome,
     Instruction,
     /// The kitchen before the trial starts.
@@ -53,7 +53,7 @@ pub enum Stage {
 /// What a location shows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Shown {
+pub enum ShownContent {
     Empty,
     Item(String),
     /// What lies on one another. A stack that is on the menu is its dish.
@@ -66,24 +66,24 @@ pub enum Shown {
 /// A place of the display: a location or a storage, by its number in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Spot {
+pub enum DisplayPlace {
     Location(usize),
     Storage(usize),
 }
 
 /// A press and what came of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Pressed {
+pub struct DisplayedPress {
     /// Presses of this agent so far.
     pub number: u32,
-    pub at: Spot,
+    pub at: DisplayPlace,
     pub effective: bool,
 }
 
 /// A signal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Told {
+pub enum DisplayedSignal {
     /// The recipe of what an order wants.
     Recipe {
         order: usize,
@@ -95,7 +95,7 @@ pub enum Told {
 
 /// An item of a questionnaire that the participant answers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Question {
+pub struct DisplayedItem {
     pub title: String,
     /// The item; nothing: all are answered, and are to be confirmed.
     pub item: Option<String>,
@@ -112,23 +112,23 @@ pub struct Question {
     /// The item before, to go back to.
     pub before: Option<String>,
     /// When all are answered: each item and its answer, if it got one.
-    pub given: Vec<Given>,
+    pub given: Vec<GivenAnswer>,
 }
 
 /// An item with what the participant answered.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Given {
+pub struct GivenAnswer {
     pub text: String,
     pub rated: Option<u8>,
 }
 
 /// What the participant sees of a session.
-pub fn sight(session: &Session) -> Sight {
+pub fn sight(session: &Session) -> DisplayUpdate {
     let kitchen = &session.kitchen;
     let contents = (0..kitchen.locations.len()).map(|index| shown(session, LocationId(index as u8)));
     let is_trial = matches!(session.phase, Phase::Running | Phase::Paused);
     let intention = session.robot.intention.filter(|_| session.spec.display.intention && is_trial);
-    Sight {
+    DisplayUpdate {
         stage: stage(session),
         practice: matches!(session.study_phase(), Some(PhaseSpec::Familiarisation)),
         contents: contents.collect(),
@@ -139,95 +139,95 @@ pub fn sight(session: &Session) -> Sight {
         signal: session.shown.as_ref().and_then(|shown| told(session, &shown.signal)),
         cue: session.cue,
         question: question(session),
-        target: session.calibration.as_ref().and_then(Check::target),
+        target: session.calibration.as_ref().and_then(RunningGazeCheck::target),
         checks: session.calibration.as_ref().is_some_and(|check| check.result.is_none()),
     }
 }
 
-fn stage(session: &Session) -> Stage {
+fn stage(session: &Session) -> DisplayStage {
     let trial = match session.phase {
-        Phase::Ready => Stage::Ready,
-        Phase::Running => Stage::Running,
-        Phase::Paused => Stage::Paused,
-        Phase::Over(_) => Stage::Over,
-        Phase::Closed => return Stage::Thanks,
+        Phase::Ready => DisplayStage::Ready,
+        Phase::Running => DisplayStage::Running,
+        Phase::Paused => DisplayStage::Paused,
+        Phase::Over(_) => DisplayStage::Over,
+        Phase::Closed => return DisplayStage::Thanks,
     };
     match (session.protocol.is_some(), session.study_phase()) {
-        (false, _) if trial == Stage::Ready => Stage::Welcome,
+        (false, _) if trial == DisplayStage::Ready => DisplayStage::Welcome,
         (false, _) | (true, Some(PhaseSpec::Trial | PhaseSpec::Familiarisation)) => trial,
-        (true, None) => Stage::Welcome,
-        (true, Some(PhaseSpec::Instruction { .. })) => Stage::Instruction,
-        (true, Some(PhaseSpec::Questionnaire { .. })) => Stage::Questionnaire,
-        (true, Some(PhaseSpec::Debriefing { .. })) => Stage::Thanks,
+        (true, None) => DisplayStage::Welcome,
+        (true, Some(PhaseSpec::Instruction { .. })) => DisplayStage::Instruction,
+        (true, Some(PhaseSpec::Questionnaire { .. })) => DisplayStage::Questionnaire,
+        (true, Some(PhaseSpec::Debriefing { .. })) => DisplayStage::Thanks,
     }
 }
 
-fn shown(session: &Session, location: LocationId) -> Shown {
+fn shown(session: &Session, location: LocationId) -> ShownContent {
     let (kitchen, state) = (&session.kitchen, session.state);
     if kitchen.location(location).kind == LocationKind::Order {
         return match state.order(location) {
-            OrderContent::None => Shown::Empty,
-            OrderContent::Served => Shown::Served,
-            OrderContent::Dish(dish) => Shown::Dish(kitchen.dish(dish).name.clone()),
+            OrderContent::None => ShownContent::Empty,
+            OrderContent::Served => ShownContent::Served,
+            OrderContent::Dish(dish) => ShownContent::Dish(kitchen.dish(dish).name.clone()),
         };
     }
     content(kitchen, state.content(location))
 }
 
-fn content(kitchen: &Kitchen, id: ContentId) -> Shown {
+fn content(kitchen: &Kitchen, id: ContentId) -> ShownContent {
     let content = kitchen.content(id);
     let names = || content.items.iter().map(|item| kitchen.content(*item).name.clone()).collect();
     match content.items.len() {
-        0 => Shown::Empty,
-        1 => Shown::Item(content.name.clone()),
-        _ if kitchen.dishes.iter().any(|dish| dish.stack() == id) => Shown::Dish(content.name.clone()),
-        _ => Shown::Stack(names()),
+        0 => ShownContent::Empty,
+        1 => ShownContent::Item(content.name.clone()),
+        _ if kitchen.dishes.iter().any(|dish| dish.stack() == id) => ShownContent::Dish(content.name.clone()),
+        _ => ShownContent::Stack(names()),
     }
 }
 
-fn pressed(session: &Session, agent: Agent) -> Option<Pressed> {
+fn pressed(session: &Session, agent: Agent) -> Option<DisplayedPress> {
     let newest = session.timeline.iter().rev().find_map(|entry| match entry.what {
-        Happening::Press { agent: by, button, effective } if by == agent => Some((button, effective)),
+        TimelineEvent::Press { agent: by, button, effective } if by == agent => Some((button, effective)),
         _ => None,
     });
     let (button, effective) = newest?;
     let at = spot(&session.kitchen, agent, session.kitchen.button(agent, button).action);
-    Some(Pressed { number: session.presses[agent.index()], at, effective })
+    Some(DisplayedPress { number: session.presses[agent.index()], at, effective })
 }
 
 /// Where a press of an agent happens.
-fn spot(kitchen: &Kitchen, agent: Agent, action: ButtonAction) -> Spot {
+fn spot(kitchen: &Kitchen, agent: Agent, action: ButtonAction) -> DisplayPlace {
     let hand = kitchen.hands[agent.index()];
     let location = match action {
         ButtonAction::Take(item) => {
             let is_it = |storage: &crate::kitchen::layout::Storage| storage.agent == agent && storage.item == item;
-            return Spot::Storage(kitchen.storages.iter().position(is_it).unwrap_or_default());
+            return DisplayPlace::Storage(kitchen.storages.iter().position(is_it).unwrap_or_default());
         }
         ButtonAction::Use(location) => location,
         ButtonAction::Process(process) => kitchen.processes[usize::from(process)].place.unwrap_or(hand),
         ButtonAction::Trash => hand,
         ButtonAction::Serve(order) => order,
     };
-    Spot::Location(location.index())
+    DisplayPlace::Location(location.index())
 }
 
-fn told(session: &Session, signal: &Signal) -> Option<Told> {
+fn told(session: &Session, signal: &Signal) -> Option<DisplayedSignal> {
     let kitchen = &session.kitchen;
     let location = kitchen.location_named(signal.target())?;
     match signal {
-        Signal::Highlight(_) => Some(Told::Highlight(location.index())),
+        Signal::Highlight(_) => Some(DisplayedSignal::Highlight(location.index())),
         Signal::ShowRecipe(_) => {
             let OrderContent::Dish(dish) = session.state.order(location) else { return None };
             let dish = kitchen.dish(dish);
             let items = kitchen.content(dish.stack()).items.iter();
             let items = items.map(|item| kitchen.content(*item).name.clone()).collect();
-            Some(Told::Recipe { order: location.index(), dish: dish.name.clone(), items })
+            Some(DisplayedSignal::Recipe { order: location.index(), dish: dish.name.clone(), items })
         }
     }
 }
 
 /// The item that is to be answered here; nothing where the wizard reads it out.
-fn question(session: &Session) -> Option<Question> {
+fn question(session: &Session) -> Option<DisplayedItem> {
     if session.spec.display.questionnaire == Answering::Console {
         return None;
     }
@@ -235,16 +235,16 @@ fn question(session: &Session) -> Option<Question> {
     if protocol.confirmed {
         return None;
     }
-    let words = Words::of(&session.spec.display);
+    let words = DisplayWords::for_display(&session.spec.display);
     let item = questionnaire.items.get(protocol.item);
     let before = protocol.item.checked_sub(1).and_then(|before| questionnaire.items.get(before));
     let answer = |number: usize| match protocol.answers.get(number) {
-        Some(Some(Answer::Rated(answer))) => Some(*answer),
+        Some(Some(ItemAnswer::Rated(answer))) => Some(*answer),
         _ => None,
     };
     let items = questionnaire.items.iter().enumerate().filter(|_| item.is_none());
-    let given = items.map(|(number, item)| Given { text: item.text.clone(), rated: answer(number) });
-    Some(Question {
+    let given = items.map(|(number, item)| GivenAnswer { text: item.text.clone(), rated: answer(number) });
+    Some(DisplayedItem {
         title: questionnaire.title.clone(),
         item: item.map(|item| item.id.clone()),
         text: item.map_or_else(|| words.of_name("answers done"), |item| item.text.clone()),

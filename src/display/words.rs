@@ -11,15 +11,15 @@ const PAGE: &str = "page ";
 
 /// Words by their English names.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Words {
+pub struct DisplayWords {
     /// "en": for the browser.
     pub language: String,
     words: BTreeMap<String, String>,
 }
 
-impl Words {
+impl DisplayWords {
     /// English, with the words of the chosen language over it, and those of the session file over these.
-    pub fn of(spec: &DisplaySpec) -> Words {
+    pub fn for_display(spec: &DisplaySpec) -> DisplayWords {
         let read = |text: &str| toml::from_str::<BTreeMap<String, String>>(text).unwrap_or_default();
         let mut words = read(ENGLISH);
         if spec.language == "de" {
@@ -27,7 +27,7 @@ impl Words {
         }
         words.extend(spec.words.clone());
         let language = words.get("language").cloned().unwrap_or_default();
-        Words { language, words }
+        DisplayWords { language, words }
     }
 
     /// A name of the kitchen in this language; in its own words where the language has none for it.

@@ -14,12 +14,12 @@ use serde::Serialize;
 
 use super::ask::ask;
 use super::clock::WallTime;
-use super::log::Lock;
+use super::log::RecordingLock;
 use super::terminal::theme;
 use crate::base::features::Feature;
 use crate::console::view::theme::TerminalBackground;
 use crate::session::SessionSpec;
-use crate::session::preflight::{Check, Verdict, space};
+use crate::session::preflight::{PreflightCheck, PreflightVerdict, space};
 use crate::session::settings::ConsoleSpec;
 
 /// The console breathes from here on, in columns and rows.
@@ -31,18 +31,18 @@ const WRITTEN: &str = "2025-01-01";
 
 /// What `tomcom doctor` found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Findings {
+pub struct DoctorReport {
     /// Nothing is broken.
     pub healthy: bool,
-    pub checks: Vec<Check>,
+    pub checks: Vec<PreflightCheck>,
 }
 
 /// Looks at everything that a session with these settings needs; `out` is where its recordings would go.
-pub fn examine(spec: &SessionSpec, out: &Path) -> Findings {
+pub fn examine(spec: &SessionSpec, out: &Path) -> DoctorReport {
     let mut checks = terminal(&spec.console);
     let place = folder(out);
     // Where nothing can be written, it does not matter how much there is.
-    let room = (place.verdict == Verdict::Ok).then(|| space(free_bytes(&existing(out)).ok()));
+    let room = (place.verdict == PreflightVerdict::Ok).then(|| space(free_bytes(&existing(out)).ok()));
     checks.push(place);
     checks.extend(room);
     checks.extend([wall_clock(), timer(), devices::display(spec)]);
@@ -50,17 +50,17 @@ pub fn examine(spec: &SessionSpec, out: &Path) -> Findings {
     checks.push(viewer());
     checks.extend(left_out());
     checks.push(devices::gaze(spec));
-    let healthy = checks.iter().all(|check| check.verdict != Verdict::Failed);
-    Findings { healthy, checks }
+    let healthy = checks.iter().all(|check| check.verdict != PreflightVerdict::Failed);
+    DoctorReport { healthy, checks }
 }
 
 /// The findings for people.
-pub fn describe(findings: &Findings) -> String {
-    let line = |check: &Check| {
+pub fn describe(findings: &DoctorReport) -> String {
+    let line = |check: &PreflightCheck| {
         let mark = match check.verdict {
-            Verdict::Ok => "ok    ",
-            Verdict::Warning => "warn  ",
-            Verdict::Failed => "FAILED",
+            PreflightVerdict::Ok => "ok    ",
+            PreflightVerdict::Warning => "warn  ",
+            PreflightVerdict::Failed => "FAILED",
         };
         let remedy = check.remedy.as_ref().map_or(String::new(), |remedy| format!("{:26}mend: {remedy}\n", ""));
         format!("{mark}  {:<16}  {}\n{remedy}", check.name, check.found)
@@ -68,24 +68,32 @@ pub fn describe(findings: &Findings) -> String {
     findings.checks.iter().map(line).collect()
 }
 
-fn terminal(spec: &ConsoleSpec) -> Vec<Check> {
+fn terminal(spec: &ConsoleSpec) -> Vec<PreflightCheck> {
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
         let remedy = "run it in a terminal, not through a pipe";
-        return vec![Check::new("terminal", Verdict::Failed, "input or output is no terminal", remedy)];
+        return vec![PreflightCheck::new(
+            "terminal",
+            PreflightVerdict::Failed,
+            "input or output is no terminal",
+            remedy,
+        )];
     }
     let mut checks = vec![screen_size(), colours(spec)];
     let keys = match supports_keyboard_enhancement() {
-        Ok(true) => (Verdict::Ok, "the terminal reports them: a held key is told from a second press"),
-        _ => (Verdict::Warning, "the terminal does not report them: a held key is told from a second press by time"),
+        Ok(true) => (PreflightVerdict::Ok, "the terminal reports them: a held key is told from a second press"),
+        _ => (
+            PreflightVerdict::Warning,
+            "the terminal does not report them: a held key is told from a second press by time",
+        ),
     };
     let remedy = "a terminal with the kitty keyboard protocol (kitty, foot, WezTerm, Ghostty), without a multiplexer";
-    checks.push(Check::new("key releases", keys.0, keys.1, remedy));
+    checks.push(PreflightCheck::new("key releases", keys.0, keys.1, remedy));
     let mouse = match mouse_mode() {
-        Some(true) => (Verdict::Ok, "the terminal knows mouse reports (SGR)"),
-        Some(false) => (Verdict::Warning, "the terminal does not know mouse reports (SGR)"),
-        None => (Verdict::Warning, "the terminal does not say whether it knows mouse reports"),
+        Some(true) => (PreflightVerdict::Ok, "the terminal knows mouse reports (SGR)"),
+        Some(false) => (PreflightVerdict::Warning, "the terminal does not know mouse reports (SGR)"),
+        None => (PreflightVerdict::Warning, "the terminal does not say whether it knows mouse reports"),
     };
-    checks.push(Check::new(
+    checks.push(PreflightCheck::new(
         "mouse",
         mouse.0,
         mouse.1,
@@ -94,15 +102,15 @@ fn terminal(spec: &ConsoleSpec) -> Vec<Check> {
     checks
 }
 
-fn screen_size() -> Check {
+fn screen_size() -> PreflightCheck {
     let (columns, rows) = size().unwrap_or_default();
     let fits = |least: (u16, u16)| columns >= least.0 && rows >= least.1;
     let verdict = match (fits(ROOMY), fits(WORKABLE)) {
-        (true, _) => Verdict::Ok,
-        (_, true) => Verdict::Warning,
-        _ => Verdict::Failed,
+        (true, _) => PreflightVerdict::Ok,
+        (_, true) => PreflightVerdict::Warning,
+        _ => PreflightVerdict::Failed,
     };
-    Check::new(
+    PreflightCheck::new(
         "terminal size",
         verdict,
         format!("{columns}x{rows}"),
@@ -110,7 +118,7 @@ fn screen_size() -> Check {
     )
 }
 
-fn colours(spec: &ConsoleSpec) -> Check {
+fn colours(spec: &ConsoleSpec) -> PreflightCheck {
     let (theme, count) = (theme(spec, TerminalBackground::Dark), available_color_count());
     let signs = if theme.unicode { "Unicode signs" } else { "ASCII signs" };
     let remedy =
@@ -119,8 +127,9 @@ fn colours(spec: &ConsoleSpec) -> Check {
         true => format!("{} colours, {signs}", if count > 256 { "16 million".to_string() } else { count.to_string() }),
         false => format!("no colours (NO_COLOR is set), {signs}"),
     };
-    let verdict = if theme.colour && theme.unicode && count >= 8 { Verdict::Ok } else { Verdict::Warning };
-    Check::new("colours", verdict, found, remedy)
+    let verdict =
+        if theme.colour && theme.unicode && count >= 8 { PreflightVerdict::Ok } else { PreflightVerdict::Warning };
+    PreflightCheck::new("colours", verdict, found, remedy)
 }
 
 /// Whether the terminal knows mouse reports (DECRQM), if it answers that.
@@ -140,7 +149,7 @@ fn existing(out: &Path) -> PathBuf {
 }
 
 /// Writes where recordings would be written, and takes it away again.
-fn folder(out: &Path) -> Check {
+fn folder(out: &Path) -> PreflightCheck {
     let there = existing(out);
     let place = match out.is_dir() {
         true => out.display().to_string(),
@@ -148,7 +157,7 @@ fn folder(out: &Path) -> Check {
     };
     let probe = there.join(format!(".tomcom-doctor-{}", std::process::id()));
     let tried = fs::create_dir(&probe).map_err(|reason| reason.to_string()).and_then(|()| {
-        let _lock = Lock::take(&probe).map_err(|error| error.to_string())?;
+        let _lock = RecordingLock::take(&probe).map_err(|error| error.to_string())?;
         let began = Instant::now();
         let mut file = fs::File::create(probe.join("probe")).map_err(|reason| reason.to_string())?;
         let written = file.write_all(&[b'x'; 1 << 16]).and_then(|()| file.sync_all());
@@ -159,11 +168,11 @@ fn folder(out: &Path) -> Check {
     match tried {
         Ok(took) => {
             let found = format!("{place} can be written to (64 KiB on the disk in {} ms)", took.as_millis());
-            Check::new("recordings", Verdict::Ok, found, remedy)
+            PreflightCheck::new("recordings", PreflightVerdict::Ok, found, remedy)
         }
         Err(reason) => {
             let found = format!("{place} cannot be written to: {reason}");
-            Check::new("recordings", Verdict::Failed, found, remedy)
+            PreflightCheck::new("recordings", PreflightVerdict::Failed, found, remedy)
         }
     }
 }
@@ -184,49 +193,49 @@ pub fn free_bytes(_: &Path) -> io::Result<u64> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
-fn wall_clock() -> Check {
+fn wall_clock() -> PreflightCheck {
     let now = WallTime::now();
-    let verdict = if now.date().as_str() >= WRITTEN { Verdict::Ok } else { Verdict::Failed };
+    let verdict = if now.date().as_str() >= WRITTEN { PreflightVerdict::Ok } else { PreflightVerdict::Failed };
     let remedy = "set the clock: recordings are named by date (session time does not depend on it)";
-    Check::new("wall clock", verdict, now.rfc3339(), remedy)
+    PreflightCheck::new("wall clock", verdict, now.rfc3339(), remedy)
 }
 
 /// Whether recordings can be looked at in a window; without it, in a browser.
 /// What this build leaves out.
-fn left_out() -> impl Iterator<Item = Check> {
+fn left_out() -> impl Iterator<Item = PreflightCheck> {
     Feature::ALL.into_iter().filter_map(|feature| {
         let missing = feature.require().err()?;
-        Some(Check::new("build", Verdict::Warning, missing.to_string(), missing.remedy()))
+        Some(PreflightCheck::new("build", PreflightVerdict::Warning, missing.to_string(), missing.remedy()))
     })
 }
 
 /// The viewer of Rerun on this machine.
 #[cfg(feature = "rerun")]
-fn viewer() -> Check {
+fn viewer() -> PreflightCheck {
     use super::viewer::{REMEDY, Viewer};
     let (verdict, found, remedy) = match Viewer::find() {
-        Viewer::Ready(path) => (Verdict::Ok, format!("{} {}", path.display(), super::rerun::VERSION), ""),
+        Viewer::Ready(path) => (PreflightVerdict::Ok, format!("{} {}", path.display(), super::rerun::VERSION), ""),
         Viewer::NoScreen => {
-            (Verdict::Ok, "there, but no screen: tomcom review serves it for a browser".to_string(), "")
+            (PreflightVerdict::Ok, "there, but no screen: tomcom review serves it for a browser".to_string(), "")
         }
-        Viewer::Other(version) => (Verdict::Warning, format!("rerun {version}: another version"), REMEDY),
+        Viewer::Other(version) => (PreflightVerdict::Warning, format!("rerun {version}: another version"), REMEDY),
         Viewer::None => {
-            (Verdict::Warning, "no rerun in PATH: tomcom review serves it for a browser".to_string(), REMEDY)
+            (PreflightVerdict::Warning, "no rerun in PATH: tomcom review serves it for a browser".to_string(), REMEDY)
         }
     };
-    Check::new("viewer", verdict, found, remedy)
+    PreflightCheck::new("viewer", verdict, found, remedy)
 }
 
 /// Whether the machine wakes a program in time: presses and gaze are stamped when it is awake.
-fn timer() -> Check {
+fn timer() -> PreflightCheck {
     let late = (0..20).map(|_| {
         let began = Instant::now();
         std::thread::sleep(Duration::from_millis(5));
         began.elapsed().saturating_sub(Duration::from_millis(5))
     });
     let late_ms = late.max().unwrap_or_default().as_secs_f64() * 1000.0;
-    let verdict = if late_ms < 20.0 { Verdict::Ok } else { Verdict::Warning };
-    Check::new(
+    let verdict = if late_ms < 20.0 { PreflightVerdict::Ok } else { PreflightVerdict::Warning };
+    PreflightCheck::new(
         "timer",
         verdict,
         format!("wakes at most {late_ms:.1} ms late"),

@@ -25,17 +25,17 @@ pub struct ExportError {
 
 /// Rows of one table, without the names of its columns.
 #[derive(Debug)]
-pub struct Rows {
+pub struct TableRows {
     rows: csv::Writer<Vec<u8>>,
 }
 
-impl Default for Rows {
-    fn default() -> Rows {
-        Rows { rows: csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new()) }
+impl Default for TableRows {
+    fn default() -> TableRows {
+        TableRows { rows: csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new()) }
     }
 }
 
-impl Rows {
+impl TableRows {
     /// Adds a row.
     pub fn add(&mut self, row: &impl Serialize) {
         self.rows.serialize(row).expect("rows are flat, and written to memory");
@@ -46,8 +46,8 @@ impl Rows {
     }
 
     /// The rows of a list.
-    pub fn of<T: Serialize>(rows: impl IntoIterator<Item = T>) -> Vec<u8> {
-        let mut all = Rows::default();
+    pub fn from_rows<T: Serialize>(rows: impl IntoIterator<Item = T>) -> Vec<u8> {
+        let mut all = TableRows::default();
         rows.into_iter().for_each(|row| all.add(&row));
         all.into_bytes()
     }
@@ -55,17 +55,17 @@ impl Rows {
 
 /// The folder that results are written to.
 #[derive(Debug)]
-pub struct Export {
+pub struct ExportFolder {
     folder: PathBuf,
 }
 
-impl Export {
+impl ExportFolder {
     /// Makes the folder, if it is not there.
     ///
     /// # Errors
     /// It cannot be made, or written to.
-    pub fn create(folder: &Path) -> Result<Export, ExportError> {
-        let export = Export { folder: folder.to_path_buf() };
+    pub fn create(folder: &Path) -> Result<ExportFolder, ExportError> {
+        let export = ExportFolder { folder: folder.to_path_buf() };
         let parts = export.parts();
         // What a run before this one left there.
         match fs::remove_dir_all(&parts) {

@@ -56,7 +56,7 @@ impl FileError {
     }
 
     /// An error that has no place in a text: of a folder, an option, a file as a whole.
-    pub fn of(what: &Path, found: String, remedy: String) -> FileError {
+    pub fn from_finding(what: &Path, found: String, remedy: String) -> FileError {
         FileError::Unfit { name: what.display().to_string(), found, remedy }
     }
 
@@ -64,7 +64,7 @@ impl FileError {
     pub fn not_built(what: &Path, missing: NotBuilt) -> FileError {
         let instead = if missing.0 == Feature::Physics { "; or, for a new session, --arm timed" } else { "" };
         let remedy = format!("{}{instead}", missing.remedy());
-        FileError::of(what, format!("a session for another build; this one is {missing}"), remedy)
+        FileError::from_finding(what, format!("a session for another build; this one is {missing}"), remedy)
     }
 
     /// An error of a file that cannot be read or written.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::file_error::{FileError, FileResult};
-use super::log::{LOG_NAME, Lock, SETTINGS_NAME, WriteError};
+use super::log::{LOG_NAME, RecordingLock, SETTINGS_NAME, WriteError};
 use super::training::TrainingRecord;
 
 /// Files that are made of recordings, and made again: they are deleted whole where they name the participant.
@@ -16,7 +16,7 @@ const MADE: [&str; 5] = ["html", "json", "svg", "md", "txt"];
 
 /// What there is about a code.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Found {
+pub struct ParticipantData {
     /// Folders of recordings, their later parts among them.
     pub recordings: Vec<PathBuf>,
     /// Files that go as a whole.
@@ -27,7 +27,7 @@ pub struct Found {
     pub trainings: Vec<PathBuf>,
 }
 
-impl Found {
+impl ParticipantData {
     pub fn is_empty(&self) -> bool {
         self.recordings.is_empty() && self.files.is_empty() && self.tables.is_empty() && self.trainings.is_empty()
     }
@@ -37,8 +37,8 @@ impl Found {
 ///
 /// # Errors
 /// A folder or a file in it cannot be read.
-pub fn find(root: &Path, code: &str) -> FileResult<Found> {
-    let (mut found, mut others) = (Found::default(), Vec::new());
+pub fn find(root: &Path, code: &str) -> FileResult<ParticipantData> {
+    let (mut found, mut others) = (ParticipantData::default(), Vec::new());
     walk(root, code, &mut found, &mut others)?;
     let names = found.recordings.iter().filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
     let about = About { code: code.to_string(), recordings: names.collect() };
@@ -84,8 +84,9 @@ pub fn find(root: &Path, code: &str) -> FileResult<Found> {
 ///
 /// # Errors
 /// A recording is being written, or something cannot be deleted.
-pub fn delete(found: &Found, code: &str) -> Result<(), WriteError> {
-    let locks = found.recordings.iter().map(|folder| Lock::take(folder)).collect::<Result<Vec<Lock>, _>>()?;
+pub fn delete(found: &ParticipantData, code: &str) -> Result<(), WriteError> {
+    let locks =
+        found.recordings.iter().map(|folder| RecordingLock::take(folder)).collect::<Result<Vec<RecordingLock>, _>>()?;
     let names = found.recordings.iter().filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
     let about = About { code: code.to_string(), recordings: names.collect() };
     let failed = |path: &Path| {
@@ -156,7 +157,7 @@ fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     fs::rename(&new, path)
 }
 
-fn walk(folder: &Path, code: &str, found: &mut Found, others: &mut Vec<PathBuf>) -> FileResult<()> {
+fn walk(folder: &Path, code: &str, found: &mut ParticipantData, others: &mut Vec<PathBuf>) -> FileResult<()> {
     let unreadable = |reason| FileError::unreadable(folder, reason, "the folder with the recordings");
     let mut entries = Vec::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {

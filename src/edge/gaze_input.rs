@@ -24,30 +24,30 @@ pub enum GazeNews {
     Lost(String),
     SeesDisplay(bool),
     /// A fixation that is over.
-    Fixation(Fixation),
+    Fixation(TrackerFixation),
     /// Lids closed, or opened.
     Blink {
         is_onset: bool,
         confidence: f64,
-        taken: Taken,
+        taken: SampleTime,
     },
 }
 
 /// When something was, on the tracker's clock and on ours.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Taken {
+pub struct SampleTime {
     pub device_ns: u64,
     pub at: Option<Instant>,
 }
 
 /// A fixation as a tracker finds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fixation {
+pub struct TrackerFixation {
     pub id: u64,
     /// On the display, if it was there.
     pub at: Option<[f64; 2]>,
     pub duration_ms: f64,
     pub dispersion_deg: f64,
     pub confidence: f64,
-    pub began: Taken,
+    pub began: SampleTime,
 }

@@ -5,15 +5,15 @@ use std::path::Path;
 use toml::Spanned;
 
 use super::file_error::{FileError, FileResult};
-use super::parse::{Kind, OfKind, parse};
+use super::parse::{FileKind, ParsedFile, parse};
 use crate::console::KeyMap;
 use crate::console::keys::{self, KeyError, KeyLayer, KeyPlace};
 use crate::kitchen::Kitchen;
 use crate::kitchen::layout::{LayoutSpec, is_same_key};
 use crate::session::header::FileText;
 
-impl OfKind for KeyMap {
-    const KIND: Kind = Kind::Keys;
+impl ParsedFile for KeyMap {
+    const KIND: FileKind = FileKind::Keys;
 }
 
 /// Whether the console can take the keys of a layout, changed by a key file.

@@ -6,17 +6,17 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::file_error::{FileResult, missing, read_text};
-use super::parse::{Kind, OfKind, parse};
+use super::parse::{FileKind, ParsedFile, parse};
 use crate::session::SessionSpec;
 use crate::session::display::DisplaySpec;
 
 /// A file with words: each by what it is in English.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(transparent)]
-pub struct Language(pub BTreeMap<String, String>);
+pub struct LanguageFile(pub BTreeMap<String, String>);
 
-impl OfKind for Language {
-    const KIND: Kind = Kind::Language;
+impl ParsedFile for LanguageFile {
+    const KIND: FileKind = FileKind::Language;
 }
 
 /// Reads the words of a session's display, where they are in a file; those in the session file stand above them.
@@ -33,7 +33,7 @@ pub(super) fn read_words(session: &Path, text: &str, spec: &mut SessionSpec) -> 
         let remedy = "\"en\", \"de\", or the path of a file with words, relative to the session file";
         return Err(missing(session, text, ("display.language", 0, language), reason, remedy));
     }
-    let Language(mut words) = parse(&path, &read_text(&path)?)?;
+    let LanguageFile(mut words) = parse(&path, &read_text(&path)?)?;
     words.append(&mut spec.display.words);
     spec.display.words = words;
     Ok(())

@@ -14,7 +14,7 @@ use crate::session::plan::Questionnaire;
 
 /// The kinds of files that people write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum FileKind {
     Session,
     Layout,
     Recipes,
@@ -24,77 +24,77 @@ pub enum Kind {
     Language,
 }
 
-impl Kind {
+impl FileKind {
     /// What a text is by the tables in it, if it is any of them.
-    fn of(text: &str) -> Option<Kind> {
+    fn from_text(text: &str) -> Option<FileKind> {
         let table: toml::Table = text.parse().ok()?;
         let has = |keys: &[&str]| keys.iter().any(|key| table.contains_key(*key));
         match () {
-            () if has(&["recipes", "storage", "place"]) => Some(Kind::Layout),
-            () if has(&["ingredient", "slot", "dish"]) => Some(Kind::Recipes),
-            () if has(&["scale", "item"]) => Some(Kind::Questionnaire),
-            () if has(&["layout"]) => Some(Kind::Session),
-            () if has(&["language"]) => Some(Kind::Language),
-            () if has(&["prior", "perception", "transition", "decision"]) => Some(Kind::HumanModel),
-            () if has(&["console", "replay", "signals", "buttons"]) => Some(Kind::Keys),
+            () if has(&["recipes", "storage", "place"]) => Some(FileKind::Layout),
+            () if has(&["ingredient", "slot", "dish"]) => Some(FileKind::Recipes),
+            () if has(&["scale", "item"]) => Some(FileKind::Questionnaire),
+            () if has(&["layout"]) => Some(FileKind::Session),
+            () if has(&["language"]) => Some(FileKind::Language),
+            () if has(&["prior", "perception", "transition", "decision"]) => Some(FileKind::HumanModel),
+            () if has(&["console", "replay", "signals", "buttons"]) => Some(FileKind::Keys),
             () => None,
         }
     }
 
     fn name(self) -> &'static str {
         match self {
-            Kind::Session => "a session file",
-            Kind::Layout => "a layout file",
-            Kind::Recipes => "a recipe file",
-            Kind::HumanModel => "a file with parameters of the human model",
-            Kind::Keys => "a key file",
-            Kind::Questionnaire => "a questionnaire",
-            Kind::Language => "words of the participant's display",
+            FileKind::Session => "a session file",
+            FileKind::Layout => "a layout file",
+            FileKind::Recipes => "a recipe file",
+            FileKind::HumanModel => "a file with parameters of the human model",
+            FileKind::Keys => "a key file",
+            FileKind::Questionnaire => "a questionnaire",
+            FileKind::Language => "words of the participant's display",
         }
     }
 
     fn remedy(self) -> &'static str {
         match self {
-            Kind::Session => "a session file, like sessions/default.toml",
-            Kind::Layout => "a layout file, like layouts/sushi.toml",
-            Kind::Recipes => "a recipe file, like recipes/sushi.toml",
-            Kind::Questionnaire => "a questionnaire, like sessions/questionnaires/acceptance.toml",
-            Kind::Language => "words of the participant's display, lines like \"rice\" = \"riz\"",
-            Kind::HumanModel => "parameters of the human model, like those that tomcom fit writes",
-            Kind::Keys => "a key file, as tomcom keys prints it",
+            FileKind::Session => "a session file, like sessions/default.toml",
+            FileKind::Layout => "a layout file, like layouts/sushi.toml",
+            FileKind::Recipes => "a recipe file, like recipes/sushi.toml",
+            FileKind::Questionnaire => "a questionnaire, like sessions/questionnaires/acceptance.toml",
+            FileKind::Language => "words of the participant's display, lines like \"rice\" = \"riz\"",
+            FileKind::HumanModel => "parameters of the human model, like those that tomcom fit writes",
+            FileKind::Keys => "a key file, as tomcom keys prints it",
         }
     }
 }
 
 /// What a file of one kind is parsed into.
-pub trait OfKind: DeserializeOwned {
+pub trait ParsedFile: DeserializeOwned {
     /// The kind.
-    const KIND: Kind;
+    const KIND: FileKind;
 }
 
-impl OfKind for SessionSpec {
-    const KIND: Kind = Kind::Session;
+impl ParsedFile for SessionSpec {
+    const KIND: FileKind = FileKind::Session;
 }
 
-impl OfKind for LayoutSpec {
-    const KIND: Kind = Kind::Layout;
+impl ParsedFile for LayoutSpec {
+    const KIND: FileKind = FileKind::Layout;
 }
 
-impl OfKind for RecipesSpec {
-    const KIND: Kind = Kind::Recipes;
+impl ParsedFile for RecipesSpec {
+    const KIND: FileKind = FileKind::Recipes;
 }
 
-impl OfKind for Questionnaire {
-    const KIND: Kind = Kind::Questionnaire;
+impl ParsedFile for Questionnaire {
+    const KIND: FileKind = FileKind::Questionnaire;
 }
 
-impl OfKind for HumanModel {
-    const KIND: Kind = Kind::HumanModel;
+impl ParsedFile for HumanModel {
+    const KIND: FileKind = FileKind::HumanModel;
 }
 
 /// Parses TOML into `T`.
-pub fn parse<T: OfKind>(path: &Path, text: &str) -> FileResult<T> {
-    toml::from_str(text).map_err(|error| match Kind::of(text).filter(|kind| *kind != T::KIND) {
+pub fn parse<T: ParsedFile>(path: &Path, text: &str) -> FileResult<T> {
+    toml::from_str(text).map_err(|error| match FileKind::from_text(text).filter(|kind| *kind != T::KIND) {
         Some(other) => FileError::at(path, text, None, other.name().to_string(), T::KIND.remedy().to_string()),
         None => {
             let (found, right) = in_words(&message::<T>(text, &error));

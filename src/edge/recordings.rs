@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::file_error::{FileError, FileResult};
 use super::log::{LOG_NAME, ruling};
-use crate::session::plan::{Made, Outcome, StepSpec};
+use crate::session::plan::{PlanRecording, RecordingOutcome, StepSpec};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
 use crate::session::{Event, Header, Stamped};
 
@@ -16,7 +16,7 @@ use crate::session::{Event, Header, Stamped};
 ///
 /// # Errors
 /// The folder or a recording in it cannot be read.
-pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<Made>> {
+pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
     let mut found = BTreeMap::new();
     let unreadable = |reason| FileError::unreadable(folder, reason, "the folder with the recordings, as --out");
     let entries = match fs::read_dir(folder) {
@@ -60,7 +60,7 @@ pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
     }
     if found.is_empty() {
         let found = "a folder without recordings".to_string();
-        return Err(FileError::of(folder, found, remedy.to_string()));
+        return Err(FileError::from_finding(folder, found, remedy.to_string()));
     }
     found.sort();
     let mut continued = Vec::new();
@@ -162,7 +162,7 @@ impl Part {
     }
 
     /// The whole recording of which this is the last part.
-    fn made(&self, name: &str, parts: &BTreeMap<String, Part>) -> Made {
+    fn made(&self, name: &str, parts: &BTreeMap<String, Part>) -> PlanRecording {
         let mut all = vec![self];
         // A part that is named twice would lead in a circle.
         while let Some(before) = all.last().and_then(|part| parts.get(part.continues.as_ref()?)) {
@@ -176,9 +176,9 @@ impl Part {
         // The last part that says something about it is right.
         let excluded = all.iter().find_map(|part| part.excluded.clone()).flatten();
         let aborted = all.iter().find_map(|part| part.aborted.as_ref());
-        let void = |reason: &str| Outcome::Void { reason: reason.to_string() };
+        let void = |reason: &str| RecordingOutcome::Void { reason: reason.to_string() };
         let outcome = if !self.ended {
-            Outcome::Open
+            RecordingOutcome::Open
         } else if let Some(reason) = aborted {
             void(&format!("aborted ({reason})"))
         } else if any(|part| part.criterion_failed) && !any(|part| part.criterion_waived) {
@@ -186,9 +186,9 @@ impl Part {
         } else if phase < self.step.phases.len() || !any(|part| part.trial_over) {
             void("closed before everything was done")
         } else {
-            excluded.map_or(Outcome::Complete, |reason| Outcome::Excluded { reason })
+            excluded.map_or(RecordingOutcome::Complete, |reason| RecordingOutcome::Excluded { reason })
         };
-        Made {
+        PlanRecording {
             recording: name.to_string(),
             code: self.code.clone(),
             step: self.step.clone(),

@@ -21,11 +21,11 @@ use re_sdk_types::archetypes;
 use re_sdk_types::components::{Color, FillMode, InterpolationMode, MarkerShape, TextLogLevel};
 use re_sdk_types::datatypes::Quaternion;
 
-use self::layout::{Layout, Opens};
+use self::layout::{ViewerLayout, ViewerStart};
 use crate::arm::link::{CollisionSolid, LinkShape};
 use crate::base::time::SessionTime;
-use crate::scene::shown::{Area, Disc, Level, Point, Series};
-use crate::scene::{Moment, Row, Shown};
+use crate::scene::shown::{LogLevel, SceneArea, SceneDisc, ScenePoint, SceneSeries};
+use crate::scene::{EntityData, EntityUpdate, SceneUpdate};
 
 /// The version of Rerun that streams are written with; viewers of the same version read them.
 pub const VERSION: &str = "0.36.3";
@@ -50,7 +50,7 @@ const LINE_MM: f32 = 2.0;
 
 /// What a stream is of.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Identity {
+pub struct StreamIdentity {
     /// Tells it from all other streams.
     pub id: String,
     /// What the viewer calls it.
@@ -59,7 +59,7 @@ pub struct Identity {
 
 /// Where a stream goes.
 #[derive(Clone, Debug, Default)]
-pub struct Outlets {
+pub struct StreamOutlets {
     pub file: Option<PathBuf>,
     /// Where viewers connect; `true`: they are given all of it, however much that is.
     pub server: Option<(SocketAddr, bool)>,
@@ -69,7 +69,7 @@ pub struct Outlets {
 
 /// One of the recordings in a stream.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Lane {
+pub struct StreamLane {
     /// Its entities are below this one; empty: at the top.
     pub root: String,
     /// What the viewer calls it among others.
@@ -77,44 +77,44 @@ pub struct Lane {
 }
 
 /// A stream that is being written: to each of its outlets by itself, so that none holds up another.
-pub struct Writer {
+pub struct RerunWriter {
     streams: Vec<RecordingStream>,
 }
 
-impl Writer {
+impl RerunWriter {
     /// Opens a stream that goes to these outlets, and lays it out: opened in a viewer, it shows these lanes side by side.
     ///
     /// # Errors
     /// The file cannot be made, or the address is none of this machine.
-    pub fn open(identity: &Identity, outlets: &Outlets, lanes: &[Lane]) -> io::Result<Writer> {
+    pub fn open(identity: &StreamIdentity, outlets: &StreamOutlets, lanes: &[StreamLane]) -> io::Result<RerunWriter> {
         let mut streams = Vec::new();
         if let Some(path) = &outlets.file {
             let stream = stream(identity, PIECE_OF_FILE)?;
             stream.set_sinks((FileSink::new(path).map_err(io::Error::other)?,));
-            Layout::of(lanes, Opens::Waiting).send(&stream)?;
+            ViewerLayout::from_lanes(lanes, ViewerStart::Waiting).send(&stream)?;
             streams.push(stream);
         }
         if let Some((address, all)) = outlets.server {
             let stream = stream(identity, PIECE)?;
             stream.set_sinks((server(address, all)?,));
             let opens = match outlets.at {
-                Some(at) => Opens::From(at),
-                None if all => Opens::Waiting,
-                None => Opens::Following,
+                Some(at) => ViewerStart::From(at),
+                None if all => ViewerStart::Waiting,
+                None => ViewerStart::Following,
             };
-            Layout::of(lanes, opens).send(&stream)?;
+            ViewerLayout::from_lanes(lanes, opens).send(&stream)?;
             streams.push(stream);
         }
-        Ok(Writer { streams })
+        Ok(RerunWriter { streams })
     }
 
     /// Writes what stays as it is.
-    pub fn fixed(&self, lane: &Lane, rows: &[Row]) {
+    pub fn fixed(&self, lane: &StreamLane, rows: &[EntityUpdate]) {
         rows.iter().for_each(|row| self.row(lane, row, true));
     }
 
     /// Writes a moment; the number of its rows.
-    pub fn moment(&self, lane: &Lane, moment: &Moment) -> u64 {
+    pub fn moment(&self, lane: &StreamLane, moment: &SceneUpdate) -> u64 {
         let nanoseconds = |time: u64| re_sdk::TimeCell::from_duration_nanos(i64::try_from(time).unwrap_or(i64::MAX));
         for stream in &self.streams {
             // Whole milliseconds are read more easily, and nothing is shown that is closer together.
@@ -131,7 +131,7 @@ impl Writer {
         self.streams.iter().for_each(RecordingStream::finalize_deferred_sinks);
     }
 
-    fn row(&self, lane: &Lane, row: &Row, is_fixed: bool) {
+    fn row(&self, lane: &StreamLane, row: &EntityUpdate, is_fixed: bool) {
         let entity = match lane.root.as_str() {
             "" => row.entity.clone(),
             root => format!("{root}/{}", row.entity),
@@ -146,7 +146,7 @@ impl Writer {
 }
 
 /// A stream that goes nowhere yet, and is handed on in pieces of this length.
-fn stream(identity: &Identity, piece: Duration) -> io::Result<RecordingStream> {
+fn stream(identity: &StreamIdentity, piece: Duration) -> io::Result<RecordingStream> {
     let config = ChunkBatcherConfig { flush_tick: piece, ..ChunkBatcherConfig::DEFAULT };
     // The environment variable of Rerun's tools does not switch it off.
     let stream = RecordingStreamBuilder::new(APPLICATION)
@@ -198,33 +198,33 @@ impl WebViewer {
 type Part = Box<dyn AsComponents>;
 
 /// What Rerun calls it.
-fn parts(shown: &Shown) -> Vec<Part> {
+fn parts(shown: &EntityData) -> Vec<Part> {
     match shown {
-        Shown::Areas(areas) => vec![Box::new(areas_in_2d(areas))],
-        Shown::Discs(discs) => vec![Box::new(discs_in_2d(discs))],
-        Shown::Sight { at, around, colour } => sight_in_2d(*at, *around, colour_of(*colour)),
-        Shown::Points(points) => vec![Box::new(points_in_3d(points))],
-        Shown::Solids(solids, colour) => solids_in_3d(solids, colour_of(*colour)),
-        Shown::Place(place) => vec![Box::new(transform(place))],
-        Shown::Value(value) => vec![Box::new(archetypes::Scalars::single(*value))],
-        Shown::Line(Series { name, colour }) => {
+        EntityData::Areas(areas) => vec![Box::new(areas_in_2d(areas))],
+        EntityData::Discs(discs) => vec![Box::new(discs_in_2d(discs))],
+        EntityData::Sight { at, around, colour } => sight_in_2d(*at, *around, colour_of(*colour)),
+        EntityData::Points(points) => vec![Box::new(points_in_3d(points))],
+        EntityData::Solids(solids, colour) => solids_in_3d(solids, colour_of(*colour)),
+        EntityData::Place(place) => vec![Box::new(transform(place))],
+        EntityData::Value(value) => vec![Box::new(archetypes::Scalars::single(*value))],
+        EntityData::Line(SceneSeries { name, colour }) => {
             let line = archetypes::SeriesLines::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
             vec![Box::new(line.with_widths([2.0]).with_interpolation_mode(InterpolationMode::StepAfter))]
         }
-        Shown::Marks(Series { name, colour }) => {
+        EntityData::Marks(SceneSeries { name, colour }) => {
             let marks = archetypes::SeriesPoints::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
             vec![Box::new(marks.with_markers([MarkerShape::Cross]).with_marker_sizes([4.0]))]
         }
-        Shown::Words { level, text, colour } => {
+        EntityData::Words { level, text, colour } => {
             let level = match level {
-                Level::Info => TextLogLevel::INFO,
-                Level::Warning => TextLogLevel::WARN,
-                Level::Error => TextLogLevel::ERROR,
+                LogLevel::Info => TextLogLevel::INFO,
+                LogLevel::Warning => TextLogLevel::WARN,
+                LogLevel::Error => TextLogLevel::ERROR,
             };
             vec![Box::new(archetypes::TextLog::new(text.as_str()).with_level(level).with_color(colour_of(*colour)))]
         }
-        Shown::Page(text) => vec![Box::new(archetypes::TextDocument::from_markdown(text.as_str()))],
-        Shown::State(text) => vec![Box::new(archetypes::StateChange::single(text.as_str()))],
+        EntityData::Page(text) => vec![Box::new(archetypes::TextDocument::from_markdown(text.as_str()))],
+        EntityData::State(text) => vec![Box::new(archetypes::StateChange::single(text.as_str()))],
     }
 }
 
@@ -232,7 +232,7 @@ fn colour_of([red, green, blue, opacity]: [u8; 4]) -> Color {
     Color::from_unmultiplied_rgba(red, green, blue, opacity)
 }
 
-fn areas_in_2d(areas: &[Area]) -> archetypes::Boxes2D {
+fn areas_in_2d(areas: &[SceneArea]) -> archetypes::Boxes2D {
     let corners = areas.iter().map(|area| [area.left as f32, area.top as f32]);
     let sizes = areas.iter().map(|area| [area.width as f32, area.height as f32]);
     archetypes::Boxes2D::from_mins_and_sizes(corners, sizes)
@@ -240,7 +240,7 @@ fn areas_in_2d(areas: &[Area]) -> archetypes::Boxes2D {
         .with_radii(areas.iter().map(|area| area.line as f32))
 }
 
-fn discs_in_2d(discs: &[Disc]) -> archetypes::Points2D {
+fn discs_in_2d(discs: &[SceneDisc]) -> archetypes::Points2D {
     archetypes::Points2D::new(discs.iter().map(|disc| disc.at.map(|length| length as f32)))
         .with_radii(discs.iter().map(|disc| disc.radius as f32))
         .with_colors(discs.iter().map(|disc| colour_of(disc.colour)))
@@ -256,7 +256,7 @@ fn sight_in_2d(at: [f64; 2], around: f64, colour: Color) -> Vec<Part> {
     vec![Box::new(circle.with_line_radii([LINE_MM])), Box::new(point)]
 }
 
-fn points_in_3d(points: &[Point]) -> archetypes::Points3D {
+fn points_in_3d(points: &[ScenePoint]) -> archetypes::Points3D {
     archetypes::Points3D::new(points.iter().map(|point| point.at_m.map(|length| length as f32)))
         .with_radii(points.iter().map(|point| point.radius_m as f32))
         .with_colors(points.iter().map(|point| colour_of(point.colour)))

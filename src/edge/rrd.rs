@@ -69,7 +69,7 @@ struct Sum {
 }
 
 impl Sum {
-    fn of(path: &Path) -> io::Result<Sum> {
+    fn from_file(path: &Path) -> io::Result<Sum> {
         let mut file = File::open(path)?;
         let (mut hasher, mut bytes, mut piece) = (crc32fast::Hasher::new(), 0, vec![0; PIECE]);
         loop {
@@ -111,8 +111,8 @@ impl Seal {
 /// # Errors
 /// One of them cannot be read, or the folder cannot be written to.
 pub fn seal(stream: &Path, logs: &[PathBuf]) -> io::Result<()> {
-    let logs = logs.iter().map(|log| Sum::of(log)).collect::<io::Result<_>>()?;
-    let seal = Seal { stream: Sum::of(stream)?, logs };
+    let logs = logs.iter().map(|log| Sum::from_file(log)).collect::<io::Result<_>>()?;
+    let seal = Seal { stream: Sum::from_file(stream)?, logs };
     fs::write(Seal::path(stream), toml::to_string(&seal).map_err(io::Error::other)?)
 }
 
@@ -143,10 +143,10 @@ pub fn state(path: &Path, logs: &[PathBuf]) -> io::Result<RrdState> {
         return Ok(RrdState::Other);
     }
     let Some(seal) = Seal::read(path) else { return Ok(RrdState::Unsealed) };
-    if Sum::of(path)? != seal.stream {
+    if Sum::from_file(path)? != seal.stream {
         return Ok(RrdState::Damaged);
     }
-    let logs = logs.iter().map(|log| Sum::of(log)).collect::<io::Result<Vec<Sum>>>()?;
+    let logs = logs.iter().map(|log| Sum::from_file(log)).collect::<io::Result<Vec<Sum>>>()?;
     Ok(if logs == seal.logs { RrdState::Whole } else { RrdState::Stale })
 }
 

@@ -10,8 +10,8 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
 use std::time::Duration;
 
-use super::rerun::{Identity, Lane, Outlets, Writer};
-use crate::scene::{Moment, Row};
+use super::rerun::{RerunWriter, StreamIdentity, StreamLane, StreamOutlets};
+use crate::scene::{EntityUpdate, SceneUpdate};
 
 /// So many pieces of news may wait; at 200 gaze samples a second they are those of 20 seconds.
 const WAITING: usize = 4096;
@@ -22,7 +22,7 @@ pub const PORTS: u16 = 20;
 
 /// How the stream fares.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Fares {
+pub struct StreamCounts {
     /// Rows that were written, and that were dropped.
     pub written: u64,
     pub dropped: u64,
@@ -37,33 +37,36 @@ struct Counters {
 
 /// A stream that is open.
 #[derive(Debug)]
-pub struct Stream {
+pub struct RerunStream {
     /// Where viewers connect, if they can.
     pub server: Option<SocketAddr>,
     file: Option<PathBuf>,
-    news: SyncSender<Vec<Moment>>,
+    news: SyncSender<Vec<SceneUpdate>>,
     counters: Arc<Counters>,
     done: Receiver<()>,
 }
 
-impl Stream {
+impl RerunStream {
     /// Opens a stream that begins with these rows. Where the port is taken, the server takes one of the next.
     ///
     /// # Errors
     /// The file cannot be made, or nothing can listen at the address.
     pub fn open(
-        identity: &Identity,
+        identity: &StreamIdentity,
         file: Option<&Path>,
         server: Option<SocketAddr>,
-        fixed: Vec<Row>,
-        opening: Moment,
-    ) -> io::Result<Stream> {
+        fixed: Vec<EntityUpdate>,
+        opening: SceneUpdate,
+    ) -> io::Result<RerunStream> {
         let server = server.map(free_port).transpose()?;
-        let outlets =
-            Outlets { file: file.map(Path::to_path_buf), server: server.map(|address| (address, false)), at: None };
-        let lane = Lane::default();
-        let writer = Writer::open(identity, &outlets, std::slice::from_ref(&lane))?;
-        let (news, told) = sync_channel::<Vec<Moment>>(WAITING);
+        let outlets = StreamOutlets {
+            file: file.map(Path::to_path_buf),
+            server: server.map(|address| (address, false)),
+            at: None,
+        };
+        let lane = StreamLane::default();
+        let writer = RerunWriter::open(identity, &outlets, std::slice::from_ref(&lane))?;
+        let (news, told) = sync_channel::<Vec<SceneUpdate>>(WAITING);
         let (end, done) = channel();
         let counters = Arc::new(Counters::default());
         let counted = counters.clone();
@@ -77,11 +80,11 @@ impl Stream {
             writer.finish();
             let _ = end.send(());
         })?;
-        Ok(Stream { server, file: outlets.file, news, counters, done })
+        Ok(RerunStream { server, file: outlets.file, news, counters, done })
     }
 
     /// Tells what is to be shown.
-    pub fn tell(&self, moments: Vec<Moment>) {
+    pub fn tell(&self, moments: Vec<SceneUpdate>) {
         if moments.is_empty() {
             return;
         }
@@ -91,14 +94,14 @@ impl Stream {
         }
     }
 
-    pub fn fares(&self) -> Fares {
-        Fares { written: self.counters.written.load(Relaxed), dropped: self.counters.dropped.load(Relaxed) }
+    pub fn fares(&self) -> StreamCounts {
+        StreamCounts { written: self.counters.written.load(Relaxed), dropped: self.counters.dropped.load(Relaxed) }
     }
 
     /// Ends the stream, and waits a moment for its file, which is handed out. One that is not whole is taken away: it can
     /// be made from the log.
     pub fn close(self) -> Option<PathBuf> {
-        let Stream { file, news, counters, done, .. } = self;
+        let RerunStream { file, news, counters, done, .. } = self;
         drop(news);
         let is_whole = done.recv_timeout(END).is_ok() && counters.dropped.load(Relaxed) == 0;
         if let Some(file) = file.as_ref().filter(|_| !is_whole) {
@@ -137,7 +140,7 @@ mod tests {
     use super::*;
     use crate::base::time::SessionTime;
     use crate::edge::rrd::{self, RRD_NAME, RrdState};
-    use crate::scene::Shown;
+    use crate::scene::EntityData;
 
     #[test]
     fn what_is_told_is_in_the_file_when_the_stream_is_closed_and_a_taken_port_is_no_trouble() {
@@ -146,13 +149,13 @@ mod tests {
         let path = folder.join(RRD_NAME);
         let other = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let taken = other.local_addr().unwrap();
-        let identity = Identity { id: rrd::mark(), name: "test".to_string() };
+        let identity = StreamIdentity { id: rrd::mark(), name: "test".to_string() };
         let moment = |step: u64| {
-            let rows = vec![Row::new("a", Shown::Value(step as f64))];
+            let rows = vec![EntityUpdate::new("a", EntityData::Value(step as f64))];
             let time = SessionTime(step * 1_000_000);
-            Moment { time, trial: time, step, rows }
+            SceneUpdate { time, trial: time, step, rows }
         };
-        let stream = Stream::open(&identity, Some(&path), Some(taken), Vec::new(), moment(0)).unwrap();
+        let stream = RerunStream::open(&identity, Some(&path), Some(taken), Vec::new(), moment(0)).unwrap();
         let server = stream.server.unwrap();
         assert!(server.port() != taken.port() && server.ip() == taken.ip());
         (1..1000).for_each(|step| stream.tell(vec![moment(step)]));

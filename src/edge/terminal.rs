@@ -35,7 +35,7 @@ static HOOK: Once = Once::new();
 
 /// The console's terminal. It is given back when this is dropped, and when anything panics.
 #[derive(Debug)]
-pub struct Screen {
+pub struct TerminalScreen {
     terminal: Terminal<CrosstermBackend<Frame>>,
     /// The terminal's background; dark, if it does not say.
     pub ground: TerminalBackground,
@@ -68,12 +68,12 @@ impl Write for Frame {
     }
 }
 
-impl Screen {
+impl TerminalScreen {
     /// Takes the terminal over: raw mode, alternate screen, key releases where the terminal knows them, and the mouse.
     ///
     /// # Errors
     /// Standard input or output is no terminal, or it cannot be controlled.
-    pub fn take() -> io::Result<Screen> {
+    pub fn take() -> io::Result<TerminalScreen> {
         if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
             return Err(io::Error::other("the console needs a terminal for its input and output"));
         }
@@ -99,7 +99,7 @@ impl Screen {
         let frames = write_frames(busy.clone(), lost.clone());
         let composed = Frame::default();
         let terminal = Terminal::new(CrosstermBackend::new(composed.clone()))?;
-        Ok(Screen { terminal, ground, composed, frames, busy, lost })
+        Ok(TerminalScreen { terminal, ground, composed, frames, busy, lost })
     }
 
     /// Columns and rows of the terminal.
@@ -151,7 +151,7 @@ impl Screen {
     }
 }
 
-impl Drop for Screen {
+impl Drop for TerminalScreen {
     fn drop(&mut self) {
         give_back();
     }
@@ -214,11 +214,11 @@ fn write_way_out() {
 
 /// What somebody does at the terminal.
 #[derive(Debug, Default)]
-pub struct Hands {
+pub struct TerminalInput {
     events: EventStream,
 }
 
-impl Hands {
+impl TerminalInput {
     /// The next message; `None` when the terminal is gone.
     pub async fn next(&mut self) -> Option<ConsoleMessage> {
         loop {

@@ -10,9 +10,11 @@ use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::{Recommendation, SignalOption};
 use crate::history::wording;
 use crate::kitchen::{AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
-use crate::measures::matching::{Content, Kind, Likeness, Said, Similarity, Tally, matched};
+use crate::measures::matching::{
+    CommunicationEvent, CommunicationKind, CommunicationTarget, MatchCounts, MatchCriterion, Similarity, matched,
+};
 use crate::measures::sequences::FALSE_BELOW;
-use crate::session::screen::Screen;
+use crate::session::screen::VisibleScreen;
 
 /// What is known at least so well is no doubt.
 const SURE: f64 = 0.9;
@@ -28,7 +30,7 @@ pub struct CommunicationContext {
     /// Of each assistant, in the order of their lanes.
     pub advice: Vec<Recommendation>,
     /// What was on the wizard's screen; none before the first frame, and without a wizard.
-    pub screen: Option<Screen>,
+    pub screen: Option<VisibleScreen>,
 }
 
 /// What was said.
@@ -41,13 +43,13 @@ pub enum CommunicationContent {
 
 impl CommunicationContent {
     /// For the matching.
-    pub fn content(&self, kitchen: &Kitchen) -> Content {
+    pub fn content(&self, kitchen: &Kitchen) -> CommunicationTarget {
         let kind = match self {
-            CommunicationContent::Signal(Signal::ShowRecipe(_)) => Kind::Recipe,
-            CommunicationContent::Signal(Signal::Highlight(_)) => Kind::Highlight,
-            CommunicationContent::Proposal(_) => Kind::Proposal,
+            CommunicationContent::Signal(Signal::ShowRecipe(_)) => CommunicationKind::Recipe,
+            CommunicationContent::Signal(Signal::Highlight(_)) => CommunicationKind::Highlight,
+            CommunicationContent::Proposal(_) => CommunicationKind::Proposal,
         };
-        Content { kind, target: self.target(kitchen) }
+        CommunicationTarget { kind, target: self.target(kitchen) }
     }
 
     fn target(&self, kitchen: &Kitchen) -> Option<LocationId> {
@@ -72,7 +74,7 @@ impl CommunicationContent {
 /// A communication in its lane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Communication {
-    pub said: Said,
+    pub said: CommunicationEvent,
     /// In the session's time.
     pub time: SessionTime,
     pub what: CommunicationContent,
@@ -91,7 +93,7 @@ pub struct CommunicationLane {
 }
 
 impl CommunicationLane {
-    pub fn said(&self) -> Vec<Said> {
+    pub fn said(&self) -> Vec<CommunicationEvent> {
         self.spoken.iter().map(|spoken| spoken.said).collect()
     }
 }
@@ -130,11 +132,11 @@ pub struct LaneComparison {
 impl LaneComparison {
     /// Compares lanes of a trial that has had so many presses of the human; `over`: there will be no more.
     pub fn new(lanes: Vec<CommunicationLane>, window: u32, presses: u32, over: bool) -> LaneComparison {
-        let said: Vec<Vec<Said>> = lanes.iter().map(CommunicationLane::said).collect();
-        let pair = |with: &Vec<Said>| {
-            let mut tally = Tally::default();
+        let said: Vec<Vec<CommunicationEvent>> = lanes.iter().map(CommunicationLane::said).collect();
+        let pair = |with: &Vec<CommunicationEvent>| {
+            let mut tally = MatchCounts::default();
             tally.add(&said[0], with, presses, window);
-            let matched = matched(&said[0], with, window, Likeness::Strict);
+            let matched = matched(&said[0], with, window, MatchCriterion::Strict);
             LanePair { matched, similarity: tally.similarity() }
         };
         let pairs: Vec<LanePair> = said.iter().skip(1).map(pair).collect();
@@ -278,7 +280,7 @@ fn truly(kitchen: &Kitchen, state: State) -> String {
     if there.is_empty() { "an empty kitchen".to_string() } else { there.join(", ") }
 }
 
-fn seen(screen: Option<&Screen>) -> String {
+fn seen(screen: Option<&VisibleScreen>) -> String {
     match screen {
         Some(screen) => {
             let dialog = screen.dialog.as_ref().map_or(String::new(), |dialog| format!(", {dialog} open"));

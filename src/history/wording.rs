@@ -12,7 +12,7 @@ use crate::session::event::{EndReason, SignalEnd};
 use crate::session::plan::PhaseSpec;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::TrackerEvent;
-use crate::session::{Happening, Phase, Session};
+use crate::session::{Phase, Session, TimelineEvent};
 
 /// A button in words: "cutting board", "take rice".
 pub fn button(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> String {
@@ -102,32 +102,36 @@ pub fn protocol(event: &ProtocolEvent) -> String {
 }
 
 /// An entry of the timeline in words, with who did it.
-pub fn happening(kitchen: &Kitchen, what: &Happening) -> (&'static str, String) {
+pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, String) {
     match what {
-        Happening::Press { agent, button: id, effective } => {
+        TimelineEvent::Press { agent, button: id, effective } => {
             let suffix = if *effective { "" } else { ": no effect" };
             (agent.name(), format!("{}{suffix}", button(kitchen, *agent, *id)))
         }
-        Happening::Signal { by, signal: shown } => (sender(*by), signal(shown)),
-        Happening::SignalEnded(SignalEnd::TakenBack) => ("wizard", "took the signal back".to_string()),
-        Happening::SignalEnded(SignalEnd::Elapsed) => ("", "signal is over".to_string()),
-        Happening::Served { order } => ("", format!("{} is served", kitchen.location(*order).label())),
-        Happening::OrderShown { order } => ("", format!("{} is new", kitchen.location(*order).label())),
-        Happening::Marker(note) => ("note", note.clone()),
-        Happening::RobotStopped => ("wizard", "stopped the robot".to_string()),
-        Happening::ArmStopped { mode, force_n, joint } => ("robot", arm_stopped(*mode, *force_n, *joint)),
-        Happening::ArmTouched { force_n } => ("robot", format!("was touched, with {force_n:.0} N")),
-        Happening::RobotResumed => ("wizard", "let the robot go on".to_string()),
-        Happening::RobotHeld => ("wizard", "held the robot".to_string()),
-        Happening::RobotReleased => ("wizard", "released the robot".to_string()),
-        Happening::RobotSkipped(id) => ("wizard", format!("skipped {}", button(kitchen, Agent::Robot, *id))),
-        Happening::RobotDriven(id) => ("wizard", format!("drives the robot to {}", button(kitchen, Agent::Robot, *id))),
-        Happening::Corrected { location } => ("wizard", format!("corrected {}", kitchen.location(*location).label())),
-        Happening::Excluded(reason) => ("trial", format!("excluded: {reason}")),
-        Happening::Included => ("trial", "no longer excluded".to_string()),
-        Happening::Focus(false) => ("console", "lost the keyboard".to_string()),
-        Happening::Focus(true) => ("console", "has the keyboard again".to_string()),
-        Happening::Trial(phase) => ("trial", trial(*phase).to_string()),
+        TimelineEvent::Signal { by, signal: shown } => (sender(*by), signal(shown)),
+        TimelineEvent::SignalEnded(SignalEnd::TakenBack) => ("wizard", "took the signal back".to_string()),
+        TimelineEvent::SignalEnded(SignalEnd::Elapsed) => ("", "signal is over".to_string()),
+        TimelineEvent::Served { order } => ("", format!("{} is served", kitchen.location(*order).label())),
+        TimelineEvent::OrderShown { order } => ("", format!("{} is new", kitchen.location(*order).label())),
+        TimelineEvent::Marker(note) => ("note", note.clone()),
+        TimelineEvent::RobotStopped => ("wizard", "stopped the robot".to_string()),
+        TimelineEvent::ArmStopped { mode, force_n, joint } => ("robot", arm_stopped(*mode, *force_n, *joint)),
+        TimelineEvent::ArmTouched { force_n } => ("robot", format!("was touched, with {force_n:.0} N")),
+        TimelineEvent::RobotResumed => ("wizard", "let the robot go on".to_string()),
+        TimelineEvent::RobotHeld => ("wizard", "held the robot".to_string()),
+        TimelineEvent::RobotReleased => ("wizard", "released the robot".to_string()),
+        TimelineEvent::RobotSkipped(id) => ("wizard", format!("skipped {}", button(kitchen, Agent::Robot, *id))),
+        TimelineEvent::RobotDriven(id) => {
+            ("wizard", format!("drives the robot to {}", button(kitchen, Agent::Robot, *id)))
+        }
+        TimelineEvent::Corrected { location } => {
+            ("wizard", format!("corrected {}", kitchen.location(*location).label()))
+        }
+        TimelineEvent::Excluded(reason) => ("trial", format!("excluded: {reason}")),
+        TimelineEvent::Included => ("trial", "no longer excluded".to_string()),
+        TimelineEvent::Focus(false) => ("console", "lost the keyboard".to_string()),
+        TimelineEvent::Focus(true) => ("console", "has the keyboard again".to_string()),
+        TimelineEvent::Trial(phase) => ("trial", trial(*phase).to_string()),
     }
 }
 
@@ -170,7 +174,7 @@ fn trial(phase: Phase) -> &'static str {
 pub fn changed_by(session: &Session, at: SessionTime) -> Option<Agent> {
     let since = session.timeline.iter().rev().take_while(|entry| entry.time >= at);
     since.filter(|entry| entry.time == at).find_map(|entry| match entry.what {
-        Happening::Press { agent, effective: true, .. } => Some(agent),
+        TimelineEvent::Press { agent, effective: true, .. } => Some(agent),
         _ => None,
     })
 }

@@ -48,7 +48,7 @@ pub struct EstimateView {
 
 impl EstimateView {
     /// Of an estimate as it is written down.
-    pub fn of(witness: &EstimateWitness) -> EstimateView {
+    pub fn from_witness(witness: &EstimateWitness) -> EstimateView {
         let p_wrong = witness.aspects.iter().map(|aspect| 1.0 - aspect.p_truth);
         EstimateView { p_wrong: p_wrong.collect(), log_p: witness.log_p }
     }
@@ -98,7 +98,7 @@ pub struct Detection {
 impl Detection {
     /// Holds estimates against beliefs. `thresholds`: the probabilities from which an aspect is flagged; `None` lets them
     /// be chosen on these trials (see [`Flags`]).
-    pub fn of(kitchen: &Kitchen, trials: &[TrialView], thresholds: Option<Thresholds>) -> Detection {
+    pub fn from_trials(kitchen: &Kitchen, trials: &[TrialView], thresholds: Option<Thresholds>) -> Detection {
         let estimated = |press: &PressView, aspect| press.estimate.as_ref().map(|one| one.p_wrong[aspect]);
         let changed = |press: &PressView, aspect| press.unseen_change.get(aspect).map(|&one| f64::from(u8::from(one)));
         let locations: Vec<usize> = aspects(kitchen, false);
@@ -107,7 +107,7 @@ impl Detection {
         let pool = |of: &[usize], score: Score| auc(&scored(trials, of, score));
         let of_groups = [pool(&locations, &estimated), pool(&recipes, &estimated)];
         let predictions = scored(trials, &both, &estimated);
-        let calibration = Calibration::of(predictions, CALIBRATED, CALIBRATION_BINS);
+        let calibration = Calibration::from_predictions(predictions, CALIBRATED, CALIBRATION_BINS);
         let aspect = |&index: &usize| {
             let known: Vec<bool> = trials.iter().flatten().filter_map(|press| press.is_wrong(index)).collect();
             let wrong = known.iter().filter(|&&wrong| wrong).count() as f64 / known.len().max(1) as f64;
@@ -119,7 +119,7 @@ impl Detection {
             auc_recipes: of_groups[1],
             auc_baseline: pool(&locations, &changed),
             auc_mean_of_aspects: mean(both.iter().filter_map(|&one| pool(&[one], &estimated))),
-            flags: Flags::of(trials, &[locations.clone(), recipes.clone()], thresholds),
+            flags: Flags::from_trials(trials, &[locations.clone(), recipes.clone()], thresholds),
             ece: calibration.ece,
             calibration,
             aspects: both.iter().map(aspect).collect(),

@@ -26,51 +26,51 @@ pub enum Code {
 /// The kinds of causes, without what is believed wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum CauseKind {
     Belief,
     Slip,
     Race,
     Other,
 }
 
-impl Kind {
+impl CauseKind {
     /// All of them, in the order of the keys that code them.
-    pub const ALL: [Kind; 4] = [Kind::Belief, Kind::Slip, Kind::Race, Kind::Other];
+    pub const ALL: [CauseKind; 4] = [CauseKind::Belief, CauseKind::Slip, CauseKind::Race, CauseKind::Other];
 
     /// As it stands in files.
     pub fn name(self) -> &'static str {
         match self {
-            Kind::Belief => "belief",
-            Kind::Slip => "slip",
-            Kind::Race => "race",
-            Kind::Other => "other",
+            CauseKind::Belief => "belief",
+            CauseKind::Slip => "slip",
+            CauseKind::Race => "race",
+            CauseKind::Other => "other",
         }
     }
 
     /// The kind of this name.
-    pub fn named(name: &str) -> Option<Kind> {
-        Kind::ALL.into_iter().find(|kind| kind.name() == name)
+    pub fn named(name: &str) -> Option<CauseKind> {
+        CauseKind::ALL.into_iter().find(|kind| kind.name() == name)
     }
 }
 
 impl Code {
     /// The code of a kind; `aspect` is what is believed wrong, of beliefs alone.
-    pub fn new(kind: Kind, aspect: Option<&str>) -> Option<Code> {
+    pub fn new(kind: CauseKind, aspect: Option<&str>) -> Option<Code> {
         match (kind, aspect) {
-            (Kind::Belief, Some(aspect)) => Some(Code::Belief(aspect.to_string())),
-            (Kind::Slip, None) => Some(Code::Slip),
-            (Kind::Race, None) => Some(Code::Race),
-            (Kind::Other, None) => Some(Code::Other),
+            (CauseKind::Belief, Some(aspect)) => Some(Code::Belief(aspect.to_string())),
+            (CauseKind::Slip, None) => Some(Code::Slip),
+            (CauseKind::Race, None) => Some(Code::Race),
+            (CauseKind::Other, None) => Some(Code::Other),
             _ => None,
         }
     }
 
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> CauseKind {
         match self {
-            Code::Belief(_) => Kind::Belief,
-            Code::Slip => Kind::Slip,
-            Code::Race => Kind::Race,
-            Code::Other => Kind::Other,
+            Code::Belief(_) => CauseKind::Belief,
+            Code::Slip => CauseKind::Slip,
+            Code::Race => CauseKind::Race,
+            Code::Other => CauseKind::Other,
         }
     }
 
@@ -104,7 +104,7 @@ pub struct Codable {
 
 impl Codable {
     /// The errors among these presses, and the locations of their kitchen.
-    pub fn of(kitchen: &Kitchen, presses: &[JudgedPress]) -> Codable {
+    pub fn from_presses(kitchen: &Kitchen, presses: &[JudgedPress]) -> Codable {
         Codable {
             errors: presses.iter().filter(|press| press.verdict.error).map(|press| press.seq).collect(),
             places: kitchen.locations.iter().map(|location| location.name.clone()).collect(),
@@ -162,7 +162,7 @@ impl Codes {
 /// How far two raters agree, over the errors that both have coded; of several recordings add them up.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AgreementTable {
-    kinds: BTreeMap<(Kind, Kind), u64>,
+    kinds: BTreeMap<(CauseKind, CauseKind), u64>,
     /// By numbers, of the errors that both put down to a belief: each different location has one.
     aspects: BTreeMap<(usize, usize), u64>,
     names: Vec<String>,

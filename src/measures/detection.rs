@@ -47,7 +47,11 @@ pub struct Calibration {
 
 impl Calibration {
     /// Of those (prediction, came true) whose prediction is within `range`, in so many bins.
-    pub fn of(predictions: impl IntoIterator<Item = (f64, bool)>, range: [f64; 2], bins: usize) -> Calibration {
+    pub fn from_predictions(
+        predictions: impl IntoIterator<Item = (f64, bool)>,
+        range: [f64; 2],
+        bins: usize,
+    ) -> Calibration {
         let mut sums = vec![(0u64, 0.0, 0u64); bins];
         let [from, to] = range;
         for (p, came_true) in predictions {

@@ -20,7 +20,7 @@ pub const PREPARATION_EXCESS: i32 = 2;
 
 /// What a press of the human was worth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Verdict {
+pub struct PressVerdict {
     /// r(a): presses lost by it, those of both agents.
     pub regret: i32,
     /// By how much the regret exceeds that of the human's best press.
@@ -32,14 +32,14 @@ pub struct Verdict {
 
 /// Judges presses; it remembers when something else than the human last changed what.
 #[derive(Clone, Debug)]
-pub struct Judge {
+pub struct PressJudge {
     kitchen: Arc<Kitchen>,
     others_changed_at: [Option<SessionTime>; MAX_LOCATIONS],
 }
 
-impl Judge {
-    pub fn new(kitchen: Arc<Kitchen>) -> Judge {
-        Judge { kitchen, others_changed_at: [None; MAX_LOCATIONS] }
+impl PressJudge {
+    pub fn new(kitchen: Arc<Kitchen>) -> PressJudge {
+        PressJudge { kitchen, others_changed_at: [None; MAX_LOCATIONS] }
     }
 
     /// Takes note of what a press of the robot, or a correction by hand, changed.
@@ -50,7 +50,7 @@ impl Judge {
     }
 
     /// Judges a press of the human.
-    pub fn human_pressed(&self, cost: &mut CostToGo, now: SessionTime, press: &Press) -> Verdict {
+    pub fn human_pressed(&self, cost: &mut CostToGo, now: SessionTime, press: &Press) -> PressVerdict {
         let (kitchen, &Press { button, before, after, .. }) = (&self.kitchen, press);
         let recipes = kitchen.true_recipes();
         let here = cost.all_orders(before, &recipes) as i32;
@@ -75,7 +75,7 @@ impl Judge {
             })
         };
         let error = !race && excess >= 1 && !(excess <= PREPARATION_EXCESS && nearer());
-        Verdict { regret, excess, race, error }
+        PressVerdict { regret, excess, race, error }
     }
 
     /// Whether somebody else changed a place of this button of the human a moment ago.

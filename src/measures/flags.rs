@@ -64,7 +64,7 @@ struct Outcome {
 
 impl Flags {
     /// What flags do on these trials. `groups`: the aspects that are locations, and those that are recipes.
-    pub fn of(trials: &[TrialView], groups: &[Vec<usize>; 2], thresholds: Option<Thresholds>) -> Flags {
+    pub fn from_trials(trials: &[TrialView], groups: &[Vec<usize>; 2], thresholds: Option<Thresholds>) -> Flags {
         let presses: Vec<&PressView> = trials.iter().flatten().collect();
         if presses.is_empty() || presses.iter().any(|press| press.held.is_none() || press.estimate.is_none()) {
             return Flags::default();
@@ -75,7 +75,9 @@ impl Flags {
         for (index, group) in groups.iter().enumerate() {
             let of_group: Vec<Episode> = group.iter().flat_map(|&aspect| harmful(trials, aspect)).collect();
             let tried = given.map_or_else(|| candidates(trials, group, wrongly), |given| vec![given[index]]);
-            outcomes.push(tried.iter().map(|&one| Outcome::of(trials, group, &of_group, one)).collect::<Vec<_>>());
+            outcomes.push(
+                tried.iter().map(|&one| Outcome::from_threshold(trials, group, &of_group, one)).collect::<Vec<_>>(),
+            );
             episodes.push(of_group.len());
         }
         let false_flags = (MOST_FALSE_FLAGS * presses.len() as f64 / PER_PRESSES) as usize;
@@ -161,7 +163,7 @@ fn harmful(trials: &[TrialView], aspect: usize) -> Vec<Episode> {
 }
 
 impl Outcome {
-    fn of(trials: &[TrialView], group: &[usize], episodes: &[Episode], threshold: f64) -> Outcome {
+    fn from_threshold(trials: &[TrialView], group: &[usize], episodes: &[Episode], threshold: f64) -> Outcome {
         let is_flagged = |press: &PressView, aspect: usize| p_wrong(press, aspect) >= threshold;
         let is_caught = |episode: &&Episode| {
             trials[episode.trial][episode.in_time.clone()].iter().any(|press| is_flagged(press, episode.aspect))

@@ -41,7 +41,7 @@ pub struct LogLikelihood {
 
 impl LogLikelihood {
     /// Of all presses of these trials. Random numbers of the bootstrap follow from `seed`.
-    pub fn of(
+    pub fn from_trials(
         kitchen: &Kitchen,
         cost: &mut CostToGo,
         model: &DecisionModel,

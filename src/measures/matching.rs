@@ -22,7 +22,7 @@ pub const WINDOW: u32 = 3;
 
 /// What kind of communication something is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum CommunicationKind {
     Recipe,
     Highlight,
     /// Of presses, after an error: no signal.
@@ -31,25 +31,25 @@ pub enum Kind {
 
 /// What is said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Content {
-    pub kind: Kind,
+pub struct CommunicationTarget {
+    pub kind: CommunicationKind,
     /// What a signal is about.
     pub target: Option<LocationId>,
 }
 
 /// A communication.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Said {
+pub struct CommunicationEvent {
     /// How many presses of the human came before it in the trial.
     pub press: u32,
     /// On the trial's clock.
     pub clock: SessionTime,
-    pub content: Content,
+    pub content: CommunicationTarget,
 }
 
 /// What has to be the same of two communications that match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Likeness {
+pub enum MatchCriterion {
     /// Signal and target.
     Strict,
     /// The kind of signal.
@@ -58,21 +58,26 @@ pub enum Likeness {
     Timing,
 }
 
-impl Likeness {
+impl MatchCriterion {
     /// What communications have in common that can match.
-    fn class(self, content: Content) -> Option<Content> {
+    fn class(self, content: CommunicationTarget) -> Option<CommunicationTarget> {
         match self {
-            Likeness::Strict => Some(content),
-            Likeness::Lenient => Some(Content { target: None, ..content }),
-            Likeness::Timing => None,
+            MatchCriterion::Strict => Some(content),
+            MatchCriterion::Lenient => Some(CommunicationTarget { target: None, ..content }),
+            MatchCriterion::Timing => None,
         }
     }
 }
 
 /// The pairs of a best one-to-one matching, as indices into both lanes, in the order of the first. Both lanes are in the
 /// order of time.
-pub fn matched(of: &[Said], with: &[Said], window: u32, likeness: Likeness) -> Vec<(usize, usize)> {
-    let mut classes: BTreeMap<Option<Content>, [Vec<usize>; 2]> = BTreeMap::new();
+pub fn matched(
+    of: &[CommunicationEvent],
+    with: &[CommunicationEvent],
+    window: u32,
+    likeness: MatchCriterion,
+) -> Vec<(usize, usize)> {
+    let mut classes: BTreeMap<Option<CommunicationTarget>, [Vec<usize>; 2]> = BTreeMap::new();
     for (lane, said) in [of, with].into_iter().enumerate() {
         for (index, said) in said.iter().enumerate() {
             classes.entry(likeness.class(said.content)).or_default()[lane].push(index);
@@ -85,7 +90,13 @@ pub fn matched(of: &[Said], with: &[Said], window: u32, likeness: Likeness) -> V
 
 /// The best matching of communications of one class. Where only distances on a line count, some best matching crosses
 /// nowhere, so that it is found as an alignment of two sequences.
-fn aligned(of: &[Said], with: &[Said], a: &[usize], b: &[usize], window: u32) -> Vec<(usize, usize)> {
+fn aligned(
+    of: &[CommunicationEvent],
+    with: &[CommunicationEvent],
+    a: &[usize],
+    b: &[usize],
+    window: u32,
+) -> Vec<(usize, usize)> {
     // Pairs, and presses between them counted down: the most is the best.
     let mut best = vec![vec![(0i64, 0i64); b.len() + 1]; a.len() + 1];
     let apart = |i: usize, j: usize| of[a[i]].press.abs_diff(with[b[j]].press);
@@ -113,7 +124,7 @@ fn aligned(of: &[Said], with: &[Said], a: &[usize], b: &[usize], window: u32) ->
 
 /// What two lanes have in common, in one trial or several.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tally {
+pub struct MatchCounts {
     of: u64,
     with: u64,
     /// Pairs: strict, lenient, by time alone.
@@ -123,19 +134,19 @@ pub struct Tally {
     /// Seconds from the second lane's communication to the first's.
     leads_s: Vec<f64>,
     /// How often a press has this content in the first lane and that in the second.
-    units: BTreeMap<(Option<Content>, Option<Content>), u64>,
+    units: BTreeMap<(Option<CommunicationTarget>, Option<CommunicationTarget>), u64>,
 }
 
-impl Tally {
+impl MatchCounts {
     /// Adds a trial of so many presses of the human.
-    pub fn add(&mut self, of: &[Said], with: &[Said], presses: u32, window: u32) {
+    pub fn add(&mut self, of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, window: u32) {
         self.of += of.len() as u64;
         self.with += with.len() as u64;
-        let strict = matched(of, with, window, Likeness::Strict);
+        let strict = matched(of, with, window, MatchCriterion::Strict);
         let number = |likeness| matched(of, with, window, likeness).len() as u64;
         self.pairs[0] += strict.len() as u64;
-        self.pairs[1] += number(Likeness::Lenient);
-        self.pairs[2] += number(Likeness::Timing);
+        self.pairs[1] += number(MatchCriterion::Lenient);
+        self.pairs[2] += number(MatchCriterion::Timing);
         let lead = |&(a, b): &(usize, usize)| of[a].clock.as_secs_f64() - with[b].clock.as_secs_f64();
         self.leads_s.extend(strict.iter().map(lead));
         if let Some(chance) = chance(of, with, presses, window) {
@@ -150,7 +161,7 @@ impl Tally {
     /// The figures.
     pub fn similarity(&self) -> Similarity {
         let share = |part: f64, all: u64| (all > 0).then(|| part / all as f64);
-        let level = |pairs: u64| Level {
+        let level = |pairs: u64| MatchShares {
             recall: share(pairs as f64, self.of),
             precision: share(pairs as f64, self.with),
             f1: share(2.0 * pairs as f64, self.of + self.with),
@@ -171,7 +182,7 @@ impl Tally {
 
 /// Shares of matched communications; null of nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Level {
+pub struct MatchShares {
     /// Of the first lane's.
     pub recall: Option<f64>,
     /// Of the second lane's.
@@ -184,7 +195,7 @@ pub struct Level {
 pub struct Similarity {
     /// The same signal and target.
     #[serde(flatten)]
-    pub strict: Level,
+    pub strict: MatchShares,
     /// Null where nothing but chance could be.
     pub kappa: Option<f64>,
     /// By how much the second lane is earlier than the first, in seconds; negative: later.
@@ -196,35 +207,35 @@ pub struct Similarity {
     pub with_n: u64,
     pub matched: u64,
     /// The same kind of signal.
-    pub lenient: Level,
+    pub lenient: MatchShares,
     /// Anything, at about the same time.
-    pub timing: Level,
+    pub timing: MatchShares,
 }
 
 /// The mean number of strict pairs over the circular shifts of the second lane by more than the window; none if the trial is
 /// too short for one.
-fn chance(of: &[Said], with: &[Said], presses: u32, window: u32) -> Option<f64> {
+fn chance(of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, window: u32) -> Option<f64> {
     // Before, between and after the presses.
     let places = presses + 1;
     let shifts = window + 1..places.saturating_sub(window);
     let pairs = |shift: u32| {
-        let shifted = |said: &Said| Said { press: (said.press + shift) % places, ..*said };
-        let mut shifted: Vec<Said> = with.iter().map(shifted).collect();
+        let shifted = |said: &CommunicationEvent| CommunicationEvent { press: (said.press + shift) % places, ..*said };
+        let mut shifted: Vec<CommunicationEvent> = with.iter().map(shifted).collect();
         shifted.sort_by_key(|said| said.press);
-        matched(of, &shifted, window, Likeness::Strict).len()
+        matched(of, &shifted, window, MatchCriterion::Strict).len()
     };
     let (count, sum) = shifts.fold((0u32, 0), |(count, sum), shift| (count + 1, sum + pairs(shift)));
     (count > 0).then(|| sum as f64 / f64::from(count))
 }
 
-type Units = BTreeMap<(Option<Content>, Option<Content>), u64>;
+type Units = BTreeMap<(Option<CommunicationTarget>, Option<CommunicationTarget>), u64>;
 
 /// The contents of both lanes press by press; where a lane has several at a press, there are several units.
-fn units(of: &[Said], with: &[Said], pairs: &[(usize, usize)], presses: u32) -> Units {
+fn units(of: &[CommunicationEvent], with: &[CommunicationEvent], pairs: &[(usize, usize)], presses: u32) -> Units {
     let mut units = Units::new();
     let mut spoken = vec![[Vec::new(), Vec::new()]; presses as usize + 1];
     let mut is_silent = vec![true; presses as usize + 1];
-    let place = |said: &Said| said.press.min(presses) as usize;
+    let place = |said: &CommunicationEvent| said.press.min(presses) as usize;
     for &(a, _) in pairs {
         *units.entry((Some(of[a].content), Some(of[a].content))).or_default() += 1;
         is_silent[place(&of[a])] = false;

@@ -19,7 +19,7 @@ use crate::base::time::SessionTime;
 pub struct JudgedPress {
     pub seq: u64,
     pub time: SessionTime,
-    pub verdict: errors::Verdict,
+    pub verdict: errors::PressVerdict,
     /// Whether it is known what the human believed.
     pub belief_known: bool,
     /// Why it was an error; `None` for what was none, and where the belief is not known.

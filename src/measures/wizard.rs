@@ -15,7 +15,7 @@ pub const LATE_PRESSES: u32 = 3;
 
 /// A time in which an aspect was believed wrong.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Spell {
+pub struct FalseBeliefPeriod {
     pub aspect: AspectId,
     pub began: SessionTime,
     /// When it was right again, and the presses of the human until then; none before the end of the trial.
@@ -24,7 +24,7 @@ pub struct Spell {
     pub errors: u32,
 }
 
-impl Spell {
+impl FalseBeliefPeriod {
     /// Whether it is believed wrong at this time.
     pub fn holds(&self, clock: SessionTime) -> bool {
         self.began <= clock && self.corrected.is_none_or(|(end, _)| clock < end)
@@ -33,7 +33,7 @@ impl Spell {
 
 /// A signal that a wizard sent.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sent {
+pub struct WizardSignal {
     pub clock: SessionTime,
     /// Presses of the human before it.
     pub press: u32,
@@ -46,7 +46,7 @@ pub struct Sent {
 
 /// What a signal was.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Worth {
+pub enum SignalVerdict {
     /// The first about something that was believed wrong and led to an error, so many seconds after it became so; with the
     /// spell's index.
     Hit { latency_s: f64, spell: usize },
@@ -62,45 +62,45 @@ pub enum Worth {
     Needless,
 }
 
-impl Worth {
+impl SignalVerdict {
     /// In a word.
     pub fn name(self) -> &'static str {
         match self {
-            Worth::Hit { .. } => "hit",
-            Worth::Again => "again",
-            Worth::Harmless => "harmless",
-            Worth::Late => "late",
-            Worth::WrongTarget => "wrong",
-            Worth::Needless => "needless",
+            SignalVerdict::Hit { .. } => "hit",
+            SignalVerdict::Again => "again",
+            SignalVerdict::Harmless => "harmless",
+            SignalVerdict::Late => "late",
+            SignalVerdict::WrongTarget => "wrong",
+            SignalVerdict::Needless => "needless",
         }
     }
 }
 
 /// What each signal was, in their order.
-pub fn worths(sent: &[Sent], spells: &[Spell]) -> Vec<Worth> {
+pub fn worths(sent: &[WizardSignal], spells: &[FalseBeliefPeriod]) -> Vec<SignalVerdict> {
     let mut hit = vec![false; spells.len()];
-    let worth = |sent: &Sent| {
-        let about = |spell: &Spell| sent.aspects.contains(&spell.aspect);
-        let open = |spell: &Spell| spell.holds(sent.clock);
+    let worth = |sent: &WizardSignal| {
+        let about = |spell: &FalseBeliefPeriod| sent.aspects.contains(&spell.aspect);
+        let open = |spell: &FalseBeliefPeriod| spell.holds(sent.clock);
         let mut now = spells.iter().enumerate().filter(|(_, spell)| about(spell) && open(spell));
         // Of two aspects that one signal tells, that which led to an error.
         let of_errors = now.clone().find(|(_, spell)| spell.errors > 0);
         match of_errors.or_else(|| now.next()) {
             Some((index, spell)) if spell.errors > 0 && !hit[index] => {
                 hit[index] = true;
-                return Worth::Hit { latency_s: sent.clock.secs_since(spell.began), spell: index };
+                return SignalVerdict::Hit { latency_s: sent.clock.secs_since(spell.began), spell: index };
             }
-            Some((_, spell)) if spell.errors > 0 => return Worth::Again,
-            Some(_) => return Worth::Harmless,
+            Some((_, spell)) if spell.errors > 0 => return SignalVerdict::Again,
+            Some(_) => return SignalVerdict::Harmless,
             None => {}
         }
-        let is_late = |spell: &Spell| {
+        let is_late = |spell: &FalseBeliefPeriod| {
             spell.corrected.is_some_and(|(end, press)| end <= sent.clock && sent.press <= press + LATE_PRESSES)
         };
         match () {
-            () if spells.iter().any(|spell| about(spell) && is_late(spell)) => Worth::Late,
-            () if spells.iter().any(open) => Worth::WrongTarget,
-            () => Worth::Needless,
+            () if spells.iter().any(|spell| about(spell) && is_late(spell)) => SignalVerdict::Late,
+            () if spells.iter().any(open) => SignalVerdict::WrongTarget,
+            () => SignalVerdict::Needless,
         }
     };
     sent.iter().map(worth).collect()
@@ -108,26 +108,26 @@ pub fn worths(sent: &[Sent], spells: &[Spell]) -> Vec<Worth> {
 
 /// Times of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Times {
+pub struct TimeSummary {
     pub n: u64,
     pub median: f64,
     pub max: f64,
 }
 
-impl Times {
+impl TimeSummary {
     /// None of nothing.
-    pub fn of(times: Vec<f64>) -> Option<Times> {
+    pub fn from_times(times: Vec<f64>) -> Option<TimeSummary> {
         let max = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let n = times.len() as u64;
-        median(times).map(|median| Times { n, median, max })
+        median(times).map(|median| TimeSummary { n, median, max })
     }
 
     /// Those of several trials: the median of their medians.
-    fn together(trials: impl Iterator<Item = Times>) -> Option<Times> {
-        let trials: Vec<Times> = trials.collect();
-        let medians = Times::of(trials.iter().map(|times| times.median).collect())?;
+    fn together(trials: impl Iterator<Item = TimeSummary>) -> Option<TimeSummary> {
+        let trials: Vec<TimeSummary> = trials.collect();
+        let medians = TimeSummary::from_times(trials.iter().map(|times| times.median).collect())?;
         let max = trials.iter().map(|times| times.max).fold(medians.max, f64::max);
-        Some(Times { n: trials.iter().map(|times| times.n).sum(), max, ..medians })
+        Some(TimeSummary { n: trials.iter().map(|times| times.n).sum(), max, ..medians })
     }
 }
 
@@ -137,7 +137,7 @@ pub struct WizardMeasures {
     pub signals: u64,
     pub taken_back: u64,
     /// From the key to the frame that shows the signal, in milliseconds; null if that was not recorded.
-    pub key_to_display_ms: Option<Times>,
+    pub key_to_display_ms: Option<TimeSummary>,
     /// Of false beliefs that led to errors.
     pub episodes: Option<u64>,
     /// Of those: with a signal about them, in time.
@@ -145,7 +145,7 @@ pub struct WizardMeasures {
     /// Without any.
     pub omissions: Option<u64>,
     /// From the beginning of an episode to its signal.
-    pub latency_s: Option<Times>,
+    pub latency_s: Option<TimeSummary>,
     pub repeated: Option<u64>,
     pub late: Option<u64>,
     pub wrong_targets: Option<u64>,
@@ -157,30 +157,32 @@ pub struct WizardMeasures {
 
 impl WizardMeasures {
     /// Of the signals of a trial and, where that is known, of what was believed wrong in it.
-    pub fn of(sent: &[Sent], spells: Option<&[Spell]>) -> WizardMeasures {
+    pub fn from_signals(sent: &[WizardSignal], spells: Option<&[FalseBeliefPeriod]>) -> WizardMeasures {
         let drawn: Vec<f64> = sent.iter().filter_map(|sent| sent.to_display_ms).collect();
         let measures = WizardMeasures {
             signals: sent.len() as u64,
             taken_back: sent.iter().filter(|sent| sent.taken_back).count() as u64,
-            key_to_display_ms: Times::of(drawn),
+            key_to_display_ms: TimeSummary::from_times(drawn),
             ..WizardMeasures::default()
         };
         let Some(spells) = spells else { return measures };
         let worths = worths(sent, spells);
-        let count = |is: fn(&Worth) -> bool| Some(worths.iter().filter(|worth| is(worth)).count() as u64);
-        let latency = |worth: &Worth| if let Worth::Hit { latency_s, .. } = worth { Some(*latency_s) } else { None };
+        let count = |is: fn(&SignalVerdict) -> bool| Some(worths.iter().filter(|worth| is(worth)).count() as u64);
+        let latency = |worth: &SignalVerdict| {
+            if let SignalVerdict::Hit { latency_s, .. } = worth { Some(*latency_s) } else { None }
+        };
         let latencies: Vec<f64> = worths.iter().filter_map(latency).collect();
         let episodes = spells.iter().filter(|spell| spell.errors > 0).count() as u64;
         WizardMeasures {
             episodes: Some(episodes),
             hits: Some(latencies.len() as u64),
             omissions: Some(episodes - latencies.len() as u64),
-            latency_s: Times::of(latencies),
-            repeated: count(|worth| matches!(worth, Worth::Again)),
-            late: count(|worth| matches!(worth, Worth::Late)),
-            wrong_targets: count(|worth| matches!(worth, Worth::WrongTarget)),
-            needless: count(|worth| matches!(worth, Worth::Needless)),
-            harmless: count(|worth| matches!(worth, Worth::Harmless)),
+            latency_s: TimeSummary::from_times(latencies),
+            repeated: count(|worth| matches!(worth, SignalVerdict::Again)),
+            late: count(|worth| matches!(worth, SignalVerdict::Late)),
+            wrong_targets: count(|worth| matches!(worth, SignalVerdict::WrongTarget)),
+            needless: count(|worth| matches!(worth, SignalVerdict::Needless)),
+            harmless: count(|worth| matches!(worth, SignalVerdict::Harmless)),
             ..measures
         }
     }
@@ -191,9 +193,11 @@ impl WizardMeasures {
     pub fn sum<'a>(trials: impl IntoIterator<Item = &'a WizardMeasures>) -> WizardMeasures {
         let add = |a: Option<u64>, b: Option<u64>| Some(a? + b?);
         let trials: Vec<&WizardMeasures> = trials.into_iter().collect();
-        let times = |of: fn(&WizardMeasures) -> Option<Times>| Times::together(trials.iter().filter_map(|one| of(one)));
+        let times = |of: fn(&WizardMeasures) -> Option<TimeSummary>| {
+            TimeSummary::together(trials.iter().filter_map(|one| of(one)))
+        };
         let (key_to_display_ms, latency_s) = (times(|one| one.key_to_display_ms), times(|one| one.latency_s));
-        let zero = WizardMeasures { key_to_display_ms, latency_s, ..WizardMeasures::of(&[], Some(&[])) };
+        let zero = WizardMeasures { key_to_display_ms, latency_s, ..WizardMeasures::from_signals(&[], Some(&[])) };
         trials.into_iter().fold(zero, |sum, one| WizardMeasures {
             signals: sum.signals + one.signals,
             taken_back: sum.taken_back + one.taken_back,

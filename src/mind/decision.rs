@@ -51,7 +51,7 @@ pub struct Slips {
 
 impl Slips {
     /// Those of the human's buttons.
-    pub fn of(kitchen: &Kitchen) -> Slips {
+    pub fn for_kitchen(kitchen: &Kitchen) -> Slips {
         let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
         let to = buttons.map(|button| {
             let next = kitchen.nearest_button(Agent::Human, button).unwrap_or(button);
@@ -89,7 +89,7 @@ impl DecisionModel {
         let total: f64 = meant.iter().sum();
         let waits = (-self.tau * (here + self.wait_cost - 1.0 - least)).min(f64::MAX.ln() / 2.0).exp();
         let meant: Vec<f64> = meant.iter().map(|weight| weight / total).collect();
-        Chances { wait: waits / (waits + total), press: self.slipped(&Slips::of(kitchen), &meant) }
+        Chances { wait: waits / (waits + total), press: self.slipped(&Slips::for_kitchen(kitchen), &meant) }
     }
 
     /// What is pressed of what is meant.
@@ -132,7 +132,7 @@ pub struct PressLikelihood {
 impl PressLikelihood {
     /// For beliefs that `states` states and recipes stand for.
     pub fn new(kitchen: &Kitchen, model: &DecisionModel, states: usize) -> PressLikelihood {
-        let slips = Slips::of(kitchen);
+        let slips = Slips::for_kitchen(kitchen);
         let buttons = slips.to.len();
         let [anywhere, slipping] = model.slip_chances(buttons);
         let weights = (0..=states * usize::from(u8::MAX)).map(|more| model.weight(more, states));
@@ -151,7 +151,7 @@ impl PressLikelihood {
 
     /// p(a | b): `sums[x]` is C(s') after button x, summed over the states and recipes that stand for b.
     #[inline]
-    pub fn of(&self, sums: &[u32], button: ButtonId) -> f64 {
+    pub fn probability(&self, sums: &[u32], button: ButtonId) -> f64 {
         let least = sums.iter().copied().min().unwrap_or(0);
         let weight = |sum: u32| self.weights.get((sum - least) as usize).copied().unwrap_or(0.0);
         let total: f64 = sums.iter().map(|&sum| weight(sum)).sum();

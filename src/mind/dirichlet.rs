@@ -163,12 +163,12 @@ impl DirichletBelief {
         DirichletBelief { aspects: (0..kitchen.aspects.len()).map(of).collect() }
     }
 
-    pub fn of(&self, aspect: AspectId) -> &Dirichlet {
+    pub fn aspect(&self, aspect: AspectId) -> &Dirichlet {
         &self.aspects[aspect.index()]
     }
 
     /// The expected probability that the human gives to the truth about an aspect.
     pub fn p_truth(&self, kitchen: &Kitchen, state: State, aspect: AspectId) -> f64 {
-        self.of(aspect).mean()[kitchen.true_value(state, aspect)]
+        self.aspect(aspect).mean()[kitchen.true_value(state, aspect)]
     }
 }

@@ -6,7 +6,7 @@ use rand::RngExt;
 
 use super::SimulatedParticipant;
 use super::beliefs::wanted_dish;
-use super::eyes::Glance;
+use super::eyes::FixationProgress;
 use super::population::chance;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
@@ -57,13 +57,13 @@ impl SimulatedParticipant {
     pub(super) fn look(&mut self, now: SessionTime, state: State) {
         self.notice_changes(now, state);
         match self.eyes.advance(now) {
-            Glance::Nothing => {}
-            Glance::Read => {
+            FixationProgress::Nothing => {}
+            FixationProgress::Read => {
                 if let Some(location) = self.attention.looking_at {
                     self.read(now, location, state);
                 }
             }
-            Glance::Done => {
+            FixationProgress::Done => {
                 let target = self.choose_target(now);
                 self.attention.looking_at = target;
                 let point = match target {

@@ -4,17 +4,17 @@ use crate::kitchen::{AspectId, AspectKind, DishId, Kitchen, LocationId, OrderCon
 
 /// What a person believes. Every distribution sums to 1 and holds no value for impossible.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Beliefs {
+pub struct ParticipantBeliefs {
     of: Vec<Vec<f64>>,
 }
 
 /// No value is ever believed impossible: what is left to each when the others take all.
 const RESIDUE: f64 = 1e-6;
 
-impl Beliefs {
+impl ParticipantBeliefs {
     /// Everything as `state` shows it, `sure` of it; recipes as they truly are, to be changed by memory.
-    pub fn of_state(kitchen: &Kitchen, state: State, sure: f64) -> Beliefs {
-        let mut beliefs = Beliefs { of: kitchen.aspects.iter().map(|a| uniform(a.values.len())).collect() };
+    pub fn of_state(kitchen: &Kitchen, state: State, sure: f64) -> ParticipantBeliefs {
+        let mut beliefs = ParticipantBeliefs { of: kitchen.aspects.iter().map(|a| uniform(a.values.len())).collect() };
         for index in 0..kitchen.aspects.len() {
             let aspect = AspectId(index as u8);
             beliefs.settle(aspect, kitchen.true_value(state, aspect), sure);
@@ -100,7 +100,7 @@ impl Beliefs {
 }
 
 /// The dish that an order is believed to want.
-pub fn wanted_dish(kitchen: &Kitchen, beliefs: &Beliefs, order: LocationId) -> Option<DishId> {
+pub fn wanted_dish(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, order: LocationId) -> Option<DishId> {
     let aspect = AspectId::of_location(order);
     match OrderContent::from_code(kitchen.aspects[aspect.index()].values[beliefs.most_likely(aspect)]) {
         OrderContent::Dish(dish) => Some(dish),

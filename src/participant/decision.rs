@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use rand::RngExt;
 
-use super::beliefs::Beliefs;
+use super::beliefs::ParticipantBeliefs;
 use super::population::chance;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
@@ -36,7 +36,7 @@ type Step = (ButtonId, State);
 pub fn think(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
-    beliefs: &Beliefs,
+    beliefs: &ParticipantBeliefs,
     intent: &mut Intent,
     commit_until: SessionTime,
     now: SessionTime,

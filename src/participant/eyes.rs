@@ -24,7 +24,7 @@ const BLINK_S: [f64; 2] = [0.1, 0.2];
 
 /// What the eyes just did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Glance {
+pub enum FixationProgress {
     /// On the way, or still looking.
     Nothing,
     /// Looked long enough to have read what is there.
@@ -118,15 +118,15 @@ impl Eyes {
     }
 
     /// What has come of the present look by now.
-    pub fn advance(&mut self, now: SessionTime) -> Glance {
+    pub fn advance(&mut self, now: SessionTime) -> FixationProgress {
         if let Some(reads) = self.reads
             && now >= reads
             && !self.is_closed(now)
         {
             self.reads = None;
-            return Glance::Read;
+            return FixationProgress::Read;
         }
-        if now >= self.ends { Glance::Done } else { Glance::Nothing }
+        if now >= self.ends { FixationProgress::Done } else { FixationProgress::Nothing }
     }
 
     /// What is looked at has just changed: it has to be read again.

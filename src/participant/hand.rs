@@ -4,7 +4,7 @@ use rand::RngExt;
 
 use super::beliefs::wanted_dish;
 use super::population::{chance, normal};
-use super::{Deed, SimulatedParticipant, decision, witness};
+use super::{ParticipantAction, SimulatedParticipant, decision, witness};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, DishId, LocationId, State};
@@ -27,7 +27,12 @@ const STANDSTILL_LEAVES: f64 = 0.4;
 
 impl SimulatedParticipant {
     /// Presses, or waits for something to do.
-    pub(super) fn move_hand(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<Deed> {
+    pub(super) fn move_hand(
+        &mut self,
+        now: SessionTime,
+        state: State,
+        cost: &mut CostToGo,
+    ) -> Option<ParticipantAction> {
         let kitchen = self.kitchen.clone();
         self.think(now, cost);
         let Some(&button) = self.intent.plan.front() else { return self.wait(now, state, cost) };
@@ -67,12 +72,12 @@ impl SimulatedParticipant {
         old.filter(|_| self.looks_first == 0 && chance(&mut self.hand, self.person.makes_sure))
     }
 
-    fn press(&mut self, now: SessionTime, state: State, button: ButtonId, cause: String) -> Deed {
+    fn press(&mut self, now: SessionTime, state: State, button: ButtonId, cause: String) -> ParticipantAction {
         self.presses += 1;
         self.looks_first = 0;
         self.idle_since = None;
         self.press_at = now + self.reaction();
-        Deed::Press { button, belief: witness::witness(&self.kitchen, &self.beliefs, state, cause) }
+        ParticipantAction::Press { button, belief: witness::witness(&self.kitchen, &self.beliefs, state, cause) }
     }
 
     /// The hand does not always press what was meant: the button pressed instead, and why.
@@ -110,7 +115,7 @@ impl SimulatedParticipant {
     }
 
     /// There is nothing to do: looks around, begins to doubt what it remembers, and at last tries something.
-    fn wait(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<Deed> {
+    fn wait(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<ParticipantAction> {
         let kitchen = self.kitchen.clone();
         let since = *self.idle_since.get_or_insert(now);
         let idle_s = now.secs_since(since);

@@ -1,6 +1,6 @@
 //! What the participant learns from its own presses, whether they had an effect or not.
 
-use super::beliefs::Beliefs;
+use super::beliefs::ParticipantBeliefs;
 use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, LocationId, State};
 
 /// Belief in what one has done oneself.
@@ -11,7 +11,7 @@ const FELT: f64 = 0.3;
 const SPOKEN_AGAINST: f64 = 0.04;
 
 /// The press that the person means to have made had an effect, or none. True if that was a surprise.
-pub fn learn(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId, effective: bool) -> bool {
+pub fn learn(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: ButtonId, effective: bool) -> bool {
     let (state, recipes) = beliefs.point(kitchen);
     let expected = kitchen.press(state, &recipes, Agent::Human, button);
     match (expected, effective) {
@@ -24,7 +24,7 @@ pub fn learn(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId, effecti
 }
 
 /// It went as expected: everything involved is as the rules say, as surely as it was known before.
-fn carry_out(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId, next: State) {
+fn carry_out(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: ButtonId, next: State) {
     let places = kitchen.involved(Agent::Human, button);
     let sure = places.iter().map(|&place| beliefs.certainty(AspectId::of_location(place))).fold(DONE, f64::min);
     for place in places {
@@ -32,7 +32,7 @@ fn carry_out(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId, next: S
     }
 }
 
-fn settle(kitchen: &Kitchen, beliefs: &mut Beliefs, place: LocationId, state: State, sure: f64) {
+fn settle(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, place: LocationId, state: State, sure: f64) {
     let aspect = AspectId::of_location(place);
     if let Some(value) = kitchen.aspects[aspect.index()].index_of(state.code(place)) {
         beliefs.settle(aspect, value, sure);
@@ -40,7 +40,7 @@ fn settle(kitchen: &Kitchen, beliefs: &mut Beliefs, place: LocationId, state: St
 }
 
 /// Something happened that should not have been possible: what is certain all the same is taken over, the rest is open.
-fn make_sense(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId) {
+fn make_sense(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: ButtonId) {
     let hand = kitchen.hands[Agent::Human.index()];
     let (mut state, _) = beliefs.point(kitchen);
     match kitchen.button(Agent::Human, button).action {
@@ -69,7 +69,7 @@ fn make_sense(kitchen: &Kitchen, beliefs: &mut Beliefs, button: ButtonId) {
 }
 
 /// Nothing happened though something should have: the least certain of the places involved must be otherwise.
-fn blame(kitchen: &Kitchen, beliefs: &mut Beliefs, state: State, button: ButtonId) {
+fn blame(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, state: State, button: ButtonId) {
     if matches!(kitchen.button(Agent::Human, button).action, ButtonAction::Serve(_)) {
         // What stands on the plate is plain to see: it is the recipe that comes into doubt, see `Memory::doubt`.
         return;

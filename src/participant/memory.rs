@@ -3,7 +3,7 @@
 
 use rand::RngExt;
 
-use super::beliefs::Beliefs;
+use super::beliefs::ParticipantBeliefs;
 use super::population::{Individual, Population, normal};
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
@@ -41,7 +41,7 @@ impl Memory {
         population: &Population,
         person: &Individual,
         mut random: Stream,
-        beliefs: &mut Beliefs,
+        beliefs: &mut ParticipantBeliefs,
     ) -> Memory {
         let (mut faded, mut learned) = (Vec::new(), Vec::new());
         // A short menu is easier to remember.
@@ -70,7 +70,7 @@ impl Memory {
     }
 
     /// Time passes: memories of dishes that are not being made fade.
-    pub fn fade(&mut self, kitchen: &Kitchen, beliefs: &mut Beliefs, now: SessionTime, in_use: &[DishId]) {
+    pub fn fade(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, now: SessionTime, in_use: &[DishId]) {
         let lost = 1.0 - 0.5_f64.powf(now.secs_since(self.last) / self.half_life_s);
         self.last = now;
         for (index, faded) in self.faded.iter().enumerate() {
@@ -92,7 +92,7 @@ impl Memory {
     }
 
     /// An order asks for the dish: one version of its recipe comes to mind and is held for the true one.
-    pub fn recall(&mut self, kitchen: &Kitchen, beliefs: &mut Beliefs, dish: DishId) {
+    pub fn recall(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId) {
         let aspect = kitchen.aspect_of_dish(dish);
         let mut draw = self.random.random::<f64>();
         let values = beliefs.distribution(aspect);
@@ -105,7 +105,7 @@ impl Memory {
     }
 
     /// The thread is lost in the middle of the work: the recipe is recalled from a memory that has half faded.
-    pub fn lose_thread(&mut self, kitchen: &Kitchen, beliefs: &mut Beliefs, dish: DishId) {
+    pub fn lose_thread(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId) {
         beliefs.mix(kitchen.aspect_of_dish(dish), &self.faded[dish.index()], 0.5);
         self.recall(kitchen, beliefs, dish);
     }
@@ -115,7 +115,7 @@ impl Memory {
     pub fn doubt(
         &mut self,
         kitchen: &Kitchen,
-        beliefs: &mut Beliefs,
+        beliefs: &mut ParticipantBeliefs,
         dish: DishId,
         trust: f64,
         fits: impl Fn(ContentId) -> bool,
@@ -135,12 +135,12 @@ impl Memory {
     }
 
     /// What is held for the recipe could not be served: it is another one.
-    pub fn fail(&mut self, kitchen: &Kitchen, beliefs: &mut Beliefs, dish: DishId) {
+    pub fn fail(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId) {
         self.doubt(kitchen, beliefs, dish, FAILED, |_| false);
     }
 
     /// The recipe was shown, or what it says was served.
-    pub fn confirm(&mut self, kitchen: &Kitchen, beliefs: &mut Beliefs, dish: DishId, variant: usize) {
+    pub fn confirm(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId, variant: usize) {
         self.left[dish.index()].fill(1.0);
         beliefs.settle(kitchen.aspect_of_dish(dish), variant, CONFIRMED);
     }

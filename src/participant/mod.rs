@@ -27,7 +27,7 @@ use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId,
 use crate::kitchen::{OrderContent, Press, State};
 use crate::mind::BeliefWitness;
 use attention::Attention;
-use beliefs::{Beliefs, wanted_dish};
+use beliefs::{ParticipantBeliefs, wanted_dish};
 use decision::Intent;
 use eyes::Eyes;
 use memory::Memory;
@@ -35,7 +35,7 @@ use population::{Experience, Individual, Population, chance};
 
 /// Something that the participant does.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Deed {
+pub enum ParticipantAction {
     /// What an eye tracker sees of it.
     Gaze(GazeSample),
     /// It presses a button; `belief` is what it believes at this moment, and why it presses.
@@ -57,7 +57,7 @@ pub struct SimulatedParticipant {
     kitchen: Arc<Kitchen>,
     population: Population,
     person: Individual,
-    beliefs: Beliefs,
+    beliefs: ParticipantBeliefs,
     memory: Memory,
     eyes: Eyes,
     /// While the calibration is checked.
@@ -96,7 +96,7 @@ impl SimulatedParticipant {
         experience: Experience,
     ) -> Self {
         let person = population.draw(&mut stream(seed, "participant", person)).after(experience, population);
-        let mut beliefs = Beliefs::of_state(&kitchen, kitchen.empty_state(), SURE_AT_START);
+        let mut beliefs = ParticipantBeliefs::of_state(&kitchen, kitchen.empty_state(), SURE_AT_START);
         let recall = stream(seed, "participant's memory", trial);
         let memory = Memory::new(&kitchen, population, &person, recall, &mut beliefs);
         let sight = stream(seed, "participant's eyes", trial);
@@ -135,7 +135,7 @@ impl SimulatedParticipant {
     }
 
     /// What it believes.
-    pub fn beliefs(&self) -> &Beliefs {
+    pub fn beliefs(&self) -> &ParticipantBeliefs {
         &self.beliefs
     }
 
@@ -176,7 +176,7 @@ impl SimulatedParticipant {
     }
 
     /// Does what is due now. `state` is the truth: only what the eyes rest on is taken from it, and the record's P(truth).
-    pub fn act(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<Deed> {
+    pub fn act(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<ParticipantAction> {
         if !self.is_started {
             return None;
         }
@@ -191,7 +191,7 @@ impl SimulatedParticipant {
         if self.rethink {
             self.think(now, cost);
         }
-        Some(Deed::Gaze(self.eyes.sample(now)))
+        Some(ParticipantAction::Gaze(self.eyes.sample(now)))
     }
 
     /// An agent pressed a button: of the robot's press only that it happened is noticed.

@@ -9,15 +9,15 @@ use crate::base::rng::Stream;
 /// How one trait is distributed: around a median, with a spread that is relative to it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Spread {
+pub struct TraitSpread {
     pub median: f64,
     /// Standard deviation of the logarithm (of the odds, for a probability).
     pub sigma: f64,
 }
 
-impl Spread {
-    const fn of(median: f64, sigma: f64) -> Spread {
-        Spread { median, sigma }
+impl TraitSpread {
+    const fn from_median(median: f64, sigma: f64) -> TraitSpread {
+        TraitSpread { median, sigma }
     }
 
     /// A positive quantity: log-normal, within three sigma.
@@ -48,61 +48,61 @@ pub(super) fn chance(random: &mut Stream, p: f64) -> bool {
 #[serde(deny_unknown_fields, default)]
 pub struct Population {
     /// From one press to the next, in seconds, for somebody with some practice.
-    pub press_s: Spread,
+    pub press_s: TraitSpread,
     /// Standard deviation of the logarithm of one person's times between presses.
     pub press_jitter: f64,
     /// How much slower the first presses are (0.3: by 30 %), and after how many presses half of that is gone.
     pub novice_slowdown: f64,
     pub practice_presses: f64,
     /// Chance to hit the neighbouring button on the table.
-    pub slip: Spread,
+    pub slip: TraitSpread,
     /// Chance to take the look-alike from the storage.
-    pub look_alike_slip: Spread,
+    pub look_alike_slip: TraitSpread,
     /// Chance of a press without a thought: something that can be done, but helps nothing.
-    pub thoughtless: Spread,
+    pub thoughtless: TraitSpread,
     /// Chance to notice that the own hand slipped.
     pub notices_slip: f64,
     /// Chance to press again, as if it had not been pressed well, what should have done something and did not, before asking
     /// oneself why (perseveration).
     pub insists: f64,
     /// Chance to look at a place right before using it.
-    pub checks: Spread,
+    pub checks: TraitSpread,
     /// Chance to look once more before a press if the last look is some time ago.
-    pub makes_sure: Spread,
+    pub makes_sure: TraitSpread,
     /// Chance that a change anywhere on the display draws the eye.
-    pub capture: Spread,
+    pub capture: TraitSpread,
     /// Chance that a new order draws the eye.
-    pub order_capture: Spread,
+    pub order_capture: TraitSpread,
     /// Chance that a look goes to no place of the task.
-    pub wanders: Spread,
+    pub wanders: TraitSpread,
     /// Weight of the robot's hand among the places worth watching (a place of the next press has 1).
-    pub watches_robot: Spread,
+    pub watches_robot: TraitSpread,
     /// Length of a fixation in seconds.
-    pub fixation_s: Spread,
+    pub fixation_s: TraitSpread,
     /// Chance to take a content for one that looks like it.
-    pub misreads: Spread,
+    pub misreads: TraitSpread,
     /// How much belief in an unseen robot's hand gives way when the robot presses something.
-    pub doubts_robot_hand: Spread,
+    pub doubts_robot_hand: TraitSpread,
     /// The same for an unseen shared place.
-    pub doubts_places: Spread,
+    pub doubts_places: TraitSpread,
     /// Belief in the true recipe after the instruction, on a menu of six.
-    pub learned: Spread,
+    pub learned: TraitSpread,
     /// Belief in the true recipe to which an unused memory of it decays, on a menu of six.
-    pub half_forgotten: Spread,
+    pub half_forgotten: TraitSpread,
     /// Half-life of that decay in seconds.
-    pub half_life_s: Spread,
+    pub half_life_s: TraitSpread,
     /// How often the thread is lost while working on an order, per minute: its recipe is recalled anew.
-    pub loses_thread_per_min: Spread,
+    pub loses_thread_per_min: TraitSpread,
     /// Weight of a look-alike topping among the false memories of a recipe (another one has 1).
     pub confuses_look_alikes: f64,
     /// Chance to question the own recipe when what the robot does or makes does not fit it.
-    pub takes_hints: Spread,
+    pub takes_hints: TraitSpread,
     /// After so many seconds without anything to do the person looks around and doubts its recipes.
-    pub patience_s: Spread,
+    pub patience_s: TraitSpread,
     /// How long the person stays with one order, in seconds.
-    pub commitment_s: Spread,
+    pub commitment_s: TraitSpread,
     /// Chance to notice a signal; at most 0.85.
-    pub notices_signal: Spread,
+    pub notices_signal: TraitSpread,
     /// From a signal to its reading, least and most, in seconds.
     pub signal_after_s: [f64; 2],
     /// Chance to read a shown recipe wrongly.
@@ -126,34 +126,34 @@ pub struct Experience {
 impl Default for Population {
     fn default() -> Self {
         Population {
-            press_s: Spread::of(1.5, 0.12),
+            press_s: TraitSpread::from_median(1.5, 0.12),
             press_jitter: 0.3,
             novice_slowdown: 0.3,
             practice_presses: 25.0,
-            slip: Spread::of(0.016, 0.4),
-            look_alike_slip: Spread::of(0.012, 0.4),
-            thoughtless: Spread::of(0.005, 0.4),
+            slip: TraitSpread::from_median(0.016, 0.4),
+            look_alike_slip: TraitSpread::from_median(0.012, 0.4),
+            thoughtless: TraitSpread::from_median(0.005, 0.4),
             notices_slip: 0.85,
             insists: 0.0,
-            checks: Spread::of(0.9, 0.3),
-            makes_sure: Spread::of(0.4, 0.5),
-            capture: Spread::of(0.6, 0.3),
-            order_capture: Spread::of(0.75, 0.3),
-            wanders: Spread::of(0.15, 0.3),
-            watches_robot: Spread::of(1.2, 0.3),
-            fixation_s: Spread::of(0.3, 0.12),
-            misreads: Spread::of(0.02, 0.3),
-            doubts_robot_hand: Spread::of(0.12, 0.2),
-            doubts_places: Spread::of(0.02, 0.2),
-            learned: Spread::of(0.89, 0.4),
-            half_forgotten: Spread::of(0.7, 0.3),
-            half_life_s: Spread::of(240.0, 0.3),
-            loses_thread_per_min: Spread::of(0.15, 0.4),
+            checks: TraitSpread::from_median(0.9, 0.3),
+            makes_sure: TraitSpread::from_median(0.4, 0.5),
+            capture: TraitSpread::from_median(0.6, 0.3),
+            order_capture: TraitSpread::from_median(0.75, 0.3),
+            wanders: TraitSpread::from_median(0.15, 0.3),
+            watches_robot: TraitSpread::from_median(1.2, 0.3),
+            fixation_s: TraitSpread::from_median(0.3, 0.12),
+            misreads: TraitSpread::from_median(0.02, 0.3),
+            doubts_robot_hand: TraitSpread::from_median(0.12, 0.2),
+            doubts_places: TraitSpread::from_median(0.02, 0.2),
+            learned: TraitSpread::from_median(0.89, 0.4),
+            half_forgotten: TraitSpread::from_median(0.7, 0.3),
+            half_life_s: TraitSpread::from_median(240.0, 0.3),
+            loses_thread_per_min: TraitSpread::from_median(0.15, 0.4),
             confuses_look_alikes: 3.0,
-            takes_hints: Spread::of(0.15, 0.4),
-            patience_s: Spread::of(4.0, 0.25),
-            commitment_s: Spread::of(12.0, 0.3),
-            notices_signal: Spread::of(0.82, 0.15),
+            takes_hints: TraitSpread::from_median(0.15, 0.4),
+            patience_s: TraitSpread::from_median(4.0, 0.25),
+            commitment_s: TraitSpread::from_median(12.0, 0.3),
+            notices_signal: TraitSpread::from_median(0.82, 0.15),
             signal_after_s: [0.5, 1.5],
             misreads_signal: 0.03,
             recipes_gained: 1.0,
@@ -234,7 +234,7 @@ impl Population {
         let spreads = spreads
             .into_iter()
             .chain(amounts.map(|(key, spread)| (key, spread, is_amount(spread.median), AMOUNT_SPREAD)));
-        let wrong = |spread: &Spread, is_median: bool| !is_median || !(0.0..=MOST_SIGMA).contains(&spread.sigma);
+        let wrong = |spread: &TraitSpread, is_median: bool| !is_median || !(0.0..=MOST_SIGMA).contains(&spread.sigma);
         for (key, spread, is_median, remedy) in spreads {
             if wrong(&spread, is_median) {
                 return Some((key, format!("median = {}, sigma = {}", spread.median, spread.sigma), remedy));

@@ -1,6 +1,6 @@
 //! What a participant believes when it presses, and why it presses what it presses, for the record.
 
-use super::beliefs::Beliefs;
+use super::beliefs::ParticipantBeliefs;
 use super::decision::good_presses;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{AspectId, AspectKind, ButtonId, ContentId, Kitchen, Recipes, State};
@@ -8,7 +8,7 @@ use crate::mind::{AspectBelief, BeliefWitness, WORTH_TELLING};
 
 /// Writes down every aspect: the value held most likely, the probability that is given to the truth, and those of all
 /// values that are worth telling.
-pub fn witness(kitchen: &Kitchen, beliefs: &Beliefs, state: State, cause: String) -> BeliefWitness {
+pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, cause: String) -> BeliefWitness {
     let of = |index: usize| {
         let (aspect, id) = (&kitchen.aspects[index], AspectId(index as u8));
         let values = aspect.labels.iter().zip(beliefs.distribution(id)).filter(|(_, p)| **p >= WORTH_TELLING);
@@ -29,7 +29,13 @@ fn rounded(p: f64) -> f64 {
 
 /// Why the person presses what it believes to help: because it does, or because of the belief without which it would not
 /// seem to.
-pub fn cause(kitchen: &Kitchen, cost: &mut CostToGo, beliefs: &Beliefs, state: State, button: ButtonId) -> String {
+pub fn cause(
+    kitchen: &Kitchen,
+    cost: &mut CostToGo,
+    beliefs: &ParticipantBeliefs,
+    state: State,
+    button: ButtonId,
+) -> String {
     let recipes = kitchen.true_recipes();
     let is_good = |cost: &mut CostToGo, state: State, recipes: &Recipes| {
         good_presses(kitchen, cost, state, recipes).iter().any(|(good, _)| *good == button)

@@ -17,7 +17,7 @@ use crate::analysis::advisor::{AdviceRequest, Advisor};
 use crate::base::words::count;
 use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
-use crate::communication::reference::{ReferencePlanner, Worth};
+use crate::communication::reference::{ReferenceBenefit, ReferencePlanner};
 use crate::edge::file_error::FileResult;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
@@ -82,7 +82,7 @@ struct Step {
     took_s: f64,
     ours: Vec<(Signal, f64)>,
     converged: Vec<(Signal, f64)>,
-    plain: Option<(f64, Vec<Worth>)>,
+    plain: Option<(f64, Vec<ReferenceBenefit>)>,
 }
 
 /// Holds the planner's answers against better ones. `done` is called after each step of each planner.
@@ -166,7 +166,7 @@ impl Bench {
     }
 
     /// How long the plain reference takes for a step, in seconds, and what it answers.
-    fn plain(&self, step: &Step) -> (f64, Vec<Worth>) {
+    fn plain(&self, step: &Step) -> (f64, Vec<ReferenceBenefit>) {
         let session = &self.asked[step.recording].session;
         let (human, assistant) = (session.spec.human.clone(), session.spec.assistant.clone());
         let plain = ReferencePlanner::new(self.kitchen.clone(), human, assistant, session.seed());

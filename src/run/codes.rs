@@ -39,7 +39,7 @@ impl CodedRecording {
         let kitchen = &replay.session().kitchen;
         let is_known = !judged.is_empty() && judged.iter().all(|press| press.belief_known);
         let folder = replay.log().folder().to_path_buf();
-        let codable = Codable::of(kitchen, judged);
+        let codable = Codable::from_presses(kitchen, judged);
         Ok(CodedRecording {
             codes: codes::read_all(&folder, &codable)?,
             codable,
@@ -160,7 +160,7 @@ pub fn export(recordings: &[CodedRecording], file: &Path) -> Result<u64, RunErro
     let mut rows = Vec::new();
     for one in recordings {
         for (rater, codes) in &one.codes {
-            rows.extend(codes.0.iter().map(|(press, code)| codes::Row {
+            rows.extend(codes.0.iter().map(|(press, code)| codes::CodeRow {
                 line: 0,
                 recording: one.name(),
                 rater: rater.clone(),

@@ -18,13 +18,13 @@ use crate::console::view::theme::Theme;
 use crate::edge::gaze_file::{self, GazeFile};
 use crate::edge::gaze_input::GazeNews;
 use crate::edge::gaze_json;
-use crate::edge::pupil::{self, Capture, Order};
-use crate::edge::terminal::{Hands, Screen, asked_to_end, outlive_file_limits, theme};
+use crate::edge::pupil::{self, CaptureAddress, CaptureRequest};
+use crate::edge::terminal::{TerminalInput, TerminalScreen, asked_to_end, outlive_file_limits, theme};
 use crate::gaze::surface::SurfaceMap;
 use crate::gaze::tags::{DisplayTags, TagError};
 use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
-use crate::session::calibration::Calibrated;
+use crate::session::calibration::AcceptedGazeCheck;
 use crate::session::settings::GazeSource;
 
 /// A question is drawn so often.
@@ -43,7 +43,7 @@ use wall::WallDisplay;
 
 /// What the recordings of a series share.
 pub(super) struct OperatorDesk {
-    pub screen: Screen,
+    pub screen: TerminalScreen,
     theme: Theme,
     pub seat: OperatorInput,
     pub tracker: GazeTracker,
@@ -52,7 +52,7 @@ pub(super) struct OperatorDesk {
 
 /// Whoever sits there, and what asks the program to end.
 pub(super) struct OperatorInput {
-    hands: Hands,
+    hands: TerminalInput,
     end: Pin<Box<dyn Future<Output = io::Result<()>>>>,
 }
 
@@ -61,23 +61,23 @@ pub(super) struct OperatorInput {
 pub(super) struct GazeTracker {
     news: Option<Receiver<GazeNews>>,
     /// Where Pupil Capture takes orders.
-    orders: Option<Sender<Order>>,
+    orders: Option<Sender<CaptureRequest>>,
     file: Option<Arc<GazeFile>>,
     /// What is known of the tracker: a recording that begins later was not told.
     link: Option<GazeNews>,
     sees_display: Option<GazeNews>,
     /// The check of the calibration that was accepted last.
-    calibrated: Option<Calibrated>,
+    calibrated: Option<AcceptedGazeCheck>,
 }
 
 impl GazeTracker {
     /// What is known of the gaze, for the next recording.
-    pub fn keep(&mut self, calibrated: Option<Calibrated>) {
+    pub fn keep(&mut self, calibrated: Option<AcceptedGazeCheck>) {
         self.calibrated = calibrated;
     }
 
     /// What was accepted in the recording before.
-    pub fn calibrated(&self) -> Option<&Calibrated> {
+    pub fn calibrated(&self) -> Option<&AcceptedGazeCheck> {
         self.calibrated.as_ref()
     }
 }
@@ -91,9 +91,9 @@ impl OperatorDesk {
         outlive_file_limits().map_err(LiveError::Terminal)?;
         let tracker = GazeTracker::open(spec, kitchen).await?;
         let wall = WallDisplay::open(spec).await?;
-        let screen = Screen::take().map_err(LiveError::Terminal)?;
+        let screen = TerminalScreen::take().map_err(LiveError::Terminal)?;
         let theme = theme(&spec.console, screen.ground);
-        let seat = OperatorInput { hands: Hands::default(), end: Box::pin(asked_to_end()) };
+        let seat = OperatorInput { hands: TerminalInput::default(), end: Box::pin(asked_to_end()) };
         Ok(OperatorDesk { screen, theme, seat, tracker, wall })
     }
 
@@ -159,7 +159,7 @@ impl GazeTracker {
             GazeSource::Pupil => {
                 let (address, surface_name) = (tracker.address.clone(), tracker.surface.clone());
                 let (port, records) = (tracker.port, tracker.record);
-                let capture = Capture { address, port, surface: surface_name, map: surface()?, records };
+                let capture = CaptureAddress { address, port, surface: surface_name, map: surface()?, records };
                 let (news, orders) = pupil::follow(capture);
                 Ok(GazeTracker { news: Some(news), orders: Some(orders), ..GazeTracker::default() })
             }
@@ -204,7 +204,7 @@ impl GazeTracker {
         self.file.clone()
     }
 
-    pub fn orders(&self) -> Option<Sender<Order>> {
+    pub fn orders(&self) -> Option<Sender<CaptureRequest>> {
         self.orders.clone()
     }
 
@@ -214,7 +214,7 @@ impl GazeTracker {
             return;
         };
         let (sender, done) = oneshot::channel();
-        if orders.try_send(Order::Report(sender)).is_ok() {
+        if orders.try_send(CaptureRequest::Report(sender)).is_ok() {
             // It may just be gone.
             let _ = timeout(SETTLE, done).await;
         }

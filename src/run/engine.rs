@@ -21,7 +21,7 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen};
 use crate::measures::JudgedPress;
 use crate::mind::dirichlet::DirichletBelief;
-use crate::participant::{Deed, SimulatedParticipant};
+use crate::participant::{ParticipantAction, SimulatedParticipant};
 use crate::session::admit::{admit, hygiene};
 use crate::session::apply::ApplyError;
 use crate::session::event::{EndReason, SignalEnd};
@@ -188,12 +188,12 @@ impl Engine {
         let state = self.session().state;
         let deed = self.participant.as_mut().and_then(|one| one.act(now, state, &mut self.follower.cost));
         match deed {
-            Some(Deed::Gaze(sample)) if self.session().spec.participant.simulates_gaze() => {
+            Some(ParticipantAction::Gaze(sample)) if self.session().spec.participant.simulates_gaze() => {
                 self.record_own(now, Event::Gaze(sample));
             }
             // A tracker tells where somebody else looks.
-            Some(Deed::Gaze(_)) | None => {}
-            Some(Deed::Press { button, belief }) => {
+            Some(ParticipantAction::Gaze(_)) | None => {}
+            Some(ParticipantAction::Press { button, belief }) => {
                 let button = self.session().kitchen.button(Agent::Human, button).name.clone();
                 self.record_own(now, Event::ParticipantBelieves(belief));
                 self.record_own(now, Event::Press { agent: Agent::Human, button, at_ns: None });

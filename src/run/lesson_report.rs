@@ -12,8 +12,8 @@ use crate::edge::file_error::FileResult;
 use crate::edge::training::{self, JudgedBelief, JudgedRecording, JudgedSignal, TrainingRecord};
 use crate::history::wording;
 use crate::kitchen::{AspectId, Kitchen};
-use crate::measures::matching::{Content, Kind, Said, Tally, WINDOW};
-use crate::measures::wizard::{Spell, TrainingCriterion, WizardMeasures};
+use crate::measures::matching::{CommunicationEvent, CommunicationKind, CommunicationTarget, MatchCounts, WINDOW};
+use crate::measures::wizard::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
 use crate::mind::BeliefWitness;
 use crate::session::Session;
 
@@ -64,7 +64,7 @@ impl TrainingSummary {
 }
 
 /// What a spell was about, as it is known before anything was said of it.
-pub fn unheard(session: &Session, spell: &Spell) -> JudgedBelief {
+pub fn unheard(session: &Session, spell: &FalseBeliefPeriod) -> JudgedBelief {
     JudgedBelief {
         aspect: session.kitchen.aspects[spell.aspect.index()].name.clone(),
         began_ns: spell.began,
@@ -206,14 +206,14 @@ pub fn describe(record: &TrainingRecord, path: &Path) -> String {
 pub fn with_oneself(kitchen: &Kitchen, one: &JudgedRecording, other: &JudgedRecording) -> Option<f64> {
     let said = |signal: &JudgedSignal| {
         let kind = match signal.signal {
-            Signal::ShowRecipe(_) => Kind::Recipe,
-            Signal::Highlight(_) => Kind::Highlight,
+            Signal::ShowRecipe(_) => CommunicationKind::Recipe,
+            Signal::Highlight(_) => CommunicationKind::Highlight,
         };
-        let content = Content { kind, target: kitchen.location_named(signal.signal.target()) };
-        Said { press: signal.press, clock: signal.clock_ns, content }
+        let content = CommunicationTarget { kind, target: kitchen.location_named(signal.signal.target()) };
+        CommunicationEvent { press: signal.press, clock: signal.clock_ns, content }
     };
-    let [one, again] = [one, other].map(|time| time.signals.iter().map(said).collect::<Vec<Said>>());
-    let mut tally = Tally::default();
+    let [one, again] = [one, other].map(|time| time.signals.iter().map(said).collect::<Vec<CommunicationEvent>>());
+    let mut tally = MatchCounts::default();
     tally.add(&one, &again, other.presses, WINDOW);
     tally.similarity().kappa
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::live::LiveError;
 use super::series::{slot_name, stands};
 use crate::edge::recordings;
-use crate::session::plan::{Outcome, Progress, Study};
+use crate::session::plan::{Progress, RecordingOutcome, Study};
 
 /// What `tomcom plan SESSION` prints.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -34,7 +34,7 @@ impl StudyPlanSummary {
             let (recording, code) = (&stranger.recording, &stranger.code);
             return Err(LiveError::Plan(format!("{recording} of {code}, who is not in the plan")));
         }
-        let progress = |participant| Progress::of(study, participant, &made).map_err(LiveError::Plan);
+        let progress = |participant| Progress::from_recordings(study, participant, &made).map_err(LiveError::Plan);
         let participants = (0..codes.len()).map(progress).collect::<Result<Vec<_>, _>>()?;
         Ok(StudyPlanSummary {
             plan: study.plan.name.clone(),
@@ -82,11 +82,11 @@ fn attempts(progress: &Progress) -> String {
         for attempt in &stand.recordings {
             let version = if attempt.other_version { ", recorded under another version of the plan" } else { "" };
             let how = match &attempt.outcome {
-                Outcome::Complete if attempt.other_version => "done",
-                Outcome::Complete => continue,
-                Outcome::Open => "open",
-                Outcome::Excluded { reason } => &format!("excluded ({reason})"),
-                Outcome::Void { reason } => reason,
+                RecordingOutcome::Complete if attempt.other_version => "done",
+                RecordingOutcome::Complete => continue,
+                RecordingOutcome::Open => "open",
+                RecordingOutcome::Excluded { reason } => &format!("excluded ({reason})"),
+                RecordingOutcome::Void { reason } => reason,
             };
             lines += &format!("      {} in {}: {how}{version}\n", slot_name(progress, slot), attempt.recording);
         }

@@ -124,7 +124,7 @@ pub fn each_once(recordings: &[PathBuf]) -> FileResult<()> {
         // What is not there is told when it is opened.
         if !known.insert(log.canonicalize().unwrap_or(log)) {
             let remedy = "each recording once".to_string();
-            return Err(FileError::of(recording, "the same recording twice".to_string(), remedy));
+            return Err(FileError::from_finding(recording, "the same recording twice".to_string(), remedy));
         }
     }
     Ok(())
@@ -148,7 +148,7 @@ impl SameKitchen {
         }
         let found = format!("a recording of the kitchen {}, beside {}", kitchen.name, path.display());
         let remedy = format!("recordings of one kitchen, here of {}", first.name);
-        Err(FileError::of(recording, found, remedy))
+        Err(FileError::from_finding(recording, found, remedy))
     }
 
     /// The kitchen of all of them.
@@ -158,7 +158,7 @@ impl SameKitchen {
     pub fn kitchen(self) -> FileResult<Arc<Kitchen>> {
         let none = || {
             let remedy = "at least one recording".to_string();
-            FileError::of(Path::new("."), "no recording".to_string(), remedy)
+            FileError::from_finding(Path::new("."), "no recording".to_string(), remedy)
         };
         self.first.map(|(_, kitchen)| kitchen).ok_or_else(none)
     }

@@ -8,15 +8,15 @@ use std::path::{Path, PathBuf};
 use super::replay::Replay;
 use crate::base::time::SessionTime;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LOG_NAME, Lock, LogReader};
-use crate::edge::rerun::{Identity, Lane, Outlets, WebViewer, Writer, uri};
+use crate::edge::log::{LOG_NAME, LogReader, RecordingLock};
+use crate::edge::rerun::{RerunWriter, StreamIdentity, StreamLane, StreamOutlets, WebViewer, uri};
 use crate::edge::rrd::{self, RRD_NAME, RrdState};
 use crate::edge::stream::{PORTS, is_free};
 use crate::edge::terminal::asked_to_end;
 use crate::edge::viewer::{self, Viewer};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::scene::shown::slug;
-use crate::scene::{Derived, Scene};
+use crate::scene::{DerivedData, SessionScene};
 use crate::session::Stamped;
 
 /// Where the server and the viewer for browsers are looked for, and the ports after.
@@ -86,7 +86,7 @@ pub struct OngoingRecording {
 pub fn running(recordings: &[PathBuf]) -> FileResult<Vec<OngoingRecording>> {
     let mut running = Vec::new();
     for recording in recordings {
-        if let Some(holder) = Lock::holder(LogReader::open(recording)?.folder()) {
+        if let Some(holder) = RecordingLock::holder(LogReader::open(recording)?.folder()) {
             running.push(OngoingRecording { recording: recording.clone(), viewers: holder.viewers });
         }
     }
@@ -100,7 +100,7 @@ pub enum ReviewOutcome {
     /// The viewer was opened on the file.
     Opened(SavedStream),
     /// The viewer is served until this is dropped.
-    Served { url: String, because: &'static str, _serving: Box<(Writer, WebViewer)> },
+    Served { url: String, because: &'static str, _serving: Box<(RerunWriter, WebViewer)> },
 }
 
 /// Opens recordings in the viewer, several beside each other by the clocks of their trials.
@@ -150,7 +150,7 @@ pub fn save(recording: &Path) -> Result<PathBuf, RerunError> {
 fn serve(recordings: &[PathBuf], at: Option<SessionTime>, because: &'static str) -> Result<ReviewOutcome, RerunError> {
     let playing = playing(recordings)?;
     let (server, web, viewer) = ports().map_err(RerunError::Web)?;
-    let outlets = Outlets { file: None, server: Some((server, true)), at };
+    let outlets = StreamOutlets { file: None, server: Some((server, true)), at };
     let writer = write(playing, recordings, &outlets)?.map_err(RerunError::Web)?;
     let url = format!("http://{web}/?url={}", uri(server).replace('+', "%2B").replace(':', "%3A").replace('/', "%2F"));
     viewer::browse(&url);
@@ -186,7 +186,7 @@ fn saved(recordings: &[PathBuf], place: Option<&Path>) -> Result<SavedStream, Re
                 return Ok(SavedStream { path, made: false, because: None });
             }
             // Nobody else may be writing it: then, or where nothing can be written, it goes elsewhere.
-            locked = Lock::take(&folder).ok();
+            locked = RecordingLock::take(&folder).ok();
             if locked.is_some() {
                 (because, logs) = (state.reason(), Some(parts));
                 path
@@ -210,7 +210,7 @@ fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunError
     let mut begun = path.as_os_str().to_os_string();
     begun.push(".new");
     let begun = PathBuf::from(begun);
-    let outlets = Outlets { file: Some(begun.clone()), server: None, at: None };
+    let outlets = StreamOutlets { file: Some(begun.clone()), server: None, at: None };
     let written = playing(recordings).map_err(RerunError::from).and_then(|all| write(all, recordings, &outlets));
     match written {
         Ok(Ok(_)) => Ok(fs::rename(&begun, path)),
@@ -244,18 +244,22 @@ fn playing(recordings: &[PathBuf]) -> FileResult<Vec<Playing>> {
         let name = name(recording);
         let spec = &playing.replay.log().header.session;
         let title = format!("{} {} ({name})", spec.participant.code, spec.trial.condition.name());
-        Ok(Playing { lane: Lane { root: format!("{}_{}", nth + 1, slug(&name)), title }, ..playing })
+        Ok(Playing { lane: StreamLane { root: format!("{}_{}", nth + 1, slug(&name)), title }, ..playing })
     };
     recordings.iter().enumerate().map(one).collect()
 }
 
 /// Writes recordings to these outlets, one after the other; the outer error is theirs, the inner one of the outlets.
-fn write(playing: Vec<Playing>, recordings: &[PathBuf], outlets: &Outlets) -> Result<io::Result<Writer>, RerunError> {
-    let lanes: Vec<Lane> = playing.iter().map(|one| one.lane.clone()).collect();
+fn write(
+    playing: Vec<Playing>,
+    recordings: &[PathBuf],
+    outlets: &StreamOutlets,
+) -> Result<io::Result<RerunWriter>, RerunError> {
+    let lanes: Vec<StreamLane> = playing.iter().map(|one| one.lane.clone()).collect();
     let names: Vec<String> = recordings.iter().map(|recording| name(recording)).collect();
     let began: Vec<String> = playing.iter().map(Playing::began).collect();
     let id = format!("{} {} {}", names.join(" "), began.join(" "), rrd::mark());
-    let writer = match Writer::open(&Identity { id, name: names.join(" | ") }, outlets, &lanes) {
+    let writer = match RerunWriter::open(&StreamIdentity { id, name: names.join(" | ") }, outlets, &lanes) {
         Ok(writer) => writer,
         Err(error) => return Ok(Err(error)),
     };
@@ -269,15 +273,15 @@ fn write(playing: Vec<Playing>, recordings: &[PathBuf], outlets: &Outlets) -> Re
 /// A recording on its way into a stream.
 struct Playing {
     replay: Replay,
-    scene: Scene,
-    lane: Lane,
+    scene: SessionScene,
+    lane: StreamLane,
 }
 
 impl Playing {
     fn open(recording: &Path) -> FileResult<Playing> {
         let replay = Replay::open(recording)?.without_causes();
-        let scene = Scene::new(replay.session(), 0);
-        Ok(Playing { replay, scene, lane: Lane::default() })
+        let scene = SessionScene::new(replay.session(), 0);
+        Ok(Playing { replay, scene, lane: StreamLane::default() })
     }
 
     /// What tells it from other recordings of the same name.
@@ -287,7 +291,7 @@ impl Playing {
     }
 
     /// Writes everything that the recording holds; the number of rows.
-    fn write(mut self, writer: &Writer) -> FileResult<u64> {
+    fn write(mut self, writer: &RerunWriter) -> FileResult<u64> {
         writer.fixed(&self.lane, &self.scene.fixed());
         let mut rows = writer.moment(&self.lane, &self.scene.opening());
         let mut held: Option<(Stamped, Option<DirichletBelief>)> = None;
@@ -297,7 +301,7 @@ impl Playing {
                 // An estimate is shown when everything of its time has happened.
                 let is_last = next.as_ref().is_none_or(|next| next.stamped.time > stamped.time);
                 let judged = &self.replay.follower.judged;
-                let derived = Derived { judged, belief: belief.as_ref().filter(|_| is_last) };
+                let derived = DerivedData { judged, belief: belief.as_ref().filter(|_| is_last) };
                 let moments = self.scene.see(&stamped, derived);
                 rows += moments.iter().map(|moment| writer.moment(&self.lane, moment)).sum::<u64>();
             }

@@ -6,7 +6,7 @@ use super::engine::Engine;
 use super::verify::RerunRecording;
 use crate::base::time::SessionTime;
 use crate::edge::file_error::FileError;
-use crate::edge::log::{LOG_NAME, Lock, LogReader, WriteError, check_continued};
+use crate::edge::log::{LOG_NAME, LogReader, RecordingLock, WriteError, check_continued};
 use crate::session::header::Continues;
 use crate::session::{Event, Header, Stamped};
 
@@ -48,7 +48,7 @@ pub struct ResumedSession {
     pub time: SessionTime,
     /// The folder of the part before, which nobody else may continue or write meanwhile.
     pub folder: PathBuf,
-    pub lock: Lock,
+    pub lock: RecordingLock,
 }
 
 /// Runs a cut recording again to its end. A trial that was running is paused there: who takes part has to come back.
@@ -65,7 +65,7 @@ pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
         return Err(ResumeError::Simulated(folder));
     }
     log.header.session.require_built_live().map_err(|missing| FileError::not_built(&folder, missing))?;
-    let lock = Lock::take(&folder)?;
+    let lock = RecordingLock::take(&folder)?;
     check_continued(&folder)?;
     let RerunRecording { log, mut again, difference, .. } = RerunRecording::from_log(log)?;
     if let Some(difference) = difference {

@@ -18,8 +18,8 @@ use crate::console::playback::{Playback, ReplayKey, SPEEDS};
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::edge::file_error::FileError;
 use crate::edge::key_file::key_map;
-use crate::edge::log::{Ending, codes};
-use crate::edge::terminal::{Hands, Screen, asked_to_end, theme};
+use crate::edge::log::{LogEnding, codes};
+use crate::edge::terminal::{TerminalInput, TerminalScreen, asked_to_end, theme};
 use crate::history::landmark::ReplayLandmark;
 use crate::measures::coding::Codable;
 use crate::session::Event;
@@ -73,7 +73,7 @@ pub fn review(recording: &Path, follow: bool, compare: Option<&CompareRequest>) 
 /// The recording or its codes cannot be read, or there is no terminal.
 pub fn rate(recording: &Path, rater: &str) -> Result<(), ReviewError> {
     let film = SeekableReplay::open(recording)?.blinded();
-    let codable = Codable::of(&film.replay.session().kitchen, &film.replay.follower.judged);
+    let codable = Codable::from_presses(&film.replay.session().kitchen, &film.replay.follower.judged);
     let codes = codes::read(film.replay.log().folder(), rater, &codable)?;
     let coding = RaterSession { rater: rater.to_string(), errors: codable.errors, codes };
     on_thread(Review::open(film, recording, false, None, Some(coding))?)
@@ -87,7 +87,7 @@ fn on_thread(review: Review) -> Result<(), ReviewError> {
 struct Review {
     film: SeekableReplay,
     model: ConsoleModel,
-    screen: Screen,
+    screen: TerminalScreen,
     opened: Instant,
     /// The moment that is shown, and when it was reached.
     now: SessionTime,
@@ -108,8 +108,8 @@ impl Review {
         compare: Option<&CompareRequest>,
         coding: Option<RaterSession>,
     ) -> Result<Review, ReviewError> {
-        let screen = Screen::take().map_err(ReviewError::Terminal)?;
-        let size = Screen::size().map_err(ReviewError::Terminal)?;
+        let screen = TerminalScreen::take().map_err(ReviewError::Terminal)?;
+        let size = TerminalScreen::size().map_err(ReviewError::Terminal)?;
         let keys = film.replay.log().header.keys.as_ref();
         let keys = KeyBindings::replay(&film.session.kitchen, &key_map(keys)?)?;
         let keys = if compare.is_some() { keys.with_comparison() } else { keys };
@@ -123,7 +123,7 @@ impl Review {
         });
         let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
         let excluded = film.standing()?.excluded.is_some();
-        let running = !follow && film.replay.log().ending() == Ending::Running;
+        let running = !follow && film.replay.log().ending() == LogEnding::Running;
         model.playback = Some(Playback { excluded, running, ..Playback::new(name) });
         let now = Instant::now();
         let mut review = Review {
@@ -149,7 +149,7 @@ impl Review {
     }
 
     async fn run(mut self) -> Result<(), ReviewError> {
-        let mut hands = Hands::default();
+        let mut hands = TerminalInput::default();
         let end = asked_to_end();
         tokio::pin!(end);
         let mut next_frame = Instant::now();

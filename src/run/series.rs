@@ -10,7 +10,7 @@ use crate::analysis::watcher::CompareRequest;
 use crate::console::question::QuestionPage;
 use crate::edge::files::SessionFiles;
 use crate::edge::recordings;
-use crate::session::plan::{Next, Progress, Study};
+use crate::session::plan::{NextRecording, Progress, Study};
 
 /// What came of one session or a series.
 #[derive(Clone, Debug)]
@@ -85,17 +85,17 @@ impl Planned {
 
     fn progress(&self) -> Result<Progress, LiveError> {
         let made = recordings::of_plan(&self.series.out, &self.study.plan.name)?;
-        Progress::of(&self.study, self.series.participant, &made).map_err(LiveError::Plan)
+        Progress::from_recordings(&self.study, self.series.participant, &made).map_err(LiveError::Plan)
     }
 
     async fn run(self) -> Result<SeriesOutcome, LiveError> {
         let mut done = Vec::new();
         let mut progress = self.progress()?;
-        if progress.next == Next::Finished {
+        if progress.next == NextRecording::Finished {
             return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
         }
         let mut desk = OperatorDesk::take(&self.series.files.spec, &self.series.files.kitchen.kitchen).await?;
-        while progress.next != Next::Finished {
+        while progress.next != NextRecording::Finished {
             let begun = match self.choose(&progress, &mut desk).await? {
                 Choice::Begin(begun) => begun,
                 Choice::Leave(remark) => {
@@ -119,9 +119,9 @@ impl Planned {
     /// Gets the next recording ready, after what has to be asked first.
     async fn choose(&self, progress: &Progress, desk: &mut OperatorDesk) -> Result<Choice, LiveError> {
         let (slot, attempt, open) = match &progress.next {
-            Next::Begin { slot, attempt } => (*slot, *attempt, None),
-            Next::Choose { recording, slot, attempt } => (*slot, *attempt, Some(recording)),
-            Next::Finished => return Ok(Choice::Leave(None)),
+            NextRecording::Begin { slot, attempt } => (*slot, *attempt, None),
+            NextRecording::Choose { recording, slot, attempt } => (*slot, *attempt, Some(recording)),
+            NextRecording::Finished => return Ok(Choice::Leave(None)),
         };
         let (spec, trial) = self.study.settings(progress.wanted(slot, attempt));
         let label = spec.step.as_ref().map_or(String::new(), |step| step.label());
@@ -191,14 +191,14 @@ pub(super) fn slot_name(progress: &Progress, slot: usize) -> String {
 pub(super) fn stands(progress: &Progress) -> String {
     let (code, done, all) = (&progress.code, progress.done(), progress.steps.len());
     match &progress.next {
-        Next::Finished => format!("{code}: everything is done"),
-        Next::Begin { slot, attempt: 1 } => {
+        NextRecording::Finished => format!("{code}: everything is done"),
+        NextRecording::Begin { slot, attempt: 1 } => {
             format!("{code}: {done} of {all} done, next {}", slot_name(progress, *slot))
         }
-        Next::Begin { slot, attempt } => {
+        NextRecording::Begin { slot, attempt } => {
             format!("{code}: {done} of {all} done, next {} again (attempt {attempt})", slot_name(progress, *slot))
         }
-        Next::Choose { slot, recording, .. } => {
+        NextRecording::Choose { slot, recording, .. } => {
             format!("{code}: {done} of {all} done, {} is open in {recording}", slot_name(progress, *slot))
         }
     }

@@ -18,8 +18,8 @@ use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogReader, at_line};
 use crate::history::comparison::{LaneComparison, UnmatchedCommunication};
 use crate::kitchen::{AspectId, Kitchen};
-use crate::measures::matching::{Level, Said, Similarity, Tally, WINDOW};
-use crate::session::screen::Screen;
+use crate::measures::matching::{CommunicationEvent, MatchCounts, MatchShares, Similarity, WINDOW};
+use crate::session::screen::VisibleScreen;
 use crate::session::settings::Condition;
 
 /// The windows of `--sweep`.
@@ -105,7 +105,7 @@ pub struct ContextSummary {
     pub beliefs: Vec<AspectContext>,
     /// What the assistant thought.
     pub advice: Option<Recommendation>,
-    pub screen: Option<Screen>,
+    pub screen: Option<VisibleScreen>,
 }
 
 /// An aspect of the belief.
@@ -171,18 +171,18 @@ impl ComparisonSummary {
     pub fn from_recordings(watched: &[ComparedRecording]) -> ComparisonSummary {
         let counting: Vec<&ComparedRecording> =
             watched.iter().filter(|one| watched.len() == 1 || one.standing.counts()).collect();
-        let mut pairs: Vec<(LanePairSummary, Tally)> = Vec::new();
+        let mut pairs: Vec<(LanePairSummary, MatchCounts)> = Vec::new();
         for one in counting {
-            let said: Vec<Vec<Said>> = one.comparison.lanes.iter().map(|lane| lane.said()).collect();
+            let said: Vec<Vec<CommunicationEvent>> = one.comparison.lanes.iter().map(|lane| lane.said()).collect();
             for (a, b) in (0..said.len()).flat_map(|a| (a + 1..said.len()).map(move |b| (a, b))) {
                 let [of, with] = [a, b].map(|lane| one.comparison.lanes[lane].name.clone());
-                let is_it = |(pair, _): &&mut (LanePairSummary, Tally)| pair.of == of && pair.with == with;
+                let is_it = |(pair, _): &&mut (LanePairSummary, MatchCounts)| pair.of == of && pair.with == with;
                 let window = one.comparison.window;
-                let add = |tally: &mut Tally| tally.add(&said[a], &said[b], one.watcher.presses(), window);
+                let add = |tally: &mut MatchCounts| tally.add(&said[a], &said[b], one.watcher.presses(), window);
                 match pairs.iter_mut().find(is_it) {
                     Some((_, tally)) => add(tally),
                     None => {
-                        let mut tally = Tally::default();
+                        let mut tally = MatchCounts::default();
                         add(&mut tally);
                         let similarity = Similarity::default();
                         pairs.push((LanePairSummary { of, with, window_actions: window, similarity }, tally));
@@ -291,12 +291,12 @@ pub fn open(watched: &[ComparedRecording], number: usize) -> FileResult<String> 
     let [one] = watched else {
         let found = format!("--open {number} with {} recordings", watched.len());
         let remedy = "one recording at a time".to_string();
-        return Err(FileError::of(Path::new("tomcom compare"), found, remedy));
+        return Err(FileError::from_finding(Path::new("tomcom compare"), found, remedy));
     };
     let differences = &one.comparison.differences;
     let Some(difference) = number.checked_sub(1).and_then(|index| differences.get(index)) else {
         let found = format!("--open {number}, of {}", count(differences.len() as u64, "difference", "differences"));
-        return Err(FileError::of(
+        return Err(FileError::from_finding(
             &one.recording,
             found,
             format!("a number from 1 to {}, of the list of differences", differences.len()),
@@ -383,7 +383,7 @@ fn describe_pair(pair: &LanePairSummary) -> String {
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let found = &pair.similarity;
     let lead = found.median_lead_s.map_or("-".to_string(), |lead| format!("{lead:+.1} s"));
-    let line = |what: &str, window: &str, chance: &str, level: Level| {
+    let line = |what: &str, window: &str, chance: &str, level: MatchShares| {
         let [recall, precision, f1] = [level.recall, level.precision, level.f1].map(number);
         format!("{what:<24}{window:>7}{recall:>8}{chance:>8}{precision:>11}{f1:>6}")
     };

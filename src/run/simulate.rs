@@ -164,10 +164,9 @@ pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>,
     (files.spec.trial.condition, files.spec.assistant.shadow) = (Condition::None, Shadow::Off);
     (files.spec.trial.seconds, files.spec.trial.orders) = (seconds, None);
     files.spec.participant = ParticipantSpec::default();
-    files
-        .spec
-        .check()
-        .map_err(|error| Box::new(FileError::of(Path::new("--seconds"), error.found, error.remedy.to_string())))?;
+    files.spec.check().map_err(|error| {
+        Box::new(FileError::from_finding(Path::new("--seconds"), error.found, error.remedy.to_string()))
+    })?;
     // What differs in length is another recording.
     let out = out.join(format!("{seconds}s"));
     let figures = simulate(&SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out }, || ())?;

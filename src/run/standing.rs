@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::edge::file_error::FileResult;
-use crate::edge::log::{LogReader, Ruling, ruling};
+use crate::edge::log::{ExclusionRecord, LogReader, ruling};
 use crate::session::{Event, Session};
 
 /// Why the trial of a recording was aborted, if it was.
@@ -39,7 +39,7 @@ impl ExclusionStatus {
     pub fn from_recording(session: &Session, log: &LogReader) -> FileResult<ExclusionStatus> {
         let at_console = ExclusionStatus::at_console(session);
         Ok(match ruling(log.folder())? {
-            Some(Ruling { excluded, reason, .. }) => {
+            Some(ExclusionRecord { excluded, reason, .. }) => {
                 ExclusionStatus { excluded: excluded.then_some(reason), ..at_console }
             }
             None => at_console,

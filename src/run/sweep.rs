@@ -195,8 +195,9 @@ fn table_name(shard: Shard) -> String {
 
 /// Every combination of the values, the last axis the quickest.
 fn grid(axes: &[SweepAxis]) -> Result<Vec<Cell>, RunError> {
-    let wrong =
-        |found: String, remedy: String| Err(Box::new(FileError::of(Path::new("--sweep"), found, remedy)).into());
+    let wrong = |found: String, remedy: String| {
+        Err(Box::new(FileError::from_finding(Path::new("--sweep"), found, remedy)).into())
+    };
     let twice = axes.iter().enumerate().find(|(index, axis)| axes[..*index].iter().any(|one| one.name == axis.name));
     if let Some((_, axis)) = twice {
         return wrong(format!("{} twice", axis.name), "each setting once, with all its values".to_string());
@@ -233,7 +234,7 @@ fn check_axes(spec: &SessionSpec, axes: &[SweepAxis]) -> Result<(), RunError> {
         let by = decides.map_or("the wizard", ConceptName::name);
         let found = format!("{}, which only {} heeds, where {by} decides", axis.name, concept.name());
         let remedy = format!("--condition assistant --concept {}, or another setting", concept.name());
-        return Err(Box::new(FileError::of(Path::new("--sweep"), found, remedy)).into());
+        return Err(Box::new(FileError::from_finding(Path::new("--sweep"), found, remedy)).into());
     }
     Ok(())
 }
@@ -247,7 +248,7 @@ fn spec_of(spec: &SessionSpec, axes: &[SweepAxis], cell: &Cell) -> Result<Sessio
         Ok(()) => Ok(spec),
         Err(error) => {
             let path = Path::new("--sweep");
-            Err(Box::new(FileError::of(path, error.found, error.remedy.to_string())).into())
+            Err(Box::new(FileError::from_finding(path, error.found, error.remedy.to_string())).into())
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::analysis::trial_summary::{BeliefErrorSummary, TrialSummary};
 use crate::base::words::count;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
-use crate::edge::log::Ending;
+use crate::edge::log::LogEnding;
 use crate::history::wording::{self, location as said};
 use crate::kitchen::{Agent, Kitchen};
 use crate::measures::attribution::Cause;
@@ -20,8 +20,8 @@ use crate::robot::IdleReason;
 use crate::robot::safety::SafetyMode;
 use crate::session::display::DisplayEvent;
 use crate::session::event::{EndReason, SignalEnd};
-use crate::session::preflight::{Check, Verdict};
-use crate::session::screen::Screen;
+use crate::session::preflight::{PreflightCheck, PreflightVerdict};
+use crate::session::screen::VisibleScreen;
 use crate::session::{Event, Phase, Stamped};
 
 /// What `tomcom replay RECORDING` prints as figures.
@@ -56,14 +56,14 @@ impl RecordingSummary {
     pub fn from_follower(
         follower: &Follower,
         events: u64,
-        ending: Ending,
+        ending: LogEnding,
         standing: ExclusionStatus,
     ) -> RecordingSummary {
         let trial = TrialSummary::from_follower(follower);
         RecordingSummary {
             events,
-            cut: ending == Ending::Cut,
-            running: ending == Ending::Running,
+            cut: ending == LogEnding::Cut,
+            running: ending == LogEnding::Running,
             standing,
             human_actions: trial.human_actions,
             robot_actions: trial.robot_actions,
@@ -179,8 +179,8 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
     })
 }
 
-fn preflight(checks: &[Check], overridden: bool) -> String {
-    let not_ok = checks.iter().filter(|check| check.verdict != Verdict::Ok);
+fn preflight(checks: &[PreflightCheck], overridden: bool) -> String {
+    let not_ok = checks.iter().filter(|check| check.verdict != PreflightVerdict::Ok);
     let not_ok: Vec<String> = not_ok.map(|check| format!("{} ({})", check.name, check.found)).collect();
     match (not_ok.is_empty(), overridden) {
         (true, _) => format!("preflight: {} ok", count(checks.len() as u64, "check", "checks")),
@@ -199,7 +199,7 @@ fn on_display(event: &DisplayEvent) -> String {
     }
 }
 
-fn on_screen(screen: &Screen) -> String {
+fn on_screen(screen: &VisibleScreen) -> String {
     let dialog = screen.dialog.as_ref().map_or(String::new(), |dialog| format!(", {dialog} open"));
     format!("the wizard sees {} ({}{dialog})", screen.panels.join(", "), screen.room)
 }

@@ -22,11 +22,13 @@ use crate::console::{self, ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBind
 use crate::edge::clock::WallTime;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::key_file::key_map;
-use crate::edge::terminal::{Hands, Screen, asked_to_end, theme};
+use crate::edge::terminal::{TerminalInput, TerminalScreen, asked_to_end, theme};
 use crate::edge::training::{self, JudgedBelief, JudgedRecording, JudgedSignal, TrainingRecord};
 use crate::history::wording;
 use crate::kitchen::{Agent, AspectId, Kitchen};
-use crate::measures::wizard::{Sent, Spell, TrainingCriterion, WizardMeasures, Worth, worths};
+use crate::measures::wizard::{
+    FalseBeliefPeriod, SignalVerdict, TrainingCriterion, WizardMeasures, WizardSignal, worths,
+};
 use crate::mind::BeliefWitness;
 use crate::session::event::SignalEnd;
 use crate::session::settings::{Condition, Visibility};
@@ -55,7 +57,7 @@ pub struct TrainingRequest {
 /// A recording that cannot be trained with, no terminal, or no place for the result.
 pub fn train(lesson: &TrainingRequest) -> Result<(TrainingRecord, PathBuf), ReviewError> {
     let before = training::read(&lesson.out, &lesson.wizard)?;
-    let films: Vec<(SeekableReplay, Vec<Spell>)> =
+    let films: Vec<(SeekableReplay, Vec<FalseBeliefPeriod>)> =
         lesson.recordings.iter().map(|one| open(one)).collect::<FileResult<_>>()?;
     let at = WallTime::now().rfc3339();
     let began = Instant::now();
@@ -72,11 +74,11 @@ pub fn train(lesson: &TrainingRequest) -> Result<(TrainingRecord, PathBuf), Revi
 }
 
 /// A recording with what was believed wrong in it.
-fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<Spell>)> {
+fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<FalseBeliefPeriod>)> {
     let mut film = SeekableReplay::open(recording)?;
     let unfit = |found: &str| {
         let remedy = "a recording of a simulated participant without signals (tomcom simulate SESSION)".to_string();
-        FileError::of(recording, found.to_string(), remedy)
+        FileError::from_finding(recording, found.to_string(), remedy)
     };
     if film.session.spec.trial.condition != Condition::None {
         return Err(unfit("a trial in which somebody sends signals"));
@@ -92,11 +94,11 @@ fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<Spell>)> {
 /// Watches one recording after another, until all are over or somebody quits.
 async fn watch(
     lesson: &TrainingRequest,
-    films: Vec<(SeekableReplay, Vec<Spell>)>,
+    films: Vec<(SeekableReplay, Vec<FalseBeliefPeriod>)>,
     before: &[TrainingRecord],
 ) -> Result<Vec<JudgedRecording>, ReviewError> {
-    let mut screen = Screen::take().map_err(ReviewError::Terminal)?;
-    let mut hands = Hands::default();
+    let mut screen = TerminalScreen::take().map_err(ReviewError::Terminal)?;
+    let mut hands = TerminalInput::default();
     let end = asked_to_end();
     tokio::pin!(end);
     let mut judged = Vec::new();
@@ -136,12 +138,12 @@ fn name_of(recording: &Path, lesson: &TrainingRequest) -> String {
 struct Class {
     film: SeekableReplay,
     name: String,
-    spells: Vec<Spell>,
+    spells: Vec<FalseBeliefPeriod>,
     /// What is known of each of them.
     beliefs: Vec<JudgedBelief>,
     criterion: TrainingCriterion,
     model: ConsoleModel,
-    sent: Vec<Sent>,
+    sent: Vec<WizardSignal>,
     signals: Vec<JudgedSignal>,
     /// What came of it was shown.
     concluded: bool,
@@ -155,15 +157,15 @@ struct Class {
 impl Class {
     fn new(
         film: SeekableReplay,
-        spells: Vec<Spell>,
+        spells: Vec<FalseBeliefPeriod>,
         name: String,
         lesson: &TrainingRequest,
-        screen: &Screen,
+        screen: &TerminalScreen,
     ) -> Result<Class, ReviewError> {
         let spec = &film.session.spec;
         let keys =
             KeyBindings::training(&film.session.kitchen, spec, &key_map(film.replay.log().header.keys.as_ref())?)?;
-        let size = Screen::size().map_err(ReviewError::Terminal)?;
+        let size = TerminalScreen::size().map_err(ReviewError::Terminal)?;
         let mut model = ConsoleModel::new(keys, theme(&spec.console, screen.ground), size);
         model.playback = Some(Playback { speed: lesson.speed, ..Playback::new(name.clone()) });
         model.lesson =
@@ -259,20 +261,22 @@ impl Class {
         let session = &self.film.session;
         let (clock, press) = (session.trial_clock(self.now), session.presses[Agent::Human.index()]);
         let aspects = aspects_told(&session.kitchen, session.state, &signal);
-        self.sent.push(Sent { clock, press, aspects, to_display_ms: None, taken_back: false });
+        self.sent.push(WizardSignal { clock, press, aspects, to_display_ms: None, taken_back: false });
         let words = wording::signal(&signal);
         let Some(worth) = worths(&self.sent, &self.spells).pop() else { return };
         self.signals.push(JudgedSignal { press, clock_ns: clock, signal, worth: worth.name().to_string() });
         self.show(shown);
         let (level, text) = match worth {
-            Worth::Hit { latency_s, .. } => (NoticeLevel::Done, format!("hit: believed wrong for {latency_s:.1} s")),
-            Worth::Again => (NoticeLevel::Done, "told already".to_string()),
-            Worth::Harmless => (NoticeLevel::Done, "believed wrong, but it leads to no error".to_string()),
-            Worth::Late => (NoticeLevel::Refused, "late: it was seen to be right a moment ago".to_string()),
-            Worth::WrongTarget => {
+            SignalVerdict::Hit { latency_s, .. } => {
+                (NoticeLevel::Done, format!("hit: believed wrong for {latency_s:.1} s"))
+            }
+            SignalVerdict::Again => (NoticeLevel::Done, "told already".to_string()),
+            SignalVerdict::Harmless => (NoticeLevel::Done, "believed wrong, but it leads to no error".to_string()),
+            SignalVerdict::Late => (NoticeLevel::Refused, "late: it was seen to be right a moment ago".to_string()),
+            SignalVerdict::WrongTarget => {
                 (NoticeLevel::Refused, format!("wrong: that is known; it is about {}", self.wrong_now(clock)))
             }
-            Worth::Needless => (NoticeLevel::Refused, "wrong: nothing is believed wrong".to_string()),
+            SignalVerdict::Needless => (NoticeLevel::Refused, "wrong: nothing is believed wrong".to_string()),
         };
         self.tell(level, format!("{words}: {text}"));
     }
@@ -346,18 +350,18 @@ impl Class {
 
     /// The spells that were hit.
     fn hits(&self) -> Vec<usize> {
-        let hit = |worth: Worth| if let Worth::Hit { spell, .. } = worth { Some(spell) } else { None };
+        let hit = |worth: SignalVerdict| if let SignalVerdict::Hit { spell, .. } = worth { Some(spell) } else { None };
         worths(&self.sent, &self.spells).into_iter().filter_map(hit).collect()
     }
 
     /// The measures so far: of the spells that have begun.
     fn measures(&self) -> WizardMeasures {
         let clock = self.film.session.trial_clock(self.now);
-        let begun: Vec<Spell> = self.spells.iter().filter(|spell| spell.began <= clock).cloned().collect();
-        WizardMeasures::of(&self.sent, Some(&begun))
+        let begun: Vec<FalseBeliefPeriod> = self.spells.iter().filter(|spell| spell.began <= clock).cloned().collect();
+        WizardMeasures::from_signals(&self.sent, Some(&begun))
     }
 
-    fn draw(&mut self, screen: &mut Screen) -> io::Result<()> {
+    fn draw(&mut self, screen: &mut TerminalScreen) -> io::Result<()> {
         if !screen.is_ready() {
             return Ok(());
         }
@@ -381,8 +385,9 @@ impl Class {
     fn judged_beliefs(&self) -> Vec<JudgedBelief> {
         let clock = self.film.session.trial_clock(self.now);
         let worths = worths(&self.sent, &self.spells);
-        let hit_by =
-            |index: usize| worths.iter().position(|worth| matches!(worth, Worth::Hit { spell, .. } if *spell == index));
+        let hit_by = |index: usize| {
+            worths.iter().position(|worth| matches!(worth, SignalVerdict::Hit { spell, .. } if *spell == index))
+        };
         let begun = self.spells.iter().enumerate().filter(|(_, spell)| spell.errors > 0 && spell.began <= clock);
         begun.map(|(index, _)| JudgedBelief { hit_by: hit_by(index), ..self.beliefs[index].clone() }).collect()
     }

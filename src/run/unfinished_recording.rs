@@ -9,7 +9,7 @@ use super::options::SessionStart;
 use super::resume::resume;
 use crate::analysis::watcher::CompareRequest;
 use crate::base::time::SessionTime;
-use crate::edge::log::Lock;
+use crate::edge::log::RecordingLock;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::{Header, SessionSpec, Stamped};
@@ -33,7 +33,7 @@ pub(super) struct PreparedSession {
 pub(super) enum RecordingPlace {
     In(PathBuf),
     /// Beside the part before, which stays locked.
-    After(PathBuf, Lock),
+    After(PathBuf, RecordingLock),
 }
 
 impl PreparedSession {

@@ -13,7 +13,7 @@ use crate::analysis::follower::Follower;
 use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{Ending, LogLine, LogReader, at_line, event_line};
+use crate::edge::log::{LogEnding, LogLine, LogReader, at_line, event_line};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::admit::is_external;
 use crate::session::{Event, Stamped};
@@ -55,7 +55,7 @@ pub fn verify(recording: &Path) -> FileResult<Verification> {
     let RerunRecording { log, again, replayed, difference } = RerunRecording::from_log(LogReader::open(recording)?)?;
     let same_end = difference.is_some() || log.is_cut() || again.ends_like(&replayed);
     let verified = difference.is_none() && same_end;
-    let (cut, running) = (log.is_cut(), log.ending() == Ending::Running);
+    let (cut, running) = (log.is_cut(), log.ending() == LogEnding::Running);
     Ok(Verification { verified, events: log.events(), cut, running, difference })
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
 use super::colours;
-use super::shown::{Point, Row, Series, Shown};
+use super::shown::{EntityData, EntityUpdate, ScenePoint, SceneSeries};
 use crate::arm::kinematics::Arm;
 use crate::arm::link::{CollisionSolid, LinkShape};
 use crate::arm::motion::JointMotion;
@@ -66,39 +66,39 @@ impl ArmScene {
     }
 
     /// Table, buttons, and the shapes of the links.
-    pub fn fixed(&self, kitchen: &Kitchen) -> Vec<Row> {
-        let mut rows = vec![Row::new("robot/table", table(kitchen))];
+    pub fn fixed(&self, kitchen: &Kitchen) -> Vec<EntityUpdate> {
+        let mut rows = vec![EntityUpdate::new("robot/table", table(kitchen))];
         for (alone, name) in [(None, "shared"), (Some(Agent::Human), "human"), (Some(Agent::Robot), "robot")] {
-            rows.push(Row::new(format!("robot/buttons/{name}"), buttons(kitchen, alone)));
+            rows.push(EntityUpdate::new(format!("robot/buttons/{name}"), buttons(kitchen, alone)));
         }
         for (index, link) in self.arm.links.iter().enumerate() {
             let colour = if index % 2 == 0 { colours::JOINT } else { colours::STEEL };
-            rows.push(Row::new(entity(&link.name), Shown::Solids(link.solids.clone(), colour)));
+            rows.push(EntityUpdate::new(entity(&link.name), EntityData::Solids(link.solids.clone(), colour)));
         }
         if self.motion.is_none() {
             rows.extend(hand_shapes());
             for (entity, name, colour) in
                 [(FORCE, "force on the arm (N)", colours::ROBOT), (AWAY, "hand away (cm)", colours::HUMAN)]
             {
-                rows.push(Row::new(entity, Shown::Line(Series { name: name.to_string(), colour })));
+                rows.push(EntityUpdate::new(entity, EntityData::Line(SceneSeries { name: name.to_string(), colour })));
             }
         }
         rows
     }
 
     /// How it stands, and where the hand is.
-    pub fn opening(&self, session: &Session) -> Vec<Row> {
+    pub fn opening(&self, session: &Session) -> Vec<EntityUpdate> {
         let mut rows = places(&self.arm, &self.joints);
         if self.motion.is_none() {
             let rests = resting_place(&session.kitchen).coords.into();
             let [x, y, z] = session.robot.arm.last.map_or(rests, |(_, moment)| moment.hand_m);
-            rows.push(Row::new(HAND, Shown::Place(at(x, y, z))));
+            rows.push(EntityUpdate::new(HAND, EntityData::Place(at(x, y, z))));
         }
         rows
     }
 
     /// How it moved since it was shown last, until this time.
-    pub fn until(&mut self, time: SessionTime) -> Vec<(SessionTime, Vec<Row>)> {
+    pub fn until(&mut self, time: SessionTime) -> Vec<(SessionTime, Vec<EntityUpdate>)> {
         let mut moments = Vec::new();
         let Some(motion) = &self.motion else { return moments };
         // Where it rests it is not shown again: time goes by at once.
@@ -117,14 +117,16 @@ impl ArmScene {
     }
 
     /// What an event that was just applied changes.
-    pub fn follow(&mut self, session: &Session, stamped: &Stamped, change: &Change) -> Vec<Row> {
+    pub fn follow(&mut self, session: &Session, stamped: &Stamped, change: &Change) -> Vec<EntityUpdate> {
         let now = stamped.time;
         let kitchen = &session.kitchen;
         if let Change::Press { press: Press { agent, button, .. }, .. } | Change::UncountedPress { agent, button } =
             *change
         {
             return match agent {
-                Agent::Human => vec![Row::new("human/hand", Shown::Points(vec![mark(kitchen, agent, button)]))],
+                Agent::Human => {
+                    vec![EntityUpdate::new("human/hand", EntityData::Points(vec![mark(kitchen, agent, button)]))]
+                }
                 Agent::Robot => self.goes_up(now),
             };
         }
@@ -134,7 +136,7 @@ impl ArmScene {
                 if let Some(motion) = &mut self.motion {
                     motion.set_out(now, button, until);
                 }
-                vec![Row::new("robot/goal", Shown::Points(vec![mark(kitchen, Agent::Robot, button)]))]
+                vec![EntityUpdate::new("robot/goal", EntityData::Points(vec![mark(kitchen, Agent::Robot, button)]))]
             }
             Event::TrialPaused => {
                 if let Some(motion) = &mut self.motion {
@@ -146,9 +148,9 @@ impl ArmScene {
             Event::RobotTouched { force_n } => vec![touched(session, format!("{force_n:.0} N"))],
             Event::RobotSafety { mode, .. } => {
                 let state = if *mode == SafetyMode::Normal { String::new() } else { mode.name().to_lowercase() };
-                let mut rows = vec![Row::new(SAFETY, Shown::State(state))];
+                let mut rows = vec![EntityUpdate::new(SAFETY, EntityData::State(state))];
                 if !mode.is_stopped() {
-                    rows.push(Row::new(CONTACT, Shown::Points(Vec::new())));
+                    rows.push(EntityUpdate::new(CONTACT, EntityData::Points(Vec::new())));
                 }
                 rows
             }
@@ -159,42 +161,42 @@ impl ArmScene {
     }
 
     /// How the arm in the physics stands, what it feels, and where the hand is.
-    fn moves(&mut self, moment: &ArmSample) -> Vec<Row> {
+    fn moves(&mut self, moment: &ArmSample) -> Vec<EntityUpdate> {
         self.joints = moment.joints;
         let mut rows = places(&self.arm, &self.joints);
         let [x, y, z] = moment.hand_m;
-        rows.push(Row::new(HAND, Shown::Place(at(x, y, z))));
-        let felt = (moment.force_n >= SHOWN_N).then(|| Point {
+        rows.push(EntityUpdate::new(HAND, EntityData::Place(at(x, y, z))));
+        let felt = (moment.force_n >= SHOWN_N).then(|| ScenePoint {
             at_m: self.arm.tip(&self.joints).translation.vector.into(),
             radius_m: FELT_M,
             words: format!("{:.0} N", moment.force_n),
             colour: colours::SIGNAL,
         });
         if felt.is_some() || self.feels {
-            rows.push(Row::new(FELT, Shown::Points(felt.iter().cloned().collect())));
+            rows.push(EntityUpdate::new(FELT, EntityData::Points(felt.iter().cloned().collect())));
         }
         self.feels = felt.is_some();
-        rows.push(Row::new(FORCE, Shown::Value(moment.force_n)));
-        rows.push(Row::new(AWAY, Shown::Value(moment.hand_away_m * 100.0)));
+        rows.push(EntityUpdate::new(FORCE, EntityData::Value(moment.force_n)));
+        rows.push(EntityUpdate::new(AWAY, EntityData::Value(moment.hand_away_m * 100.0)));
         rows
     }
 
-    fn goes_up(&mut self, now: SessionTime) -> Vec<Row> {
+    fn goes_up(&mut self, now: SessionTime) -> Vec<EntityUpdate> {
         if let Some(motion) = &mut self.motion {
             motion.go_up(now);
         }
-        vec![Row::new("robot/goal", Shown::Points(Vec::new()))]
+        vec![EntityUpdate::new("robot/goal", EntityData::Points(Vec::new()))]
     }
 }
 
 /// Where the links are.
-fn places(arm: &Arm, joints: &JointAngles) -> Vec<Row> {
+fn places(arm: &Arm, joints: &JointAngles) -> Vec<EntityUpdate> {
     let links = arm.links.iter().zip(arm.forward(joints)).skip(1);
-    links.map(|(link, place)| Row::new(entity(&link.name), Shown::Place(place))).collect()
+    links.map(|(link, place)| EntityUpdate::new(entity(&link.name), EntityData::Place(place))).collect()
 }
 
 /// Hand and forearm as they are in the physics: the forearm leads away from the robot, and up a little.
-fn hand_shapes() -> Vec<Row> {
+fn hand_shapes() -> Vec<EntityUpdate> {
     let place = HandPose::reaching(Point3::origin(), -ABOVE_TABLE_M);
     let [hand, forearm] = place.capsules();
     let ball =
@@ -205,13 +207,16 @@ fn hand_shapes() -> Vec<Row> {
     let length_m = (to - from).norm() + 2.0 * forearm.radius_m;
     let shape = LinkShape::Cylinder { radius_m: forearm.radius_m, length_m };
     let forearm = CollisionSolid { shape, link_from_solid: Isometry3::from_parts(middle, along) };
-    vec![Row::new(HAND, Shown::Solids(vec![ball, forearm], colours::SKIN))]
+    vec![EntityUpdate::new(HAND, EntityData::Solids(vec![ball, forearm], colours::SKIN))]
 }
 
 /// A mark where the hand is, with these words.
-fn touched(session: &Session, words: String) -> Row {
+fn touched(session: &Session, words: String) -> EntityUpdate {
     let at_m = session.robot.arm.last.map_or([0.0; 3], |(_, moment)| moment.hand_m);
-    Row::new(CONTACT, Shown::Points(vec![Point { at_m, radius_m: CONTACT_M, words, colour: colours::ERROR }]))
+    EntityUpdate::new(
+        CONTACT,
+        EntityData::Points(vec![ScenePoint { at_m, radius_m: CONTACT_M, words, colour: colours::ERROR }]),
+    )
 }
 
 fn entity(link: &str) -> String {
@@ -219,13 +224,13 @@ fn entity(link: &str) -> String {
 }
 
 /// A mark on the button that an agent presses, with its name.
-fn mark(kitchen: &Kitchen, agent: Agent, button: ButtonId) -> Point {
+fn mark(kitchen: &Kitchen, agent: Agent, button: ButtonId) -> ScenePoint {
     let [x, y] = kitchen.button(agent, button).at_m;
-    Point {
+    ScenePoint {
         at_m: [x, y, kitchen.table_height_m + BUTTON_M],
         radius_m: MARK_M,
         words: format!("{}: {}", agent.name(), wording::button(kitchen, agent, button)),
-        colour: colours::of(agent),
+        colour: colours::agent_colour(agent),
     }
 }
 
@@ -234,7 +239,7 @@ fn at(x: f64, y: f64, z: f64) -> Isometry3<f64> {
 }
 
 /// A board below all buttons and the arm's base.
-fn table(kitchen: &Kitchen) -> Shown {
+fn table(kitchen: &Kitchen) -> EntityData {
     let all = kitchen.buttons.iter().flatten().map(|button| button.at_m).chain([[-0.1, 0.0], [0.1, 0.0]]);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for place in all {
@@ -245,11 +250,14 @@ fn table(kitchen: &Kitchen) -> Shown {
     }
     let half_m = [(high[0] - low[0]) / 2.0, (high[1] - low[1]) / 2.0, THICK_M / 2.0];
     let centre = at((high[0] + low[0]) / 2.0, (high[1] + low[1]) / 2.0, kitchen.table_height_m - THICK_M / 2.0);
-    Shown::Solids(vec![CollisionSolid { shape: LinkShape::Box { half_m }, link_from_solid: centre }], colours::TABLE)
+    EntityData::Solids(
+        vec![CollisionSolid { shape: LinkShape::Box { half_m }, link_from_solid: centre }],
+        colours::TABLE,
+    )
 }
 
 /// The buttons by who has them: both agents, or one alone.
-fn buttons(kitchen: &Kitchen, alone: Option<Agent>) -> Shown {
+fn buttons(kitchen: &Kitchen, alone: Option<Agent>) -> EntityData {
     let of = |agent: Agent| &kitchen.buttons[agent.index()];
     let is_shared = |agent: Agent, button: &Button| of(agent.other()).iter().any(|other| other.at_m == button.at_m);
     let solid = |button: &Button| {
@@ -259,5 +267,5 @@ fn buttons(kitchen: &Kitchen, alone: Option<Agent>) -> Shown {
     };
     let agent = alone.unwrap_or(Agent::Human);
     let those = of(agent).iter().filter(|button| is_shared(agent, button) == alone.is_none());
-    Shown::Solids(those.map(solid).collect(), alone.map_or(colours::BUTTON, colours::of))
+    EntityData::Solids(those.map(solid).collect(), alone.map_or(colours::BUTTON, colours::agent_colour))
 }

@@ -1,7 +1,7 @@
 //! What the participant believes: as it is estimated, and of simulated participants as it is.
 
 use super::colours;
-use super::shown::{Row, Series, Shown, slug};
+use super::shown::{EntityData, EntityUpdate, SceneSeries, slug};
 use crate::base::time::SessionTime;
 use crate::history::wording;
 use crate::kitchen::{Aspect, AspectId, Kitchen, State};
@@ -45,13 +45,13 @@ fn wrong(aspect: &str) -> String {
 }
 
 /// How the series are drawn.
-pub fn fixed(kitchen: &Kitchen) -> Vec<Row> {
+pub fn fixed(kitchen: &Kitchen) -> Vec<EntityUpdate> {
     let mut rows = Vec::new();
     for (nth, aspect) in kitchen.aspects.iter().enumerate() {
         let colour = colours::of_aspect(AspectId(nth as u8));
-        let series = Series { name: wording::location(&aspect.name), colour };
-        rows.push(Row::new(estimated(&aspect.name), Shown::Line(series.clone())));
-        rows.push(Row::new(held_truly(&aspect.name), Shown::Line(series)));
+        let series = SceneSeries { name: wording::location(&aspect.name), colour };
+        rows.push(EntityUpdate::new(estimated(&aspect.name), EntityData::Line(series.clone())));
+        rows.push(EntityUpdate::new(held_truly(&aspect.name), EntityData::Line(series)));
     }
     rows
 }
@@ -63,7 +63,12 @@ impl BeliefScene {
     }
 
     /// What an event that was just applied tells of beliefs; `belief` is the estimate after it.
-    pub fn follow(&mut self, session: &Session, stamped: &Stamped, belief: Option<&DirichletBelief>) -> Vec<Row> {
+    pub fn follow(
+        &mut self,
+        session: &Session,
+        stamped: &Stamped,
+        belief: Option<&DirichletBelief>,
+    ) -> Vec<EntityUpdate> {
         match &stamped.event {
             Event::ParticipantBelieves(witness) => truly(witness),
             Event::BeliefEstimated(witness) => self.before_press(session, witness),
@@ -71,10 +76,10 @@ impl BeliefScene {
         }
     }
 
-    fn before_press(&mut self, session: &Session, witness: &EstimateWitness) -> Vec<Row> {
+    fn before_press(&mut self, session: &Session, witness: &EstimateWitness) -> Vec<EntityUpdate> {
         let aspects = || witness.aspects.iter();
-        let mut rows: Vec<Row> =
-            aspects().map(|told| Row::new(estimated(&told.aspect), Shown::Value(told.p_truth))).collect();
+        let mut rows: Vec<EntityUpdate> =
+            aspects().map(|told| EntityUpdate::new(estimated(&told.aspect), EntityData::Value(told.p_truth))).collect();
         let held: Vec<Held> = aspects().map(|told| Held { believes: &told.believes, p_truth: told.p_truth }).collect();
         if held.len() == session.kitchen.aspects.len() {
             rows.extend(self.in_words(session, &held));
@@ -82,7 +87,7 @@ impl BeliefScene {
         rows
     }
 
-    fn between(&mut self, session: &Session, now: SessionTime, belief: &DirichletBelief) -> Vec<Row> {
+    fn between(&mut self, session: &Session, now: SessionTime, belief: &DirichletBelief) -> Vec<EntityUpdate> {
         if !self.is_due(now) {
             return Vec::new();
         }
@@ -95,14 +100,16 @@ impl BeliefScene {
                 Held { believes, p_truth: p_truth(index) }
             })
             .collect();
-        let value = |(aspect, held): (&Aspect, &Held)| Row::new(estimated(&aspect.name), Shown::Value(held.p_truth));
-        let mut rows: Vec<Row> = kitchen.aspects.iter().zip(&held).map(value).collect();
+        let value = |(aspect, held): (&Aspect, &Held)| {
+            EntityUpdate::new(estimated(&aspect.name), EntityData::Value(held.p_truth))
+        };
+        let mut rows: Vec<EntityUpdate> = kitchen.aspects.iter().zip(&held).map(value).collect();
         rows.extend(self.in_words(session, &held));
         rows
     }
 
     /// The page and the lanes, where they say something else than before.
-    fn in_words(&mut self, session: &Session, held: &[Held]) -> Vec<Row> {
+    fn in_words(&mut self, session: &Session, held: &[Held]) -> Vec<EntityUpdate> {
         let kitchen = &session.kitchen;
         let mut rows = Vec::new();
         self.taken_for.resize(held.len(), String::new());
@@ -111,21 +118,21 @@ impl BeliefScene {
             let now_taken_for = if is_wrong { taken_for_what(session, index, &held[index]) } else { "" };
             if now_taken_for != taken_for {
                 *taken_for = now_taken_for.to_string();
-                rows.push(Row::new(wrong(&aspect.name), Shown::State(taken_for.clone())));
+                rows.push(EntityUpdate::new(wrong(&aspect.name), EntityData::State(taken_for.clone())));
             }
         }
         let page = page(session, held);
         if page != self.page {
             self.page.clone_from(&page);
-            rows.push(Row::new("human/belief/page", Shown::Page(page)));
+            rows.push(EntityUpdate::new("human/belief/page", EntityData::Page(page)));
         }
         rows
     }
 }
 
 /// What a simulated participant believes.
-fn truly(witness: &BeliefWitness) -> Vec<Row> {
-    let value = |told: &AspectBelief| Row::new(held_truly(&told.aspect), Shown::Value(told.p_truth));
+fn truly(witness: &BeliefWitness) -> Vec<EntityUpdate> {
+    let value = |told: &AspectBelief| EntityUpdate::new(held_truly(&told.aspect), EntityData::Value(told.p_truth));
     witness.aspects.iter().map(value).collect()
 }
 

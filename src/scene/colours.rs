@@ -28,7 +28,7 @@ pub const JOINT: Colour = [82, 132, 190, 255];
 const HUES: [f64; 8] = [0.13, 0.38, 0.06, 0.58, 0.93, 0.75, 0.48, 0.22];
 
 /// The colour of an agent.
-pub fn of(agent: Agent) -> Colour {
+pub fn agent_colour(agent: Agent) -> Colour {
     match agent {
         Agent::Human => HUMAN,
         Agent::Robot => ROBOT,

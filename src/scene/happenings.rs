@@ -1,8 +1,8 @@
 //! What happened, in words, and what signals would be worth.
 
-use super::Row;
+use super::EntityUpdate;
 use super::colours::{self, Colour};
-use super::shown::{Level, Series, Shown, slug};
+use super::shown::{EntityData, LogLevel, SceneSeries, slug};
 use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, signals};
@@ -11,7 +11,7 @@ use crate::kitchen::{Agent, AspectId};
 use crate::measures::JudgedPress;
 use crate::session::event::SignalEnd;
 use crate::session::protocol::ProtocolEvent;
-use crate::session::{Entry, Happening, Session, Stamped};
+use crate::session::{Session, Stamped, TimelineEntry, TimelineEvent};
 
 /// The marks of errors, along the bottom of the beliefs.
 const ERROR_MARKS: &str = "human/errors/marks";
@@ -26,10 +26,12 @@ fn benefit(target: &str) -> String {
 }
 
 /// How the series are drawn.
-pub fn fixed(session: &Session) -> Vec<Row> {
+pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
     let (kitchen, assistant) = (&session.kitchen, &session.spec.assistant);
-    let line = |entity: String, name: String, colour: Colour| Row::new(entity, Shown::Line(Series { name, colour }));
-    let mut rows: Vec<Row> = signals(kitchen, session.spec.signals.own_hand)
+    let line = |entity: String, name: String, colour: Colour| {
+        EntityUpdate::new(entity, EntityData::Line(SceneSeries { name, colour }))
+    };
+    let mut rows: Vec<EntityUpdate> = signals(kitchen, session.spec.signals.own_hand)
         .iter()
         .map(|(_, signal)| {
             let place = kitchen.location_named(signal.target());
@@ -39,52 +41,56 @@ pub fn fixed(session: &Session) -> Vec<Row> {
         .collect();
     let worth = format!("worth its cost ({}) above this line", assistant.price());
     rows.push(line(COST_LINE.to_string(), worth, colours::SIGNAL));
-    let marks = Series { name: "errors".to_string(), colour: colours::ERROR };
-    rows.push(Row::new(ERROR_MARKS, Shown::Marks(marks)));
+    let marks = SceneSeries { name: "errors".to_string(), colour: colours::ERROR };
+    rows.push(EntityUpdate::new(ERROR_MARKS, EntityData::Marks(marks)));
     rows
 }
 
-fn say(entity: &str, level: Level, text: String, colour: Colour) -> Row {
-    Row::new(entity, Shown::Words { level, text, colour })
+fn say(entity: &str, level: LogLevel, text: String, colour: Colour) -> EntityUpdate {
+    EntityUpdate::new(entity, EntityData::Words { level, text, colour })
 }
 
 /// All lines of the log in the order in which they happened.
-pub fn in_order(rows: &[Row]) -> Vec<Row> {
-    let lines = rows.iter().filter(|row| matches!(row.shown, Shown::Words { .. }));
-    lines.map(|row| Row::new(HAPPENED, row.shown.clone())).collect()
+pub fn in_order(rows: &[EntityUpdate]) -> Vec<EntityUpdate> {
+    let lines = rows.iter().filter(|row| matches!(row.shown, EntityData::Words { .. }));
+    lines.map(|row| EntityUpdate::new(HAPPENED, row.shown.clone())).collect()
 }
 
 /// A new entry of the timeline. A press that was just judged an error says so.
-pub fn entry(session: &Session, entry: &Entry, error: Option<&JudgedPress>) -> Row {
+pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<&JudgedPress>) -> EntityUpdate {
     let (who, text) = wording::happening(&session.kitchen, &entry.what);
     let text = if who.is_empty() { text } else { format!("{who}: {text}") };
     match entry.what {
-        Happening::Press { agent, effective, .. } => {
+        TimelineEvent::Press { agent, effective, .. } => {
             let entity = format!("{}/presses", agent.name());
             match error.filter(|_| agent == Agent::Human) {
                 Some(press) => {
                     let lost = count(press.verdict.regret.unsigned_abs(), "press", "presses");
-                    say(&entity, Level::Error, format!("{text} (error: loses {lost})"), colours::ERROR)
+                    say(&entity, LogLevel::Error, format!("{text} (error: loses {lost})"), colours::ERROR)
                 }
-                None if effective => say(&entity, Level::Info, text, colours::of(agent)),
-                None => say(&entity, Level::Warning, text, colours::of(agent)),
+                None if effective => say(&entity, LogLevel::Info, text, colours::agent_colour(agent)),
+                None => say(&entity, LogLevel::Warning, text, colours::agent_colour(agent)),
             }
         }
-        Happening::Signal { by: Sender::Wizard, .. } => say("wizard/signals", Level::Info, text, colours::WIZARD),
-        Happening::Signal { by: Sender::Assistant, .. } => {
-            say("assistant/signals", Level::Info, text, colours::ASSISTANT)
+        TimelineEvent::Signal { by: Sender::Wizard, .. } => {
+            say("wizard/signals", LogLevel::Info, text, colours::WIZARD)
         }
-        Happening::SignalEnded(SignalEnd::TakenBack) => say("wizard/signals", Level::Warning, text, colours::WIZARD),
-        Happening::ArmStopped { .. } => say("robot/events", Level::Error, text, colours::ERROR),
-        Happening::ArmTouched { .. } => say("robot/events", Level::Warning, text, colours::ROBOT),
-        _ if who == "wizard" || who == "note" => say("wizard/hands", Level::Info, text, colours::WIZARD),
-        _ => say("trial/events", Level::Info, text, colours::QUIET),
+        TimelineEvent::Signal { by: Sender::Assistant, .. } => {
+            say("assistant/signals", LogLevel::Info, text, colours::ASSISTANT)
+        }
+        TimelineEvent::SignalEnded(SignalEnd::TakenBack) => {
+            say("wizard/signals", LogLevel::Warning, text, colours::WIZARD)
+        }
+        TimelineEvent::ArmStopped { .. } => say("robot/events", LogLevel::Error, text, colours::ERROR),
+        TimelineEvent::ArmTouched { .. } => say("robot/events", LogLevel::Warning, text, colours::ROBOT),
+        _ if who == "wizard" || who == "note" => say("wizard/hands", LogLevel::Info, text, colours::WIZARD),
+        _ => say("trial/events", LogLevel::Info, text, colours::QUIET),
     }
 }
 
 /// What happened around the trial.
-pub fn protocol(event: &ProtocolEvent) -> Row {
-    say("trial/events", Level::Info, wording::protocol(event), colours::QUIET)
+pub fn protocol(event: &ProtocolEvent) -> EntityUpdate {
+    say("trial/events", LogLevel::Info, wording::protocol(event), colours::QUIET)
 }
 
 /// The press that was just judged, if it was an error.
@@ -94,23 +100,23 @@ pub fn error<'a>(stamped: &Stamped, judged: &'a [JudgedPress]) -> Option<&'a Jud
 }
 
 /// Its mark below the beliefs.
-pub fn mark() -> Row {
-    Row::new(ERROR_MARKS, Shown::Value(0.0))
+pub fn mark() -> EntityUpdate {
+    EntityUpdate::new(ERROR_MARKS, EntityData::Value(0.0))
 }
 
 /// What signals are worth without their cost, and what the assistant would say.
-pub fn advice(advice: &Recommendation) -> Vec<Row> {
-    let mut rows: Vec<Row> = advice
+pub fn advice(advice: &Recommendation) -> Vec<EntityUpdate> {
+    let mut rows: Vec<EntityUpdate> = advice
         .options
         .iter()
-        .map(|option| Row::new(benefit(option.signal.target()), Shown::Value(option.net)))
+        .map(|option| EntityUpdate::new(benefit(option.signal.target()), EntityData::Value(option.net)))
         .collect();
-    rows.push(Row::new(COST_LINE, Shown::Value(0.0)));
+    rows.push(EntityUpdate::new(COST_LINE, EntityData::Value(0.0)));
     if let Some(best) = &advice.best {
         let net = advice.top().map_or(0.0, |top| top.net);
         let why = advice.reason.as_ref().map_or_else(String::new, |reason| format!("; {}", reason.words()));
         let text = format!("assistant advises: {} (net {net:+.2}){why}", wording::signal(best));
-        rows.push(say("assistant/advice", Level::Info, text, colours::ASSISTANT));
+        rows.push(say("assistant/advice", LogLevel::Info, text, colours::ASSISTANT));
     }
     rows
 }

@@ -2,7 +2,7 @@
 //! it looks.
 
 use super::colours::{self, Colour};
-use super::shown::{Area, Disc, Row, Shown, slug};
+use super::shown::{EntityData, EntityUpdate, SceneArea, SceneDisc, slug};
 use crate::communication::Signal;
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 use crate::history::wording;
@@ -20,9 +20,9 @@ const ABOVE_MM: f64 = 52.0;
 
 const MM: f64 = 1000.0;
 
-fn area(kitchen: &Kitchen, on: kitchen::DisplayArea, colour: Colour) -> Area {
+fn area(kitchen: &Kitchen, on: kitchen::DisplayArea, colour: Colour) -> SceneArea {
     let [width_mm, height_mm] = kitchen.display_m.map(|length| length * MM);
-    Area {
+    SceneArea {
         left: on.x * width_mm,
         top: on.y * height_mm,
         width: on.w * width_mm,
@@ -32,31 +32,31 @@ fn area(kitchen: &Kitchen, on: kitchen::DisplayArea, colour: Colour) -> Area {
     }
 }
 
-fn words_at(at: [f64; 2], words: &str, colour: Colour) -> Disc {
-    Disc { at, radius: 0.0, words: words.to_string(), colour }
+fn words_at(at: [f64; 2], words: &str, colour: Colour) -> SceneDisc {
+    SceneDisc { at, radius: 0.0, words: words.to_string(), colour }
 }
 
 /// The display's edge, the names of the places, and the storages.
-pub fn fixed(kitchen: &Kitchen) -> Vec<Row> {
+pub fn fixed(kitchen: &Kitchen) -> Vec<EntityUpdate> {
     let whole = kitchen::DisplayArea { x: 0.0, y: 0.0, w: 1.0, h: 1.0 };
     let name = |(index, location): (usize, &Location)| {
         // In the colour of its curves, which have no room for a legend.
         let colour = colours::of_aspect(AspectId::of_location(LocationId(index as u8)));
-        let Area { left, top, width, .. } = area(kitchen, location.display, colour);
+        let SceneArea { left, top, width, .. } = area(kitchen, location.display, colour);
         words_at([left + width / 2.0, top - ABOVE_MM], &location.label(), colour)
     };
     let mut rows = vec![
-        Row::new("kitchen/display", Shown::Areas(vec![area(kitchen, whole, colours::FRAME)])),
-        Row::new("kitchen/names", Shown::Discs(kitchen.locations.iter().enumerate().map(name).collect())),
+        EntityUpdate::new("kitchen/display", EntityData::Areas(vec![area(kitchen, whole, colours::FRAME)])),
+        EntityUpdate::new("kitchen/names", EntityData::Discs(kitchen.locations.iter().enumerate().map(name).collect())),
     ];
     for agent in Agent::BOTH {
         let own = || kitchen.storages.iter().filter(|storage| storage.agent == agent);
         let entity = format!("kitchen/storage/{}", agent.name());
-        let areas = own().map(|storage| area(kitchen, storage.display, dimmed(colours::of(agent))));
-        rows.push(Row::new(&entity, Shown::Areas(areas.collect())));
-        rows.push(Row::new(
+        let areas = own().map(|storage| area(kitchen, storage.display, dimmed(colours::agent_colour(agent))));
+        rows.push(EntityUpdate::new(&entity, EntityData::Areas(areas.collect())));
+        rows.push(EntityUpdate::new(
             format!("{entity}/items"),
-            Shown::Discs(own().flat_map(|storage| stored(kitchen, storage)).collect()),
+            EntityData::Discs(own().flat_map(|storage| stored(kitchen, storage)).collect()),
         ));
     }
     rows
@@ -67,7 +67,7 @@ fn dimmed([red, green, blue, opacity]: Colour) -> Colour {
 }
 
 /// What lies where, for the places where it is something else than `before`; for all of them without a before.
-pub fn contents(kitchen: &Kitchen, before: Option<State>, state: State) -> impl Iterator<Item = Row> {
+pub fn contents(kitchen: &Kitchen, before: Option<State>, state: State) -> impl Iterator<Item = EntityUpdate> {
     let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
     let changed = locations.filter(move |&id| before.is_none_or(|before| before.code(id) != state.code(id)));
     changed.flat_map(move |id| {
@@ -77,14 +77,14 @@ pub fn contents(kitchen: &Kitchen, before: Option<State>, state: State) -> impl 
         let words = if items.is_empty() && !is_order { "" } else { kitchen.content_label(state, id) };
         let colour = match (items.is_empty(), location.kind) {
             (true, _) => colours::EMPTY,
-            (false, LocationKind::Hand(agent)) => colours::of(agent),
+            (false, LocationKind::Hand(agent)) => colours::agent_colour(agent),
             (false, _) => colours::FULL,
         };
         let entity = format!("kitchen/{}", slug(&location.name));
         let discs = content(kitchen, location.display, &items, words, colour);
         [
-            Row::new(&entity, Shown::Areas(vec![area(kitchen, location.display, colour)])),
-            Row::new(format!("{entity}/items"), Shown::Discs(discs)),
+            EntityUpdate::new(&entity, EntityData::Areas(vec![area(kitchen, location.display, colour)])),
+            EntityUpdate::new(format!("{entity}/items"), EntityData::Discs(discs)),
         ]
     })
 }
@@ -102,11 +102,17 @@ fn items(kitchen: &Kitchen, state: State, id: LocationId) -> Vec<ContentId> {
 }
 
 /// A disc for each item, side by side in an area, and words below it.
-fn content(kitchen: &Kitchen, on: kitchen::DisplayArea, items: &[ContentId], words: &str, colour: Colour) -> Vec<Disc> {
-    let Area { left, top, width, height, .. } = area(kitchen, on, colour);
+fn content(
+    kitchen: &Kitchen,
+    on: kitchen::DisplayArea,
+    items: &[ContentId],
+    words: &str,
+    colour: Colour,
+) -> Vec<SceneDisc> {
+    let SceneArea { left, top, width, height, .. } = area(kitchen, on, colour);
     let share = width / (items.len() as f64 + 1.0);
     let radius = (height * 0.34).min(share * 0.6);
-    let disc = |(nth, &item): (usize, &ContentId)| Disc {
+    let disc = |(nth, &item): (usize, &ContentId)| SceneDisc {
         at: [left + share * (nth as f64 + 1.0), top + height / 2.0],
         radius,
         words: String::new(),
@@ -117,10 +123,10 @@ fn content(kitchen: &Kitchen, on: kitchen::DisplayArea, items: &[ContentId], wor
 }
 
 /// A storage's item above its name: both in its own area, for the next one follows at once.
-fn stored(kitchen: &Kitchen, storage: &Storage) -> [Disc; 2] {
-    let Area { left, top, width, height, .. } = area(kitchen, storage.display, colours::QUIET);
+fn stored(kitchen: &Kitchen, storage: &Storage) -> [SceneDisc; 2] {
+    let SceneArea { left, top, width, height, .. } = area(kitchen, storage.display, colours::QUIET);
     let middle = left + width / 2.0;
-    let disc = Disc {
+    let disc = SceneDisc {
         at: [middle, top + height * 0.26],
         radius: (height * 0.2).min(width * 0.3),
         words: String::new(),
@@ -130,9 +136,9 @@ fn stored(kitchen: &Kitchen, storage: &Storage) -> [Disc; 2] {
 }
 
 /// What the participant is shown now: a place, or a recipe at its order.
-pub fn shown_signal(session: &Session) -> Vec<Row> {
-    let outline = |areas| Row::new("kitchen/shown", Shown::Areas(areas));
-    let label = |words| Row::new("kitchen/shown/words", Shown::Discs(words));
+pub fn shown_signal(session: &Session) -> Vec<EntityUpdate> {
+    let outline = |areas| EntityUpdate::new("kitchen/shown", EntityData::Areas(areas));
+    let label = |words| EntityUpdate::new("kitchen/shown/words", EntityData::Discs(words));
     let target = session.shown.as_ref().and_then(|shown| {
         let location = session.kitchen.location_named(shown.signal.target())?;
         Some((&shown.signal, location))
@@ -146,7 +152,7 @@ pub fn shown_signal(session: &Session) -> Vec<Row> {
     };
     let inner = area(&session.kitchen, session.kitchen.location(location).display, colours::SIGNAL);
     let (gap, line) = (4.0 * THIN, THICK);
-    let outer = Area {
+    let outer = SceneArea {
         left: inner.left - gap,
         top: inner.top - gap,
         width: inner.width + 2.0 * gap,
@@ -159,10 +165,10 @@ pub fn shown_signal(session: &Session) -> Vec<Row> {
 }
 
 /// Where the participant looks, with the area around it that it can read.
-pub fn gaze(session: &Session, sample: GazeSample) -> Row {
+pub fn gaze(session: &Session, sample: GazeSample) -> EntityUpdate {
     let [width_m, height_m] = session.kitchen.display_m;
     let at = [sample.x * width_m * MM, sample.y * height_m * MM];
     let around = session.spec.human.perception.radius_m() * MM;
     let colour = if sample.confidence >= MIN_CONFIDENCE { colours::SIGNAL } else { colours::LOST };
-    Row::new("human/gaze", Shown::Sight { at, around, colour })
+    EntityUpdate::new("human/gaze", EntityData::Sight { at, around, colour })
 }

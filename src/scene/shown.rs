@@ -8,25 +8,25 @@ use crate::arm::link::CollisionSolid;
 
 /// Something that an entity shows from a moment on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct EntityUpdate {
     /// The path of the entity, such as `kitchen/plate`.
     pub entity: String,
-    pub shown: Shown,
+    pub shown: EntityData,
 }
 
-impl Row {
-    pub fn new(entity: impl Into<String>, shown: Shown) -> Row {
-        Row { entity: entity.into(), shown }
+impl EntityUpdate {
+    pub fn new(entity: impl Into<String>, shown: EntityData) -> EntityUpdate {
+        EntityUpdate { entity: entity.into(), shown }
     }
 }
 
 /// What is shown.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shown {
+pub enum EntityData {
     /// Outlines in the kitchen; none: nothing is there.
-    Areas(Vec<Area>),
+    Areas(Vec<SceneArea>),
     /// Discs and words in the kitchen.
-    Discs(Vec<Disc>),
+    Discs(Vec<SceneDisc>),
     /// A point with a circle around it, in the kitchen: `around` is the circle's radius.
     Sight {
         at: [f64; 2],
@@ -34,7 +34,7 @@ pub enum Shown {
         colour: Colour,
     },
     /// Points in space, with words.
-    Points(Vec<Point>),
+    Points(Vec<ScenePoint>),
     /// Shapes in the entity's own frame.
     Solids(Vec<CollisionSolid>, Colour),
     /// Where the entity's frame is, in that of the robot's base.
@@ -42,11 +42,11 @@ pub enum Shown {
     /// A value of a series.
     Value(f64),
     /// How the values of a series are drawn: as a line, or as marks.
-    Line(Series),
-    Marks(Series),
+    Line(SceneSeries),
+    Marks(SceneSeries),
     /// A line of the log.
     Words {
-        level: Level,
+        level: LogLevel,
         text: String,
         colour: Colour,
     },
@@ -58,7 +58,7 @@ pub enum Shown {
 
 /// The outline of a rectangle in the kitchen.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Area {
+pub struct SceneArea {
     /// Left and upper edge, width and height, in millimetres.
     pub left: f64,
     pub top: f64,
@@ -71,7 +71,7 @@ pub struct Area {
 
 /// A disc in the kitchen with words below its centre, in millimetres; of radius 0: words alone.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Disc {
+pub struct SceneDisc {
     pub at: [f64; 2],
     pub radius: f64,
     pub words: String,
@@ -80,7 +80,7 @@ pub struct Disc {
 
 /// A point in space, in metres.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Point {
+pub struct ScenePoint {
     pub at_m: [f64; 3],
     pub radius_m: f64,
     pub words: String,
@@ -89,14 +89,14 @@ pub struct Point {
 
 /// How a series is drawn.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Series {
+pub struct SceneSeries {
     pub name: String,
     pub colour: Colour,
 }
 
 /// How much a line of the log matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
+pub enum LogLevel {
     Info,
     /// It had no effect, or was taken back.
     Warning,

@@ -39,7 +39,7 @@ pub enum CalibrationEvent {
 
 /// A check that goes on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Check {
+pub struct RunningGazeCheck {
     pub targets: Vec<[f64; 2]>,
     /// The target that is shown, and since when.
     pub shown: Option<(usize, SessionTime)>,
@@ -47,34 +47,34 @@ pub struct Check {
     samples: Vec<Vec<GazeSample>>,
     /// When it began, and then when the last thing happened.
     at: SessionTime,
-    pub result: Option<Outcome>,
+    pub result: Option<GazeCheckResult>,
     are_hidden: bool,
 }
 
 /// What a check came to.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Outcome {
+pub struct GazeCheckResult {
     /// Nothing: too few usable samples.
     pub found: Option<GazeAccuracy>,
 }
 
 /// A check that was accepted.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Calibrated {
+pub struct AcceptedGazeCheck {
     pub at: SessionTime,
     pub found: GazeAccuracy,
     /// The offset is taken off.
     pub corrected: bool,
 }
 
-impl Calibrated {
+impl AcceptedGazeCheck {
     /// How far gaze is off, in degrees, as it is used from then on.
     pub fn accuracy_deg(&self) -> f64 {
         if self.corrected { self.found.corrected_deg } else { self.found.accuracy_deg }
     }
 }
 
-impl Check {
+impl RunningGazeCheck {
     /// The display point of the shown target, in fractions.
     pub fn target(&self) -> Option<[f64; 2]> {
         self.shown.and_then(|(index, _)| self.targets.get(index).copied())
@@ -131,7 +131,7 @@ impl Session {
     /// Gaze as it is used: with the accepted offset taken off.
     pub fn corrected(&self, sample: GazeSample) -> GazeSample {
         match self.calibrated.as_ref().filter(|calibrated| calibrated.corrected) {
-            Some(Calibrated { found: GazeAccuracy { offset, .. }, .. }) => {
+            Some(AcceptedGazeCheck { found: GazeAccuracy { offset, .. }, .. }) => {
                 GazeSample { x: sample.x + offset[0], y: sample.y + offset[1], ..sample }
             }
             None => sample,
@@ -187,7 +187,7 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &Calibration
             let samples = vec![Vec::new(); targets.len()];
             let targets = targets.clone();
             session.calibration =
-                Some(Check { targets, shown: None, samples, at: now, result: None, are_hidden: false });
+                Some(RunningGazeCheck { targets, shown: None, samples, at: now, result: None, are_hidden: false });
             return;
         }
         CalibrationEvent::Dismissed => {
@@ -197,12 +197,12 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &Calibration
         CalibrationEvent::Accepted { corrected } => {
             let outcome = session.calibration.take().and_then(|check| check.result);
             if let Some(found) = outcome.and_then(|outcome| outcome.found) {
-                session.calibrated = Some(Calibrated { at: now, found, corrected: *corrected });
+                session.calibrated = Some(AcceptedGazeCheck { at: now, found, corrected: *corrected });
             }
             return;
         }
         CalibrationEvent::Carried { found, corrected } => {
-            session.calibrated = Some(Calibrated { at: now, found: found.clone(), corrected: *corrected });
+            session.calibrated = Some(AcceptedGazeCheck { at: now, found: found.clone(), corrected: *corrected });
             return;
         }
         _ => {}
@@ -212,7 +212,7 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &Calibration
     match event {
         CalibrationEvent::TargetShown { target } => check.shown = Some((*target, now)),
         CalibrationEvent::TargetsHidden => (check.shown, check.are_hidden) = (None, true),
-        CalibrationEvent::Measured { found } => check.result = Some(Outcome { found: found.clone() }),
+        CalibrationEvent::Measured { found } => check.result = Some(GazeCheckResult { found: found.clone() }),
         _ => {}
     }
 }

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::calibration::CalibrationEvent;
 use super::display::DisplayEvent;
-use super::preflight::Check;
+use super::preflight::PreflightCheck;
 use super::protocol::ProtocolEvent;
-use super::screen::Screen;
+use super::screen::VisibleScreen;
 use super::tracker::TrackerEvent;
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
@@ -41,7 +41,7 @@ pub struct Stamped {
 pub enum Event {
     /// What was looked at before the trial, and whether it was started although not all was ok.
     Preflight {
-        checks: Vec<Check>,
+        checks: Vec<PreflightCheck>,
         overridden: bool,
     },
     /// The trial's clock starts; empty kitchen.
@@ -174,7 +174,7 @@ pub enum Event {
     /// Witness: what the participant's display tells of itself.
     Display(DisplayEvent),
     /// Witness: what is on the wizard's screen from now on.
-    Screen(Screen),
+    Screen(VisibleScreen),
     /// Witness: the wizard sees from now on what these concepts would say, beside what is sent.
     Unblinded {
         concepts: Vec<ConceptName>,

@@ -97,11 +97,11 @@ pub struct Session {
     /// What is known of the eye tracker.
     pub tracker: tracker::TrackerStatus,
     /// The check of the calibration that goes on, or waits for the wizard's verdict.
-    pub calibration: Option<calibration::Check>,
+    pub calibration: Option<calibration::RunningGazeCheck>,
     /// The check that was accepted last.
-    pub calibrated: Option<calibration::Calibrated>,
+    pub calibrated: Option<calibration::AcceptedGazeCheck>,
     /// What happened, without the gaze: the timeline of the console.
-    pub timeline: Vec<Entry>,
+    pub timeline: Vec<TimelineEntry>,
     /// Where it is in its plan, if it belongs to one.
     pub protocol: Option<protocol::Protocol>,
 }
@@ -128,14 +128,14 @@ pub struct ShownSignal {
 
 /// An entry of the timeline.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
+pub struct TimelineEntry {
     pub time: SessionTime,
-    pub what: Happening,
+    pub what: TimelineEvent,
 }
 
 /// What an entry of the timeline is about.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Happening {
+pub enum TimelineEvent {
     Press {
         agent: Agent,
         button: ButtonId,

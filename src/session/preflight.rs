@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Session;
 use super::settings::{GazeSource, ParticipantKind};
-use super::tracker::{Link, faults};
+use super::tracker::{TrackerConnection, faults};
 use crate::base::time::SessionTime;
 use crate::gaze::calibration::{GOOD_DEG, USABLE_DEG};
 
@@ -19,7 +19,7 @@ const FREE_BYTES: (u64, u64) = (1 << 30, 50 << 20);
 /// How something was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
+pub enum PreflightVerdict {
     Ok,
     /// It works, but less well.
     Warning,
@@ -30,56 +30,66 @@ pub enum Verdict {
 /// One thing that was looked at.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Check {
+pub struct PreflightCheck {
     pub name: String,
-    pub verdict: Verdict,
+    pub verdict: PreflightVerdict,
     pub found: String,
     /// How to mend it, unless it is ok.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub remedy: Option<String>,
 }
 
-impl Check {
-    pub fn new(name: &str, verdict: Verdict, found: impl Into<String>, remedy: impl Into<String>) -> Check {
-        let remedy = (verdict != Verdict::Ok).then(|| remedy.into());
-        Check { name: name.to_string(), verdict, found: found.into(), remedy }
+impl PreflightCheck {
+    pub fn new(
+        name: &str,
+        verdict: PreflightVerdict,
+        found: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> PreflightCheck {
+        let remedy = (verdict != PreflightVerdict::Ok).then(|| remedy.into());
+        PreflightCheck { name: name.to_string(), verdict, found: found.into(), remedy }
     }
 
     /// Something that is as it should be.
-    pub fn ok(name: &str, found: impl Into<String>) -> Check {
-        Check::new(name, Verdict::Ok, found, "")
+    pub fn ok(name: &str, found: impl Into<String>) -> PreflightCheck {
+        PreflightCheck::new(name, PreflightVerdict::Ok, found, "")
     }
 }
 
 /// Whether there is room for a recording, with so many bytes free; `None`: the system does not say.
-pub fn space(free_bytes: Option<u64>) -> Check {
+pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
     let remedy = "free some, or record elsewhere with --out";
     let Some(free) = free_bytes else {
-        return Check::new("free space", Verdict::Warning, "the system does not say how much there is", remedy);
+        return PreflightCheck::new(
+            "free space",
+            PreflightVerdict::Warning,
+            "the system does not say how much there is",
+            remedy,
+        );
     };
     let verdict = match free {
-        free if free >= FREE_BYTES.0 => Verdict::Ok,
-        free if free >= FREE_BYTES.1 => Verdict::Warning,
-        _ => Verdict::Failed,
+        free if free >= FREE_BYTES.0 => PreflightVerdict::Ok,
+        free if free >= FREE_BYTES.1 => PreflightVerdict::Warning,
+        _ => PreflightVerdict::Failed,
     };
-    Check::new("free space", verdict, format!("{} MB", free / 1_000_000), remedy)
+    PreflightCheck::new("free space", verdict, format!("{} MB", free / 1_000_000), remedy)
 }
 
 /// Who takes part, where the gaze comes from, and how true it is; `check_gaze` is the key that checks it by targets.
-pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec<Check> {
+pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec<PreflightCheck> {
     let spec = &session.spec.participant;
     let who = match spec.kind {
         ParticipantKind::Simulated => "simulated",
         ParticipantKind::Keyboard => "at this keyboard",
         ParticipantKind::Display => "at the wall display",
     };
-    let mut checks = vec![Check::ok("participant", format!("{}, {who}", spec.code))];
+    let mut checks = vec![PreflightCheck::ok("participant", format!("{}, {who}", spec.code))];
     match spec.gaze {
-        GazeSource::Simulated => checks.push(Check::ok("gaze", "simulated: it comes with the trial")),
-        GazeSource::None => checks.push(Check::ok("gaze", "none is asked for")),
+        GazeSource::Simulated => checks.push(PreflightCheck::ok("gaze", "simulated: it comes with the trial")),
+        GazeSource::None => checks.push(PreflightCheck::ok("gaze", "none is asked for")),
         GazeSource::File => {
             let file = session.spec.tracker.file.clone().unwrap_or_default();
-            checks.push(Check::ok("gaze", format!("{file}: it comes with the trial")));
+            checks.push(PreflightCheck::ok("gaze", format!("{file}: it comes with the trial")));
         }
         GazeSource::Mouse => checks.extend(gaze(session, now)),
         GazeSource::Json => {
@@ -95,7 +105,7 @@ pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec
     checks
 }
 
-fn gaze(session: &Session, now: SessionTime) -> Vec<Check> {
+fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
     let mends = match session.spec.participant.gaze {
         GazeSource::Json => format!("start what sends lines to port {}", session.spec.participant.gaze_port),
         GazeSource::Pupil => "let the participant look at the wall display; Capture needs a calibration".to_string(),
@@ -103,24 +113,33 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<Check> {
     };
     let Some(hz) = session.gaze_hz(now) else {
         let is_mouse = session.spec.participant.gaze == GazeSource::Mouse;
-        let verdict = if is_mouse { Verdict::Warning } else { Verdict::Failed };
+        let verdict = if is_mouse { PreflightVerdict::Warning } else { PreflightVerdict::Failed };
         let malformed = session.tracker.dropped.malformed;
         if malformed > 0 && session.spec.participant.gaze == GazeSource::Json {
             let found = format!("{malformed} lines arrived, none of late was a sample");
             let remedy = "a line each: {\"x\": 0 to 1, \"y\": 0 to 1, \"confidence\": 0 to 1}, \"t\" in seconds if there is a clock";
-            return vec![Check::new("gaze", Verdict::Failed, found, remedy)];
+            return vec![PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy)];
         }
-        return vec![Check::new("gaze", verdict, "no sample arrives", mends)];
+        return vec![PreflightCheck::new("gaze", verdict, "no sample arrives", mends)];
     };
-    let verdict = if hz < SLOW_HZ { Verdict::Warning } else { Verdict::Ok };
-    let rate =
-        Check::new("gaze", verdict, format!("{hz:.0} samples a second"), "a faster tracker: 60 a second or more");
+    let verdict = if hz < SLOW_HZ { PreflightVerdict::Warning } else { PreflightVerdict::Ok };
+    let rate = PreflightCheck::new(
+        "gaze",
+        verdict,
+        format!("{hz:.0} samples a second"),
+        "a faster tracker: 60 a second or more",
+    );
     let usable = session.gaze.last.filter(|(at, _)| now.secs_since(*at) <= UNUSABLE_S);
     let quality = match usable {
-        Some((_, sample)) => Check::ok("gaze quality", format!("usable, confidence {:.2}", sample.confidence)),
+        Some((_, sample)) => PreflightCheck::ok("gaze quality", format!("usable, confidence {:.2}", sample.confidence)),
         None => {
             let found = "no sample is on the display with enough confidence";
-            Check::new("gaze quality", Verdict::Warning, found, "set the tracker up anew, or calibrate it")
+            PreflightCheck::new(
+                "gaze quality",
+                PreflightVerdict::Warning,
+                found,
+                "set the tracker up anew, or calibrate it",
+            )
         }
     };
     let mut checks = vec![rate, quality];
@@ -128,45 +147,52 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<Check> {
     let (samples, wrong) = (session.gaze.samples, faults.iter().map(|(count, _)| count).sum::<u64>());
     if wrong > 0 {
         // Real streams have some; what is wrong is not read, and does not matter before it is much.
-        let verdict = if wrong * 20 > samples { Verdict::Warning } else { Verdict::Ok };
+        let verdict = if wrong * 20 > samples { PreflightVerdict::Warning } else { PreflightVerdict::Ok };
         let kinds: Vec<String> = faults.iter().map(|(count, kind)| format!("{count} {kind}")).collect();
         let found = format!("{samples} samples; {}", kinds.join(", "));
-        checks.push(Check::new("gaze stream", verdict, found, "less load on the tracker's computer, a better network"));
+        checks.push(PreflightCheck::new(
+            "gaze stream",
+            verdict,
+            found,
+            "less load on the tracker's computer, a better network",
+        ));
     }
     checks
 }
 
 /// Whether the eye tracker is there, and sees the display.
-fn tracker(session: &Session) -> Check {
+fn tracker(session: &Session) -> PreflightCheck {
     let spec = &session.spec.tracker;
     let name = "eye tracker";
     match (&session.tracker.link, session.tracker.sees_display) {
-        (Link::Connected { device }, Some(true)) => Check::ok(name, format!("{device}, sees the display")),
-        (Link::Connected { device }, _) => {
+        (TrackerConnection::Connected { device }, Some(true)) => {
+            PreflightCheck::ok(name, format!("{device}, sees the display"))
+        }
+        (TrackerConnection::Connected { device }, _) => {
             let found = format!("{device}, does not see \"{}\"", spec.surface);
             let remedy = format!("tags in view and lit; Capture's Surface Tracker with a surface \"{}\"", spec.surface);
-            Check::new(name, Verdict::Failed, found, remedy)
+            PreflightCheck::new(name, PreflightVerdict::Failed, found, remedy)
         }
         _ => {
             let remedy = format!("start Pupil Capture on {}, Pupil Remote on port {}", spec.address, spec.port);
-            Check::new(name, Verdict::Failed, "Pupil Capture does not answer", remedy)
+            PreflightCheck::new(name, PreflightVerdict::Failed, "Pupil Capture does not answer", remedy)
         }
     }
 }
 
 /// How the gaze was found to be, if it was looked at.
-fn calibration(session: &Session, check_gaze: &str) -> Option<Check> {
+fn calibration(session: &Session, check_gaze: &str) -> Option<PreflightCheck> {
     let accuracy_deg = session.calibrated.as_ref()?.accuracy_deg();
     let verdict = match accuracy_deg {
-        deg if deg <= GOOD_DEG => Verdict::Ok,
-        deg if deg <= USABLE_DEG => Verdict::Warning,
-        _ => Verdict::Failed,
+        deg if deg <= GOOD_DEG => PreflightVerdict::Ok,
+        deg if deg <= USABLE_DEG => PreflightVerdict::Warning,
+        _ => PreflightVerdict::Failed,
     };
     let remedy = format!("calibrate the tracker anew, then check it by targets ({check_gaze})");
-    Some(Check::new("calibration", verdict, format!("off by {accuracy_deg:.1} deg"), remedy))
+    Some(PreflightCheck::new("calibration", verdict, format!("off by {accuracy_deg:.1} deg"), remedy))
 }
 
-fn unchecked(check_gaze: &str) -> Check {
+fn unchecked(check_gaze: &str) -> PreflightCheck {
     let remedy = format!("{check_gaze} checks the gaze by targets (check_gaze in the key file)");
-    Check::new("calibration", Verdict::Warning, "not checked", remedy)
+    PreflightCheck::new("calibration", PreflightVerdict::Warning, "not checked", remedy)
 }

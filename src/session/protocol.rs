@@ -82,7 +82,7 @@ pub enum ProtocolEvent {
 
 /// An answer to an item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
+pub enum ItemAnswer {
     Rated(u8),
     Skipped,
 }
@@ -107,7 +107,7 @@ pub struct Protocol {
     /// The steps of the phase that are done.
     pub ticks: Vec<bool>,
     /// The answers to the items of the phase.
-    pub answers: Vec<Option<Answer>>,
+    pub answers: Vec<Option<ItemAnswer>>,
     /// The item in front of the participant; the number of items: all of them, to be confirmed.
     pub item: usize,
     pub confirmed: bool,
@@ -270,8 +270,8 @@ pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
         }
         ProtocolEvent::ItemShown { .. } => protocol.item = item.unwrap_or(0),
         ProtocolEvent::AnswersShown => protocol.item = items,
-        ProtocolEvent::ItemAnswered { answer, .. } => protocol.answer(Answer::Rated(*answer)),
-        ProtocolEvent::ItemSkipped { .. } => protocol.answer(Answer::Skipped),
+        ProtocolEvent::ItemAnswered { answer, .. } => protocol.answer(ItemAnswer::Rated(*answer)),
+        ProtocolEvent::ItemSkipped { .. } => protocol.answer(ItemAnswer::Skipped),
         ProtocolEvent::AnswersConfirmed => protocol.confirmed = true,
         ProtocolEvent::CriterionChecked { met, orders, presses, errors } => {
             let (met, orders, presses, errors) = (*met, *orders, *presses, *errors);
@@ -297,7 +297,7 @@ fn sizes(step: Option<&StepSpec>, number: usize) -> (usize, usize) {
 
 impl Protocol {
     /// Answers the shown item, and shows the next one; after the last, the first that was left out, or all answers.
-    fn answer(&mut self, answer: Answer) {
+    fn answer(&mut self, answer: ItemAnswer) {
         if let Some(place) = self.answers.get_mut(self.item) {
             *place = Some(answer);
         }

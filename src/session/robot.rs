@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::apply::note;
-use super::{Event, Happening, Session};
+use super::{Event, Session, TimelineEvent};
 use crate::base::time::SessionTime;
 use crate::kitchen::ButtonId;
 use crate::robot::moment::ArmSample;
@@ -111,7 +111,7 @@ impl RobotStatus {
 pub(super) fn arm(session: &mut Session, now: SessionTime, event: &Event) {
     match event {
         Event::RobotMoves(moment) => session.robot.arm.last = Some((now, *moment)),
-        Event::RobotTouched { force_n } => note(session, now, Happening::ArmTouched { force_n: *force_n }),
+        Event::RobotTouched { force_n } => note(session, now, TimelineEvent::ArmTouched { force_n: *force_n }),
         Event::RobotSafety { mode, force_n, joint } => {
             let arm = &mut session.robot.arm;
             (arm.mode, arm.stopped_by_n) = (*mode, *force_n);
@@ -119,7 +119,7 @@ pub(super) fn arm(session: &mut Session, now: SessionTime, event: &Event) {
             if mode.is_stopped() && !session.robot.stopped {
                 session.robot.stopped = true;
                 session.robot.idle = None;
-                note(session, now, Happening::ArmStopped { mode: *mode, force_n: *force_n, joint: *joint });
+                note(session, now, TimelineEvent::ArmStopped { mode: *mode, force_n: *force_n, joint: *joint });
             }
         }
         _ => {}
@@ -130,12 +130,12 @@ pub(super) fn arm(session: &mut Session, now: SessionTime, event: &Event) {
 pub(super) fn stop(session: &mut Session, now: SessionTime, stopped: bool) {
     session.robot.stopped = stopped;
     session.robot.idle = None;
-    note(session, now, if stopped { Happening::RobotStopped } else { Happening::RobotResumed });
+    note(session, now, if stopped { TimelineEvent::RobotStopped } else { TimelineEvent::RobotResumed });
 }
 
 /// The wizard holds it before its next press, or lets it go.
 pub(super) fn hold(session: &mut Session, now: SessionTime, held: bool) {
     session.robot.held = held;
     session.robot.idle = None;
-    note(session, now, if held { Happening::RobotHeld } else { Happening::RobotReleased });
+    note(session, now, if held { TimelineEvent::RobotHeld } else { TimelineEvent::RobotReleased });
 }

@@ -6,7 +6,7 @@ use super::settings::Visibility;
 
 /// What is on the screen.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Screen {
+pub struct VisibleScreen {
     pub visibility: Visibility,
     /// How much room there is: `small`, `medium`, `large`, or `too_small` for anything but questions.
     pub room: String,

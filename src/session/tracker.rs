@@ -104,7 +104,7 @@ pub enum TrackerEvent {
 
 /// Whether the tracker's program is there.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Link {
+pub enum TrackerConnection {
     /// Nothing was heard of it.
     #[default]
     Unknown,
@@ -120,7 +120,7 @@ pub enum Link {
 /// What is known of the tracker.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrackerStatus {
-    pub link: Link,
+    pub link: TrackerConnection,
     /// Whether it sees the display; nothing: it has not said.
     pub sees_display: Option<bool>,
     /// How often it was lost.
@@ -134,10 +134,10 @@ impl TrackerStatus {
     /// Moves on by an event that was admitted.
     pub(super) fn apply(&mut self, now: SessionTime, event: &TrackerEvent) {
         match event {
-            TrackerEvent::Connected { device } => self.link = Link::Connected { device: device.clone() },
+            TrackerEvent::Connected { device } => self.link = TrackerConnection::Connected { device: device.clone() },
             TrackerEvent::Lost { reason } => {
                 self.losses += 1;
-                self.link = Link::Lost { since: now, reason: reason.clone() };
+                self.link = TrackerConnection::Lost { since: now, reason: reason.clone() };
                 self.sees_display = None;
             }
             TrackerEvent::DisplayFound => self.sees_display = Some(true),

@@ -1,9 +1,9 @@
 //! The figures of the report, after those of the paper.
 
-use super::effect::{Measure, Pair, pairs};
-use super::figures::{ConditionFigures, StudyFigures};
-use super::roc::{Point, Roc};
-use super::svg::{Axis, Chart, minus};
+use super::effect::{StudyMeasure, TrialPair, pairs};
+use super::figures::{StudyConditionSummary, StudySummary};
+use super::roc::{Roc, RocPoint};
+use super::svg::{PlotAxis, SvgChart, minus};
 use super::trial::{Trial, mean};
 use crate::communication::concept::ConceptName;
 use crate::session::settings::Condition;
@@ -11,14 +11,18 @@ use crate::session::settings::Condition;
 /// Errors by condition and participant (the paper's top left): the two trials of a participant are joined by a line, means
 /// are black.
 pub fn errors_by_condition(trials: &[Trial]) -> Option<String> {
-    let pairs = pairs(trials, Measure::ErrorRateHuman);
+    let pairs = pairs(trials, StudyMeasure::ErrorRateHuman);
     let values = || pairs.iter().flat_map(|pair| pair.values).map(percent);
     if pairs.is_empty() {
         return None;
     }
     let names = ["unassisted".to_string(), "assisted".to_string()];
-    let mut chart =
-        Chart::new(420.0, 320.0, Axis::named(&names), Axis::over("errors per 100 presses of the human", values()));
+    let mut chart = SvgChart::new(
+        420.0,
+        320.0,
+        PlotAxis::named(&names),
+        PlotAxis::over("errors per 100 presses of the human", values()),
+    );
     for pair in &pairs {
         let [without, with] = pair.by_condition().map(percent);
         let class = group_class(pair);
@@ -37,15 +41,16 @@ pub fn errors_by_condition(trials: &[Trial]) -> Option<String> {
 /// Improvements from the first trial to the second by starting group (the paper's top right); the difference of the means is
 /// twice the effect of assistance.
 pub fn improvements(trials: &[Trial]) -> Option<String> {
-    let pairs = pairs(trials, Measure::ErrorRateHuman);
+    let pairs = pairs(trials, StudyMeasure::ErrorRateHuman);
     if pairs.is_empty() {
         return None;
     }
     let names = ["first unassisted,\nthen assisted".to_string(), "first assisted,\nthen unassisted".to_string()];
     let all = pairs.iter().map(|pair| percent(pair.improvement()));
-    let mut chart = Chart::new(420.0, 320.0, Axis::named(&names), Axis::over("fewer errors in the second trial", all));
+    let mut chart =
+        SvgChart::new(420.0, 320.0, PlotAxis::named(&names), PlotAxis::over("fewer errors in the second trial", all));
     for (x, assisted_second) in [(0.0, true), (1.0, false)] {
-        let of_group: Vec<&Pair> = pairs.iter().filter(|pair| pair.assisted_second == assisted_second).collect();
+        let of_group: Vec<&TrialPair> = pairs.iter().filter(|pair| pair.assisted_second == assisted_second).collect();
         for (index, pair) in of_group.iter().enumerate() {
             let y = percent(pair.improvement());
             chart.point(group_class(pair), x + aside(index), y, &format!("{}: {y:+.1}", pair.participant));
@@ -77,7 +82,8 @@ pub fn press_durations(trials: &[Trial]) -> Option<String> {
     };
     let names: Vec<String> = cells.iter().map(name).collect();
     let all = found.iter().flatten().map(|(_, seconds)| *seconds);
-    let mut chart = Chart::new(420.0, 320.0, Axis::named(&names), Axis::over("seconds from press to press", all));
+    let mut chart =
+        SvgChart::new(420.0, 320.0, PlotAxis::named(&names), PlotAxis::over("seconds from press to press", all));
     for (x, (cell, found)) in cells.iter().zip(&found).enumerate() {
         let class = if cell.1 { "assisted" } else { "unassisted" };
         for (index, (participant, seconds)) in found.iter().enumerate() {
@@ -94,10 +100,10 @@ pub fn press_durations(trials: &[Trial]) -> Option<String> {
 const LONGEST: usize = 12;
 
 /// How many sequences have how many errors, by condition, a trial.
-pub fn sequence_lengths(conditions: &[ConditionFigures]) -> Option<String> {
-    let assisted = |one: &&ConditionFigures| one.condition != Condition::None;
-    let per_trial = |is: &dyn Fn(&&ConditionFigures) -> bool| -> Vec<f64> {
-        let found: Vec<&ConditionFigures> = conditions.iter().filter(is).collect();
+pub fn sequence_lengths(conditions: &[StudyConditionSummary]) -> Option<String> {
+    let assisted = |one: &&StudyConditionSummary| one.condition != Condition::None;
+    let per_trial = |is: &dyn Fn(&&StudyConditionSummary) -> bool| -> Vec<f64> {
+        let found: Vec<&StudyConditionSummary> = conditions.iter().filter(is).collect();
         let trials: u64 = found.iter().map(|one| one.trials).sum();
         let mut counts = vec![0.0; LONGEST];
         for one in found {
@@ -114,8 +120,8 @@ pub fn sequence_lengths(conditions: &[ConditionFigures]) -> Option<String> {
     }
     let names: Vec<String> =
         (1..=LONGEST).map(|length| if length == LONGEST { format!("{length}+") } else { length.to_string() }).collect();
-    let x = Axis { label: "errors in a sequence", ..Axis::named(&names) };
-    let mut chart = Chart::new(420.0, 320.0, x, Axis::over("sequences a trial", all()));
+    let x = PlotAxis { label: "errors in a sequence", ..PlotAxis::named(&names) };
+    let mut chart = SvgChart::new(420.0, 320.0, x, PlotAxis::over("sequences a trial", all()));
     for (side, (class, counts)) in sets.iter().enumerate() {
         for (index, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0.0) {
             let from = index as f64 - 0.38 + 0.38 * side as f64;
@@ -126,13 +132,13 @@ pub fn sequence_lengths(conditions: &[ConditionFigures]) -> Option<String> {
 }
 
 /// Receiver operating characteristics of the concepts, with bands.
-pub fn roc(figures: &StudyFigures) -> Option<String> {
+pub fn roc(figures: &StudySummary) -> Option<String> {
     let points = || figures.roc.iter().flat_map(|roc| &roc.points);
     points().next()?;
-    let x = Axis::over("false positive rate, per press outside of episodes", points().map(|point| point.fpr));
-    let x = Axis::between(x.label, 0.0, x.to.min(1.0));
-    let y = Axis::between("belief related errors prevented", 0.0, 1.0);
-    let mut chart = Chart::new(420.0, 380.0, x, y);
+    let x = PlotAxis::over("false positive rate, per press outside of episodes", points().map(|point| point.fpr));
+    let x = PlotAxis::between(x.label, 0.0, x.to.min(1.0));
+    let y = PlotAxis::between("belief related errors prevented", 0.0, 1.0);
+    let mut chart = SvgChart::new(420.0, 380.0, x, y);
     for roc in &figures.roc {
         chart.band(class_of(roc.concept), &roc.band);
     }
@@ -146,11 +152,11 @@ pub fn roc(figures: &StudyFigures) -> Option<String> {
 const MOST_SIGNALS: f64 = 25.0;
 
 /// The same against interruptions.
-pub fn equal_signals(figures: &StudyFigures) -> Option<String> {
+pub fn equal_signals(figures: &StudySummary) -> Option<String> {
     figures.roc.iter().flat_map(|roc| &roc.points).next()?;
-    let x = Axis::between("signals per 100 presses of the human", 0.0, MOST_SIGNALS);
-    let y = Axis::between("belief related errors prevented", 0.0, 1.0);
-    let mut chart = Chart::new(420.0, 380.0, x, y);
+    let x = PlotAxis::between("signals per 100 presses of the human", 0.0, MOST_SIGNALS);
+    let y = PlotAxis::between("belief related errors prevented", 0.0, 1.0);
+    let mut chart = SvgChart::new(420.0, 380.0, x, y);
     for roc in &figures.roc {
         curve(&mut chart, roc, MOST_SIGNALS, |point| (point.signals_per_100_actions, point.tpr));
     }
@@ -158,9 +164,9 @@ pub fn equal_signals(figures: &StudyFigures) -> Option<String> {
 }
 
 /// The points of a concept, up to a place on the x axis, and the line through them.
-fn curve(chart: &mut Chart, roc: &Roc, to: f64, of: fn(&Point) -> (f64, f64)) {
+fn curve(chart: &mut SvgChart, roc: &Roc, to: f64, of: fn(&RocPoint) -> (f64, f64)) {
     let class = class_of(roc.concept);
-    let is_drawn = |point: &&Point| of(point).0 <= to;
+    let is_drawn = |point: &&RocPoint| of(point).0 <= to;
     let mut points: Vec<(f64, f64)> = roc.points.iter().filter(is_drawn).map(of).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     chart.line(class, &points);
@@ -181,7 +187,7 @@ pub fn class_of(concept: ConceptName) -> &'static str {
     }
 }
 
-fn group_class(pair: &Pair) -> &'static str {
+fn group_class(pair: &TrialPair) -> &'static str {
     if pair.assisted_second { "second" } else { "first" }
 }
 

@@ -16,7 +16,7 @@ pub const LEVEL: f64 = 0.95;
 
 /// A participant with both trials.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Pair {
+pub struct TrialPair {
     pub participant: String,
     /// The second trial was the assisted one.
     pub assisted_second: bool,
@@ -24,7 +24,7 @@ pub struct Pair {
     pub values: [f64; 2],
 }
 
-impl Pair {
+impl TrialPair {
     /// By how much less the second trial has.
     pub fn improvement(&self) -> f64 {
         self.values[0] - self.values[1]
@@ -39,7 +39,7 @@ impl Pair {
 /// What is compared between the trials of a participant; of each, less is better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Measure {
+pub enum StudyMeasure {
     /// Errors per press of the human.
     ErrorRateHuman,
     /// Errors per press of both agents.
@@ -56,35 +56,35 @@ pub enum Measure {
     PressS,
 }
 
-impl Measure {
+impl StudyMeasure {
     /// All of them; the first is the one that the headline is about.
-    pub const ALL: [Measure; 7] = [
-        Measure::ErrorRateHuman,
-        Measure::ErrorRate,
-        Measure::SequenceLength,
-        Measure::RecoveryS,
-        Measure::OrderS,
-        Measure::PressesPerOrder,
-        Measure::PressS,
+    pub const ALL: [StudyMeasure; 7] = [
+        StudyMeasure::ErrorRateHuman,
+        StudyMeasure::ErrorRate,
+        StudyMeasure::SequenceLength,
+        StudyMeasure::RecoveryS,
+        StudyMeasure::OrderS,
+        StudyMeasure::PressesPerOrder,
+        StudyMeasure::PressS,
     ];
 
     /// That of a trial, if it has one.
-    pub fn of(self, trial: &Trial) -> Option<f64> {
+    pub fn value(self, trial: &Trial) -> Option<f64> {
         match self {
-            Measure::ErrorRateHuman => trial.error_rate_human(),
-            Measure::ErrorRate => trial.error_rate(),
-            Measure::SequenceLength => trial.sequence_length(),
-            Measure::RecoveryS => trial.recovery_s(),
-            Measure::OrderS => trial.order_s,
-            Measure::PressesPerOrder => trial.presses_per_order,
-            Measure::PressS => trial.press_s,
+            StudyMeasure::ErrorRateHuman => trial.error_rate_human(),
+            StudyMeasure::ErrorRate => trial.error_rate(),
+            StudyMeasure::SequenceLength => trial.sequence_length(),
+            StudyMeasure::RecoveryS => trial.recovery_s(),
+            StudyMeasure::OrderS => trial.order_s,
+            StudyMeasure::PressesPerOrder => trial.presses_per_order,
+            StudyMeasure::PressS => trial.press_s,
         }
     }
 
     /// So many digits behind the point say as much as is known.
     pub fn digits(self) -> usize {
         match self {
-            Measure::ErrorRateHuman | Measure::ErrorRate => 3,
+            StudyMeasure::ErrorRateHuman | StudyMeasure::ErrorRate => 3,
             _ => 2,
         }
     }
@@ -92,21 +92,21 @@ impl Measure {
     /// In words.
     pub fn title(self) -> &'static str {
         match self {
-            Measure::ErrorRateHuman => "errors per press of the human",
-            Measure::ErrorRate => "errors per press of both agents",
-            Measure::SequenceLength => "errors in a sequence",
-            Measure::RecoveryS => "seconds to recover from a sequence",
-            Measure::OrderS => "seconds for an order",
-            Measure::PressesPerOrder => "presses of both for an order",
-            Measure::PressS => "seconds from press to press of the human",
+            StudyMeasure::ErrorRateHuman => "errors per press of the human",
+            StudyMeasure::ErrorRate => "errors per press of both agents",
+            StudyMeasure::SequenceLength => "errors in a sequence",
+            StudyMeasure::RecoveryS => "seconds to recover from a sequence",
+            StudyMeasure::OrderS => "seconds for an order",
+            StudyMeasure::PressesPerOrder => "presses of both for an order",
+            StudyMeasure::PressS => "seconds from press to press of the human",
         }
     }
 }
 
 /// What assistance changes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Effect {
-    pub measure: Measure,
+pub struct AssistanceEffect {
+    pub measure: StudyMeasure,
     /// Participants whose second trial was the assisted one, and whose first was.
     pub groups: [usize; 2],
     /// Mean improvements of these groups from the first trial to the second.
@@ -125,7 +125,7 @@ pub struct Effect {
     pub hedges_g: Option<f64>,
 }
 
-impl Effect {
+impl AssistanceEffect {
     /// The assistance effect, tested as the definition says.
     pub fn assistance(&self) -> Option<FTest> {
         self.by_period.interaction
@@ -134,14 +134,14 @@ impl Effect {
 
 /// The participants with one assisted and one unassisted trial that count and have this measure, in the order of their codes.
 /// Of several trials of a participant in a period the last one counts: it was done again.
-pub fn pairs(trials: &[Trial], measure: Measure) -> Vec<Pair> {
+pub fn pairs(trials: &[Trial], measure: StudyMeasure) -> Vec<TrialPair> {
     let mut codes: Vec<&str> = trials.iter().map(|trial| trial.participant.as_str()).collect();
     codes.sort_unstable();
     codes.dedup();
     codes.into_iter().filter_map(|code| pair(code, trials, measure)).collect()
 }
 
-fn pair(code: &str, trials: &[Trial], measure: Measure) -> Option<Pair> {
+fn pair(code: &str, trials: &[Trial], measure: StudyMeasure) -> Option<TrialPair> {
     let of_period = |period: u32| {
         let is_it = |trial: &&Trial| trial.participant == code && trial.period == Some(period) && trial.counts();
         trials.iter().rfind(is_it)
@@ -150,19 +150,19 @@ fn pair(code: &str, trials: &[Trial], measure: Measure) -> Option<Pair> {
     if first.is_assisted() == second.is_assisted() {
         return None;
     }
-    let values = [measure.of(first)?, measure.of(second)?];
-    Some(Pair { participant: code.to_string(), assisted_second: second.is_assisted(), values })
+    let values = [measure.value(first)?, measure.value(second)?];
+    Some(TrialPair { participant: code.to_string(), assisted_second: second.is_assisted(), values })
 }
 
 /// The effect of assistance on a measure of these pairs; `seed` is that of sampled permutations.
-pub fn effect(measure: Measure, pairs: &[Pair], seed: u64) -> Effect {
-    let group = |pair: &Pair| usize::from(pair.assisted_second);
+pub fn effect(measure: StudyMeasure, pairs: &[TrialPair], seed: u64) -> AssistanceEffect {
+    let group = |pair: &TrialPair| usize::from(pair.assisted_second);
     let improvements = |assisted_second: bool| -> Vec<f64> {
-        pairs.iter().filter(|pair| pair.assisted_second == assisted_second).map(Pair::improvement).collect()
+        pairs.iter().filter(|pair| pair.assisted_second == assisted_second).map(TrialPair::improvement).collect()
     };
     let (with, without) = (improvements(true), improvements(false));
     let codes: Vec<f64> = pairs.iter().map(|pair| group(pair) as f64).collect();
-    let all: Vec<f64> = pairs.iter().map(Pair::improvement).collect();
+    let all: Vec<f64> = pairs.iter().map(TrialPair::improvement).collect();
     let half = |interval: Interval| Interval {
         estimate: interval.estimate / 2.0,
         low: interval.low / 2.0,
@@ -170,7 +170,7 @@ pub fn effect(measure: Measure, pairs: &[Pair], seed: u64) -> Effect {
         ..interval
     };
     let mean = |values: &[f64]| super::trial::mean(values.iter().copied());
-    Effect {
+    AssistanceEffect {
         measure,
         groups: [with.len(), without.len()],
         improvements: [mean(&with), mean(&without)],

@@ -14,7 +14,7 @@ pub struct Facts {
 
 impl Facts {
     /// Those of a recording that was followed to its end.
-    pub fn of(header: &Header, session: &Session) -> Facts {
+    pub fn from_session(header: &Header, session: &Session) -> Facts {
         let spec = &header.session;
         let mut facts = Facts::default();
         let mut is = |key: &'static str, value: String| {

@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::effect::{Effect, Measure, effect, pairs};
+use super::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
 use super::facts::Facts;
 use super::robot::{ArmGroup, by_arm};
-use super::roc::{Comparison, Roc, Swept, compare};
+use super::roc::{ConceptComparison, Roc, SweptTrial, compare};
 use super::statistics::{Correlation, FTest, Interval, share_interval};
-use super::trial::{Basis, Beliefs, Trial, mean, mean_length};
+use super::trial::{BeliefBasis, BeliefErrors, Trial, mean, mean_length};
 use crate::measures::coding::{Agreement, AgreementTable, Codes};
-use crate::measures::matching::{Similarity, Tally};
+use crate::measures::matching::{MatchCounts, Similarity};
 use crate::measures::wizard::WizardMeasures;
 use crate::session::event::EndReason;
 use crate::session::settings::{Condition, ParticipantKind};
@@ -22,7 +22,7 @@ const SEED: u64 = 1;
 
 /// All figures. What cannot be told is null.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StudyFigures {
+pub struct StudySummary {
     pub title: String,
     /// Of people alone it is false.
     pub simulated_participants: bool,
@@ -30,18 +30,18 @@ pub struct StudyFigures {
     pub trials: u64,
     pub participants: u64,
     #[serde(flatten)]
-    pub totals: Totals,
+    pub totals: TrialTotals,
     /// How many trials ended how.
     pub ended: BTreeMap<EndReason, u64>,
     /// The robot, by kind of arm.
     pub robot: Vec<ArmGroup>,
-    pub conditions: Vec<ConditionFigures>,
+    pub conditions: Vec<StudyConditionSummary>,
     /// The effect of assistance on errors per press of the human: the interaction of period and starting group.
     pub anova: Option<FTest>,
     pub pearson: Option<Correlation>,
     pub permutation_p: Option<f64>,
     /// The same in full, and of other measures.
-    pub effects: Vec<Effect>,
+    pub effects: Vec<AssistanceEffect>,
     pub roc: Vec<Roc>,
     /// What the comparison of concepts rests on.
     pub roc_participants: u64,
@@ -53,17 +53,17 @@ pub struct StudyFigures {
     pub similarity_by_trial: Vec<TrialSimilarity>,
     pub wizard: Option<WizardMeasures>,
     pub acceptance: Option<Acceptance>,
-    pub questionnaires: Vec<ItemFigures>,
+    pub questionnaires: Vec<ItemSummary>,
     /// How far raters agree, where errors are known from them.
     pub raters: Option<Agreement>,
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<ExcludedTrial>,
     /// Recordings of practice, which are no trials.
     pub practice: u64,
 }
 
 /// Sums over trials.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Totals {
+pub struct TrialTotals {
     /// Presses of both agents.
     pub actions: u64,
     pub human_actions: u64,
@@ -74,7 +74,7 @@ pub struct Totals {
     pub error_rate: Option<f64>,
     pub error_rate_human: Option<f64>,
     /// How it is known what was believed; null: it is not, or not of all.
-    pub beliefs_from: Option<Basis>,
+    pub beliefs_from: Option<BeliefBasis>,
     pub belief_related_errors: Option<u64>,
     pub belief_related_share: Option<f64>,
     pub belief_related_interval: Option<Interval>,
@@ -89,11 +89,11 @@ pub struct Totals {
 
 /// Those of the trials in a condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ConditionFigures {
+pub struct StudyConditionSummary {
     pub condition: Condition,
     pub trials: u64,
     #[serde(flatten)]
-    pub totals: Totals,
+    pub totals: TrialTotals,
     /// Means over trials.
     pub mean_errors: Option<f64>,
     pub mean_order_s: Option<f64>,
@@ -131,7 +131,7 @@ pub struct Acceptance {
 
 /// Answers to an item in a condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ItemFigures {
+pub struct ItemSummary {
     pub questionnaire: String,
     pub item: String,
     pub text: String,
@@ -147,19 +147,19 @@ pub struct ItemFigures {
 
 /// A trial that is left out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LeftOut {
+pub struct ExcludedTrial {
     pub recording: String,
     pub participant: String,
     pub reason: String,
 }
 
-impl StudyFigures {
+impl StudySummary {
     /// Of trials in the order of participants.
-    pub fn of(trials: &[Trial], facts: &Facts, practice: u64) -> StudyFigures {
+    pub fn from_trials(trials: &[Trial], facts: &Facts, practice: u64) -> StudySummary {
         let counting: Vec<&Trial> = trials.iter().filter(|trial| trial.counts()).collect();
         let simulated_participants = trials.iter().any(|trial| trial.kind == ParticipantKind::Simulated);
-        let effects: Vec<Effect> =
-            Measure::ALL.iter().map(|&measure| effect(measure, &pairs(trials, measure), SEED)).collect();
+        let effects: Vec<AssistanceEffect> =
+            StudyMeasure::ALL.iter().map(|&measure| effect(measure, &pairs(trials, measure), SEED)).collect();
         let comparison = concepts(&counting);
         let mut participants: Vec<&str> = counting.iter().map(|trial| trial.participant.as_str()).collect();
         participants.dedup();
@@ -167,14 +167,14 @@ impl StudyFigures {
         let wizards: Vec<&WizardMeasures> = counting.iter().filter_map(|trial| trial.wizard.as_ref()).collect();
         let left_out = trials.iter().filter_map(|trial| {
             let (recording, participant) = (trial.recording.clone(), trial.participant.clone());
-            Some(LeftOut { recording, participant, reason: trial.left_out.clone()? })
+            Some(ExcludedTrial { recording, participant, reason: trial.left_out.clone()? })
         });
-        StudyFigures {
+        StudySummary {
             title: title(facts, trials, simulated_participants),
             simulated_participants,
             trials: counting.len() as u64,
             participants: participants.len() as u64,
-            totals: Totals::of(&counting),
+            totals: TrialTotals::from_trials(&counting),
             ended: counting.iter().filter_map(|trial| trial.ended).fold(BTreeMap::new(), |mut ended, reason| {
                 *ended.entry(reason).or_default() += 1;
                 ended
@@ -211,13 +211,13 @@ fn title(facts: &Facts, trials: &[Trial], simulated: bool) -> String {
     }
 }
 
-impl Totals {
-    fn of(trials: &[&Trial]) -> Totals {
+impl TrialTotals {
+    fn from_trials(trials: &[&Trial]) -> TrialTotals {
         let sum = |of: fn(&Trial) -> u64| trials.iter().map(|trial| of(trial)).sum::<u64>();
         let (actions, human_actions, errors) =
             (sum(Trial::presses), sum(|trial| trial.human_presses), sum(|t| t.errors));
         let rate = |presses: u64| (presses > 0).then(|| errors as f64 / presses as f64);
-        let totals = Totals {
+        let totals = TrialTotals {
             actions,
             human_actions,
             robot_actions: sum(|trial| trial.robot_presses),
@@ -227,15 +227,15 @@ impl Totals {
             error_rate_human: rate(human_actions),
             signals: sum(|trial| trial.signals),
             orders_served: sum(|trial| trial.orders),
-            ..Totals::default()
+            ..TrialTotals::default()
         };
-        let beliefs: Option<Vec<&Beliefs>> = trials.iter().map(|trial| trial.beliefs.as_ref()).collect();
+        let beliefs: Option<Vec<&BeliefErrors>> = trials.iter().map(|trial| trial.beliefs.as_ref()).collect();
         let Some(beliefs) = beliefs.filter(|beliefs| !beliefs.is_empty()) else { return totals };
         let related = beliefs.iter().map(|one| one.errors).sum::<u64>();
         let lengths: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths.iter().copied()).collect();
         let by_aspect: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths_by_aspect.iter().copied()).collect();
         let interval = share_interval(related, errors, super::effect::LEVEL);
-        Totals {
+        TrialTotals {
             // Of several the one that is worth least.
             beliefs_from: beliefs.iter().map(|one| one.basis).max(),
             belief_related_errors: Some(related),
@@ -251,16 +251,16 @@ impl Totals {
     }
 }
 
-fn conditions(trials: &[&Trial]) -> Vec<ConditionFigures> {
+fn conditions(trials: &[&Trial]) -> Vec<StudyConditionSummary> {
     let of = |condition: Condition| {
         let trials: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.condition == condition).collect();
         let lengths = || trials.iter().filter_map(|trial| trial.beliefs.as_ref()).flat_map(|one| one.lengths.iter());
         let mut sequence_lengths = vec![0; lengths().copied().max().unwrap_or(0) as usize];
         lengths().for_each(|&length| sequence_lengths[length as usize - 1] += 1);
-        (!trials.is_empty()).then(|| ConditionFigures {
+        (!trials.is_empty()).then(|| StudyConditionSummary {
             condition,
             trials: trials.len() as u64,
-            totals: Totals::of(&trials),
+            totals: TrialTotals::from_trials(&trials),
             mean_errors: mean(trials.iter().map(|trial| trial.errors as f64)),
             mean_order_s: mean(trials.iter().filter_map(|trial| trial.order_s)),
             mean_press_s: mean(trials.iter().filter_map(|trial| trial.press_s)),
@@ -271,10 +271,10 @@ fn conditions(trials: &[&Trial]) -> Vec<ConditionFigures> {
 }
 
 /// The comparison of concepts over the trials in which they were tried; a participant's trials together.
-fn concepts(trials: &[&Trial]) -> Comparison {
+fn concepts(trials: &[&Trial]) -> ConceptComparison {
     let tried: Vec<&Trial> = trials.iter().copied().filter(|trial| !trial.swept.is_empty()).collect();
     let of_participant = |of_one: &[&Trial]| {
-        let mut sum: Vec<Swept> = of_one[0].swept.clone();
+        let mut sum: Vec<SweptTrial> = of_one[0].swept.clone();
         for trial in &of_one[1..] {
             for (sum, one) in sum.iter_mut().zip(&trial.swept) {
                 sum.count = sum.count.plus(&one.count);
@@ -282,17 +282,17 @@ fn concepts(trials: &[&Trial]) -> Comparison {
         }
         sum
     };
-    let participants: Vec<Vec<Swept>> =
+    let participants: Vec<Vec<SweptTrial>> =
         tried.chunk_by(|a, b| a.participant == b.participant).map(of_participant).collect();
     compare(&participants, tried.len() as u64, SEED)
 }
 
 fn similarity(trials: &[&Trial]) -> (Option<Similarity>, Vec<TrialSimilarity>) {
-    let mut all = Tally::default();
+    let mut all = MatchCounts::default();
     let mut by_trial = Vec::new();
     for trial in trials {
         let Some([of, with]) = &trial.lanes else { continue };
-        let mut own = Tally::default();
+        let mut own = MatchCounts::default();
         for tally in [&mut all, &mut own] {
             tally.add(of, with, trial.human_presses as u32, crate::measures::matching::WINDOW);
         }
@@ -317,18 +317,18 @@ fn agreement(trials: &[&Trial]) -> Option<Agreement> {
 }
 
 /// The items of all questionnaires by condition, in the order in which they occur.
-fn items(trials: &[&Trial]) -> Vec<ItemFigures> {
-    let mut items: Vec<ItemFigures> = Vec::new();
+fn items(trials: &[&Trial]) -> Vec<ItemSummary> {
+    let mut items: Vec<ItemSummary> = Vec::new();
     for trial in trials {
         for answered in &trial.answers {
-            let is_it = |item: &ItemFigures| {
+            let is_it = |item: &ItemSummary| {
                 (&item.questionnaire, &item.item, item.condition, item.points)
                     == (&answered.questionnaire, &answered.item, trial.condition, answered.points)
             };
             let at = match items.iter().position(is_it) {
                 Some(at) => at,
                 None => {
-                    items.push(ItemFigures {
+                    items.push(ItemSummary {
                         questionnaire: answered.questionnaire.clone(),
                         item: answered.item.clone(),
                         text: answered.text.clone(),

@@ -12,9 +12,9 @@ use crate::kitchen::AspectId;
 
 /// What was true in a trial.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Truth {
+pub struct TrialTruth {
     pub presses: Vec<PressTruth>,
-    pub spells: Vec<SpellTruth>,
+    pub spells: Vec<FalseBeliefTruth>,
     pub sequences: Vec<SequenceTruth>,
 }
 
@@ -29,7 +29,7 @@ pub struct PressTruth {
 
 /// A time in which an aspect was believed wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpellTruth {
+pub struct FalseBeliefTruth {
     pub aspect: AspectId,
     pub began: SessionTime,
     pub ended: Option<SessionTime>,
@@ -48,7 +48,7 @@ pub struct SequenceTruth {
 
 /// A signal that a concept would have sent.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sent {
+pub struct ConceptSignal {
     pub time: SessionTime,
     /// Presses of the human before it.
     pub press: usize,
@@ -58,7 +58,7 @@ pub struct Sent {
 
 /// What a concept would have done in a trial, or in several.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Count {
+pub struct PreventionCounts {
     /// Presses of the human.
     pub presses: u64,
     /// Signals, or presses proposed.
@@ -77,10 +77,10 @@ pub struct Count {
     pub harmless: u64,
 }
 
-impl Count {
+impl PreventionCounts {
     /// The same of both together.
-    pub fn plus(self, other: &Count) -> Count {
-        Count {
+    pub fn plus(self, other: &PreventionCounts) -> PreventionCounts {
+        PreventionCounts {
             presses: self.presses + other.presses,
             signals: self.signals + other.signals,
             related: self.related + other.related,
@@ -103,8 +103,8 @@ impl Count {
     }
 }
 
-impl Truth {
-    fn open_at(&self, time: SessionTime) -> impl Iterator<Item = &SpellTruth> {
+impl TrialTruth {
+    fn open_at(&self, time: SessionTime) -> impl Iterator<Item = &FalseBeliefTruth> {
         self.spells.iter().filter(move |spell| spell.began <= time && spell.ended.is_none_or(|end| time < end))
     }
 
@@ -112,18 +112,18 @@ impl Truth {
         self.open_at(time).any(|spell| spell.harmful)
     }
 
-    fn empty_count(&self, signals: u64) -> Count {
-        Count {
+    fn empty_count(&self, signals: u64) -> PreventionCounts {
+        PreventionCounts {
             presses: self.presses.len() as u64,
             signals,
             related: self.presses.iter().filter(|press| press.related).count() as u64,
             outside: self.presses.iter().filter(|press| !self.is_in_episode(press.time)).count() as u64,
-            ..Count::default()
+            ..PreventionCounts::default()
         }
     }
 
     /// What these signals would have done.
-    pub fn count_signals(&self, sent: &[Sent]) -> Count {
+    pub fn count_signals(&self, sent: &[ConceptSignal]) -> PreventionCounts {
         let mut count = self.empty_count(sent.len() as u64);
         let mut prevented: Vec<Vec<bool>> =
             self.sequences.iter().map(|sequence| vec![false; sequence.errors.len()]).collect();
@@ -154,7 +154,7 @@ impl Truth {
     }
 
     /// What proposals of `k` presses after every error that is not itself spared would have done.
-    pub fn count_proposals(&self, k: usize) -> Count {
+    pub fn count_proposals(&self, k: usize) -> PreventionCounts {
         let mut count = self.empty_count(0);
         let mut spared = 0;
         for press in &self.presses {
@@ -174,7 +174,7 @@ impl Truth {
 impl SequenceTruth {
     /// Marks the errors that a signal about this spell's aspect prevents: those after it, if the sequence is about the aspect
     /// and the spell lasts into it.
-    fn prevent(&self, spell: &SpellTruth, sent: SessionTime, prevented: &mut [bool]) {
+    fn prevent(&self, spell: &FalseBeliefTruth, sent: SessionTime, prevented: &mut [bool]) {
         let (Some(&first), Some(&last)) = (self.errors.first(), self.errors.last()) else { return };
         let lasts = spell.began <= last && spell.ended.is_none_or(|end| end > first);
         if !lasts || !self.aspects.contains(&spell.aspect) {

@@ -15,9 +15,9 @@ use crate::session::settings::ArmKind;
 
 /// What is counted of the robot while a trial is on, pauses included.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct RobotFigures {
+pub struct RobotSummary {
     /// Of an arm in the physics; a timed one has nothing to feel with.
-    pub arm: Option<ArmFigures>,
+    pub arm: Option<ArmSummary>,
     /// The wizard stopped it.
     pub emergency_stops: u64,
     /// Presses that it gave up, by reason; what is not there did not occur.
@@ -31,7 +31,7 @@ pub struct RobotFigures {
 
 /// What an arm in the physics felt.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct ArmFigures {
+pub struct ArmSummary {
     /// Times that it stopped because it felt somebody, and because a joint did not follow.
     pub protective_stops: u64,
     pub faults: u64,
@@ -43,21 +43,21 @@ pub struct ArmFigures {
     pub safeguard_s: f64,
 }
 
-impl ArmFigures {
+impl ArmSummary {
     /// Somebody was felt with this force in newtons, if it was told.
     fn felt(&mut self, force_n: Option<f64>) {
         self.peak_force_n = self.peak_force_n.into_iter().chain(force_n).reduce(f64::max);
     }
 }
 
-impl RobotFigures {
+impl RobotSummary {
     /// Presses given up for a reason; none where this arm cannot have it.
     pub fn given_up(&self, reason: AbortReason) -> Option<u64> {
         let count = self.given_up.get(&reason).copied();
         (self.arm.is_some() || !reason.is_of_physics()).then(|| count.unwrap_or(0))
     }
 
-    fn add(&mut self, other: &RobotFigures) {
+    fn add(&mut self, other: &RobotSummary) {
         self.emergency_stops += other.emergency_stops;
         for (&reason, count) in &other.given_up {
             *self.given_up.entry(reason).or_default() += count;
@@ -84,13 +84,13 @@ pub struct ArmGroup {
     pub kind: ArmKind,
     pub trials: u64,
     #[serde(flatten)]
-    pub robot: RobotFigures,
+    pub robot: RobotSummary,
 }
 
 /// By kind of arm, those that occur.
 pub fn by_arm(trials: &[&Trial]) -> Vec<ArmGroup> {
     let of = |kind: ArmKind| {
-        let mut group = ArmGroup { kind, trials: 0, robot: RobotFigures::default() };
+        let mut group = ArmGroup { kind, trials: 0, robot: RobotSummary::default() };
         for trial in trials.iter().filter(|trial| trial.arm == kind) {
             group.trials += 1;
             group.robot.add(&trial.robot);
@@ -103,7 +103,7 @@ pub fn by_arm(trials: &[&Trial]) -> Vec<ArmGroup> {
 /// Counts along a recording.
 #[derive(Clone, Debug)]
 pub struct RobotTally {
-    figures: RobotFigures,
+    figures: RobotSummary,
     /// Why the trial ended, once it did.
     pub ended: Option<EndReason>,
     mode: SafetyMode,
@@ -113,8 +113,8 @@ pub struct RobotTally {
 
 impl RobotTally {
     pub fn new(arm: ArmKind) -> RobotTally {
-        let arm = (arm == ArmKind::Physics).then(ArmFigures::default);
-        let figures = RobotFigures { arm, ..RobotFigures::default() };
+        let arm = (arm == ArmKind::Physics).then(ArmSummary::default);
+        let figures = RobotSummary { arm, ..RobotSummary::default() };
         RobotTally { figures, ended: None, mode: SafetyMode::Normal, clock: SessionTime::ZERO }
     }
 
@@ -167,7 +167,7 @@ impl RobotTally {
         }
     }
 
-    pub fn into_figures(self) -> RobotFigures {
+    pub fn into_figures(self) -> RobotSummary {
         self.figures
     }
 }

@@ -8,7 +8,7 @@
 use rand::RngExt;
 use serde::Serialize;
 
-use super::prevention::Count;
+use super::prevention::PreventionCounts;
 use crate::base::rng::stream;
 use crate::communication::concept::ConceptName;
 
@@ -46,26 +46,26 @@ pub const CONCEPTS: [ConceptName; 3] = [ConceptName::TomCom, ConceptName::Tom, C
 
 /// What a concept with one value of its parameter would have done in a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Swept {
+pub struct SweptTrial {
     pub concept: ConceptName,
     pub parameter: f64,
-    pub count: Count,
+    pub count: PreventionCounts,
 }
 
 /// A point of a receiver operating characteristic.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Point {
+pub struct RocPoint {
     pub parameter: f64,
     pub fpr: f64,
     pub tpr: f64,
     pub signals_per_100_actions: f64,
     #[serde(flatten)]
-    pub count: Count,
+    pub count: PreventionCounts,
 }
 
 /// A value with the interval that the bootstrap over participants gives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Banded {
+pub struct BootstrapInterval {
     pub value: Option<f64>,
     pub low: Option<f64>,
     pub high: Option<f64>,
@@ -79,18 +79,18 @@ pub struct Roc {
     pub auc: Option<f64>,
     pub auc_low: Option<f64>,
     pub auc_high: Option<f64>,
-    pub points: Vec<Point>,
+    pub points: Vec<RocPoint>,
     /// False positive rate, and the band of the true positive rate there.
     pub band: Vec<[f64; 3]>,
     /// True positive rates at [`EQUAL_SIGNALS`].
-    pub at_equal_signals: Vec<Banded>,
+    pub at_equal_signals: Vec<BootstrapInterval>,
     /// By how much that of the first concept is higher.
-    pub behind_first: Vec<Banded>,
+    pub behind_first: Vec<BootstrapInterval>,
 }
 
 /// The comparison of concepts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Comparison {
+pub struct ConceptComparison {
     /// Participants, and their unassisted trials.
     pub participants: u64,
     pub trials: u64,
@@ -106,9 +106,10 @@ struct Curves {
 }
 
 /// The sum over participants of what each concept did, each counted so often.
-fn summed(participants: &[Vec<Swept>], times: &[u32]) -> Vec<Swept> {
+fn summed(participants: &[Vec<SweptTrial>], times: &[u32]) -> Vec<SweptTrial> {
     let Some(first) = participants.first() else { return Vec::new() };
-    let mut sum: Vec<Swept> = first.iter().map(|one| Swept { count: Count::default(), ..*one }).collect();
+    let mut sum: Vec<SweptTrial> =
+        first.iter().map(|one| SweptTrial { count: PreventionCounts::default(), ..*one }).collect();
     for (participant, &times) in participants.iter().zip(times) {
         for (sum, one) in sum.iter_mut().zip(participant) {
             for _ in 0..times {
@@ -120,7 +121,7 @@ fn summed(participants: &[Vec<Swept>], times: &[u32]) -> Vec<Swept> {
 }
 
 impl Curves {
-    fn of(sum: &[Swept]) -> Curves {
+    fn from_counts(sum: &[SweptTrial]) -> Curves {
         let curve = |concept: ConceptName, x: usize| {
             let points = sum.iter().filter(|one| one.concept == concept).filter_map(|one| one.count.point());
             // Saying nothing is always possible.
@@ -166,21 +167,21 @@ fn area(curve: &[(f64, f64)], to: f64) -> Option<f64> {
 
 /// Compares the concepts; of each participant what every concept with every value of its parameter did in its trials, in the
 /// same order for all. The bootstrap (Efron 1979; percentiles) draws participants, and follows from `seed`.
-pub fn compare(participants: &[Vec<Swept>], trials: u64, seed: u64) -> Comparison {
+pub fn compare(participants: &[Vec<SweptTrial>], trials: u64, seed: u64) -> ConceptComparison {
     let once = vec![1; participants.len()];
     let sum = summed(participants, &once);
     if sum.is_empty() {
-        return Comparison::default();
+        return ConceptComparison::default();
     }
-    let curves = Curves::of(&sum);
+    let curves = Curves::from_counts(&sum);
     let common = curves.common();
     let resampled: Vec<Curves> =
-        resamples(participants.len(), seed).map(|times| Curves::of(&summed(participants, &times))).collect();
+        resamples(participants.len(), seed).map(|times| Curves::from_counts(&summed(participants, &times))).collect();
     let roc = |(index, &concept): (usize, &ConceptName)| {
         let of_concept = sum.iter().filter(|one| one.concept == concept);
-        let point = |one: &Swept| {
+        let point = |one: &SweptTrial| {
             let [fpr, tpr, signals_per_100_actions] = one.count.point()?;
-            Some(Point { parameter: one.parameter, fpr, tpr, signals_per_100_actions, count: one.count })
+            Some(RocPoint { parameter: one.parameter, fpr, tpr, signals_per_100_actions, count: one.count })
         };
         // Of those who are drawn over the range that they reach: none of theirs is as wide as that of all, in half of the draws.
         let area = banded(&curves, &resampled, |curves| curves.area(index, curves.common()?));
@@ -199,7 +200,7 @@ pub fn compare(participants: &[Vec<Swept>], trials: u64, seed: u64) -> Compariso
             behind_first: EQUAL_SIGNALS.iter().map(|&s| banded(&curves, &resampled, behind(s))).collect(),
         }
     };
-    Comparison {
+    ConceptComparison {
         participants: participants.len() as u64,
         trials,
         common_fpr: common,
@@ -221,16 +222,16 @@ fn resamples(participants: usize, seed: u64) -> impl Iterator<Item = Vec<u32>> {
 }
 
 /// A value of the curves, with the middle of what it is on those that were drawn.
-fn banded(curves: &Curves, resampled: &[Curves], of: impl Fn(&Curves) -> Option<f64>) -> Banded {
+fn banded(curves: &Curves, resampled: &[Curves], of: impl Fn(&Curves) -> Option<f64>) -> BootstrapInterval {
     let value = of(curves);
     let mut drawn: Vec<f64> = resampled.iter().filter_map(&of).collect();
     // Where many of them do not reach, the others say nothing about the rest.
     if value.is_none() || drawn.len() * 2 < resampled.len() || drawn.is_empty() {
-        return Banded { value, low: None, high: None };
+        return BootstrapInterval { value, low: None, high: None };
     }
     drawn.sort_by(f64::total_cmp);
     let at = |share: f64| drawn[((drawn.len() - 1) as f64 * share).round() as usize];
-    Banded { value, low: Some(at((1.0 - COVERED) / 2.0)), high: Some(at((1.0 + COVERED) / 2.0)) }
+    BootstrapInterval { value, low: Some(at((1.0 - COVERED) / 2.0)), high: Some(at((1.0 + COVERED) / 2.0)) }
 }
 
 fn band(curves: &Curves, resampled: &[Curves], concept: usize) -> Vec<[f64; 3]> {

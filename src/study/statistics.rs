@@ -21,7 +21,7 @@ pub struct FTest {
 
 impl FTest {
     /// Of sums of squares; none without degrees of freedom or without any variance.
-    fn of(effect: f64, df_effect: f64, residual: f64, df_residual: f64) -> Option<FTest> {
+    fn from_sums_of_squares(effect: f64, df_effect: f64, residual: f64, df_residual: f64) -> Option<FTest> {
         if df_effect <= 0.0 || df_residual <= 0.0 || residual <= 0.0 {
             return None;
         }
@@ -61,9 +61,9 @@ pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
     let (_, between, residual_between) = decompose(sum);
     let within = n * mean_difference * mean_difference / 2.0;
     MixedAnova {
-        within: FTest::of(within, 1.0, residual_within, n - used),
-        between: FTest::of(between, used - 1.0, residual_between, n - used),
-        interaction: FTest::of(interaction, used - 1.0, residual_within, n - used),
+        within: FTest::from_sums_of_squares(within, 1.0, residual_within, n - used),
+        between: FTest::from_sums_of_squares(between, used - 1.0, residual_between, n - used),
+        interaction: FTest::from_sums_of_squares(interaction, used - 1.0, residual_within, n - used),
     }
 }
 

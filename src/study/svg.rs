@@ -8,7 +8,7 @@ const MARGIN: [f64; 4] = [54.0, 14.0, 14.0, 44.0];
 
 /// An axis.
 #[derive(Clone, Debug)]
-pub struct Axis {
+pub struct PlotAxis {
     pub label: &'static str,
     pub from: f64,
     pub to: f64,
@@ -16,29 +16,29 @@ pub struct Axis {
     pub ticks: Vec<(f64, String)>,
 }
 
-impl Axis {
+impl PlotAxis {
     /// An axis over these values with round ticks, from 0 if they are not far from it.
-    pub fn over(label: &'static str, values: impl Iterator<Item = f64>) -> Axis {
+    pub fn over(label: &'static str, values: impl Iterator<Item = f64>) -> PlotAxis {
         let (low, high) = values
             .filter(|value| value.is_finite())
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
         let (low, high) = if low > high { (0.0, 1.0) } else { (low.min(0.0), high.max(0.0)) };
-        Axis::between(label, low, if high > low { high } else { low + 1.0 })
+        PlotAxis::between(label, low, if high > low { high } else { low + 1.0 })
     }
 
     /// An axis that covers this range, widened to round ticks.
-    pub fn between(label: &'static str, low: f64, high: f64) -> Axis {
+    pub fn between(label: &'static str, low: f64, high: f64) -> PlotAxis {
         let step = round_step((high - low) / 5.0);
         let (first, last) = ((low / step).floor() as i64, (high / step - 1e-9).ceil() as i64);
         let digits = (-step.log10().floor()).max(0.0) as usize;
         let tick = |number: i64| (number as f64 * step, minus(&format!("{:.digits$}", number as f64 * step)));
-        Axis { label, from: first as f64 * step, to: last as f64 * step, ticks: (first..=last).map(tick).collect() }
+        PlotAxis { label, from: first as f64 * step, to: last as f64 * step, ticks: (first..=last).map(tick).collect() }
     }
 
     /// An axis with a place for each of these names; the first is at 0.
-    pub fn named(names: &[String]) -> Axis {
+    pub fn named(names: &[String]) -> PlotAxis {
         let ticks = names.iter().enumerate().map(|(index, name)| (index as f64, name.clone())).collect();
-        Axis { label: "", from: -0.5, to: names.len() as f64 - 0.5, ticks }
+        PlotAxis { label: "", from: -0.5, to: names.len() as f64 - 0.5, ticks }
     }
 }
 
@@ -51,18 +51,18 @@ fn round_step(step: f64) -> f64 {
 
 /// A chart in the making.
 #[derive(Clone, Debug)]
-pub struct Chart {
+pub struct SvgChart {
     width: f64,
     height: f64,
-    x: Axis,
-    y: Axis,
+    x: PlotAxis,
+    y: PlotAxis,
     body: String,
 }
 
-impl Chart {
+impl SvgChart {
     /// A chart of this size in pixels, with axes and grid.
-    pub fn new(width: f64, height: f64, x: Axis, y: Axis) -> Chart {
-        let mut chart = Chart { width, height, x, y, body: String::new() };
+    pub fn new(width: f64, height: f64, x: PlotAxis, y: PlotAxis) -> SvgChart {
+        let mut chart = SvgChart { width, height, x, y, body: String::new() };
         chart.frame();
         chart
     }

@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::effect::{Measure, pairs};
+use super::effect::{StudyMeasure, pairs};
 use super::trial::Trial;
 use crate::communication::concept::ConceptName;
 use crate::session::settings::ParticipantKind;
@@ -200,22 +200,22 @@ pub fn kind_name(kind: ParticipantKind) -> &'static str {
 
 /// The rows of [`Table::Participants`]; trials are in the order of participants.
 pub fn participants(trials: &[Trial]) -> Vec<ParticipantRow> {
-    let of_measure: Vec<_> = Measure::ALL.iter().map(|&measure| pairs(trials, measure)).collect();
+    let of_measure: Vec<_> = StudyMeasure::ALL.iter().map(|&measure| pairs(trials, measure)).collect();
     let row = |of_one: &[Trial]| {
         let participant = &of_one[0].participant;
-        let values = |measure: Measure| {
-            let index = Measure::ALL.iter().position(|&other| other == measure).unwrap_or(0);
+        let values = |measure: StudyMeasure| {
+            let index = StudyMeasure::ALL.iter().position(|&other| other == measure).unwrap_or(0);
             let found = of_measure[index].iter().find(|pair| pair.participant == *participant);
             [0, 1].map(|period| found.map(|pair| pair.values[period]))
         };
         let pair = of_measure[0].iter().find(|pair| pair.participant == *participant);
-        let [error_rate_human_1, error_rate_human_2] = values(Measure::ErrorRateHuman);
-        let [error_rate_1, error_rate_2] = values(Measure::ErrorRate);
-        let [sequence_length_1, sequence_length_2] = values(Measure::SequenceLength);
-        let [recovery_s_1, recovery_s_2] = values(Measure::RecoveryS);
-        let [order_s_1, order_s_2] = values(Measure::OrderS);
-        let [presses_per_order_1, presses_per_order_2] = values(Measure::PressesPerOrder);
-        let [press_s_1, press_s_2] = values(Measure::PressS);
+        let [error_rate_human_1, error_rate_human_2] = values(StudyMeasure::ErrorRateHuman);
+        let [error_rate_1, error_rate_2] = values(StudyMeasure::ErrorRate);
+        let [sequence_length_1, sequence_length_2] = values(StudyMeasure::SequenceLength);
+        let [recovery_s_1, recovery_s_2] = values(StudyMeasure::RecoveryS);
+        let [order_s_1, order_s_2] = values(StudyMeasure::OrderS);
+        let [presses_per_order_1, presses_per_order_2] = values(StudyMeasure::PressesPerOrder);
+        let [press_s_1, press_s_2] = values(StudyMeasure::PressS);
         ParticipantRow {
             participant: participant.clone(),
             kind: kind_name(of_one[0].kind).to_string(),

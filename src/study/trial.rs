@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::robot::RobotFigures;
-use super::roc::Swept;
+use super::robot::RobotSummary;
+use super::roc::SweptTrial;
 use crate::measures::coding::Codes;
-use crate::measures::matching::Said;
+use crate::measures::matching::CommunicationEvent;
 use crate::measures::wizard::WizardMeasures;
 use crate::session::event::EndReason;
 use crate::session::settings::{ArmKind, Condition, ParticipantKind};
@@ -32,7 +32,7 @@ pub struct Trial {
     /// How it ended; none of one that was cut.
     pub ended: Option<EndReason>,
     pub arm: ArmKind,
-    pub robot: RobotFigures,
+    pub robot: RobotSummary,
     pub human_presses: u64,
     pub robot_presses: u64,
     /// Errors of the human, races left out.
@@ -40,7 +40,7 @@ pub struct Trial {
     /// Presses that the robot may have overtaken.
     pub races: u64,
     /// None where nobody can say what the human believed.
-    pub beliefs: Option<Beliefs>,
+    pub beliefs: Option<BeliefErrors>,
     /// Orders served, and the median of the seconds from one to the next, the first from the trial's start.
     pub orders: u64,
     pub order_s: Option<f64>,
@@ -52,13 +52,13 @@ pub struct Trial {
     pub signals: u64,
     /// The trial's length by its own clock.
     pub seconds: f64,
-    pub answers: Vec<Answered>,
+    pub answers: Vec<QuestionnaireAnswer>,
     /// Of a wizard.
     pub wizard: Option<WizardMeasures>,
     /// What was sent, and what the assistant would have said, where a wizard sends signals.
-    pub lanes: Option<[Vec<Said>; 2]>,
+    pub lanes: Option<[Vec<CommunicationEvent>; 2]>,
     /// What concepts would have done, where nobody sends signals.
-    pub swept: Vec<Swept>,
+    pub swept: Vec<SweptTrial>,
     /// What two raters say about its errors, where that is what is gone by.
     pub raters: Option<[Codes; 2]>,
 }
@@ -66,7 +66,7 @@ pub struct Trial {
 /// How it is known what the human believed when it erred.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Basis {
+pub enum BeliefBasis {
     /// A simulated participant tells what it really believed.
     Recorded,
     /// Two people coded every error; what both put down to a belief is belief related.
@@ -75,21 +75,21 @@ pub enum Basis {
     Estimate,
 }
 
-impl Basis {
+impl BeliefBasis {
     /// As it stands in tables.
     pub fn name(self) -> &'static str {
         match self {
-            Basis::Recorded => "recorded",
-            Basis::Raters => "raters",
-            Basis::Estimate => "estimate",
+            BeliefBasis::Recorded => "recorded",
+            BeliefBasis::Raters => "raters",
+            BeliefBasis::Estimate => "estimate",
         }
     }
 }
 
 /// What false beliefs did in a trial.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Beliefs {
-    pub basis: Basis,
+pub struct BeliefErrors {
+    pub basis: BeliefBasis,
     /// Belief related errors.
     pub errors: u64,
     /// Of those, the ones that it takes two false beliefs to explain.
@@ -106,7 +106,7 @@ pub struct Beliefs {
 
 /// An answer to an item of a questionnaire.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Answered {
+pub struct QuestionnaireAnswer {
     pub questionnaire: String,
     pub item: String,
     pub text: String,

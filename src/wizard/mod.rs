@@ -22,7 +22,7 @@ use crate::base::time::SessionTime;
 use crate::communication::{self, Signal};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{ContentId, DishId, Kitchen, LocationId, OrderContent, Press, State};
-use seen::{Pressed, Seen, explain, misleads};
+use seen::{ObservedPress, SeenKitchen, explain, misleads};
 use settings::WizardSpec;
 
 /// So many presses are kept in mind.
@@ -46,9 +46,9 @@ pub struct ScriptedWizard {
     spec: WizardSpec,
     own_hand: bool,
     random: Stream,
-    seen: Seen,
+    seen: SeenKitchen,
     /// The participant's last presses, the newest last.
-    presses: VecDeque<Pressed>,
+    presses: VecDeque<ObservedPress>,
     /// What it is about to say, and when its finger is on the key.
     about_to: Option<(SessionTime, Thought)>,
     /// Changes by others that it will look after, and when.
@@ -59,7 +59,7 @@ pub struct ScriptedWizard {
 impl ScriptedWizard {
     /// The wizard of a trial; what it happens to see and miss follows from seed and trial.
     pub fn new(kitchen: Arc<Kitchen>, spec: WizardSpec, own_hand: bool, seed: u64, trial: u64) -> ScriptedWizard {
-        let seen = Seen::new(kitchen.empty_state());
+        let seen = SeenKitchen::new(kitchen.empty_state());
         let random = stream(seed, "wizard", trial);
         let (about_to, watched, signalled_at) = (None, Vec::new(), None);
         let presses = VecDeque::with_capacity(KEPT);
@@ -74,7 +74,7 @@ impl ScriptedWizard {
 
     /// The trial starts: everybody sees the empty kitchen.
     pub fn on_trial_start(&mut self, state: State) {
-        self.seen = Seen::new(state);
+        self.seen = SeenKitchen::new(state);
         (self.about_to, self.signalled_at) = (None, None);
         self.watched.clear();
         self.presses.clear();
@@ -91,7 +91,7 @@ impl ScriptedWizard {
         if self.presses.len() == KEPT {
             self.presses.pop_front();
         }
-        self.presses.push_back(Pressed { truth: before, seen: self.seen.state, button });
+        self.presses.push_back(ObservedPress { truth: before, seen: self.seen.state, button });
         if is_error && self.about_to.is_none() && self.chance(self.spec.sees_errors) {
             let causes = explain(&self.kitchen, cost, self.presses.make_contiguous());
             if !causes.is_empty() {

@@ -8,15 +8,15 @@ use crate::kitchen::{Agent, ButtonId, LocationId, Recipes, State};
 
 /// The kitchen as the participant last saw it, place by place.
 #[derive(Clone, Debug)]
-pub struct Seen {
+pub struct SeenKitchen {
     pub state: State,
     /// Where the gaze rests, and since when.
     resting: Option<(LocationId, SessionTime)>,
 }
 
-impl Seen {
-    pub fn new(state: State) -> Seen {
-        Seen { state, resting: None }
+impl SeenKitchen {
+    pub fn new(state: State) -> SeenKitchen {
+        SeenKitchen { state, resting: None }
     }
 
     /// The gaze is on a place, or on none; it has read the place after `look_s` seconds.
@@ -50,7 +50,7 @@ impl Seen {
 
 /// A press of the participant, with what was true then, and what had been seen of it.
 #[derive(Clone, Copy, Debug)]
-pub struct Pressed {
+pub struct ObservedPress {
     pub truth: State,
     pub seen: State,
     pub button: ButtonId,
@@ -59,13 +59,13 @@ pub struct Pressed {
 /// Which single false beliefs would make the last of these presses a good one: a place that is held for what it was when it was
 /// last seen, or another version of a wanted recipe; of these, those that explain most of the presses. Nothing, if the press
 /// would help nobody who believes any of that.
-pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[Pressed]) -> Vec<Thought> {
+pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[ObservedPress]) -> Vec<Thought> {
     let Some(last) = presses.last() else { return Vec::new() };
     let places = kitchen.changed(last.seen, last.truth).map(Thought::Place);
     let recipes = kitchen.wanted(last.truth).flat_map(|(order, dish)| {
         kitchen.dish(dish).variants[1..].iter().map(move |&variant| Thought::Recipe(order, dish, variant))
     });
-    let mut explains = |thought: Thought, press: &Pressed| {
+    let mut explains = |thought: Thought, press: &ObservedPress| {
         let (state, recipes) = believed(kitchen, thought, press.truth, press.seen);
         helps(kitchen, cost, state, &recipes, press.button)
     };
@@ -88,7 +88,7 @@ pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[Pressed]) -> V
 }
 
 /// Whether somebody who knows everything but this would now press what does not help.
-pub fn misleads(kitchen: &Kitchen, cost: &mut CostToGo, seen: &Seen, truth: State, thought: Thought) -> bool {
+pub fn misleads(kitchen: &Kitchen, cost: &mut CostToGo, seen: &SeenKitchen, truth: State, thought: Thought) -> bool {
     let (state, recalled) = believed(kitchen, thought, truth, seen.state);
     let recipes = kitchen.true_recipes();
     let mut presses = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));

@@ -14,7 +14,7 @@ use tomcom::edge::log::codes::{read_all, write};
 use tomcom::edge::log::{LOG_NAME, LogReader};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, DishId, Kitchen, LocationId};
-use tomcom::measures::coding::{AgreementTable, Code, Codes, Kind};
+use tomcom::measures::coding::{AgreementTable, CauseKind, Code, Codes};
 use tomcom::participant::SimulatedParticipant;
 use tomcom::participant::population::{Experience, Population};
 use tomcom::run::codes::{CodedRecording, CodesSummary, export, import};
@@ -247,7 +247,7 @@ fn trials_teach_recipes_and_presses_where_the_population_learns() {
 fn coded(pairs: &[(&str, &str, u64)]) -> AgreementTable {
     let code = |text: &str| match text.split_once(' ') {
         Some(("belief", place)) => Code::Belief(place.to_string()),
-        _ => Code::new(Kind::named(text).expect("a kind"), None).expect("a code"),
+        _ => Code::new(CauseKind::named(text).expect("a kind"), None).expect("a code"),
     };
     let (mut one, mut other) = (Codes::default(), Codes::default());
     for (a, b, number) in pairs {
@@ -397,7 +397,7 @@ fn a_participant_is_forgotten_everywhere_and_nobody_else() {
     let found = forget::find(&out, "P01").expect("readable");
     assert_eq!((found.recordings.len(), found.files.len(), found.tables.len()), (3, 2, 1), "{found:?}");
     // Nothing goes while one of the recordings is being written.
-    let lock = tomcom::edge::log::Lock::take(&out.join("seed1-P01-2")).expect("a lock");
+    let lock = tomcom::edge::log::RecordingLock::take(&out.join("seed1-P01-2")).expect("a lock");
     assert!(forget::delete(&found, "P01").expect_err("in use").to_string().contains("writes this recording"));
     assert!(is_there("report.html") && is_there("seed1-P01-1"));
     drop(lock);

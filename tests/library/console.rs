@@ -35,13 +35,13 @@ use tomcom::history::comparison::{
     Communication, CommunicationContent, CommunicationContext, CommunicationLane, LaneComparison,
 };
 use tomcom::kitchen::{Agent, Kitchen, LocationKind};
-use tomcom::measures::matching::Said;
+use tomcom::measures::matching::CommunicationEvent;
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom::mind::model::PriorModel;
 use tomcom::session::calibration::CalibrationEvent;
 use tomcom::session::event::{EndReason, Event, SignalEnd, Stamped};
-use tomcom::session::plan::Wanted;
-use tomcom::session::preflight::Verdict;
+use tomcom::session::plan::WantedRecording;
+use tomcom::session::preflight::PreflightVerdict;
 use tomcom::session::protocol::ProtocolEvent;
 use tomcom::session::settings::{GazeSource, ParticipantKind, Visibility};
 use tomcom::session::{Phase, Session, SessionSpec, apply};
@@ -955,7 +955,7 @@ fn a_trial_starts_at_once_if_all_is_ok_and_what_was_found_is_recorded() {
     };
     let names: Vec<&str> = checks.iter().map(|check| check.name.as_str()).collect();
     assert_eq!(names, ["participant", "gaze", "robot", "recording", "free space", "keyboard"]);
-    assert!(!overridden && checks.iter().all(|check| check.verdict == Verdict::Ok), "{checks:?}");
+    assert!(!overridden && checks.iter().all(|check| check.verdict == PreflightVerdict::Ok), "{checks:?}");
     stage.at(0.0, Event::Preflight { checks, overridden });
     stage.at(0.0, Event::TrialStarted);
     stage.wait(1.0);
@@ -986,9 +986,9 @@ fn what_is_not_ok_before_a_trial_is_listed_mended_or_overridden() {
         panic!("{started:?}")
     };
     let verdict = |name: &str| checks.iter().find(|check| check.name == name).map(|check| check.verdict);
-    assert_eq!(verdict("gaze"), Some(Verdict::Failed));
-    assert_eq!(verdict("free space"), Some(Verdict::Warning));
-    assert_eq!(verdict("robot"), Some(Verdict::Ok));
+    assert_eq!(verdict("gaze"), Some(PreflightVerdict::Failed));
+    assert_eq!(verdict("free space"), Some(PreflightVerdict::Warning));
+    assert_eq!(verdict("robot"), Some(PreflightVerdict::Ok));
     // As soon as all is mended, the key that starts a trial starts it.
     stage.key(KeyCode::Char('.'));
     stage.model.free_bytes = Some(1 << 40);
@@ -1055,7 +1055,7 @@ fn what_the_wizard_sees_is_told_by_size_visibility_and_dialog() {
 /// The console of a recording of the study's first participant.
 fn planned(slot: usize, instructed: bool) -> Stage {
     let study = read_session(Path::new("sessions/study.toml")).expect("the study").study().expect("a plan");
-    let (spec, _) = study.settings(Wanted { participant: 0, slot, attempt: 1, instructed });
+    let (spec, _) = study.settings(WantedRecording { participant: 0, slot, attempt: 1, instructed });
     let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
     stage.session = Session::new(kitchen("sushi"), spec, 0);
     stage.next_phase();
@@ -1248,7 +1248,7 @@ fn compared(assistants: usize) -> Stage {
         let (state, screen) = (stage.session.state, Some(screen(&stage.session, &stage.model)));
         let known = CommunicationContext { seq: 7, state, held: held.clone(), advice: vec![advice; 3], screen };
         let clock = SessionTime::from_secs_f64(seconds - 3.0);
-        let said = Said { press, clock, content: what.content(&kitchen) };
+        let said = CommunicationEvent { press, clock, content: what.content(&kitchen) };
         Communication { said, time: SessionTime::from_secs_f64(seconds), what, known: Some(Arc::new(known)) }
     };
     let lane = |name: &str, concept, spoken| CommunicationLane { name: name.to_string(), concept, spoken };

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use serde_json::Value;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::{Sender, Signal, signals};
-use tomcom::display::words::Words;
-use tomcom::display::{Stage, scene, sight};
+use tomcom::display::words::DisplayWords;
+use tomcom::display::{DisplayStage, scene, sight};
 use tomcom::edge::files::{SessionFiles, read_session};
-use tomcom::edge::language::Language;
+use tomcom::edge::language::LanguageFile;
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::edge::parse::parse;
 use tomcom::kitchen::cost_to_go::CostToGo;
@@ -240,7 +240,7 @@ fn phases_of_a_plan_are_those_of_the_display() {
     files.spec.display.questionnaire = Answering::Display;
     let study = files.study().expect("a plan");
     // The second trial of somebody: trial, questionnaire, debriefing of the wizard.
-    let wanted = tomcom::session::plan::Wanted { participant: 0, slot: 2, attempt: 1, instructed: true };
+    let wanted = tomcom::session::plan::WantedRecording { participant: 0, slot: 2, attempt: 1, instructed: true };
     let (spec, trial) = study.settings(wanted);
     let kitchen = Arc::new(files.kitchen.kitchen);
     let mut engine = Engine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
@@ -250,17 +250,17 @@ fn phases_of_a_plan_are_those_of_the_display() {
     };
     let phase = |phase, number| Event::Protocol(ProtocolEvent::PhaseStarted { phase, number });
     let stage = |engine: &Engine| sight(engine.session()).stage;
-    assert_eq!(stage(&engine), Stage::Welcome);
+    assert_eq!(stage(&engine), DisplayStage::Welcome);
     give(&mut engine, phase(StudyPhase::Trial, 1));
-    assert_eq!(stage(&engine), Stage::Ready);
+    assert_eq!(stage(&engine), DisplayStage::Ready);
     give(&mut engine, Event::TrialStarted);
-    assert_eq!(stage(&engine), Stage::Running);
+    assert_eq!(stage(&engine), DisplayStage::Running);
     give(&mut engine, Event::TrialPaused);
-    assert_eq!(stage(&engine), Stage::Paused);
+    assert_eq!(stage(&engine), DisplayStage::Paused);
     give(&mut engine, Event::TrialEnded { reason: EndReason::Wizard });
-    assert_eq!(stage(&engine), Stage::Over);
+    assert_eq!(stage(&engine), DisplayStage::Over);
     give(&mut engine, phase(StudyPhase::Questionnaire, 2));
-    assert_eq!(stage(&engine), Stage::Questionnaire);
+    assert_eq!(stage(&engine), DisplayStage::Questionnaire);
     let mut asked = Vec::new();
     while let Some(item) = sight(engine.session()).question.expect("a question").item {
         asked.push(item.clone());
@@ -271,7 +271,7 @@ fn phases_of_a_plan_are_those_of_the_display() {
     give(&mut engine, Event::Protocol(ProtocolEvent::AnswersConfirmed));
     assert_eq!(sight(engine.session()).question, None);
     give(&mut engine, phase(StudyPhase::Debriefing, 3));
-    assert_eq!(stage(&engine), Stage::Thanks);
+    assert_eq!(stage(&engine), DisplayStage::Thanks);
 }
 
 #[test]
@@ -326,13 +326,13 @@ fn every_shape_is_drawn() {
 
 #[test]
 fn german_has_every_word_of_the_page_and_of_both_kitchens() {
-    let read = |text: &str| parse::<Language>(Path::new("words"), text).expect("words").0;
+    let read = |text: &str| parse::<LanguageFile>(Path::new("words"), text).expect("words").0;
     let english = read(include_str!("../../src/display/languages/en.toml"));
     let german = read(include_str!("../../src/display/languages/de.toml"));
     for key in english.keys() {
         assert!(german.contains_key(key), "{key}");
     }
-    let words = Words::of(&DisplaySpec { language: "de".to_string(), ..DisplaySpec::default() });
+    let words = DisplayWords::for_display(&DisplaySpec { language: "de".to_string(), ..DisplaySpec::default() });
     for path in SESSIONS {
         let mut files = files(path);
         files.spec.display.language = "de".to_string();

@@ -9,8 +9,8 @@ use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::edge::gaze_file;
-use tomcom::edge::pupil::message::{self, Told};
-use tomcom::edge::pupil::zmtp::Inbox;
+use tomcom::edge::pupil::message::{self, PupilMessage};
+use tomcom::edge::pupil::zmtp::FrameAssembler;
 use tomcom::gaze::GazeSample;
 use tomcom::gaze::calibration::{TARGETS, ViewingGeometry, measure};
 use tomcom::gaze::device_clock::DeviceClock;
@@ -21,7 +21,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{DisplayArea, Kitchen};
 use tomcom::run::engine::Engine;
 use tomcom::session::admit::is_external;
-use tomcom::session::calibration::{CalibrationEvent, Check};
+use tomcom::session::calibration::{CalibrationEvent, RunningGazeCheck};
 use tomcom::session::settings::{GazeSource, ParticipantKind};
 use tomcom::session::{Event, SessionSpec, Stamped};
 
@@ -142,7 +142,7 @@ fn check_calibration(engine: &mut Engine, from_s: f64, accept: CalibrationEvent)
         outcome.refused
     };
     assert_eq!(input(engine, at(from_s), Event::Calibration(CalibrationEvent::begin())), None);
-    while let Some((time, event)) = engine.session().calibration.as_ref().and_then(Check::next) {
+    while let Some((time, event)) = engine.session().calibration.as_ref().and_then(RunningGazeCheck::next) {
         let now = engine.session().time;
         let refused = input(engine, now, Event::TrialStarted);
         assert_eq!(refused.as_deref(), Some("the calibration is being checked"));
@@ -340,7 +340,7 @@ fn a_real_datum_of_pupil_is_read_in_full() {
     assert!(told.gaze.windows(2).all(|pair| pair[0].timestamp <= pair[1].timestamp));
     // Other surfaces and topics are not ours, also where their names begin alike.
     for topic in [b"surfaces.wall2".as_slice(), b"surfaces.wal", b"gaze.3d.01.", b"", b"notify.x"] {
-        assert_eq!(message::read(topic, DATUM, "wall"), Told::default());
+        assert_eq!(message::read(topic, DATUM, "wall"), PupilMessage::default());
     }
 }
 
@@ -402,7 +402,7 @@ fn frames_are_put_together_from_any_pieces_and_claims_are_not_believed() {
     // A command in between, then a message of one empty frame.
     bytes.extend([4, 2, b'o', b'k', 0, 0]);
     for piece in [1, 2, 3, 7, 64, 1000] {
-        let mut inbox = Inbox::default();
+        let mut inbox = FrameAssembler::default();
         let mut found = Vec::new();
         for part in bytes.chunks(piece) {
             inbox.push(part);
@@ -413,7 +413,7 @@ fn frames_are_put_together_from_any_pieces_and_claims_are_not_believed() {
         assert_eq!(found, [vec![b"surfaces".to_vec(), long.clone()], vec![Vec::new()]], "pieces of {piece}");
     }
     let refused = |bytes: &[u8]| {
-        let mut inbox = Inbox::default();
+        let mut inbox = FrameAssembler::default();
         inbox.push(bytes);
         inbox.next_message().is_err()
     };

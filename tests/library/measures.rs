@@ -16,12 +16,16 @@ use tomcom::measures::JudgedPress;
 use tomcom::measures::attribution::{Attributor, Cause, Target};
 use tomcom::measures::beliefs::{Detection, EstimateView, PressView, TrialView};
 use tomcom::measures::detection::{Calibration, auc};
-use tomcom::measures::errors::{Judge, Verdict};
+use tomcom::measures::errors::{PressJudge, PressVerdict};
 use tomcom::measures::flags::Thresholds;
 use tomcom::measures::likelihood::LogLikelihood;
-use tomcom::measures::matching::{Content, Kind, Likeness, Said, Similarity, Tally, matched};
+use tomcom::measures::matching::{
+    CommunicationEvent, CommunicationKind, CommunicationTarget, MatchCounts, MatchCriterion, Similarity, matched,
+};
 use tomcom::measures::sequences::{Episodes, Sequence, sequences, sequences_by_target};
-use tomcom::measures::wizard::{Sent, Spell, Times, TrainingCriterion, WizardMeasures, Worth, worths};
+use tomcom::measures::wizard::{
+    FalseBeliefPeriod, SignalVerdict, TimeSummary, TrainingCriterion, WizardMeasures, WizardSignal, worths,
+};
 use tomcom::mind::BeliefWitness;
 use tomcom::mind::belief::Belief;
 use tomcom::mind::decision::DecisionModel;
@@ -96,7 +100,7 @@ fn check(layout: &str, there: &[&str], falsely: &[&str], pressed: &str, why: &[&
     let state = state(&kitchen, there);
     let button = kitchen.button_named(Agent::Human, pressed).expect("a button");
     let press = kitchen.try_press(state, Agent::Human, button);
-    let verdict = Judge::new(kitchen.clone()).human_pressed(&mut cost, at(1.0), &press);
+    let verdict = PressJudge::new(kitchen.clone()).human_pressed(&mut cost, at(1.0), &press);
     assert!(verdict.error, "{pressed} is no error: {verdict:?}");
     let attributor = Attributor::new(DecisionModel::default(), 1);
     for (sure, index) in [(1.0, 0), (0.97, 1), (0.97, 2), (0.97, 3)] {
@@ -169,7 +173,7 @@ fn presses(text: &str) -> Vec<JudgedPress> {
             }
         };
         let (race, error) = (letter == 'r', cause.is_some());
-        let verdict = Verdict { regret: i32::from(error), excess: i32::from(error), race, error };
+        let verdict = PressVerdict { regret: i32::from(error), excess: i32::from(error), race, error };
         JudgedPress { seq: index as u64, time: at(index as f64), verdict, belief_known: true, cause }
     };
     text.chars().enumerate().map(press).collect()
@@ -385,13 +389,13 @@ fn the_area_under_the_roc_counts_pairs_in_order_and_ties_as_half() {
 #[test]
 fn the_calibration_error_weighs_bins_by_their_predictions() {
     let predictions = [(0.62, true), (0.68, false), (0.15, false), (0.01, true), (0.99, false)];
-    let found = Calibration::of(predictions, [0.0, 0.95], 19);
+    let found = Calibration::from_predictions(predictions, [0.0, 0.95], 19);
     // Bins of 0.05: 0.62 in one, 0.68 in another, 0.15 (on the edge) in a third, 0.01 in the first; 0.99 is out of range.
     assert!((found.ece.expect("predictions") - (0.38 + 0.68 + 0.15 + 0.99) / 4.0).abs() < 1e-12, "{found:?}");
-    let found = Calibration::of(predictions, [0.05, 0.95], 2);
+    let found = Calibration::from_predictions(predictions, [0.05, 0.95], 2);
     // From 0.05 to 0.5: 0.15, none true; from 0.5 to 0.95: 0.62 and 0.68, half of them true.
     assert!((found.ece.expect("predictions") - (0.15 + 2.0 * 0.15) / 3.0).abs() < 1e-12, "{found:?}");
-    assert_eq!(Calibration::of([(0.99, true)], [0.05, 0.95], 10).ece, None);
+    assert_eq!(Calibration::from_predictions([(0.99, true)], [0.05, 0.95], 10).ece, None);
 }
 
 /// A trial about two aspects of a kitchen: letters of the location, then of the recipe, then the estimates in tenths.
@@ -430,7 +434,7 @@ fn flags_catch_an_episode_between_its_beginning_and_the_third_error() {
     let check = |text: [&str; 4], episodes: u64, caught: Option<f64>, false_flags: f64| {
         let trials = [trial(&kitchen, place, recipe, text)];
         let thresholds = Thresholds { locations: 0.5, recipes: 0.3 };
-        let flags = Detection::of(&kitchen, &trials, Some(thresholds)).flags;
+        let flags = Detection::from_trials(&kitchen, &trials, Some(thresholds)).flags;
         assert_eq!((flags.episodes, flags.flagged_before_third_error), (Some(episodes), caught), "{text:?}");
         let rate = 20.0 * false_flags / text[0].len() as f64;
         assert!((flags.false_flags_per_20_actions.expect("a rate") - rate).abs() < 1e-12, "{text:?}: {flags:?}");
@@ -455,7 +459,7 @@ fn thresholds_are_chosen_that_catch_most_within_what_is_allowed() {
     let quiet = ".".repeat(60);
     let zero = "0".repeat(60);
     let text = [&format!("{quiet}EEw."), &format!("{quiet}...."), &format!("{zero}0702"), &format!("{zero}0000")];
-    let found = Detection::of(&kitchen, &[trial(&kitchen, place, recipe, text.map(String::as_str))], None);
+    let found = Detection::from_trials(&kitchen, &[trial(&kitchen, place, recipe, text.map(String::as_str))], None);
     let flags = &found.flags;
     assert_eq!((flags.episodes, flags.flagged_before_third_error), (Some(1), Some(1.0)), "{flags:?}");
     assert_eq!(
@@ -483,7 +487,7 @@ fn what_may_be_flagged_wrongly_is_a_share_of_the_time_of_all_aspects_together() 
         let (right, known) = (".".repeat(64), "0".repeat(66));
         let estimates = format!("{}{}33", "0".repeat(64 - doubted), "3".repeat(doubted));
         let text = [&format!("{right}.."), &format!("{right}EE"), &known, &estimates];
-        Detection::of(&kitchen, &[trial(&kitchen, place, recipe, text.map(String::as_str))], None).flags
+        Detection::from_trials(&kitchen, &[trial(&kitchen, place, recipe, text.map(String::as_str))], None).flags
     };
     // 66 presses and 16 aspects: 1,056 pairs, of which 52 may be flagged wrongly; of the recipes' alone 5 % were 19.
     assert_eq!(of(40).flagged_before_third_error, Some(1.0));
@@ -509,7 +513,7 @@ fn a_human_who_knows_everything_is_fitted_to_the_presses() {
     let of_trial: TrialView = (0..20).map(|index| press(if index % 10 == 0 { trash } else { put }, -0.1)).collect();
     let trials = vec![of_trial; 5];
     let model = DecisionModel::default();
-    let found = LogLikelihood::of(&kitchen, &mut cost, &model, &trials, 1);
+    let found = LogLikelihood::from_trials(&kitchen, &mut cost, &model, &trials, 1);
     let informed = found.informed.expect("presses");
     let best = 0.9 * 0.9_f64.ln() + 0.1 * 0.1_f64.ln();
     assert!(informed < 0.0 && informed <= best + 1e-9, "no better than knowing the shares: {found:?}");
@@ -523,30 +527,34 @@ fn a_human_who_knows_everything_is_fitted_to_the_presses() {
     // Trials that are all alike leave no doubt.
     let [from, to] = found.gain_interval.expect("an interval");
     assert!((from - gain).abs() < 1e-9 && (to - gain).abs() < 1e-9);
-    assert_eq!(LogLikelihood::of(&kitchen, &mut cost, &model, &[], 1), LogLikelihood::default());
+    assert_eq!(LogLikelihood::from_trials(&kitchen, &mut cost, &model, &[], 1), LogLikelihood::default());
 }
 
 /// A lane from "press:content" items: `q`, `w` are recipes of two orders, `a`, `b` highlights, `p` a proposal; a press is
 /// two seconds.
-fn lane(text: &str) -> Vec<Said> {
+fn lane(text: &str) -> Vec<CommunicationEvent> {
     let said = |item: &str| {
         let (press, letter) = item.split_once(':').expect("press:content");
         let press: u32 = press.parse().expect("a number");
         let (kind, target) = match letter {
-            "q" => (Kind::Recipe, Some(0)),
-            "w" => (Kind::Recipe, Some(1)),
-            "a" => (Kind::Highlight, Some(2)),
-            "b" => (Kind::Highlight, Some(3)),
-            _ => (Kind::Proposal, None),
+            "q" => (CommunicationKind::Recipe, Some(0)),
+            "w" => (CommunicationKind::Recipe, Some(1)),
+            "a" => (CommunicationKind::Highlight, Some(2)),
+            "b" => (CommunicationKind::Highlight, Some(3)),
+            _ => (CommunicationKind::Proposal, None),
         };
-        Said { press, clock: at(2.0 * f64::from(press)), content: Content { kind, target: target.map(LocationId) } }
+        CommunicationEvent {
+            press,
+            clock: at(2.0 * f64::from(press)),
+            content: CommunicationTarget { kind, target: target.map(LocationId) },
+        }
     };
     text.split_whitespace().map(said).collect()
 }
 
 /// The figures of two lanes in a trial of so many presses.
 fn alike(of: &str, with: &str, presses: u32, window: u32) -> Similarity {
-    let mut tally = Tally::default();
+    let mut tally = MatchCounts::default();
     tally.add(&lane(of), &lane(with), presses, window);
     tally.similarity()
 }
@@ -572,9 +580,9 @@ fn communications_match_one_to_one_within_the_window() {
     near(found.strict.precision, 1.0 / 3.0, "precision");
     near(found.strict.f1, 0.5, "F1");
     near(found.median_lead_s, 0.0, "the nearest");
-    assert_eq!(matched(&lane("3:q 6:q"), &lane("5:q 9:q"), 3, Likeness::Strict), [(0, 0), (1, 1)]);
+    assert_eq!(matched(&lane("3:q 6:q"), &lane("5:q 9:q"), 3, MatchCriterion::Strict), [(0, 0), (1, 1)]);
     // Different targets may cross.
-    assert_eq!(matched(&lane("3:q 4:a"), &lane("3:a 4:q"), 1, Likeness::Strict), [(0, 1), (1, 0)]);
+    assert_eq!(matched(&lane("3:q 4:a"), &lane("3:a 4:q"), 1, MatchCriterion::Strict), [(0, 1), (1, 0)]);
 }
 
 #[test]
@@ -611,18 +619,19 @@ fn the_chance_level_is_what_circular_shifts_leave() {
 }
 
 /// The most pairs, and with those the least presses between them, by trying everything.
-fn most(of: &[Said], with: &[Said], window: u32, likeness: Likeness) -> (usize, u32) {
+fn most(of: &[CommunicationEvent], with: &[CommunicationEvent], window: u32, likeness: MatchCriterion) -> (usize, u32) {
     let Some((first, rest)) = of.split_first() else { return (0, 0) };
     let mut best = most(rest, with, window, likeness);
     for (index, other) in with.iter().enumerate() {
         let same = match likeness {
-            Likeness::Strict => first.content == other.content,
-            Likeness::Lenient => first.content.kind == other.content.kind,
-            Likeness::Timing => true,
+            MatchCriterion::Strict => first.content == other.content,
+            MatchCriterion::Lenient => first.content.kind == other.content.kind,
+            MatchCriterion::Timing => true,
         };
         let apart = first.press.abs_diff(other.press);
         if same && apart <= window {
-            let left: Vec<Said> = with.iter().enumerate().filter(|(at, _)| *at != index).map(|(_, one)| *one).collect();
+            let left: Vec<CommunicationEvent> =
+                with.iter().enumerate().filter(|(at, _)| *at != index).map(|(_, one)| *one).collect();
             let (pairs, between) = most(rest, &left, window, likeness);
             let found = (pairs + 1, between + apart);
             if found.0 > best.0 || found.0 == best.0 && found.1 < best.1 {
@@ -650,7 +659,7 @@ fn no_matching_has_more_or_nearer_pairs() {
         let (a, b) = (lane(&of), lane(&with));
         let mut wider = 0;
         for window in 0..6 {
-            for likeness in [Likeness::Strict, Likeness::Lenient, Likeness::Timing] {
+            for likeness in [MatchCriterion::Strict, MatchCriterion::Lenient, MatchCriterion::Timing] {
                 let pairs = matched(&a, &b, window, likeness);
                 let between: u32 = pairs.iter().map(|&(i, j)| a[i].press.abs_diff(b[j].press)).sum();
                 let wanted = most(&a, &b, window, likeness);
@@ -673,58 +682,61 @@ fn no_matching_has_more_or_nearer_pairs() {
 }
 
 /// A signal about these aspects, so many seconds after the trial's beginning and after a press every two seconds.
-fn sent(seconds: f64, aspects: &[u8]) -> Sent {
+fn sent(seconds: f64, aspects: &[u8]) -> WizardSignal {
     let aspects = aspects.iter().map(|&aspect| AspectId(aspect)).collect();
-    Sent { clock: at(seconds), press: (seconds / 2.0) as u32, aspects, to_display_ms: None, taken_back: false }
+    WizardSignal { clock: at(seconds), press: (seconds / 2.0) as u32, aspects, to_display_ms: None, taken_back: false }
 }
 
 #[test]
 fn a_wizards_signals_are_held_against_what_was_believed_wrong() {
-    let spell = |aspect: u8, from: f64, until: f64, errors: u32| Spell {
+    let spell = |aspect: u8, from: f64, until: f64, errors: u32| FalseBeliefPeriod {
         aspect: AspectId(aspect),
         began: at(from),
         corrected: Some((at(until), (until / 2.0) as u32)),
         errors,
     };
     let mut spells = vec![spell(1, 10.0, 30.0, 2), spell(2, 20.0, 26.0, 0), spell(3, 50.0, 60.0, 1)];
-    spells.push(Spell { aspect: AspectId(4), began: at(80.0), corrected: None, errors: 1 });
+    spells.push(FalseBeliefPeriod { aspect: AspectId(4), began: at(80.0), corrected: None, errors: 1 });
     let signals = [
-        (4.0, vec![1], Worth::Needless),
-        (12.5, vec![1], Worth::Hit { latency_s: 2.5, spell: 0 }),
-        (14.0, vec![1], Worth::Again),
-        (21.0, vec![2], Worth::Harmless),
+        (4.0, vec![1], SignalVerdict::Needless),
+        (12.5, vec![1], SignalVerdict::Hit { latency_s: 2.5, spell: 0 }),
+        (14.0, vec![1], SignalVerdict::Again),
+        (21.0, vec![2], SignalVerdict::Harmless),
         // An order with its recipe: the one that led to an error counts.
-        (22.0, vec![2, 1], Worth::Again),
-        (24.0, vec![5], Worth::WrongTarget),
+        (22.0, vec![2, 1], SignalVerdict::Again),
+        (24.0, vec![5], SignalVerdict::WrongTarget),
         // Right again since two presses; and since too long.
-        (34.0, vec![1], Worth::Late),
-        (40.0, vec![1], Worth::Needless),
-        (90.0, vec![4], Worth::Hit { latency_s: 10.0, spell: 3 }),
+        (34.0, vec![1], SignalVerdict::Late),
+        (40.0, vec![1], SignalVerdict::Needless),
+        (90.0, vec![4], SignalVerdict::Hit { latency_s: 10.0, spell: 3 }),
     ];
-    let all: Vec<Sent> = signals.iter().map(|(seconds, aspects, _)| sent(*seconds, aspects)).collect();
-    let wanted: Vec<Worth> = signals.iter().map(|(.., worth)| *worth).collect();
+    let all: Vec<WizardSignal> = signals.iter().map(|(seconds, aspects, _)| sent(*seconds, aspects)).collect();
+    let wanted: Vec<SignalVerdict> = signals.iter().map(|(.., worth)| *worth).collect();
     assert_eq!(worths(&all, &spells), wanted);
-    let found = WizardMeasures::of(&all, Some(&spells));
+    let found = WizardMeasures::from_signals(&all, Some(&spells));
     assert_eq!(
         (found.episodes, found.hits, found.omissions),
         (Some(3), Some(2), Some(1)),
         "the one of aspect 3 is missed"
     );
-    assert_eq!(found.latency_s, Times::of(vec![2.5, 10.0]));
+    assert_eq!(found.latency_s, TimeSummary::from_times(vec![2.5, 10.0]));
     let counts = [found.repeated, found.late, found.wrong_targets, found.needless, found.harmless];
     assert_eq!(counts, [2, 1, 1, 2, 1].map(Some));
     let named: u64 = counts.iter().flatten().sum::<u64>() + found.hits.unwrap_or(0);
     assert_eq!(named, found.signals, "every signal is one of these");
     // Of people nobody knows.
-    let unknown = WizardMeasures::of(&all, None);
+    let unknown = WizardMeasures::from_signals(&all, None);
     assert_eq!((unknown.signals, unknown.hits, unknown.omissions), (9, None, None));
     // Two of three hit; three of nine wrong.
     let met = |hits: f64, wrong: f64| TrainingCriterion { hits, wrong }.is_met(&found);
     assert!(met(0.66, 0.34) && !met(0.67, 0.34) && !met(0.66, 0.33));
-    assert!(!TrainingCriterion { hits: 0.0, wrong: 1.0 }.is_met(&WizardMeasures::of(&[], Some(&[]))), "nothing to hit");
+    assert!(
+        !TrainingCriterion { hits: 0.0, wrong: 1.0 }.is_met(&WizardMeasures::from_signals(&[], Some(&[]))),
+        "nothing to hit"
+    );
     let twice = WizardMeasures::sum([&found, &found]);
     assert_eq!((twice.hits, twice.signals), (Some(4), 18));
-    assert_eq!(twice.latency_s, Some(Times { n: 4, median: 6.25, max: 10.0 }));
+    assert_eq!(twice.latency_s, Some(TimeSummary { n: 4, median: 6.25, max: 10.0 }));
     assert_eq!(WizardMeasures::sum([&found, &unknown]).hits, None);
     // A signal more or less changes nothing about the others before it.
     for end in 0..all.len() {

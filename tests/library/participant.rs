@@ -13,8 +13,8 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, AspectKind, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent};
 use tomcom::kitchen::{Press, Recipes, State};
 use tomcom::mind::BeliefWitness;
-use tomcom::participant::population::{Experience, Population, Spread};
-use tomcom::participant::{Deed, SimulatedParticipant};
+use tomcom::participant::population::{Experience, Population, TraitSpread};
+use tomcom::participant::{ParticipantAction, SimulatedParticipant};
 use tomcom::run::engine::Engine;
 use tomcom::run::headless;
 use tomcom::session::{Event, SessionSpec, Stamped};
@@ -280,8 +280,8 @@ impl Bench {
             assert!(due >= self.now, "time runs forwards");
             self.now = due;
             match self.one.act(due, self.state, &mut self.cost) {
-                Some(Deed::Gaze(sample)) => self.samples.push(sample),
-                Some(Deed::Press { button, belief }) => {
+                Some(ParticipantAction::Gaze(sample)) => self.samples.push(sample),
+                Some(ParticipantAction::Press { button, belief }) => {
                     assert!(!belief.cause.is_empty());
                     let press = self.kitchen.try_press(self.state, Agent::Human, button);
                     self.state = press.after;
@@ -307,7 +307,7 @@ impl Bench {
 
 /// Nothing draws its eye.
 fn unmoved() -> Population {
-    let never = Spread { median: 0.0, sigma: 0.0 };
+    let never = TraitSpread { median: 0.0, sigma: 0.0 };
     Population { capture: never, order_capture: never, ..Population::default() }
 }
 
@@ -371,8 +371,8 @@ fn of_a_robot_press_it_knows_only_that_it_happened() {
 fn a_noticed_signal_makes_the_aspect_right() {
     // Nobody knows the recipe of the tuna nigiri, and nothing but the signal can tell within two seconds.
     let ignorant = Population {
-        learned: Spread { median: 0.02, sigma: 0.0 },
-        half_forgotten: Spread { median: 0.02, sigma: 0.0 },
+        learned: TraitSpread { median: 0.02, sigma: 0.0 },
+        half_forgotten: TraitSpread { median: 0.02, sigma: 0.0 },
         ..unmoved()
     };
     let (mut shown, mut learned) = (0, 0);
@@ -403,7 +403,7 @@ fn a_noticed_signal_makes_the_aspect_right() {
 
 #[test]
 fn a_signal_taken_back_in_time_is_not_read() {
-    let ignorant = Population { learned: Spread { median: 0.02, sigma: 0.0 }, ..unmoved() };
+    let ignorant = Population { learned: TraitSpread { median: 0.02, sigma: 0.0 }, ..unmoved() };
     for seed in 0..40 {
         let mut bench = Bench::new(&ignorant, seed);
         bench.order("order_1", "tuna nigiri");

@@ -19,7 +19,9 @@ use tomcom::run::engine::Engine;
 use tomcom::run::verify::verify;
 use tomcom::session::event::EndReason;
 use tomcom::session::orders::OrderList;
-use tomcom::session::plan::{Item, Made, Next, Outcome, Participants, PhaseSpec, Progress, Study, Wanted};
+use tomcom::session::plan::{
+    Item, NextRecording, Participants, PhaseSpec, PlanRecording, Progress, RecordingOutcome, Study, WantedRecording,
+};
 use tomcom::session::protocol::ProtocolEvent;
 use tomcom::session::settings::Condition;
 use tomcom::session::{Event, Header, Phase};
@@ -105,7 +107,7 @@ fn the_groups_are_balanced_in_every_block_and_belong_to_plan_and_seed() {
 }
 
 /// The first `count` orders of a recording of the plan.
-fn orders(study: &Study, wanted: Wanted, menu: usize, count: usize) -> Vec<DishId> {
+fn orders(study: &Study, wanted: WantedRecording, menu: usize, count: usize) -> Vec<DishId> {
     let (spec, trial) = study.settings(wanted);
     let mut list = OrderList::new(menu, &spec, trial);
     (0..count).map(|_| list.draw()).collect()
@@ -122,7 +124,7 @@ fn the_trials_of_a_participant_ask_for_the_same_dishes_in_another_order() {
     for (menu, run) in [(6, 3), (4, 3), (9, 3)] {
         let mut differ = 0;
         for participant in 0..14 {
-            let of = |slot, attempt| Wanted { participant, slot, attempt, instructed: true };
+            let of = |slot, attempt| WantedRecording { participant, slot, attempt, instructed: true };
             let lists =
                 [(1, 1), (2, 1), (1, 2)].map(|(slot, attempt)| orders(&study, of(slot, attempt), menu, 4 * menu));
             for list in &lists[1..] {
@@ -142,53 +144,70 @@ fn the_trials_of_a_participant_ask_for_the_same_dishes_in_another_order() {
 }
 
 /// What a recording of P01 might say of itself.
-fn made(study: &Study, slot: usize, attempt: u32, outcome: Outcome) -> Made {
-    let (spec, _) = study.settings(Wanted { participant: 0, slot, attempt, instructed: slot > 0 });
+fn made(study: &Study, slot: usize, attempt: u32, outcome: RecordingOutcome) -> PlanRecording {
+    let (spec, _) = study.settings(WantedRecording { participant: 0, slot, attempt, instructed: slot > 0 });
     let recording = format!("2026-03-14-P01-{slot}{attempt}");
     let step = spec.step.expect("a step of the plan");
-    Made { recording, code: spec.participant.code, step, consent: true, instructed: true, presses: 20, outcome }
+    PlanRecording {
+        recording,
+        code: spec.participant.code,
+        step,
+        consent: true,
+        instructed: true,
+        presses: 20,
+        outcome,
+    }
 }
 
 /// Recordings as slot, attempt and outcome, and what comes next.
-fn check_next(recorded: &[(usize, u32, Outcome)], next: Next) {
+fn check_next(recorded: &[(usize, u32, RecordingOutcome)], next: NextRecording) {
     let study = study(|_| ());
-    let mut all: Vec<Made> =
+    let mut all: Vec<PlanRecording> =
         recorded.iter().map(|(slot, attempt, outcome)| made(&study, *slot, *attempt, outcome.clone())).collect();
-    let progress = |all: &[Made]| Progress::of(&study, 0, all).expect("recordings of the plan");
+    let progress = |all: &[PlanRecording]| Progress::from_recordings(&study, 0, all).expect("recordings of the plan");
     assert_eq!(progress(&all).next, next, "{recorded:?}");
     all.reverse();
     assert_eq!(progress(&all).next, next, "in whatever order they are found");
-    assert_eq!(Progress::of(&study, 1, &all).expect("another one").next, Next::Begin { slot: 0, attempt: 1 });
+    assert_eq!(
+        Progress::from_recordings(&study, 1, &all).expect("another one").next,
+        NextRecording::Begin { slot: 0, attempt: 1 }
+    );
 }
 
 #[test]
 fn what_comes_next_follows_from_the_recordings_alone() {
-    let done = Outcome::Complete;
-    let void = || Outcome::Void { reason: "aborted".to_string() };
-    let excluded = || Outcome::Excluded { reason: "tracker off".to_string() };
-    let choose =
-        |slot, attempt: u32| Next::Choose { recording: format!("2026-03-14-P01-{slot}{}", attempt - 1), slot, attempt };
-    check_next(&[], Next::Begin { slot: 0, attempt: 1 });
-    check_next(&[(0, 1, void())], Next::Begin { slot: 0, attempt: 2 });
-    check_next(&[(0, 1, Outcome::Open)], choose(0, 2));
-    check_next(&[(0, 1, void()), (0, 2, done.clone())], Next::Begin { slot: 1, attempt: 1 });
-    check_next(&[(0, 1, done.clone()), (1, 1, Outcome::Open)], choose(1, 2));
-    check_next(&[(0, 1, done.clone()), (1, 1, Outcome::Open), (1, 2, void())], Next::Begin { slot: 1, attempt: 3 });
+    let done = RecordingOutcome::Complete;
+    let void = || RecordingOutcome::Void { reason: "aborted".to_string() };
+    let excluded = || RecordingOutcome::Excluded { reason: "tracker off".to_string() };
+    let choose = |slot, attempt: u32| NextRecording::Choose {
+        recording: format!("2026-03-14-P01-{slot}{}", attempt - 1),
+        slot,
+        attempt,
+    };
+    check_next(&[], NextRecording::Begin { slot: 0, attempt: 1 });
+    check_next(&[(0, 1, void())], NextRecording::Begin { slot: 0, attempt: 2 });
+    check_next(&[(0, 1, RecordingOutcome::Open)], choose(0, 2));
+    check_next(&[(0, 1, void()), (0, 2, done.clone())], NextRecording::Begin { slot: 1, attempt: 1 });
+    check_next(&[(0, 1, done.clone()), (1, 1, RecordingOutcome::Open)], choose(1, 2));
     check_next(
-        &[(0, 1, done.clone()), (1, 1, Outcome::Open), (1, 2, done.clone())],
-        Next::Begin { slot: 2, attempt: 1 },
+        &[(0, 1, done.clone()), (1, 1, RecordingOutcome::Open), (1, 2, void())],
+        NextRecording::Begin { slot: 1, attempt: 3 },
     );
-    check_next(&[(0, 1, done.clone()), (1, 1, excluded())], Next::Begin { slot: 2, attempt: 1 });
-    check_next(&[(0, 1, done.clone()), (1, 1, excluded()), (1, 2, Outcome::Open)], choose(1, 3));
-    check_next(&[(0, 1, done.clone()), (1, 1, done.clone()), (2, 1, done)], Next::Finished);
+    check_next(
+        &[(0, 1, done.clone()), (1, 1, RecordingOutcome::Open), (1, 2, done.clone())],
+        NextRecording::Begin { slot: 2, attempt: 1 },
+    );
+    check_next(&[(0, 1, done.clone()), (1, 1, excluded())], NextRecording::Begin { slot: 2, attempt: 1 });
+    check_next(&[(0, 1, done.clone()), (1, 1, excluded()), (1, 2, RecordingOutcome::Open)], choose(1, 3));
+    check_next(&[(0, 1, done.clone()), (1, 1, done.clone()), (2, 1, done)], NextRecording::Finished);
 }
 
 #[test]
 fn recordings_of_another_group_are_told_and_not_mixed_in() {
     let study = study(|_| ());
-    let mut other = made(&study, 0, 1, Outcome::Complete);
+    let mut other = made(&study, 0, 1, RecordingOutcome::Complete);
     other.step.group = if other.step.group == "AB" { "BA" } else { "AB" }.to_string();
-    let told = Progress::of(&study, 0, &[other]).expect_err("another group");
+    let told = Progress::from_recordings(&study, 0, &[other]).expect_err("another group");
     assert!(told.contains("2026-03-14-P01-01") && told.contains("AB") && told.contains("BA"), "{told}");
 }
 
@@ -200,7 +219,7 @@ struct Run {
 }
 
 impl Run {
-    fn new(out: &Path, wanted: Wanted) -> Run {
+    fn new(out: &Path, wanted: WantedRecording) -> Run {
         let mut files = files();
         files.spec.trial.presses = 40;
         let plan = files.spec.plan.as_mut().expect("a plan");
@@ -277,8 +296,8 @@ impl Run {
     }
 }
 
-fn wanted(slot: usize, instructed: bool) -> Wanted {
-    Wanted { participant: 0, slot, attempt: 1, instructed }
+fn wanted(slot: usize, instructed: bool) -> WantedRecording {
+    WantedRecording { participant: 0, slot, attempt: 1, instructed }
 }
 
 #[test]
@@ -308,7 +327,7 @@ fn what_happens_around_a_trial_keeps_its_order() {
     let folder = run.close();
     assert!(verify(&folder).expect("readable").verified);
     let made = recordings::of_plan(&out, "study").expect("readable");
-    assert!(matches!(&made[0].outcome, Outcome::Void { reason } if reason == "criterion not met"), "{made:?}");
+    assert!(matches!(&made[0].outcome, RecordingOutcome::Void { reason } if reason == "criterion not met"), "{made:?}");
     assert!(made[0].consent && made[0].instructed);
 }
 
@@ -409,7 +428,7 @@ fn wherever_a_recording_is_cut_it_is_open_verified_and_known() {
         for bytes in [end, end + 9] {
             let recording = cut(&whole, &cuts, bytes);
             let made = recordings::of_plan(&cuts, "study").expect("readable");
-            assert_eq!((made.len(), &made[0].outcome), (1, &Outcome::Open), "cut after {bytes} bytes");
+            assert_eq!((made.len(), &made[0].outcome), (1, &RecordingOutcome::Open), "cut after {bytes} bytes");
             // To run it again each time would take long.
             if index % 40 == 0 {
                 let found = verify(&recording).expect("readable");
@@ -419,14 +438,14 @@ fn wherever_a_recording_is_cut_it_is_open_verified_and_known() {
     }
     let recording = cut(&whole, &cuts, text.len());
     let made = recordings::of_plan(&cuts, "study").expect("readable");
-    assert_eq!(made[0].outcome, Outcome::Complete);
+    assert_eq!(made[0].outcome, RecordingOutcome::Complete);
     assert!(verify(&recording).expect("readable").verified);
     // A recording that was killed before its header was there is none; nor is one of another plan, or a simulated one.
     cut(&whole, &cuts, 100);
     assert_eq!(recordings::of_plan(&cuts, "study").expect("readable"), Vec::new());
     assert_eq!(recordings::of_plan(whole.parent().expect("a folder"), "other").expect("readable"), Vec::new());
-    let progress = Progress::of(&study, 0, &[]).expect("nothing recorded");
-    assert_eq!(progress.next, Next::Begin { slot: 0, attempt: 1 });
+    let progress = Progress::from_recordings(&study, 0, &[]).expect("nothing recorded");
+    assert_eq!(progress.next, NextRecording::Begin { slot: 0, attempt: 1 });
 }
 
 #[test]
@@ -436,12 +455,12 @@ fn a_trial_of_a_plan_that_the_wizard_ends_counts_and_one_that_is_left_stays_open
     run.next_phase();
     assert_eq!(run.input(Event::TrialStarted), None);
     let outcome = || recordings::of_plan(&out, "study").expect("readable")[0].outcome.clone();
-    assert_eq!(outcome(), Outcome::Open);
+    assert_eq!(outcome(), RecordingOutcome::Open);
     assert!(!run.engine.session().is_step_done(), "left now, it can be continued");
     assert_eq!(run.input(Event::TrialEnded { reason: EndReason::Wizard }), None);
     run.go_through();
     run.close();
-    assert_eq!(outcome(), Outcome::Complete);
+    assert_eq!(outcome(), RecordingOutcome::Complete);
     let aborted = folder("aborted");
     let mut run = Run::new(&aborted, wanted(1, true));
     run.next_phase();
@@ -450,5 +469,5 @@ fn a_trial_of_a_plan_that_the_wizard_ends_counts_and_one_that_is_left_stays_open
     assert!(run.engine.session().is_step_done(), "left now, it is over");
     run.close();
     let outcome = recordings::of_plan(&aborted, "study").expect("readable")[0].outcome.clone();
-    assert_eq!(outcome, Outcome::Void { reason: "aborted (fire alarm)".to_string() });
+    assert_eq!(outcome, RecordingOutcome::Void { reason: "aborted (fire alarm)".to_string() });
 }

@@ -19,14 +19,14 @@ use tomcom::history::comparison::CommunicationContext;
 use tomcom::history::landmark::ReplayLandmark;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen, LocationId};
-use tomcom::measures::matching::Content;
+use tomcom::measures::matching::CommunicationTarget;
 use tomcom::run::engine::Engine;
 use tomcom::run::headless;
 use tomcom::run::replay::Replay;
 use tomcom::run::seekable_replay::SeekableReplay;
 use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
 use tomcom::run::verify::verify;
-use tomcom::scene::{Derived, Moment, Row, Scene, Shown};
+use tomcom::scene::{DerivedData, EntityData, EntityUpdate, SceneUpdate, SessionScene};
 use tomcom::session::event::{EndReason, SignalEnd};
 use tomcom::session::header::VERSION;
 use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
@@ -569,7 +569,7 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
     here.finish();
     let found = here.comparison(true);
     // With what lay there: who tells of something else says nothing again.
-    let mut last: Vec<((Content, u8), u32)> = Vec::new();
+    let mut last: Vec<((CommunicationTarget, u8), u32)> = Vec::new();
     let mut again = 0;
     for spoken in &found.lanes[1].spoken {
         let (said, state) = (spoken.said, spoken.known.as_ref().expect("an answer").state);
@@ -587,14 +587,14 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
 }
 
 /// Everything that a recording shows, and its events.
-fn shown(recording: &Path) -> (Vec<Moment>, Vec<Stamped>) {
+fn shown(recording: &Path) -> (Vec<SceneUpdate>, Vec<Stamped>) {
     let mut replay = Replay::open(recording).expect("a recording");
-    let mut scene = Scene::new(replay.session(), 0);
+    let mut scene = SessionScene::new(replay.session(), 0);
     let mut moments = vec![scene.opening()];
     let mut events = Vec::new();
     while let Some(line) = replay.step().expect("events of a session") {
         let (judged, belief) = (&replay.follower.judged[..], Some(replay.follower.filter.belief()));
-        moments.extend(scene.see(&line.stamped, Derived { judged, belief }));
+        moments.extend(scene.see(&line.stamped, DerivedData { judged, belief }));
         events.push(line.stamped);
     }
     (moments, events)
@@ -607,7 +607,7 @@ fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
         let times: Vec<SessionTime> = moments.iter().map(|moment| moment.time).collect();
         assert!(times.is_sorted(), "{name}: moments come in the order of their times");
         let steps_of = |entity: &str| -> Vec<(u64, SessionTime)> {
-            let rows = |moment: &Moment| moment.rows.iter().filter(|row| row.entity == entity).count();
+            let rows = |moment: &SceneUpdate| moment.rows.iter().filter(|row| row.entity == entity).count();
             moments.iter().flat_map(|moment| vec![(moment.step, moment.time); rows(moment)]).collect()
         };
         let mut is_running = false;
@@ -632,7 +632,7 @@ fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
         assert_eq!(steps_of("assistant/benefit/cost_line"), advice, "{name}");
         let sent = moments.iter().flat_map(|moment| &moment.rows).filter(|row| {
             row.entity == "wizard/signals"
-                && matches!(&row.shown, Shown::Words { text, .. } if !text.starts_with("wizard: took"))
+                && matches!(&row.shown, EntityData::Words { text, .. } if !text.starts_with("wizard: took"))
         });
         assert_eq!(sent.count(), signals.len(), "{name}");
         assert!(moments.iter().map(|moment| moment.trial).is_sorted(), "{name}: the trial's clock never goes back");
@@ -641,8 +641,8 @@ fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
             assert_eq!(moment.trial, SessionTime::ZERO, "{name}: before the trial its clock stands");
         }
         let lines = |entity: &str| -> Vec<String> {
-            let text = |row: &Row| match &row.shown {
-                Shown::Words { text, .. } if row.entity.starts_with(entity) => Some(text.clone()),
+            let text = |row: &EntityUpdate| match &row.shown {
+                EntityData::Words { text, .. } if row.entity.starts_with(entity) => Some(text.clone()),
                 _ => None,
             };
             moments.iter().flat_map(|moment| &moment.rows).filter_map(text).collect()
@@ -674,7 +674,7 @@ fn a_scene_tells_a_belief_before_the_press_as_the_log_does() {
         for told in &witness.aspects {
             let entity = format!("human/belief/estimated/{}", told.aspect.replace(' ', "_"));
             let mut rows = moment.rows.iter().filter(|row| row.entity == entity);
-            assert_eq!(rows.next().map(|row| &row.shown), Some(&Shown::Value(told.p_truth)), "{entity}");
+            assert_eq!(rows.next().map(|row| &row.shown), Some(&EntityData::Value(told.p_truth)), "{entity}");
             assert!(rows.next().is_none(), "{entity} once");
         }
     }

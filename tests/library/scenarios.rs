@@ -8,13 +8,13 @@ use std::sync::Arc;
 
 use serde::Deserialize;
 use tomcom::base::time::SessionTime;
-use tomcom::communication::concept::{Concept, ConceptName, Moment, Silent, concept};
-use tomcom::communication::dev::Dev;
+use tomcom::communication::concept::{Concept, ConceptName, DecisionPoint, SilentConcept, concept};
+use tomcom::communication::dev::DevConcept;
 use tomcom::communication::planner::Planner;
 use tomcom::communication::recommendation::Recommendation;
 use tomcom::communication::settings::AssistantSpec;
-use tomcom::communication::situation::{RobotOutlook, Situation};
-use tomcom::communication::tom::Tom;
+use tomcom::communication::situation::{RobotIntent, Situation};
+use tomcom::communication::tom::TomConcept;
 use tomcom::communication::{Signal, signals};
 use tomcom::edge::files;
 use tomcom::kitchen::cost_to_go::CostToGo;
@@ -115,14 +115,14 @@ impl Scenario {
         DirichletBelief { aspects: (0..kitchen.aspects.len()).map(of).collect() }
     }
 
-    fn outlook(&self, kitchen: &Kitchen) -> RobotOutlook {
+    fn outlook(&self, kitchen: &Kitchen) -> RobotIntent {
         match &self.robot.button {
-            _ if self.robot.still => RobotOutlook::Still,
+            _ if self.robot.still => RobotIntent::Still,
             Some(name) => {
                 let button = kitchen.button_named(Agent::Robot, name).unwrap_or_else(|| panic!("no button {name}"));
-                RobotOutlook::Busy { button, remaining_s: self.robot.in_s, driven: false }
+                RobotIntent::Busy { button, remaining_s: self.robot.in_s, driven: false }
             }
-            None => RobotOutlook::Free,
+            None => RobotIntent::Free,
         }
     }
 
@@ -141,13 +141,13 @@ impl Scenario {
         let situation =
             Situation { state, belief: &belief, changed: &[], robot: self.outlook(&kitchen), robot_press_s: 2.4 };
         let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
-        concept.advise(&mut CostToGo::new(kitchen), &Moment { error, ..moment(situation, &signals) })
+        concept.advise(&mut CostToGo::new(kitchen), &DecisionPoint { error, ..moment(situation, &signals) })
     }
 }
 
 /// A moment at the start of a session.
-fn moment<'a>(situation: Situation<'a>, signals: &'a [Signal]) -> Moment<'a> {
-    Moment { seq: 0, time: SessionTime::ZERO, presses: 0, situation, signals, error: None }
+fn moment<'a>(situation: Situation<'a>, signals: &'a [Signal]) -> DecisionPoint<'a> {
+    DecisionPoint { seq: 0, time: SessionTime::ZERO, presses: 0, situation, signals, error: None }
 }
 
 fn value_named(kitchen: &Kitchen, aspect: AspectId, label: &str) -> usize {
@@ -317,7 +317,7 @@ fn named(name: &str) -> Scenario {
 /// What ToM says at a threshold, in words.
 fn tom(name: &str, threshold: f64) -> String {
     let scenario = named(name);
-    let answer = scenario.ask(&mut Tom::new(scenario.kitchen(), threshold), None);
+    let answer = scenario.ask(&mut TomConcept::new(scenario.kitchen(), threshold), None);
     assert!(answer.options.windows(2).all(|pair| pair[0].benefit >= pair[1].benefit), "{name}: ranked");
     answer.best.as_ref().map_or("silence".to_string(), words)
 }
@@ -338,7 +338,7 @@ fn tom_tells_what_deviates_most_whether_it_matters_or_not() {
 fn tom_is_silent_where_nothing_deviates_beyond_its_threshold() {
     for path in scenarios() {
         let scenario = Scenario::read(&path);
-        let ask = |threshold| scenario.ask(&mut Tom::new(scenario.kitchen(), threshold), None);
+        let ask = |threshold| scenario.ask(&mut TomConcept::new(scenario.kitchen(), threshold), None);
         let Some(most) = ask(0.0).top().map(|option| option.benefit) else { continue };
         for threshold in [0.4, 0.6, 0.8, 0.99] {
             let answer = ask(threshold);
@@ -358,9 +358,13 @@ fn dev_proposes_after_an_error_presses_that_each_bring_the_orders_nearer() {
         let kitchen = scenario.kitchen();
         let mut cost = CostToGo::new(kitchen.clone());
         let recipes = kitchen.true_recipes();
-        assert_eq!(scenario.ask(&mut Dev::new(kitchen.clone(), 3), None), scenario.ask(&mut Silent, None), "{name}");
+        assert_eq!(
+            scenario.ask(&mut DevConcept::new(kitchen.clone(), 3), None),
+            scenario.ask(&mut SilentConcept, None),
+            "{name}"
+        );
         let proposed = |presses: usize| {
-            let answer = scenario.ask(&mut Dev::new(kitchen.clone(), presses), Some(7));
+            let answer = scenario.ask(&mut DevConcept::new(kitchen.clone(), presses), Some(7));
             assert!(answer.best.is_none() && answer.options.is_empty(), "{name}: no signal says a press");
             let proposal = answer.proposal.unwrap_or_else(|| panic!("{name}: nothing is proposed"));
             assert_eq!(proposal.error, 7);

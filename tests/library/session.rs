@@ -11,7 +11,7 @@ use tomcom::edge::files::read_session;
 use tomcom::edge::parse::parse;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen, OrderContent, State};
-use tomcom::measures::errors::{Judge, Verdict};
+use tomcom::measures::errors::{PressJudge, PressVerdict};
 use tomcom::run::engine::{Engine, InputResult};
 use tomcom::session::event::{EndReason, SignalEnd};
 use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec, SessionSpec};
@@ -219,10 +219,10 @@ fn what_cannot_be_is_refused_with_its_reason() {
 
 /// The verdict on the human's last press of a list by both agents, one second apart but for the last one, that comes
 /// `after_s` after the one before it; orders of these dishes are present.
-fn verdict(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> Verdict {
+fn verdict(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> PressVerdict {
     let kitchen = kitchen();
     let mut cost = CostToGo::new(kitchen.clone());
-    let mut judge = Judge::new(kitchen.clone());
+    let mut judge = PressJudge::new(kitchen.clone());
     let mut state = kitchen.empty_state();
     for (order, dish) in kitchen.orders.iter().zip(dishes) {
         let dish = kitchen.dishes.iter().position(|known| known.name == *dish).expect("a dish of the menu");
@@ -247,7 +247,7 @@ fn verdict(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> Verdict 
 fn errors_are_presses_that_lose_more_than_the_best_one() {
     use Agent::{Human, Robot};
     let good = verdict(&["crab maki"], &[(Human, "take crab")], 1.0);
-    assert_eq!(good, Verdict { regret: 0, excess: 0, race: false, error: false });
+    assert_eq!(good, PressVerdict { regret: 0, excess: 0, race: false, error: false });
     // The wrong shellfish has to be thrown away.
     let wrong = verdict(&["crab maki"], &[(Human, "take shrimp")], 1.0);
     assert_eq!((wrong.excess, wrong.error), (2, true));

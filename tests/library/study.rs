@@ -18,18 +18,20 @@ use tomcom::run::study::reading::{self, AnalysisScope};
 use tomcom::session::Event;
 use tomcom::session::event::EndReason;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
-use tomcom::study::effect::{Measure, effect, pairs};
+use tomcom::study::effect::{StudyMeasure, effect, pairs};
 use tomcom::study::facts::Facts;
-use tomcom::study::figures::StudyFigures;
-use tomcom::study::prevention::{Count, PressTruth, Sent, SequenceTruth, SpellTruth, Truth};
+use tomcom::study::figures::StudySummary;
+use tomcom::study::prevention::{
+    ConceptSignal, FalseBeliefTruth, PressTruth, PreventionCounts, SequenceTruth, TrialTruth,
+};
 use tomcom::study::report;
-use tomcom::study::robot::{ArmFigures, RobotFigures, RobotTally};
-use tomcom::study::roc::{Swept, compare};
+use tomcom::study::robot::{ArmSummary, RobotSummary, RobotTally};
+use tomcom::study::roc::{SweptTrial, compare};
 use tomcom::study::statistics::{hodges_lehmann, mixed_anova, permutation_p};
 use tomcom::study::tables::{
     ActionRow, AnswerRow, BeliefRow, CommunicationRow, ConceptRow, DictionaryRow, GazeRow, ParticipantRow, Table,
 };
-use tomcom::study::trial::{Answered, Basis, Beliefs, Trial, arrange};
+use tomcom::study::trial::{BeliefBasis, BeliefErrors, QuestionnaireAnswer, Trial, arrange};
 use tomcom::study::trial_row::{self, TrialRow};
 
 fn near(found: f64, wanted: f64) {
@@ -57,13 +59,13 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         left_out: None,
         ended: Some(EndReason::Presses),
         arm: ArmKind::Timed,
-        robot: RobotFigures::default(),
+        robot: RobotSummary::default(),
         human_presses: 200,
         robot_presses: 100,
         errors,
         races: 0,
-        beliefs: Some(Beliefs {
-            basis: Basis::Recorded,
+        beliefs: Some(BeliefErrors {
+            basis: BeliefBasis::Recorded,
             errors: related,
             of_two: 0,
             lengths_by_aspect: lengths.clone(),
@@ -106,7 +108,7 @@ fn trials(assisted_second: &[[u64; 2]], assisted_first: &[[u64; 2]]) -> Vec<Tria
 #[test]
 fn the_assistance_effect_is_that_of_other_programs() {
     let trials = trials(&[[24, 12], [30, 16], [18, 16], [40, 22], [22, 10]], &[[20, 18], [16, 16], [28, 20], [24, 24]]);
-    let found = effect(Measure::ErrorRateHuman, &pairs(&trials, Measure::ErrorRateHuman), 1);
+    let found = effect(StudyMeasure::ErrorRateHuman, &pairs(&trials, StudyMeasure::ErrorRateHuman), 1);
     assert_eq!(found.groups, [5, 4]);
     let test = found.assistance().expect("a test");
     near(test.f, 7.070008537626539);
@@ -120,7 +122,7 @@ fn the_assistance_effect_is_that_of_other_programs() {
     // Half the shift.
     near(found.reduction.expect("an estimate").estimate, 0.0275);
     // Of groups of equal size the paper's coding tests the same.
-    let equal: Vec<(usize, [f64; 2])> = pairs(&trials, Measure::ErrorRateHuman)[1..]
+    let equal: Vec<(usize, [f64; 2])> = pairs(&trials, StudyMeasure::ErrorRateHuman)[1..]
         .iter()
         .map(|p| (usize::from(p.assisted_second), p.values))
         .collect();
@@ -133,8 +135,8 @@ fn the_assistance_effect_is_that_of_other_programs() {
 fn what_is_missing_leaves_the_participant_out_of_the_pairs_and_nothing_is_invented() {
     let mut trials = trials(&[[24, 12], [30, 16]], &[[20, 18], [16, 16]]);
     trials[0].left_out = Some("excluded: the tracker slipped".to_string());
-    assert_eq!(pairs(&trials, Measure::ErrorRateHuman).len(), 3);
-    let figures = StudyFigures::of(&trials, &Facts::default(), 0);
+    assert_eq!(pairs(&trials, StudyMeasure::ErrorRateHuman).len(), 3);
+    let figures = StudySummary::from_trials(&trials, &Facts::default(), 0);
     assert_eq!((figures.trials, figures.participants, figures.left_out.len()), (7, 4, 1));
     // A second trial that was done again counts as it was done the last time.
     let mut again = trial("A1", 2, Condition::Wizard, 2);
@@ -142,32 +144,32 @@ fn what_is_missing_leaves_the_participant_out_of_the_pairs_and_nothing_is_invent
     trials.push(again);
     arrange(&mut trials);
     let pair =
-        pairs(&trials, Measure::ErrorRateHuman).into_iter().find(|pair| pair.participant == "A1").expect("a pair");
+        pairs(&trials, StudyMeasure::ErrorRateHuman).into_iter().find(|pair| pair.participant == "A1").expect("a pair");
     near(pair.values[1], 0.01);
-    let nobody = StudyFigures::of(&[], &Facts::default(), 0);
+    let nobody = StudySummary::from_trials(&[], &Facts::default(), 0);
     assert!(nobody.anova.is_none() && nobody.pearson.is_none() && nobody.permutation_p.is_none());
     assert!(nobody.totals.error_rate.is_none() && nobody.totals.belief_related_share.is_none());
     assert_eq!((permutation_p(&[], &[1.0], 1), hodges_lehmann(&[], &[1.0], 0.95)), (None, None));
 }
 
 /// Errors at presses 3, 4, 5 of ten, a second apart, because of an aspect that is false from 2.5 to 7.5 s.
-fn truth() -> Truth {
+fn truth() -> TrialTruth {
     let (harmful, harmless) = (AspectId(0), AspectId(1));
     let error = |index: usize| (3..=5).contains(&index);
-    Truth {
+    TrialTruth {
         presses: (0..10)
             .map(|i| PressTruth { time: at(i as f64), error: error(i) || i == 9, related: error(i) })
             .collect(),
         spells: vec![
-            SpellTruth { aspect: harmful, began: at(2.5), ended: Some(at(7.5)), harmful: true },
-            SpellTruth { aspect: harmless, began: at(8.5), ended: None, harmful: false },
+            FalseBeliefTruth { aspect: harmful, began: at(2.5), ended: Some(at(7.5)), harmful: true },
+            FalseBeliefTruth { aspect: harmless, began: at(8.5), ended: None, harmful: false },
         ],
         sequences: vec![SequenceTruth { aspects: vec![harmful], errors: vec![at(3.0), at(4.0), at(5.0)] }],
     }
 }
 
-fn sent(seconds: f64, aspect: u8) -> Sent {
-    Sent { time: at(seconds), press: seconds as usize + 1, aspects: vec![AspectId(aspect)] }
+fn sent(seconds: f64, aspect: u8) -> ConceptSignal {
+    ConceptSignal { time: at(seconds), press: seconds as usize + 1, aspects: vec![AspectId(aspect)] }
 }
 
 #[test]
@@ -175,8 +177,8 @@ fn a_signal_prevents_the_rest_of_its_sequence() {
     let truth = truth();
     let silent = truth.count_signals(&[]);
     let outside = 5;
-    assert_eq!(silent, Count { presses: 10, related: 3, outside, ..Count::default() });
-    let counted = |sent: &[Sent]| truth.count_signals(sent);
+    assert_eq!(silent, PreventionCounts { presses: 10, related: 3, outside, ..PreventionCounts::default() });
+    let counted = |sent: &[ConceptSignal]| truth.count_signals(sent);
     // Before the first error the whole sequence, after it the rest, after the last nothing.
     assert_eq!(counted(&[sent(2.6, 0)]).prevented, 3);
     assert_eq!(counted(&[sent(3.0, 0)]).prevented, 2);
@@ -207,10 +209,18 @@ fn a_proposal_spares_the_errors_of_the_next_presses() {
 
 #[test]
 fn concepts_are_compared_where_they_say_equally_much() {
-    let swept = |concept, parameter, signals, prevented, false_presses| Swept {
+    let swept = |concept, parameter, signals, prevented, false_presses| SweptTrial {
         concept,
         parameter,
-        count: Count { presses: 100, signals, related: 10, prevented, outside: 50, false_presses, ..Count::default() },
+        count: PreventionCounts {
+            presses: 100,
+            signals,
+            related: 10,
+            prevented,
+            outside: 50,
+            false_presses,
+            ..PreventionCounts::default()
+        },
     };
     let participant = vec![
         swept(ConceptName::TomCom, 1.0, 4, 5, 1),
@@ -270,7 +280,7 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
     trials[3].left_out = Some("excluded: <b> & \"quoted\"".to_string());
     for (index, answer) in [Some(1), Some(3), None].into_iter().enumerate() {
         let assisted = trials.iter_mut().filter(|trial| trial.is_assisted() && trial.counts()).nth(index);
-        assisted.expect("a trial").answers.push(Answered {
+        assisted.expect("a trial").answers.push(QuestionnaireAnswer {
             questionnaire: "acceptance".to_string(),
             item: "annoyed".to_string(),
             text: "The signals annoyed me.".to_string(),
@@ -280,7 +290,7 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
             points: 7,
         });
     }
-    let figures = StudyFigures::of(&trials, &Facts::default(), 0);
+    let figures = StudySummary::from_trials(&trials, &Facts::default(), 0);
     let accepted = figures.acceptance.clone().expect("answers");
     assert_eq!((accepted.high, accepted.medium, accepted.undecided, accepted.not_reported), (1, 1, 0, 1));
     let page = report::page(&figures, &trials, &Facts::default(), &Table::ALL);
@@ -292,7 +302,12 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
     assert!(!page.contains("NaN") && !page.contains("inf "));
     let people: Vec<Trial> =
         trials.into_iter().map(|trial| Trial { kind: ParticipantKind::Display, ..trial }).collect();
-    let page = report::page(&StudyFigures::of(&people, &Facts::default(), 0), &people, &Facts::default(), &Table::ALL);
+    let page = report::page(
+        &StudySummary::from_trials(&people, &Facts::default(), 0),
+        &people,
+        &Facts::default(),
+        &Table::ALL,
+    );
     assert!(!page.contains("simulated participants</title>"));
 }
 
@@ -344,7 +359,7 @@ fn what_the_robot_did_is_counted_while_the_trial_is_on() {
 fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
     let mut trials = trials(&[[24, 12], [30, 16]], &[[20, 18]]);
     let report = |trials: &[Trial], tables: &[Table]| {
-        report::page(&StudyFigures::of(trials, &Facts::default(), 0), trials, &Facts::default(), tables)
+        report::page(&StudySummary::from_trials(trials, &Facts::default(), 0), trials, &Facts::default(), tables)
     };
     let page = report(&trials, &[Table::Trials]);
     assert!(page.contains("6 with the presses.") && page.contains("arm was timed."));
@@ -354,9 +369,16 @@ fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
     trials[1].ended = Some(EndReason::Wizard);
     trials[2].ended = Some(EndReason::Time);
     trials[2].arm = ArmKind::Physics;
-    trials[2].robot.arm = Some(ArmFigures { contacts: 3, peak_force_n: Some(17.25), ..ArmFigures::default() });
-    let count = Count { presses: 100, signals: 4, related: 10, prevented: 5, outside: 50, ..Count::default() };
-    trials[0].swept = vec![Swept { concept: ConceptName::TomCom, parameter: 1.0, count }];
+    trials[2].robot.arm = Some(ArmSummary { contacts: 3, peak_force_n: Some(17.25), ..ArmSummary::default() });
+    let count = PreventionCounts {
+        presses: 100,
+        signals: 4,
+        related: 10,
+        prevented: 5,
+        outside: 50,
+        ..PreventionCounts::default()
+    };
+    trials[0].swept = vec![SweptTrial { concept: ConceptName::TomCom, parameter: 1.0, count }];
     let page = report(&trials, &Table::ALL);
     assert!(page.contains("4 with the presses, 1 as the time was over, 1 as the wizard ended it before."));
     assert!(page.contains("timed in 5 trials and simulated in the physics in 1 trial; the figures pool them."));
@@ -381,7 +403,7 @@ fn two_raters_say_why_people_erred() {
     };
     let basis = |trial: &Trial| trial.beliefs.as_ref().map(|beliefs| beliefs.basis);
     let estimated = read();
-    assert_eq!(basis(&estimated.trial), Some(Basis::Estimate));
+    assert_eq!(basis(&estimated.trial), Some(BeliefBasis::Estimate));
     let errors = CodedRecording::open(&folder).expect("a recording").codable.errors;
     assert!(errors.len() as u64 == estimated.trial.errors && errors.len() >= 2, "{errors:?}");
     let belief = |place: &str| Code::Belief(place.to_string());
@@ -392,14 +414,14 @@ fn two_raters_say_why_people_erred() {
     // One of them is not done yet.
     say("anna", &|_| belief("assembly_board"), errors.len());
     say("ben", &|_| belief("plate"), errors.len() - 1);
-    assert_eq!(basis(&read().trial), Some(Basis::Estimate));
+    assert_eq!(basis(&read().trial), Some(BeliefBasis::Estimate));
     // They agree that all but the first come of false beliefs, though not about which.
     say("ben", &|index| if index == 0 { Code::Slip } else { belief("plate") }, errors.len());
     let coded = read();
-    assert_eq!(basis(&coded.trial), Some(Basis::Raters));
+    assert_eq!(basis(&coded.trial), Some(BeliefBasis::Raters));
     let related = errors.len() as u64 - 1;
     assert_eq!(coded.trial.beliefs.as_ref().map(|beliefs| beliefs.errors), Some(related));
-    let figures = StudyFigures::of(&[coded.trial], &coded.facts, 0);
+    let figures = StudySummary::from_trials(&[coded.trial], &coded.facts, 0);
     let agreement = figures.raters.expect("an agreement");
     assert_eq!((agreement.errors, agreement.same_cause, agreement.same_aspect), (related + 1, related, 0));
     let actions = String::from_utf8(coded.rows[0].clone()).expect("text");

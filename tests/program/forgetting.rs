@@ -23,7 +23,8 @@ fn forgetting_asks_first_and_a_wizards_code_is_that_of_the_training() {
         let judged = |name: &&str| {
             format!(
                 "{{\"recording\":\"{name}\",\"complete\":true,\"presses\":1,\"signals\":[],\"measures\":{},\"kappa_with_oneself\":null}}",
-                serde_json::to_string(&tomcom::measures::wizard::WizardMeasures::of(&[], None)).expect("JSON")
+                serde_json::to_string(&tomcom::measures::wizard::WizardMeasures::from_signals(&[], None))
+                    .expect("JSON")
             )
         };
         let judged: Vec<String> = recordings.iter().map(judged).collect();

@@ -9,7 +9,7 @@ use tomcom::edge::files::read_session;
 use tomcom::edge::log::LOG_NAME;
 use tomcom::run::verify::verify;
 use tomcom::session::Header;
-use tomcom::session::plan::{StepSpec, Study, Wanted};
+use tomcom::session::plan::{StepSpec, Study, WantedRecording};
 use tomcom::session::settings::Condition;
 
 use crate::tmux::{TOMCOM, Terminal, tiny_plan, tomcom};
@@ -100,7 +100,7 @@ fn wrong_plans_and_arguments_say_what_would_be_right() {
     let root = env!("CARGO_MANIFEST_DIR");
     let wrong = folder("wrong").join("study.toml");
     // The settings of a recording are no session file: its place in the plan is not for people to write.
-    let (spec, _) = self::study().settings(Wanted { participant: 0, slot: 1, attempt: 1, instructed: true });
+    let (spec, _) = self::study().settings(WantedRecording { participant: 0, slot: 1, attempt: 1, instructed: true });
     let spec = toml::to_string(&spec).expect("settings").replace("\"../", &format!("\"{root}/"));
     let spec = spec.replace("\"questionnaires/", &format!("\"{root}/sessions/questionnaires/"));
     fs::write(&wrong, spec).expect("written");

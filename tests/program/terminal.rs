@@ -11,7 +11,7 @@ use serial_test::serial;
 use tomcom::console::arrange::{KitchenMap, MapElement};
 use tomcom::console::view::regions::Regions;
 use tomcom::edge::files::read_session;
-use tomcom::edge::terminal::Screen;
+use tomcom::edge::terminal::TerminalScreen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, ButtonAction, ButtonId, Kitchen};
 use tomcom::run::replay::Replay;
@@ -115,7 +115,7 @@ fn a_signal_to_the_program_closes_the_recording_and_gives_the_terminal_back() {
 #[serial]
 #[ignore = "panics on purpose, inside of the terminal of another test"]
 fn a_program_that_panics() {
-    let _screen = Screen::take().expect("a terminal");
+    let _screen = TerminalScreen::take().expect("a terminal");
     panic!("on purpose");
 }
 

@@ -3,7 +3,7 @@
 //! One sample of the belief stands for it: states and recipes drawn from it, equal ones together with their number. Most
 //! people hold point-like beliefs, so few different ones are left.
 
-use super::robot::{Choices, RobotPolicy};
+use super::robot::{RobotChoices, RobotPolicy};
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity, MAX_BUTTONS};
 use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, ContentId, Kitchen, OrderContent, Recipes, State};
 use crate::mind::decision::{DecisionModel, Slips};
@@ -24,7 +24,7 @@ pub struct Cases {
 
 /// What the human does at a decision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Deed {
+pub enum HumanChoice {
     Wait,
     Press(ButtonId),
 }
@@ -125,7 +125,7 @@ impl Cases {
         let n = self.count();
         for index in 0..self.all.len() {
             let Case { state, recipes, count } = self.all[index];
-            let choices: Choices = policy.choices(kitchen, cost, fidelity(count, n), state, &recipes);
+            let choices: RobotChoices = policy.choices(kitchen, cost, fidelity(count, n), state, &recipes);
             let ways = choices.count();
             if ways == 0 {
                 continue;
@@ -181,7 +181,7 @@ impl Decider {
         };
         let buttons = kitchen.buttons[Agent::Human.index()].len();
         let weights = (0..=states).map(row).collect();
-        Decider { model: model.clone(), slips: Slips::of(kitchen), weights, buttons }
+        Decider { model: model.clone(), slips: Slips::for_kitchen(kitchen), weights, buttons }
     }
 
     /// What the human is inclined to do: exp(tau Q), Q over the cases; waiting by E[C(s)] + its cost.
@@ -211,10 +211,10 @@ impl Decider {
     }
 
     /// What the human means to do, by a draw from 0 to 1.
-    pub fn meant(&self, inclination: &Inclination, draw: f64) -> Deed {
+    pub fn meant(&self, inclination: &Inclination, draw: f64) -> HumanChoice {
         let mut left = draw * (inclination.wait + inclination.total) - inclination.wait;
         if left < 0.0 {
-            return Deed::Wait;
+            return HumanChoice::Wait;
         }
         let mut last = 0;
         for (button, &weight) in inclination.meant[..self.buttons].iter().enumerate() {
@@ -226,21 +226,21 @@ impl Decider {
                 }
             }
         }
-        Deed::Press(ButtonId(last as u8))
+        HumanChoice::Press(ButtonId(last as u8))
     }
 
     /// What is pressed of what is meant: a few presses slip.
-    pub fn done(&self, meant: Deed, draw: f64) -> Deed {
-        let Deed::Press(button) = meant else { return meant };
+    pub fn done(&self, meant: HumanChoice, draw: f64) -> HumanChoice {
+        let HumanChoice::Press(button) = meant else { return meant };
         if draw >= self.model.lapse {
             return meant;
         }
         let at = draw / self.model.lapse;
         let anywhere = self.model.lapse_anywhere;
         if at < anywhere {
-            return Deed::Press(ButtonId(((at / anywhere) * self.buttons as f64) as u8));
+            return HumanChoice::Press(ButtonId(((at / anywhere) * self.buttons as f64) as u8));
         }
         let [next, alike] = self.slips.of_button(button);
-        Deed::Press(if at < (1.0 + anywhere) / 2.0 { next } else { alike })
+        HumanChoice::Press(if at < (1.0 + anywhere) / 2.0 { next } else { alike })
     }
 }

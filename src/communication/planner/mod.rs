@@ -17,9 +17,9 @@ use std::sync::Arc;
 use self::human::{Cases, Decider};
 use self::lattice::{Lattice, PER_DECISION};
 use self::robot::RobotPolicy;
-use self::rollout::{Draws, Moment, Rollout, Stage, Trace};
-use self::sample::Samples;
-use self::tally::Tally;
+use self::rollout::{BaselineRollout, Rollout, RolloutContext, RolloutDraws, RolloutState};
+use self::sample::BeliefSamples;
+use self::tally::PairedDifferences;
 use super::concept::{self, Concept};
 use super::recommendation::{Reason, Recommendation, SignalOption, aspects_told};
 use super::settings::AssistantSpec;
@@ -48,12 +48,12 @@ pub struct Planner {
     /// robot's hand, which may be bringing it.
     watched: Vec<Vec<AspectId>>,
     policy: RobotPolicy,
-    samples: Samples,
-    trace: Trace,
-    moment: Moment,
+    samples: BeliefSamples,
+    trace: BaselineRollout,
+    moment: RolloutState,
     silent: Cases,
     told: Cases,
-    draws: Vec<Draws>,
+    draws: Vec<RolloutDraws>,
 }
 
 /// A signal that is tried out.
@@ -61,7 +61,7 @@ pub struct Planner {
 struct Arm {
     signal: Signal,
     aspects: Vec<AspectId>,
-    tally: Tally,
+    tally: PairedDifferences,
     is_decided: bool,
 }
 
@@ -79,9 +79,9 @@ impl Planner {
             involved: buttons.clone().map(|button| aspects(button).collect()).collect(),
             watched: buttons.map(watched).collect(),
             policy: RobotPolicy::default(),
-            samples: Samples::default(),
-            trace: Trace::default(),
-            moment: Moment::default(),
+            samples: BeliefSamples::default(),
+            trace: BaselineRollout::default(),
+            moment: RolloutState::default(),
             silent: Cases::default(),
             told: Cases::default(),
             draws: Vec::new(),
@@ -96,7 +96,7 @@ impl Planner {
         let arm = |signal: &Signal| Arm {
             signal: signal.clone(),
             aspects: aspects_told(&self.kitchen, situation.state, signal),
-            tally: Tally::default(),
+            tally: PairedDifferences::default(),
             is_decided: false,
         };
         possible.map(arm).collect()
@@ -118,11 +118,11 @@ impl Planner {
         let first_s = first * model.human_press_s;
         let sees = sees < model.capture;
         self.draws.clear();
-        self.draws.extend((0..model.horizon).map(|_| Draws::draw(random)));
+        self.draws.extend((0..model.horizon).map(|_| RolloutDraws::draw(random)));
         for (draws, first) in self.draws.iter_mut().zip(firsts.chunks_exact(PER_DECISION)) {
             draws.begin_with(first);
         }
-        let stage = Stage {
+        let stage = RolloutContext {
             kitchen: &self.kitchen,
             recipes: self.kitchen.true_recipes(),
             decider: &self.decider,
@@ -184,7 +184,7 @@ impl Planner {
             rollouts: arm.tally.count(),
         };
         let reason = arms.first().filter(|arm| arm.tally.mean() > 0.0).and_then(|arm| {
-            let mut reason = Reason::of(&self.kitchen, situation.state, situation.belief, &arm.signal)?;
+            let mut reason = Reason::for_signal(&self.kitchen, situation.state, situation.belief, &arm.signal)?;
             if let Some((prevents, instead)) = arm.tally.turning_point() {
                 let name = |button: ButtonId| self.kitchen.button(Agent::Human, button).name.clone();
                 reason.prevents = Some(name(prevents));
@@ -200,7 +200,7 @@ impl Planner {
 
 impl Concept for Planner {
     /// What the signals are worth now; those that cannot be sent are left out.
-    fn advise(&mut self, cost: &mut CostToGo, moment: &concept::Moment) -> Recommendation {
+    fn advise(&mut self, cost: &mut CostToGo, moment: &concept::DecisionPoint) -> Recommendation {
         let situation = &moment.situation;
         let mut random = stream(self.seed, "communication", u64::from(moment.presses));
         let mut arms = self.arms(situation, moment.signals);

@@ -10,12 +10,12 @@ const BITS: u32 = 15;
 /// What the robot may press in a state, each as likely, and what it goes on with if its arm is on its way already. One bit
 /// a button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Choices {
+pub struct RobotChoices {
     pub choices: u64,
     pub useful: u64,
 }
 
-impl Choices {
+impl RobotChoices {
     pub fn count(self) -> u32 {
         self.choices.count_ones()
     }
@@ -34,7 +34,7 @@ impl Choices {
 /// never the answer.
 #[derive(Clone, Debug)]
 pub struct RobotPolicy {
-    known: Vec<Option<(Fidelity, State, Recipes, Choices)>>,
+    known: Vec<Option<(Fidelity, State, Recipes, RobotChoices)>>,
 }
 
 impl Default for RobotPolicy {
@@ -53,7 +53,7 @@ impl RobotPolicy {
         fidelity: Fidelity,
         state: State,
         recipes: &Recipes,
-    ) -> Choices {
+    ) -> RobotChoices {
         let wanted = wanted_recipes(kitchen, state, recipes);
         let place = (crate::base::rng::mix(hash(state, &wanted) ^ fidelity as u64) >> (64 - BITS)) as usize;
         if let Some((of_fidelity, known, of, choices)) = self.known[place]
@@ -66,7 +66,8 @@ impl RobotPolicy {
         let bits = |buttons: &[ButtonId]| buttons.iter().fold(0, |bits, button| bits | 1u64 << button.0);
         let best = policy::best_presses(kitchen, cost, fidelity, state, recipes);
         let useful = bits(&best);
-        let choices = Choices { choices: bits(&policy::chosen(kitchen, cost, fidelity, state, recipes, best)), useful };
+        let choices =
+            RobotChoices { choices: bits(&policy::chosen(kitchen, cost, fidelity, state, recipes, best)), useful };
         self.known[place] = Some((fidelity, state, wanted, choices));
         choices
     }
@@ -91,16 +92,16 @@ fn hash(state: State, recipes: &Recipes) -> u64 {
 
 /// A press that the arm is on its way to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Errand {
+pub struct OngoingRobotPress {
     pub button: ButtonId,
     /// When it touches the button, in seconds since the rollout's start.
     pub due_s: f64,
     pub driven: bool,
 }
 
-impl Errand {
+impl OngoingRobotPress {
     /// Whether the press is still made when the arm is there.
-    pub fn holds(&self, choices: Choices) -> bool {
+    pub fn holds(&self, choices: RobotChoices) -> bool {
         self.driven || choices.useful >> self.button.0 & 1 == 1
     }
 }

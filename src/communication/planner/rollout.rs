@@ -6,11 +6,11 @@
 
 use rand::RngExt;
 
-use super::human::{Cases, Decider, Deed};
-use super::robot::{self, Choices, Errand, RobotPolicy};
+use super::human::{Cases, Decider, HumanChoice};
+use super::robot::{self, OngoingRobotPress, RobotChoices, RobotPolicy};
 use crate::base::rng::Stream;
 use crate::communication::settings::RolloutModel;
-use crate::communication::situation::{RobotOutlook, Situation};
+use crate::communication::situation::{RobotIntent, Situation};
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, Recipes, State};
@@ -20,7 +20,7 @@ const ROBOT_DRAWS: usize = 4;
 
 /// The random numbers of one decision of the human, and of the robot until then; `looks` by location.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Draws {
+pub struct RolloutDraws {
     decision: f64,
     slip: f64,
     looks: [f64; MAX_LOCATIONS],
@@ -29,9 +29,9 @@ pub struct Draws {
     captures: [f64; ROBOT_DRAWS],
 }
 
-impl Draws {
-    pub fn draw(random: &mut Stream) -> Draws {
-        let mut draws = Draws { decision: random.random(), slip: random.random(), ..Draws::default() };
+impl RolloutDraws {
+    pub fn draw(random: &mut Stream) -> RolloutDraws {
+        let mut draws = RolloutDraws { decision: random.random(), slip: random.random(), ..RolloutDraws::default() };
         draws.looks.iter_mut().for_each(|draw| *draw = random.random());
         draws.choices.iter_mut().for_each(|draw| *draw = random.random());
         draws.predictions.iter_mut().for_each(|draw| *draw = random.random());
@@ -49,7 +49,7 @@ impl Draws {
 }
 
 /// What a rollout stands on.
-pub struct Stage<'a> {
+pub struct RolloutContext<'a> {
     pub kitchen: &'a Kitchen,
     pub recipes: Recipes,
     pub decider: &'a Decider,
@@ -69,10 +69,10 @@ pub struct Stage<'a> {
 
 /// Where a rollout is, right before a decision of the human.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Moment {
+pub struct RolloutState {
     pub state: State,
     pub cases: Cases,
-    errand: Option<Errand>,
+    errand: Option<OngoingRobotPress>,
     is_still: bool,
     presses: i32,
     now_s: f64,
@@ -80,22 +80,22 @@ pub struct Moment {
 
 /// The moments and deeds of the rollout in which nothing was said.
 #[derive(Clone, Debug, Default)]
-pub struct Trace {
-    moments: Vec<Moment>,
-    deeds: Vec<Deed>,
+pub struct BaselineRollout {
+    moments: Vec<RolloutState>,
+    deeds: Vec<HumanChoice>,
     pub value: i32,
 }
 
 /// How a rollout with a signal went.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outcome {
+pub struct RolloutOutcome {
     /// Presses of both and the cost to go at the end.
     pub value: i32,
     /// The first decision that was another one than without the signal: what was done without it, and with it.
-    pub parted: Option<(Deed, Deed)>,
+    pub parted: Option<(HumanChoice, HumanChoice)>,
 }
 
-impl Moment {
+impl RolloutState {
     /// The rollout's beginning, when the human holds these cases for possible; `sees`: what has just changed draws its eye.
     pub fn begin(&mut self, kitchen: &Kitchen, situation: &Situation, cases: &Cases, sees: bool) {
         self.state = situation.state;
@@ -103,10 +103,12 @@ impl Moment {
         for &aspect in situation.changed.iter().filter(|_| sees) {
             self.cases.learn(kitchen, aspect, self.state);
         }
-        self.is_still = situation.robot == RobotOutlook::Still;
+        self.is_still = situation.robot == RobotIntent::Still;
         self.errand = match situation.robot {
-            RobotOutlook::Busy { button, remaining_s, driven } => Some(Errand { button, due_s: remaining_s, driven }),
-            RobotOutlook::Free | RobotOutlook::Still => None,
+            RobotIntent::Busy { button, remaining_s, driven } => {
+                Some(OngoingRobotPress { button, due_s: remaining_s, driven })
+            }
+            RobotIntent::Free | RobotIntent::Still => None,
         };
         (self.presses, self.now_s) = (0, 0.0);
     }
@@ -118,7 +120,7 @@ impl Moment {
         }
     }
 
-    fn copy_from(&mut self, other: &Moment) {
+    fn copy_from(&mut self, other: &RolloutState) {
         self.cases.copy_from(&other.cases);
         self.state = other.state;
         self.errand = other.errand;
@@ -127,29 +129,29 @@ impl Moment {
     }
 
     /// Whether all that follows is the same as from another moment of the same time.
-    fn goes_on_like(&self, other: &Moment) -> bool {
+    fn goes_on_like(&self, other: &RolloutState) -> bool {
         self.state == other.state && self.errand == other.errand && self.cases == other.cases
     }
 }
 
 /// A rollout's machinery.
 pub struct Rollout<'a> {
-    pub stage: &'a Stage<'a>,
+    pub stage: &'a RolloutContext<'a>,
     pub cost: &'a mut CostToGo,
     pub policy: &'a mut RobotPolicy,
-    pub draws: &'a [Draws],
+    pub draws: &'a [RolloutDraws],
     /// When the human decides first, in seconds.
     pub first_s: f64,
 }
 
 impl Rollout<'_> {
     /// The rollout in which nothing is said; remembers its moments.
-    pub fn silent(&mut self, moment: &mut Moment, trace: &mut Trace) {
+    pub fn silent(&mut self, moment: &mut RolloutState, trace: &mut BaselineRollout) {
         trace.deeds.clear();
         for step in 0..self.draws.len() {
             self.until_decision(moment, step);
             if trace.moments.len() == step {
-                trace.moments.push(Moment::default());
+                trace.moments.push(RolloutState::default());
             }
             trace.moments[step].copy_from(moment);
             let deed = self.decide(moment, step);
@@ -159,13 +161,13 @@ impl Rollout<'_> {
     }
 
     /// A rollout in which something was said, beside the silent one.
-    pub fn told(&mut self, moment: &mut Moment, trace: &Trace) -> Outcome {
+    pub fn told(&mut self, moment: &mut RolloutState, trace: &BaselineRollout) -> RolloutOutcome {
         let mut parted = None;
         for step in 0..self.draws.len() {
             self.until_decision(moment, step);
             let silent = &trace.moments[step];
             if moment.goes_on_like(silent) {
-                return Outcome { value: trace.value + moment.presses - silent.presses, parted };
+                return RolloutOutcome { value: trace.value + moment.presses - silent.presses, parted };
             }
             let deed = self.decide(moment, step);
             let silent = trace.deeds[step];
@@ -173,15 +175,15 @@ impl Rollout<'_> {
                 parted = Some((silent, deed));
             }
         }
-        Outcome { value: self.value(moment), parted }
+        RolloutOutcome { value: self.value(moment), parted }
     }
 
-    fn value(&mut self, moment: &Moment) -> i32 {
+    fn value(&mut self, moment: &RolloutState) -> i32 {
         moment.presses + self.cost.all_orders(moment.state, &self.stage.recipes) as i32
     }
 
     /// The robot goes on until the human decides.
-    fn until_decision(&mut self, moment: &mut Moment, step: usize) {
+    fn until_decision(&mut self, moment: &mut RolloutState, step: usize) {
         let until_s = self.first_s + step as f64 * self.stage.model.human_press_s;
         let mut presses = 0;
         if moment.is_still {
@@ -213,12 +215,12 @@ impl Rollout<'_> {
     }
 
     /// What the robot's policy says to the state as it truly is.
-    fn choices(&mut self, state: State) -> Choices {
+    fn choices(&mut self, state: State) -> RobotChoices {
         self.policy.choices(self.stage.kitchen, self.cost, Fidelity::Exact, state, &self.stage.recipes)
     }
 
     /// A free arm sets out for what the policy says.
-    fn set_out(&mut self, moment: &mut Moment, step: usize, presses: usize) {
+    fn set_out(&mut self, moment: &mut RolloutState, step: usize, presses: usize) {
         if moment.errand.is_some() {
             return;
         }
@@ -226,12 +228,13 @@ impl Rollout<'_> {
         if choices.count() > 0 {
             let draw = self.draws[step].choices[presses % ROBOT_DRAWS];
             let button: ButtonId = choices.nth((draw * f64::from(choices.count())) as u32);
-            moment.errand = Some(Errand { button, due_s: moment.now_s + self.stage.robot_press_s, driven: false });
+            moment.errand =
+                Some(OngoingRobotPress { button, due_s: moment.now_s + self.stage.robot_press_s, driven: false });
         }
     }
 
     /// The human looks around and at what its next press needs, decides, and presses.
-    fn decide(&mut self, moment: &mut Moment, step: usize) -> Deed {
+    fn decide(&mut self, moment: &mut RolloutState, step: usize) -> HumanChoice {
         let (stage, draws) = (self.stage, &self.draws[step]);
         for (index, &draw) in draws.looks[..stage.kitchen.locations.len()].iter().enumerate() {
             if draw < stage.other_looks {
@@ -240,7 +243,7 @@ impl Rollout<'_> {
         }
         let inclination = stage.decider.inclination(self.cost, &moment.cases);
         let mut meant = stage.decider.meant(&inclination, draws.decision);
-        if let Deed::Press(button) = meant {
+        if let HumanChoice::Press(button) = meant {
             let mut is_news = false;
             for &aspect in &stage.watched[button.index()] {
                 if draws.looks[aspect.index()] < stage.looks {
@@ -253,7 +256,7 @@ impl Rollout<'_> {
             }
         }
         let deed = stage.decider.done(meant, draws.slip);
-        if let Deed::Press(button) = deed {
+        if let HumanChoice::Press(button) = deed {
             let before = moment.state;
             let after = stage.kitchen.press(before, &stage.recipes, Agent::Human, button);
             moment.state = after.unwrap_or(before);

@@ -8,7 +8,7 @@ use crate::mind::filter::urn::Urn;
 
 /// Samples of a belief. Over all samples every aspect has each of its values as often first as its mean says, to a sample.
 #[derive(Clone, Debug, Default)]
-pub struct Samples {
+pub struct BeliefSamples {
     urns: Vec<Urn>,
     /// `[aspect * samples + sample]`: the first draws.
     firsts: Vec<u8>,
@@ -20,7 +20,7 @@ pub struct Samples {
     states: usize,
 }
 
-impl Samples {
+impl BeliefSamples {
     /// Gets ready for so many samples of so many states each.
     pub fn prepare(&mut self, belief: &DirichletBelief, samples: usize, states: usize, random: &mut Stream) {
         (self.samples, self.states) = (samples, states);

@@ -1,11 +1,11 @@
 //! What the rollouts of one signal came to.
 
-use super::human::Deed;
+use super::human::HumanChoice;
 use crate::kitchen::ButtonId;
 
 /// Differences between paired rollouts.
 #[derive(Clone, Debug, Default)]
-pub struct Tally {
+pub struct PairedDifferences {
     count: u32,
     sum: f64,
     squares: f64,
@@ -15,8 +15,8 @@ pub struct Tally {
 /// Where rollouts with the signal and without it first differ.
 #[derive(Clone, Copy, Debug)]
 struct Parting {
-    silent: Deed,
-    told: Deed,
+    silent: HumanChoice,
+    told: HumanChoice,
     /// What that saved in all, and the sum of its squares.
     sum: f64,
     squares: f64,
@@ -29,9 +29,9 @@ impl Parting {
     }
 }
 
-impl Tally {
+impl PairedDifferences {
     /// Adds what a rollout saved, and where it parted from the silent one.
-    pub fn add(&mut self, saved: f64, parted: Option<(Deed, Deed)>) {
+    pub fn add(&mut self, saved: f64, parted: Option<(HumanChoice, HumanChoice)>) {
         self.count += 1;
         self.sum += saved;
         self.squares += saved * saved;
@@ -73,9 +73,9 @@ impl Tally {
     /// The press that the signal prevents where that saves most, and what is pressed instead (nothing: waiting).
     pub fn turning_point(&self) -> Option<(ButtonId, Option<ButtonId>)> {
         let presses = self.partings.iter().filter_map(|parting| match (parting.silent, parting.told) {
-            (Deed::Press(silent), Deed::Press(told)) => Some((silent, Some(told), parting)),
-            (Deed::Press(silent), Deed::Wait) => Some((silent, None, parting)),
-            (Deed::Wait, _) => None,
+            (HumanChoice::Press(silent), HumanChoice::Press(told)) => Some((silent, Some(told), parting)),
+            (HumanChoice::Press(silent), HumanChoice::Wait) => Some((silent, None, parting)),
+            (HumanChoice::Wait, _) => None,
         });
         let most = presses.reduce(|best, one| if one.2.surely_saved() > best.2.surely_saved() { one } else { best })?;
         (most.2.sum > 0.0).then_some((most.0, most.1))

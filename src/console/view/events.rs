@@ -6,7 +6,7 @@ use super::theme::TextRole;
 use crate::console::model::ConsoleModel;
 use crate::history::wording;
 use crate::kitchen::Agent;
-use crate::session::{Happening, Session};
+use crate::session::{Session, TimelineEvent};
 
 /// Columns of who did it, the longest of which is "assistant".
 const WHO: u16 = 10;
@@ -28,11 +28,11 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         let (who, what) = wording::happening(&session.kitchen, &entry.what);
         let is_error = model.is_error(entry);
         let role = match &entry.what {
-            Happening::Press { agent: Agent::Human, .. } => TextRole::Human,
-            Happening::Press { agent: Agent::Robot, .. } => TextRole::Robot,
-            Happening::Signal { .. } | Happening::SignalEnded(_) => TextRole::Signal,
-            Happening::RobotStopped | Happening::ArmStopped { .. } => TextRole::Alarm,
-            Happening::ArmTouched { .. } => TextRole::Robot,
+            TimelineEvent::Press { agent: Agent::Human, .. } => TextRole::Human,
+            TimelineEvent::Press { agent: Agent::Robot, .. } => TextRole::Robot,
+            TimelineEvent::Signal { .. } | TimelineEvent::SignalEnded(_) => TextRole::Signal,
+            TimelineEvent::RobotStopped | TimelineEvent::ArmStopped { .. } => TextRole::Alarm,
+            TimelineEvent::ArmTouched { .. } => TextRole::Robot,
             _ => TextRole::Strong,
         };
         let quiet = brush.style(TextRole::Quiet);

@@ -9,7 +9,7 @@ use crate::console::keys::KeyAction;
 use crate::console::model::ConsoleModel;
 use crate::console::note::TextInput;
 use crate::console::preflight::{OVERRIDE, all_ok, checks};
-use crate::session::preflight::{Check, Verdict};
+use crate::session::preflight::{PreflightCheck, PreflightVerdict};
 use crate::session::{Phase, Session};
 
 const COLUMNS: u16 = 76;
@@ -54,11 +54,11 @@ pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &C
     brush.parts(inside.x + 1, inside.bottom().saturating_sub(1), inside.width.saturating_sub(2), &parts);
 }
 
-fn line(brush: &mut Painter, inside: Rect, y: u16, check: &Check) {
+fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) {
     let (word, role) = match check.verdict {
-        Verdict::Ok => ("ok", TextRole::Text),
-        Verdict::Warning => ("warning", TextRole::Strong),
-        Verdict::Failed => ("FAILED", TextRole::Alarm),
+        PreflightVerdict::Ok => ("ok", TextRole::Text),
+        PreflightVerdict::Warning => ("warning", TextRole::Strong),
+        PreflightVerdict::Failed => ("FAILED", TextRole::Alarm),
     };
     brush.parts(inside.x + 1, y, 8, &[(word, role)]);
     brush.parts(inside.x + 10, y, FOUND - 11, &[(&check.name, TextRole::Text)]);

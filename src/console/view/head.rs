@@ -7,7 +7,7 @@ use crate::console::model::{ConsoleModel, RecordingStatus, ViewerStreamStatus};
 use crate::history::wording;
 use crate::robot::safety::SafetyMode;
 use crate::session::settings::{Condition, GazeSource};
-use crate::session::tracker::Link;
+use crate::session::tracker::TrackerConnection;
 use crate::session::{Phase, Session};
 
 /// Draws the head line.
@@ -173,13 +173,13 @@ fn gaze(session: &Session, model: &ConsoleModel) -> (String, TextRole) {
         return ("no gaze".to_string(), TextRole::Quiet);
     }
     match (&session.tracker.link, session.tracker.sees_display) {
-        (Link::Lost { since, .. }, _) => {
+        (TrackerConnection::Lost { since, .. }, _) => {
             return (format!("NO TRACKER {:.0} s", model.now.secs_since(*since)), TextRole::Alarm);
         }
-        (Link::Unknown, _) if session.spec.participant.gaze == GazeSource::Pupil => {
+        (TrackerConnection::Unknown, _) if session.spec.participant.gaze == GazeSource::Pupil => {
             return ("NO TRACKER".to_string(), TextRole::Alarm);
         }
-        (Link::Connected { .. }, Some(false)) => return ("TAGS NOT SEEN".to_string(), TextRole::Alarm),
+        (TrackerConnection::Connected { .. }, Some(false)) => return ("TAGS NOT SEEN".to_string(), TextRole::Alarm),
         _ => {}
     }
     let usable = session.gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= 1.0);

@@ -12,7 +12,7 @@ use crate::console::model::ConsoleModel;
 use crate::console::question::QuestionPage;
 use crate::session::Session;
 use crate::session::plan::Questionnaire;
-use crate::session::protocol::{Answer, Protocol};
+use crate::session::protocol::{ItemAnswer, Protocol};
 
 /// Longer lines are hard to read.
 const WIDEST: u16 = 84;
@@ -163,8 +163,8 @@ fn draw_questions(
     }
     for (item, answer) in questionnaire.items.iter().zip(&protocol.answers) {
         let answer = match answer {
-            Some(Answer::Rated(points)) => points.to_string(),
-            Some(Answer::Skipped) => "-".to_string(),
+            Some(ItemAnswer::Rated(points)) => points.to_string(),
+            Some(ItemAnswer::Skipped) => "-".to_string(),
             None => "?".to_string(),
         };
         page.marked(&format!("{answer:>3}"), &item.text, TextRole::Text);
@@ -182,8 +182,8 @@ fn draw_questions(
 }
 
 /// The points of the scale, the given one marked, with what its ends mean.
-fn scale(page: &mut Page, questionnaire: &Questionnaire, given: Option<Answer>) {
-    let point = |point: u8| match given == Some(Answer::Rated(point)) {
+fn scale(page: &mut Page, questionnaire: &Questionnaire, given: Option<ItemAnswer>) {
+    let point = |point: u8| match given == Some(ItemAnswer::Rated(point)) {
         true => format!("[{point}]"),
         false => format!(" {point} "),
     };
@@ -193,7 +193,7 @@ fn scale(page: &mut Page, questionnaire: &Questionnaire, given: Option<Answer>) 
     page.lines.push((0, line.clone(), TextRole::Strong));
     let gap = usize::from(width(&line).saturating_sub(width(low) + width(high)).max(3));
     page.lines.push((0, format!("{low}{}{high}", " ".repeat(gap)), TextRole::Quiet));
-    if given == Some(Answer::Skipped) {
+    if given == Some(ItemAnswer::Skipped) {
         page.space();
         page.text(0, "no answer", TextRole::Strong);
     }

@@ -11,7 +11,7 @@ use crate::console::coding::press;
 use crate::console::model::ConsoleModel;
 use crate::kitchen::Agent;
 use crate::session::event::SignalEnd;
-use crate::session::{Entry, Happening, Phase, Session};
+use crate::session::{Phase, Session, TimelineEntry, TimelineEvent};
 
 /// The width of a column in seconds.
 const COLUMN_S: f64 = 0.5;
@@ -153,10 +153,15 @@ pub(super) fn axis(brush: &mut Painter, plot: Rect, back_s: u32, column_s: f64) 
 }
 
 /// Row, sign and meaning of an entry of the timeline.
-fn mark(brush: &Painter, session: &Session, model: &ConsoleModel, entry: &Entry) -> Option<(u16, String, TextRole)> {
+fn mark(
+    brush: &Painter,
+    session: &Session,
+    model: &ConsoleModel,
+    entry: &TimelineEntry,
+) -> Option<(u16, String, TextRole)> {
     let signs = brush.theme.signs();
     Some(match &entry.what {
-        Happening::Press { agent, effective, .. } => {
+        TimelineEvent::Press { agent, effective, .. } => {
             let row = if *agent == Agent::Human { 1 } else { 2 };
             let role = if *agent == Agent::Human { TextRole::Human } else { TextRole::Robot };
             match (model.is_error(entry), effective) {
@@ -165,29 +170,31 @@ fn mark(brush: &Painter, session: &Session, model: &ConsoleModel, entry: &Entry)
                 (false, true) => (row, signs.press.to_string(), role),
             }
         }
-        Happening::ArmTouched { .. } => (2, signs.touched.to_string(), TextRole::Alarm),
-        Happening::RobotStopped | Happening::ArmStopped { .. } => (2, signs.stopped.to_string(), TextRole::Alarm),
-        Happening::RobotResumed | Happening::RobotReleased => (2, signs.to.to_string(), TextRole::Robot),
-        Happening::RobotHeld => (2, signs.pause.to_string(), TextRole::Robot),
-        Happening::RobotSkipped(_) => (2, signs.taken_back.to_string(), TextRole::Robot),
-        Happening::RobotDriven(_) => (2, signs.by_hand.to_string(), TextRole::Signal),
-        Happening::Corrected { .. } => (4, signs.by_hand.to_string(), TextRole::Signal),
-        Happening::Signal { signal, .. } => (3, signal_sign(session, model, signal), TextRole::Signal),
-        Happening::SignalEnded(SignalEnd::TakenBack) => (3, signs.taken_back.to_string(), TextRole::Signal),
-        Happening::SignalEnded(SignalEnd::Elapsed) => return None,
-        Happening::Served { .. } => (4, signs.served.to_string(), TextRole::Strong),
-        Happening::OrderShown { .. } => (4, "+".to_string(), TextRole::Quiet),
-        Happening::Excluded(_) => (5, signs.error.to_string(), TextRole::Signal),
-        Happening::Included => (5, signs.served.to_string(), TextRole::Signal),
-        Happening::Focus(false) => (5, "!".to_string(), TextRole::Alarm),
-        Happening::Focus(true) => return None,
-        Happening::Marker(note) => {
+        TimelineEvent::ArmTouched { .. } => (2, signs.touched.to_string(), TextRole::Alarm),
+        TimelineEvent::RobotStopped | TimelineEvent::ArmStopped { .. } => {
+            (2, signs.stopped.to_string(), TextRole::Alarm)
+        }
+        TimelineEvent::RobotResumed | TimelineEvent::RobotReleased => (2, signs.to.to_string(), TextRole::Robot),
+        TimelineEvent::RobotHeld => (2, signs.pause.to_string(), TextRole::Robot),
+        TimelineEvent::RobotSkipped(_) => (2, signs.taken_back.to_string(), TextRole::Robot),
+        TimelineEvent::RobotDriven(_) => (2, signs.by_hand.to_string(), TextRole::Signal),
+        TimelineEvent::Corrected { .. } => (4, signs.by_hand.to_string(), TextRole::Signal),
+        TimelineEvent::Signal { signal, .. } => (3, signal_sign(session, model, signal), TextRole::Signal),
+        TimelineEvent::SignalEnded(SignalEnd::TakenBack) => (3, signs.taken_back.to_string(), TextRole::Signal),
+        TimelineEvent::SignalEnded(SignalEnd::Elapsed) => return None,
+        TimelineEvent::Served { .. } => (4, signs.served.to_string(), TextRole::Strong),
+        TimelineEvent::OrderShown { .. } => (4, "+".to_string(), TextRole::Quiet),
+        TimelineEvent::Excluded(_) => (5, signs.error.to_string(), TextRole::Signal),
+        TimelineEvent::Included => (5, signs.served.to_string(), TextRole::Signal),
+        TimelineEvent::Focus(false) => (5, "!".to_string(), TextRole::Alarm),
+        TimelineEvent::Focus(true) => return None,
+        TimelineEvent::Marker(note) => {
             let number =
                 session.spec.console.notes.iter().position(|known| known == note).map(|index| (index + 1).to_string());
             (5, number.unwrap_or("*".to_string()), TextRole::Strong)
         }
-        Happening::Trial(Phase::Paused) => (5, signs.pause.to_string(), TextRole::Strong),
-        Happening::Trial(_) => (5, signs.to.to_string(), TextRole::Strong),
+        TimelineEvent::Trial(Phase::Paused) => (5, signs.pause.to_string(), TextRole::Strong),
+        TimelineEvent::Trial(_) => (5, signs.to.to_string(), TextRole::Strong),
     })
 }
 

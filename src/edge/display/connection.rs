@@ -11,8 +11,8 @@ use tokio::time::{sleep, timeout};
 use super::PageInput;
 use super::code::is_code;
 use super::message::{FromPage, ToPage, read, text};
-use super::server::Hub;
-use super::status::{Page, count};
+use super::server::ServerState;
+use super::status::{ActivePage, count};
 
 /// A page says who it is within this time.
 const HELLO: Duration = Duration::from_secs(5);
@@ -34,10 +34,10 @@ const BOUNCE_MS: f64 = 50.0;
 /// A page at the other end.
 struct Talk {
     socket: WebSocket,
-    hub: Arc<Hub>,
+    hub: Arc<ServerState>,
     number: u64,
     page: String,
-    size: Page,
+    size: ActivePage,
     faults: u32,
     /// Messages that it may send at once now, and since when that is so.
     allowed: (f64, Instant),
@@ -48,9 +48,9 @@ struct Talk {
 }
 
 /// Talks with a page until one of the two ends it.
-pub(super) async fn talk(socket: WebSocket, hub: Arc<Hub>, number: u64) {
+pub(super) async fn talk(socket: WebSocket, hub: Arc<ServerState>, number: u64) {
     let allowed = (PER_SECOND, Instant::now());
-    let (page, size) = (String::new(), Page::default());
+    let (page, size) = (String::new(), ActivePage::default());
     let mut talk = Talk { socket, hub, number, page, size, faults: 0, allowed, pressed: 0, last: None };
     let Some(waits) = talk.greet().await else { return };
     talk.hub.status.pages.fetch_add(1, Ordering::Relaxed);
@@ -119,7 +119,7 @@ impl Talk {
 
     /// Says that the page which acts is there, of this size.
     async fn tell_size(&mut self) -> Option<()> {
-        let Page { width_px, height_px, .. } = self.size;
+        let ActivePage { width_px, height_px, .. } = self.size;
         self.hub.status.page(|page| {
             let page = page.get_or_insert_default();
             (page.width_px, page.height_px) = (width_px, height_px);
@@ -206,7 +206,7 @@ impl Talk {
             None => self.fault(),
             Some(FromPage::Ping { t, took }) => {
                 if self.acts() {
-                    let change = |page: &mut Page| page.round_trip_ms = took.or(page.round_trip_ms);
+                    let change = |page: &mut ActivePage| page.round_trip_ms = took.or(page.round_trip_ms);
                     self.hub.status.page(|page| page.iter_mut().for_each(change));
                 }
                 self.say(&ToPage::Pong { t, at: self.hub.now_ms() }).await
@@ -256,7 +256,7 @@ impl Talk {
             FromPage::Confirm => PageInput::Confirm,
             FromPage::Drawn { cue, at } => PageInput::Drawn { cue, at: self.hub.moment(at) },
             FromPage::Redrawn { took } => {
-                let change = |page: &mut Page| page.redraw_ms = Some(took);
+                let change = |page: &mut ActivePage| page.redraw_ms = Some(took);
                 self.hub.status.page(|page| page.iter_mut().for_each(change));
                 return Some(());
             }

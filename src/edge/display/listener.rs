@@ -16,35 +16,35 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 const MOST: usize = 512;
 
 /// A listener that holds so many connections and no more.
-pub(super) struct Bounded {
+pub(super) struct LimitedListener {
     listener: TcpListener,
     room: Arc<Semaphore>,
 }
 
 /// A connection with its place.
-pub(super) struct Held {
+pub(super) struct LimitedStream {
     stream: TcpStream,
     _place: OwnedSemaphorePermit,
 }
 
-impl Bounded {
-    pub fn new(listener: TcpListener) -> Bounded {
-        Bounded { listener, room: Arc::new(Semaphore::new(MOST)) }
+impl LimitedListener {
+    pub fn new(listener: TcpListener) -> LimitedListener {
+        LimitedListener { listener, room: Arc::new(Semaphore::new(MOST)) }
     }
 }
 
-impl Listener for Bounded {
-    type Io = Held;
+impl Listener for LimitedListener {
+    type Io = LimitedStream;
     type Addr = SocketAddr;
 
-    async fn accept(&mut self) -> (Held, SocketAddr) {
+    async fn accept(&mut self) -> (LimitedStream, SocketAddr) {
         loop {
             match self.listener.accept().await {
                 Ok((stream, address)) => {
                     let Ok(place) = self.room.clone().try_acquire_owned() else { continue };
                     // A press is a small message: it must not wait for a larger one.
                     let _ = stream.set_nodelay(true);
-                    return (Held { stream, _place: place }, address);
+                    return (LimitedStream { stream, _place: place }, address);
                 }
                 // Out of sockets, or the like: try again, but not in a hot loop.
                 Err(_) => tokio::time::sleep(Duration::from_millis(100)).await,
@@ -57,13 +57,13 @@ impl Listener for Bounded {
     }
 }
 
-impl AsyncRead for Held {
+impl AsyncRead for LimitedStream {
     fn poll_read(mut self: Pin<&mut Self>, context: &mut Context<'_>, into: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
         Pin::new(&mut self.stream).poll_read(context, into)
     }
 }
 
-impl AsyncWrite for Held {
+impl AsyncWrite for LimitedStream {
     fn poll_write(mut self: Pin<&mut Self>, context: &mut Context<'_>, from: &[u8]) -> Poll<io::Result<usize>> {
         Pin::new(&mut self.stream).poll_write(context, from)
     }

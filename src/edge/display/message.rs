@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::display::{Scene, Sight};
+use crate::display::{DisplayScene, DisplayUpdate};
 
 /// No message of a page is longer, in bytes.
 pub(super) const MAX_BYTES: usize = 1024;
@@ -106,21 +106,21 @@ pub(super) fn read(text: &str) -> Option<FromPage> {
 }
 
 /// The message that builds a page.
-pub(super) fn scene(scene: &Scene) -> Arc<str> {
+pub(super) fn scene(scene: &DisplayScene) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {
         kind: &'static str,
-        scene: &'a Scene,
+        scene: &'a DisplayScene,
     }
     text(&Message { kind: "scene", scene })
 }
 
 /// The message that shows what is now.
-pub(super) fn sight(sight: &Sight) -> Arc<str> {
+pub(super) fn sight(sight: &DisplayUpdate) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {
         kind: &'static str,
-        sight: &'a Sight,
+        sight: &'a DisplayUpdate,
     }
     text(&Message { kind: "sight", sight })
 }

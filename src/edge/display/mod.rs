@@ -20,11 +20,11 @@ use tokio::net::TcpListener;
 use tokio::sync::mpsc::{Receiver, channel};
 use tokio::sync::watch;
 
-use self::server::{Hub, serve};
-use self::status::Status;
-pub use self::status::{Counts, Page};
-use crate::display::words::Words;
-use crate::display::{Scene, Sight};
+use self::server::{ServerState, serve};
+use self::status::DisplayStatus;
+pub use self::status::{ActivePage, DisplayCounts};
+use crate::display::words::DisplayWords;
+use crate::display::{DisplayScene, DisplayUpdate};
 
 /// So many inputs of the page may wait to be taken.
 const WAITING: usize = 1024;
@@ -79,7 +79,7 @@ pub struct Display {
 pub struct PageScreen {
     scene: watch::Sender<Arc<str>>,
     sight: watch::Sender<Arc<str>>,
-    status: Arc<Status>,
+    status: Arc<DisplayStatus>,
 }
 
 impl Display {
@@ -87,20 +87,26 @@ impl Display {
     ///
     /// # Errors
     /// The address cannot be listened on.
-    pub async fn open(listen: IpAddr, port: u16, words: &Words) -> io::Result<Display> {
+    pub async fn open(listen: IpAddr, port: u16, words: &DisplayWords) -> io::Result<Display> {
         let listener = TcpListener::bind((listen, port)).await?;
         let address = listener.local_addr()?;
         let listener = listener.into_std()?;
         let code = (!listen.is_loopback()).then(code::pairing_code);
         let (send, inputs) = channel(WAITING);
-        let status = Arc::new(Status::default());
+        let status = Arc::new(DisplayStatus::default());
         let screen = PageScreen {
             scene: watch::Sender::new(Arc::from("")),
             sight: watch::Sender::new(Arc::from("")),
             status: status.clone(),
         };
-        let hub =
-            Hub::new(code.clone(), words.of_page(), send, screen.scene.subscribe(), screen.sight.subscribe(), status);
+        let hub = ServerState::new(
+            code.clone(),
+            words.of_page(),
+            send,
+            screen.scene.subscribe(),
+            screen.sight.subscribe(),
+            status,
+        );
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         std::thread::Builder::new()
             .name("display".to_string())
@@ -148,17 +154,17 @@ fn address_outside(any: IpAddr) -> Option<IpAddr> {
 
 impl PageScreen {
     /// Builds the pages anew.
-    pub fn build(&self, scene: &Scene) {
+    pub fn build(&self, scene: &DisplayScene) {
         self.scene.send_replace(message::scene(scene));
     }
 
     /// Shows what the participant may see now.
-    pub fn show(&self, sight: &Sight) {
+    pub fn show(&self, sight: &DisplayUpdate) {
         self.sight.send_replace(message::sight(sight));
     }
 
     /// How the pages are.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> DisplayCounts {
         self.status.counts()
     }
 }

@@ -18,9 +18,9 @@ use tokio::sync::watch;
 
 use super::PageInput;
 use super::connection::talk;
-use super::listener::Bounded;
+use super::listener::LimitedListener;
 use super::message::MAX_BYTES;
-use super::status::{Status, count};
+use super::status::{DisplayStatus, count};
 
 /// The page may load nothing from elsewhere, and nobody may frame it.
 const POLICY: &str = "default-src 'self'; connect-src 'self' ws:; img-src data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
@@ -36,7 +36,7 @@ const FILES: [(&str, &str, &str); 6] = [
 ];
 
 /// What all connections share.
-pub(super) struct Hub {
+pub(super) struct ServerState {
     /// What a page is asked for, if the network reaches it.
     pub code: Option<String>,
     /// The words of the page, by what they stand for.
@@ -44,24 +44,24 @@ pub(super) struct Hub {
     pub inputs: Sender<PageInput>,
     pub scene: watch::Receiver<Arc<str>>,
     pub sight: watch::Receiver<Arc<str>>,
-    pub status: Arc<Status>,
+    pub status: Arc<DisplayStatus>,
     /// The connection that acts, and the page that it is of.
     pub acting: watch::Sender<Option<(u64, String)>>,
     connections: AtomicU64,
     began: Instant,
 }
 
-impl Hub {
+impl ServerState {
     pub fn new(
         code: Option<String>,
         words: BTreeMap<String, String>,
         inputs: Sender<PageInput>,
         scene: watch::Receiver<Arc<str>>,
         sight: watch::Receiver<Arc<str>>,
-        status: Arc<Status>,
-    ) -> Hub {
+        status: Arc<DisplayStatus>,
+    ) -> ServerState {
         let (acting, connections, began) = (watch::Sender::new(None), AtomicU64::new(0), Instant::now());
-        Hub { code, words, inputs, scene, sight, status, acting, connections, began }
+        ServerState { code, words, inputs, scene, sight, status, acting, connections, began }
     }
 
     /// The server's clock, in milliseconds.
@@ -80,7 +80,7 @@ impl Hub {
 }
 
 /// Serves until nobody wants inputs any more.
-pub(super) async fn serve(listener: std::net::TcpListener, hub: Hub) -> io::Result<()> {
+pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> io::Result<()> {
     let listener = TcpListener::from_std(listener)?;
     let hub = Arc::new(hub);
     let mut router = Router::new().route("/talk", get(connect));
@@ -94,7 +94,7 @@ pub(super) async fn serve(listener: std::net::TcpListener, hub: Hub) -> io::Resu
         router = router.route(path, get(move || async move { (headers, text) }));
     }
     let inputs = hub.inputs.clone();
-    let server = axum::serve(Bounded::new(listener), router.with_state(hub));
+    let server = axum::serve(LimitedListener::new(listener), router.with_state(hub));
     // The session is over: its connections end with it, without waiting for what they may still say.
     tokio::select! {
         done = server => done,
@@ -103,7 +103,7 @@ pub(super) async fn serve(listener: std::net::TcpListener, hub: Hub) -> io::Resu
 }
 
 /// Lets a page connect: of this server, and of no other that a browser may have open.
-async fn connect(State(hub): State<Arc<Hub>>, headers: HeaderMap, upgrade: WebSocketUpgrade) -> Response {
+async fn connect(State(hub): State<Arc<ServerState>>, headers: HeaderMap, upgrade: WebSocketUpgrade) -> Response {
     if !is_own(&headers, hub.code.is_some()) {
         count(&hub.status.refused);
         return StatusCode::FORBIDDEN.into_response();

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The page that acts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Page {
+pub struct ActivePage {
     pub width_px: u32,
     pub height_px: u32,
     /// There and back, in milliseconds, as it measured it last.
@@ -16,8 +16,8 @@ pub struct Page {
 
 /// What was counted so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Counts {
-    pub page: Option<Page>,
+pub struct DisplayCounts {
+    pub page: Option<ActivePage>,
     /// Pages that only watch.
     pub watching: u64,
     /// Messages that were none.
@@ -27,17 +27,17 @@ pub struct Counts {
 }
 
 #[derive(Debug, Default)]
-pub(super) struct Status {
+pub(super) struct DisplayStatus {
     pub pages: AtomicU64,
     pub malformed: AtomicU64,
     pub refused: AtomicU64,
-    page: Mutex<Option<Page>>,
+    page: Mutex<Option<ActivePage>>,
 }
 
-impl Status {
-    pub fn counts(&self) -> Counts {
+impl DisplayStatus {
+    pub fn counts(&self) -> DisplayCounts {
         let page = *self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        Counts {
+        DisplayCounts {
             page,
             watching: self.pages.load(Ordering::Relaxed).saturating_sub(u64::from(page.is_some())),
             malformed: self.malformed.load(Ordering::Relaxed),
@@ -46,7 +46,7 @@ impl Status {
     }
 
     /// Changes what is known of the page that acts.
-    pub fn page(&self, change: impl FnOnce(&mut Option<Page>)) {
+    pub fn page(&self, change: impl FnOnce(&mut Option<ActivePage>)) {
         change(&mut self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner));
     }
 }

@@ -9,7 +9,7 @@ use crate::edge::file_error::FileError;
 use crate::edge::{gaze_file, pupil};
 use crate::gaze::surface::SurfaceMap;
 use crate::session::SessionSpec;
-use crate::session::preflight::{Check, Verdict};
+use crate::session::preflight::{PreflightCheck, PreflightVerdict};
 use crate::session::settings::{GazeSource, ParticipantKind};
 use crate::session::tracker::TrackerSpec;
 
@@ -17,12 +17,12 @@ use crate::session::tracker::TrackerSpec;
 const WHOLE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
 /// Whether the participant's page can be served.
-pub(super) fn display(spec: &SessionSpec) -> Check {
+pub(super) fn display(spec: &SessionSpec) -> PreflightCheck {
     let address = SocketAddr::new(spec.display.listen, spec.display.port);
     let is_used = spec.participant.kind == ParticipantKind::Display;
     let remedy = "end what uses the port, or set another address or port under [display]";
     match TcpListener::bind(address) {
-        Ok(_) => Check::ok("wall display", format!("{address} is free for the participant's page")),
+        Ok(_) => PreflightCheck::ok("wall display", format!("{address} is free for the participant's page")),
         Err(reason) => {
             missing(is_used, "wall display", format!("{address}: {reason}"), "--participant display", remedy)
         }
@@ -30,7 +30,7 @@ pub(super) fn display(spec: &SessionSpec) -> Check {
 }
 
 /// Whether what the session's gaze comes from is there.
-pub(super) fn gaze(spec: &SessionSpec) -> Check {
+pub(super) fn gaze(spec: &SessionSpec) -> PreflightCheck {
     match spec.participant.gaze {
         GazeSource::Pupil => eye_tracker(&spec.tracker, true),
         GazeSource::Json => lines(spec.participant.gaze_port),
@@ -40,21 +40,23 @@ pub(super) fn gaze(spec: &SessionSpec) -> Check {
 }
 
 /// Something is not there: that breaks a session that uses it, and matters for others only with this flag.
-fn missing(is_used: bool, name: &str, found: String, flag: &str, remedy: &str) -> Check {
+fn missing(is_used: bool, name: &str, found: String, flag: &str, remedy: &str) -> PreflightCheck {
     match is_used {
-        true => Check::new(name, Verdict::Failed, found, remedy),
-        false => Check::new(name, Verdict::Warning, found, format!("matters for {flag} only: {remedy}")),
+        true => PreflightCheck::new(name, PreflightVerdict::Failed, found, remedy),
+        false => {
+            PreflightCheck::new(name, PreflightVerdict::Warning, found, format!("matters for {flag} only: {remedy}"))
+        }
     }
 }
 
 /// Whether Pupil Capture answers.
-fn eye_tracker(tracker: &TrackerSpec, is_used: bool) -> Check {
+fn eye_tracker(tracker: &TrackerSpec, is_used: bool) -> PreflightCheck {
     let (address, port) = (&tracker.address, tracker.port);
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let answer = runtime.and_then(|runtime| runtime.block_on(pupil::version(address, port)));
     let remedy = "start Capture, with Pupil Remote on; elsewhere than here, see [tracker]";
     match answer {
-        Ok(version) => Check::ok("eye tracker", format!("{version} at {address}:{port}")),
+        Ok(version) => PreflightCheck::ok("eye tracker", format!("{version} at {address}:{port}")),
         Err(reason) => {
             missing(is_used, "eye tracker", format!("none at {address}:{port} ({reason})"), "--gaze pupil", remedy)
         }
@@ -62,28 +64,28 @@ fn eye_tracker(tracker: &TrackerSpec, is_used: bool) -> Check {
 }
 
 /// Whether trackers can send lines of JSON.
-fn lines(port: u16) -> Check {
+fn lines(port: u16) -> PreflightCheck {
     let address = (Ipv4Addr::LOCALHOST, port);
     match TcpListener::bind(address).and_then(|_| UdpSocket::bind(address)) {
-        Ok(_) => Check::ok("gaze", format!("port {port} of localhost is free for lines of JSON")),
+        Ok(_) => PreflightCheck::ok("gaze", format!("port {port} of localhost is free for lines of JSON")),
         Err(reason) => {
             let remedy = "end what uses the port, or set another gaze_port under [participant]";
-            Check::new("gaze", Verdict::Failed, format!("port {port} of localhost: {reason}"), remedy)
+            PreflightCheck::new("gaze", PreflightVerdict::Failed, format!("port {port} of localhost: {reason}"), remedy)
         }
     }
 }
 
 /// Whether recorded gaze can be replayed.
-fn file(path: &str) -> Check {
+fn file(path: &str) -> PreflightCheck {
     let remedy =
         "file under [tracker]: Pupil Player's gaze_positions_on_surface_NAME.csv, or the folder of a recording";
     let found = SurfaceMap::new(WHOLE).map(|map| gaze_file::read(Path::new(path), &map));
     match found {
         Some(Ok(found)) if !found.samples.is_empty() => {
-            Check::ok("gaze", format!("{path}: {}", count(found.samples.len() as u64, "sample", "samples")))
+            PreflightCheck::ok("gaze", format!("{path}: {}", count(found.samples.len() as u64, "sample", "samples")))
         }
-        Some(Err(error)) => Check::new("gaze", Verdict::Failed, error.to_string(), told(&error)),
-        _ => Check::new("gaze", Verdict::Failed, format!("{path}: no sample"), remedy),
+        Some(Err(error)) => PreflightCheck::new("gaze", PreflightVerdict::Failed, error.to_string(), told(&error)),
+        _ => PreflightCheck::new("gaze", PreflightVerdict::Failed, format!("{path}: no sample"), remedy),
     }
 }
 

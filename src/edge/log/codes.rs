@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::WriteError;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::measures::coding::{Codable, Code, Codes, Kind};
+use crate::measures::coding::{CauseKind, Codable, Code, Codes};
 use crate::session::settings::is_code;
 
 /// The columns of the file; those of an export of several recordings have two more before them.
@@ -18,7 +18,7 @@ const REMEDY: &str = "as many fields as the first line has";
 
 /// A row of an export.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Row {
+pub struct CodeRow {
     /// The line of the file, for messages.
     pub line: usize,
     /// The name of the recording's folder.
@@ -88,11 +88,11 @@ pub fn write(folder: &Path, rater: &str, codes: &Codes) -> Result<(), WriteError
 ///
 /// # Errors
 /// It cannot be read, or is none.
-pub fn read_export(path: &Path) -> FileResult<(String, Vec<Row>)> {
+pub fn read_export(path: &Path) -> FileResult<(String, Vec<CodeRow>)> {
     let text = crate::edge::file_error::read_text(path)?;
     let row = |(line, before, press, code): ParsedRow| {
         let [recording, rater] = [before[0].clone(), before[1].clone()];
-        Row { line, recording, rater, press, code }
+        CodeRow { line, recording, rater, press, code }
     };
     let rows = rows(path, &text, &EXPORT_COLUMNS)?.into_iter().map(row).collect();
     Ok((text, rows))
@@ -102,7 +102,7 @@ pub fn read_export(path: &Path) -> FileResult<(String, Vec<Row>)> {
 ///
 /// # Errors
 /// It cannot be written.
-pub fn write_export(path: &Path, rows: &[Row]) -> Result<(), WriteError> {
+pub fn write_export(path: &Path, rows: &[CodeRow]) -> Result<(), WriteError> {
     let failed = |reason| WriteError::unwritable(path, reason);
     let write = || -> csv::Result<()> {
         let mut table = csv::Writer::from_path(path)?;
@@ -161,7 +161,7 @@ fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<ParsedRow>>
 fn said(press: &str, cause: &str, aspect: &str) -> Result<(u64, Code), (String, &'static str)> {
     let number = press.parse();
     let number = number.map_err(|_| (format!("the press \"{press}\""), "the number of the press in its log"))?;
-    let kind = Kind::named(cause);
+    let kind = CauseKind::named(cause);
     let kind = kind.ok_or_else(|| (format!("the cause \"{cause}\""), "belief, slip, race or other"))?;
     let code = Code::new(kind, Some(aspect).filter(|aspect| !aspect.is_empty()));
     let remedy = "the location that is believed wrong with \"belief\", and none with other causes";

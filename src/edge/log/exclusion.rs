@@ -8,7 +8,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Lock, LogReader, WriteError, check_continued};
+use super::{LogReader, RecordingLock, WriteError, check_continued};
 use crate::edge::clock::WallTime;
 use crate::edge::file_error::{FileError, FileResult};
 
@@ -18,7 +18,7 @@ pub const EXCLUSION_NAME: &str = "exclusion.toml";
 /// What was said about a closed recording.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Ruling {
+pub struct ExclusionRecord {
     pub excluded: bool,
     /// Why; of those that take an exclusion back it may be empty.
     #[serde(default)]
@@ -31,12 +31,12 @@ pub struct Ruling {
 #[serde(deny_unknown_fields)]
 struct Rulings {
     #[serde(default)]
-    ruling: Vec<Ruling>,
+    ruling: Vec<ExclusionRecord>,
 }
 
 /// Why nothing can be said about a recording.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum RulingError {
+pub enum ExclusionError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
@@ -48,9 +48,9 @@ pub enum RulingError {
     Reason(usize),
 }
 
-impl From<FileError> for RulingError {
-    fn from(error: FileError) -> RulingError {
-        RulingError::File(Box::new(error))
+impl From<FileError> for ExclusionError {
+    fn from(error: FileError) -> ExclusionError {
+        ExclusionError::File(Box::new(error))
     }
 }
 
@@ -58,7 +58,7 @@ impl From<FileError> for RulingError {
 ///
 /// # Errors
 /// The file is there but cannot be read, or says something else.
-pub fn ruling(folder: &Path) -> FileResult<Option<Ruling>> {
+pub fn ruling(folder: &Path) -> FileResult<Option<ExclusionRecord>> {
     Ok(rulings(folder)?.ruling.pop())
 }
 
@@ -81,17 +81,17 @@ fn rulings(folder: &Path) -> FileResult<Rulings> {
 ///
 /// # Errors
 /// It is no recording, it is being written, a later part continues it, or its folder cannot be written to.
-pub fn rule(recording: &Path, excluded: bool, reason: &str) -> Result<Ruling, RulingError> {
+pub fn rule(recording: &Path, excluded: bool, reason: &str) -> Result<ExclusionRecord, ExclusionError> {
     let length = reason.chars().count();
     if length > 200 || (excluded && reason.trim().is_empty()) || reason.chars().any(char::is_control) {
-        return Err(RulingError::Reason(length));
+        return Err(ExclusionError::Reason(length));
     }
     let log = LogReader::open(recording)?;
     let folder = log.folder();
-    let _lock = Lock::take(folder)?;
+    let _lock = RecordingLock::take(folder)?;
     check_continued(folder)?;
     let mut all = rulings(folder)?;
-    let ruling = Ruling { excluded, reason: reason.to_string(), at: WallTime::now().rfc3339() };
+    let ruling = ExclusionRecord { excluded, reason: reason.to_string(), at: WallTime::now().rfc3339() };
     all.ruling.push(ruling.clone());
     let path = folder.join(EXCLUSION_NAME);
     let failed = |reason| WriteError::unwritable(&path, reason);

@@ -15,36 +15,36 @@ const ATTEMPTS: usize = 8;
 /// The right to write a recording, until it is dropped. The operating system holds it: it ends with the process, so a
 /// file that a killed program left behind locks nobody out, whichever process has its number now.
 #[derive(Debug)]
-pub struct Lock {
+pub struct RecordingLock {
     file: File,
     path: PathBuf,
 }
 
 /// Who writes a recording now, as far as that is told.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Holder {
+pub struct LockHolder {
     pub pid: Option<u32>,
     /// Where viewers can look on.
     pub viewers: Option<String>,
 }
 
-impl Holder {
-    fn read(file: &mut File) -> Holder {
+impl LockHolder {
+    fn read(file: &mut File) -> LockHolder {
         let mut text = String::new();
         // Who cannot be asked holds it all the same.
         let _ = file.read_to_string(&mut text);
         let mut lines = text.lines();
         let pid = lines.next().and_then(|line| line.trim().parse().ok());
-        Holder { pid, viewers: lines.next().map(str::to_string) }
+        LockHolder { pid, viewers: lines.next().map(str::to_string) }
     }
 }
 
-impl Lock {
+impl RecordingLock {
     /// Takes the lock of the recording in this folder.
     ///
     /// # Errors
     /// Another program has it, or the folder cannot be written to.
-    pub fn take(folder: &Path) -> Result<Lock, WriteError> {
+    pub fn take(folder: &Path) -> Result<RecordingLock, WriteError> {
         let path = folder.join(LOCK_NAME);
         let failed = |reason| WriteError::unwritable(&path, reason);
         for _ in 0..ATTEMPTS {
@@ -54,24 +54,24 @@ impl Lock {
                 // Where a file system has no locks, a recording is still worth more than none.
                 Ok(()) | Err(TryLockError::Error(_)) => {}
                 Err(TryLockError::WouldBlock) => {
-                    let pid = Holder::read(&mut file).pid;
+                    let pid = LockHolder::read(&mut file).pid;
                     return Err(WriteError::InUse { folder: folder.to_path_buf(), pid });
                 }
             }
             // Its last holder may have removed the file after we opened it: then it locks nothing.
             if is_same(&file, &path) {
                 file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id())).map_err(failed)?;
-                return Ok(Lock { file, path });
+                return Ok(RecordingLock { file, path });
             }
         }
         Err(WriteError::InUse { folder: folder.to_path_buf(), pid: None })
     }
 
     /// Who writes the recording in this folder; none where nobody does.
-    pub fn holder(folder: &Path) -> Option<Holder> {
+    pub fn holder(folder: &Path) -> Option<LockHolder> {
         let mut file = File::open(folder.join(LOCK_NAME)).ok()?;
         match file.try_lock_shared() {
-            Err(TryLockError::WouldBlock) => Some(Holder::read(&mut file)),
+            Err(TryLockError::WouldBlock) => Some(LockHolder::read(&mut file)),
             Ok(()) | Err(TryLockError::Error(_)) => None,
         }
     }
@@ -85,7 +85,7 @@ impl Lock {
     }
 }
 
-impl Drop for Lock {
+impl Drop for RecordingLock {
     fn drop(&mut self) {
         if is_same(&self.file, &self.path) {
             // Left behind it does no harm.
@@ -119,17 +119,17 @@ mod tests {
     fn a_lock_tells_who_writes_and_where_viewers_look_on_until_it_is_dropped() {
         let folder = std::env::temp_dir().join(format!("tomcom-lock-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
-        assert_eq!(Lock::holder(&folder), None);
-        let mut lock = Lock::take(&folder).unwrap();
+        assert_eq!(RecordingLock::holder(&folder), None);
+        let mut lock = RecordingLock::take(&folder).unwrap();
         let pid = Some(std::process::id());
-        assert_eq!(Lock::holder(&folder), Some(Holder { pid, viewers: None }));
+        assert_eq!(RecordingLock::holder(&folder), Some(LockHolder { pid, viewers: None }));
         lock.announce("rerun+http://127.0.0.1:9876/proxy").unwrap();
         let viewers = Some("rerun+http://127.0.0.1:9876/proxy".to_string());
-        assert_eq!(Lock::holder(&folder), Some(Holder { pid, viewers }));
+        assert_eq!(RecordingLock::holder(&folder), Some(LockHolder { pid, viewers }));
         drop(lock);
-        assert_eq!(Lock::holder(&folder), None);
+        assert_eq!(RecordingLock::holder(&folder), None);
         fs::write(folder.join(LOCK_NAME), "1\n").unwrap();
-        assert_eq!(Lock::holder(&folder), None, "what a killed program left behind is held by nobody");
+        assert_eq!(RecordingLock::holder(&folder), None, "what a killed program left behind is held by nobody");
         fs::remove_dir_all(folder).unwrap();
     }
 }

@@ -12,9 +12,9 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::session::Stamped;
-pub use exclusion::{EXCLUSION_NAME, Ruling, RulingError, rule, ruling};
-pub use lock::{Holder, Lock};
-pub use reader::{Ending, LogLine, LogReader, at_line};
+pub use exclusion::{EXCLUSION_NAME, ExclusionError, ExclusionRecord, rule, ruling};
+pub use lock::{LockHolder, RecordingLock};
+pub use reader::{LogEnding, LogLine, LogReader, at_line};
 pub use writer::{LogWriter, check_continued, check_simulated, is_whole};
 
 /// The name of the log in its folder.

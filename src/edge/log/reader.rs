@@ -5,7 +5,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{LOG_NAME, Lock};
+use super::{LOG_NAME, RecordingLock};
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::files::compile_kitchen;
 use crate::kitchen::Kitchen;
@@ -28,7 +28,7 @@ pub struct LogLine {
 
 /// How the end of what was read of a recording is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ending {
+pub enum LogEnding {
     /// The session is over.
     Closed,
     /// Somebody still writes it.
@@ -141,11 +141,11 @@ impl LogReader {
     }
 
     /// The same, and whether more is to come.
-    pub fn ending(&self) -> Ending {
-        match (self.ended, Lock::holder(self.folder())) {
-            (true, _) => Ending::Closed,
-            (false, Some(_)) => Ending::Running,
-            (false, None) => Ending::Cut,
+    pub fn ending(&self) -> LogEnding {
+        match (self.ended, RecordingLock::holder(self.folder())) {
+            (true, _) => LogEnding::Closed,
+            (false, Some(_)) => LogEnding::Running,
+            (false, None) => LogEnding::Cut,
         }
     }
 

@@ -4,7 +4,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use super::lock::{Lock, is_same};
+use super::lock::{RecordingLock, is_same};
 use super::{LOG_NAME, LogReader, SETTINGS_NAME, WriteError};
 use crate::base::time::SessionTime;
 use crate::session::{Event, Header, Stamped};
@@ -24,7 +24,7 @@ pub struct LogWriter {
     prompt: bool,
     flushed_at: SessionTime,
     settings: String,
-    lock: Lock,
+    lock: RecordingLock,
 }
 
 impl LogWriter {
@@ -67,7 +67,7 @@ impl LogWriter {
 
     /// The log gets its name when its header is complete, so that no log is without one after a kill.
     fn begin(folder: PathBuf, header: &Header, prompt: bool) -> Result<LogWriter, WriteError> {
-        let lock = Lock::take(&folder)?;
+        let lock = RecordingLock::take(&folder)?;
         let path = folder.join(LOG_NAME);
         let failed = |reason| WriteError::unwritable(&path, reason);
         let settings = toml::to_string(&header.session).map_err(|error| failed(io::Error::other(error)))?;

@@ -10,15 +10,15 @@ const SET_S: f64 = 0.25;
 /// How Capture's clock stands to ours: mean of the newest answers, without those that took long. What is late on one way
 /// only puts the offset off by half of it.
 #[derive(Debug)]
-pub(super) struct Clock {
+pub(super) struct PupilClock {
     anchor: Instant,
     /// Pupil time less seconds since the anchor, and how long the answer took in seconds; newest last.
     answers: Vec<(f64, f64)>,
 }
 
-impl Clock {
-    pub fn new() -> Clock {
-        Clock { anchor: Instant::now(), answers: Vec::new() }
+impl PupilClock {
+    pub fn new() -> PupilClock {
+        PupilClock { anchor: Instant::now(), answers: Vec::new() }
     }
 
     /// Takes an answer to the question for the time, asked and answered then.
@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn the_clock_follows_the_answers_that_came_at_once_and_one_that_was_set() {
-        let mut clock = Clock::new();
+        let mut clock = PupilClock::new();
         let at = |ms: u64| clock.anchor + Duration::from_millis(ms);
         let [anchor, later] = [at(0), at(5000)];
         let after = |ms: u64| anchor + Duration::from_millis(ms);

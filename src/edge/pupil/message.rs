@@ -22,7 +22,7 @@ pub struct SurfaceGaze {
 
 /// A fixation; the same id comes again while it lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fixation {
+pub struct PupilFixation {
     pub id: u64,
     /// On the surface; nothing if it is told in the scene camera's picture.
     pub on_surface: Option<[f64; 2]>,
@@ -35,7 +35,7 @@ pub struct Fixation {
 
 /// The beginning (onset) or end of a blink.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Blink {
+pub struct PupilBlink {
     pub is_onset: bool,
     pub confidence: f64,
     pub timestamp: f64,
@@ -43,43 +43,43 @@ pub struct Blink {
 
 /// What a message says.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Told {
+pub struct PupilMessage {
     /// It was about the surface that was asked for: the tracker sees it.
     pub sees_surface: bool,
     /// In the order in which they were taken.
     pub gaze: Vec<SurfaceGaze>,
-    pub fixations: Vec<Fixation>,
-    pub blink: Option<Blink>,
+    pub fixations: Vec<PupilFixation>,
+    pub blink: Option<PupilBlink>,
     /// Items that are none, or the whole message.
     pub malformed: u64,
 }
 
 /// Reads a message with this topic; others than those that were subscribed to say nothing.
-pub fn read(topic: &[u8], payload: &[u8], surface: &str) -> Told {
+pub fn read(topic: &[u8], payload: &[u8], surface: &str) -> PupilMessage {
     let is_surface = topic.strip_prefix(b"surfaces.") == Some(surface.as_bytes());
     if !is_surface && topic != b"fixations" && topic != b"blinks" {
-        return Told::default();
+        return PupilMessage::default();
     }
     let mut rest = payload;
     let found = match read_value_with_max_depth(&mut rest, MAX_DEPTH) {
         Ok(found @ Value::Map(_)) if rest.is_empty() => found,
-        _ => return Told { malformed: 1, ..Told::default() },
+        _ => return PupilMessage { malformed: 1, ..PupilMessage::default() },
     };
     match topic {
         _ if is_surface => of_surface(&found),
         b"fixations" => match fixation(&found, false) {
-            Some(fixation) => Told { fixations: vec![fixation], ..Told::default() },
-            None => Told { malformed: 1, ..Told::default() },
+            Some(fixation) => PupilMessage { fixations: vec![fixation], ..PupilMessage::default() },
+            None => PupilMessage { malformed: 1, ..PupilMessage::default() },
         },
         _ => match blink(&found) {
-            Some(blink) => Told { blink: Some(blink), ..Told::default() },
-            None => Told { malformed: 1, ..Told::default() },
+            Some(blink) => PupilMessage { blink: Some(blink), ..PupilMessage::default() },
+            None => PupilMessage { malformed: 1, ..PupilMessage::default() },
         },
     }
 }
 
-fn of_surface(datum: &Value) -> Told {
-    let mut told = Told { sees_surface: true, ..Told::default() };
+fn of_surface(datum: &Value) -> PupilMessage {
+    let mut told = PupilMessage { sees_surface: true, ..PupilMessage::default() };
     for item in items(datum, "gaze_on_surfaces", &mut told.malformed) {
         match gaze(item) {
             Some(gaze) => told.gaze.push(gaze),
@@ -116,9 +116,9 @@ fn gaze(item: &Value) -> Option<SurfaceGaze> {
     Some(SurfaceGaze { norm_pos: place(item)?, confidence: confidence(item)?, timestamp: time(item)? })
 }
 
-fn fixation(item: &Value, is_on_surface: bool) -> Option<Fixation> {
+fn fixation(item: &Value, is_on_surface: bool) -> Option<PupilFixation> {
     let on_surface = if is_on_surface { Some(place(item)?) } else { None };
-    Some(Fixation {
+    Some(PupilFixation {
         id: field(item, "id")?.as_u64()?,
         on_surface,
         confidence: confidence(item)?,
@@ -128,13 +128,13 @@ fn fixation(item: &Value, is_on_surface: bool) -> Option<Fixation> {
     })
 }
 
-fn blink(item: &Value) -> Option<Blink> {
+fn blink(item: &Value) -> Option<PupilBlink> {
     let is_onset = match field(item, "type")?.as_str()? {
         "onset" => true,
         "offset" => false,
         _ => return None,
     };
-    Some(Blink { is_onset, confidence: confidence(item)?, timestamp: time(item)? })
+    Some(PupilBlink { is_onset, confidence: confidence(item)?, timestamp: time(item)? })
 }
 
 fn field<'a>(item: &'a Value, name: &str) -> Option<&'a Value> {

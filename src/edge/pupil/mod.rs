@@ -13,12 +13,12 @@ use tokio::sync::mpsc::{Receiver, Sender, channel};
 use tokio::sync::oneshot;
 use tokio::time::{interval, sleep, timeout};
 
-use super::gaze_input::{Fixation, GazeNews, Taken, WAITING};
+use super::gaze_input::{GazeNews, SampleTime, TrackerFixation, WAITING};
 use crate::gaze::GazeSample;
 use crate::gaze::surface::SurfaceMap;
-use clock::{ANSWERS, Clock};
-use message::Told;
-use zmtp::{Connection, Message, Role};
+use clock::{ANSWERS, PupilClock};
+use message::PupilMessage;
+use zmtp::{SocketRole, ZmtpConnection, ZmtpMessage};
 
 /// From one try to the next.
 const RETRY: Duration = Duration::from_millis(300);
@@ -31,7 +31,7 @@ const ORDERS: usize = 256;
 
 /// Where Capture is, and what of it is wanted.
 #[derive(Clone, Debug)]
-pub struct Capture {
+pub struct CaptureAddress {
     pub address: String,
     /// Of Pupil Remote.
     pub port: u16,
@@ -44,7 +44,7 @@ pub struct Capture {
 
 /// What Capture is told to do.
 #[derive(Debug)]
-pub enum Order {
+pub enum CaptureRequest {
     /// Record under this name.
     Record(String),
     StopRecording,
@@ -55,7 +55,7 @@ pub enum Order {
 }
 
 /// Follows Capture from now on; its news, and where orders are taken. Ends when the news are no longer wanted.
-pub fn follow(capture: Capture) -> (Receiver<GazeNews>, Sender<Order>) {
+pub fn follow(capture: CaptureAddress) -> (Receiver<GazeNews>, Sender<CaptureRequest>) {
     let (news, receiver) = channel(WAITING);
     let (sender, orders) = channel(ORDERS);
     tokio::spawn(async move {
@@ -76,20 +76,20 @@ pub fn follow(capture: Capture) -> (Receiver<GazeNews>, Sender<Order>) {
 /// # Errors
 /// Why it does not.
 pub async fn version(address: &str, port: u16) -> io::Result<String> {
-    let mut remote = Connection::open(address, port, Role::Req).await?;
+    let mut remote = ZmtpConnection::open(address, port, SocketRole::Req).await?;
     Ok(format!("Pupil Capture {}", remote.ask(&[b"v"]).await?))
 }
 
 struct Follower {
-    capture: Capture,
+    capture: CaptureAddress,
     news: Sender<GazeNews>,
-    orders: Receiver<Order>,
+    orders: Receiver<CaptureRequest>,
     /// The name under which it is to record now, also after it began again.
     recording: Option<String>,
     /// News that nobody took in time, and were not told of yet.
     lost: u64,
     /// The fixation that may go on.
-    waiting: Option<Fixation>,
+    waiting: Option<TrackerFixation>,
 }
 
 impl Follower {
@@ -97,19 +97,19 @@ impl Follower {
     async fn once(&mut self) -> Result<(), Lost> {
         let never = |reason: io::Error| Lost { reason, was_there: false };
         let (address, port) = (self.capture.address.clone(), self.capture.port);
-        let mut remote = Connection::open(&address, port, Role::Req).await.map_err(never)?;
+        let mut remote = ZmtpConnection::open(&address, port, SocketRole::Req).await.map_err(never)?;
         let version = remote.ask(&[b"v"]).await.map_err(never)?;
-        let clock = Mutex::new(Clock::new());
+        let clock = Mutex::new(PupilClock::new());
         for _ in 0..ANSWERS {
             ask_time(&mut remote, &clock).await.map_err(never)?;
         }
         let sub_port = port_of(&remote.ask(&[b"SUB_PORT"]).await.map_err(never)?).map_err(never)?;
         let pub_port = port_of(&remote.ask(&[b"PUB_PORT"]).await.map_err(never)?).map_err(never)?;
-        let mut backbone = Connection::open(&address, sub_port, Role::Sub).await.map_err(never)?;
+        let mut backbone = ZmtpConnection::open(&address, sub_port, SocketRole::Sub).await.map_err(never)?;
         for topic in [format!("surfaces.{}", self.capture.surface), "fixations".to_string(), "blinks".to_string()] {
             backbone.subscribe(&topic).await.map_err(never)?;
         }
-        let annotations = Connection::open(&address, pub_port, Role::Pub).await.map_err(never)?;
+        let annotations = ZmtpConnection::open(&address, pub_port, SocketRole::Pub).await.map_err(never)?;
         if self.capture.records {
             let payload = message::start_plugin("Annotation_Capture");
             remote.ask(&[b"notify.start_plugin", &payload]).await.map_err(never)?;
@@ -123,10 +123,10 @@ impl Follower {
     /// Listens, asks for the time, and passes orders on, until one of it fails.
     async fn attend(
         &mut self,
-        remote: Connection,
-        mut backbone: Connection,
-        annotations: Connection,
-        clock: &Mutex<Clock>,
+        remote: ZmtpConnection,
+        mut backbone: ZmtpConnection,
+        annotations: ZmtpConnection,
+        clock: &Mutex<PupilClock>,
     ) -> io::Error {
         let (news, surface) = (self.news.clone(), self.capture.surface.clone());
         let mut told =
@@ -189,7 +189,7 @@ struct Listener<'a> {
     news: Sender<GazeNews>,
     map: SurfaceMap,
     lost: &'a mut u64,
-    waiting: &'a mut Option<Fixation>,
+    waiting: &'a mut Option<TrackerFixation>,
     /// Whether the display was said to be seen.
     sees: Option<bool>,
 }
@@ -203,9 +203,9 @@ impl Listener<'_> {
     }
 
     /// Passes on what was read; what nobody takes in time is counted, so that Capture is never kept waiting.
-    fn pass(&mut self, told: Told, clock: &Mutex<Clock>) {
+    fn pass(&mut self, told: PupilMessage, clock: &Mutex<PupilClock>) {
         let mut malformed = told.malformed;
-        let taken = |timestamp: f64| Taken { device_ns: (timestamp * 1e9) as u64, at: moment(clock, timestamp) };
+        let taken = |timestamp: f64| SampleTime { device_ns: (timestamp * 1e9) as u64, at: moment(clock, timestamp) };
         for gaze in told.gaze {
             let Some([x, y]) = self.map.to_display(gaze.norm_pos) else {
                 malformed += 1;
@@ -219,7 +219,7 @@ impl Listener<'_> {
             let on_display = found.on_surface.and_then(|place| self.map.to_display(place));
             let began = taken(found.timestamp);
             let before = self.waiting.filter(|before| before.id == found.id);
-            let fixation = Fixation {
+            let fixation = TrackerFixation {
                 id: found.id,
                 at: on_display.or(before.and_then(|before| before.at)),
                 duration_ms: found.duration_ms,
@@ -251,18 +251,18 @@ impl Listener<'_> {
     }
 }
 
-fn read(message: &Message, surface: &str) -> Told {
+fn read(message: &ZmtpMessage, surface: &str) -> PupilMessage {
     match message.as_slice() {
         [topic, payload, ..] => message::read(topic, payload, surface),
-        _ => Told { malformed: 1, ..Told::default() },
+        _ => PupilMessage { malformed: 1, ..PupilMessage::default() },
     }
 }
 
-fn moment(clock: &Mutex<Clock>, pupil_s: f64) -> Option<Instant> {
+fn moment(clock: &Mutex<PupilClock>, pupil_s: f64) -> Option<Instant> {
     clock.lock().ok()?.instant(pupil_s)
 }
 
-async fn ask_time(remote: &mut Connection, clock: &Mutex<Clock>) -> io::Result<()> {
+async fn ask_time(remote: &mut ZmtpConnection, clock: &Mutex<PupilClock>) -> io::Result<()> {
     let asked = Instant::now();
     let answer = remote.ask(&[b"t"]).await?;
     let answered = Instant::now();
@@ -280,17 +280,17 @@ fn port_of(answer: &str) -> io::Result<u16> {
 
 /// Who asks Capture for its time and tells it what to do.
 struct Desk {
-    remote: Connection,
-    annotations: Connection,
+    remote: ZmtpConnection,
+    annotations: ZmtpConnection,
     records: bool,
 }
 
 impl Desk {
     async fn attend(
         &mut self,
-        orders: &mut Receiver<Order>,
+        orders: &mut Receiver<CaptureRequest>,
         recording: &mut Option<String>,
-        clock: &Mutex<Clock>,
+        clock: &Mutex<PupilClock>,
     ) -> io::Error {
         // One that began again records on.
         if let Some(name) = recording.clone()
@@ -313,20 +313,25 @@ impl Desk {
         }
     }
 
-    async fn obey(&mut self, order: Order, recording: &mut Option<String>, clock: &Mutex<Clock>) -> io::Result<()> {
+    async fn obey(
+        &mut self,
+        order: CaptureRequest,
+        recording: &mut Option<String>,
+        clock: &Mutex<PupilClock>,
+    ) -> io::Result<()> {
         match order {
             // Who asked may be gone by now.
-            Order::Report(to) => drop(to.send(())),
+            CaptureRequest::Report(to) => drop(to.send(())),
             _ if !self.records => {}
-            Order::Record(name) => {
+            CaptureRequest::Record(name) => {
                 *recording = Some(name.clone());
                 self.record(&name).await?;
             }
-            Order::StopRecording => {
+            CaptureRequest::StopRecording => {
                 *recording = None;
                 self.remote.ask(&[b"r"]).await?;
             }
-            Order::Annotate(label, at) => {
+            CaptureRequest::Annotate(label, at) => {
                 let pupil_s = clock.lock().ok().and_then(|clock| clock.pupil_s(at));
                 let payload = message::annotation(&label, pupil_s.unwrap_or(0.0));
                 self.annotations.send(&[b"annotation", &payload]).await?;

@@ -10,7 +10,7 @@ use tokio::net::TcpStream;
 use tokio::time::timeout;
 
 /// The frames of a message.
-pub type Message = Vec<Vec<u8>>;
+pub type ZmtpMessage = Vec<Vec<u8>>;
 
 /// No message is longer, in bytes of all its frames, and none has more frames.
 const MAX_MESSAGE: usize = 1 << 20;
@@ -25,7 +25,7 @@ const COMMAND: u8 = 4;
 
 /// What a socket is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum SocketRole {
     /// Asks, and is answered.
     Req,
     /// Receives what it subscribed to.
@@ -34,12 +34,12 @@ pub enum Role {
     Pub,
 }
 
-impl Role {
+impl SocketRole {
     fn name(self) -> &'static str {
         match self {
-            Role::Req => "REQ",
-            Role::Sub => "SUB",
-            Role::Pub => "PUB",
+            SocketRole::Req => "REQ",
+            SocketRole::Sub => "SUB",
+            SocketRole::Pub => "PUB",
         }
     }
 }
@@ -50,15 +50,15 @@ fn broken(what: &str) -> io::Error {
 
 /// Puts messages together from bytes as they come.
 #[derive(Debug, Default)]
-pub struct Inbox {
+pub struct FrameAssembler {
     bytes: Vec<u8>,
     /// Up to here they were read.
     read: usize,
-    frames: Message,
+    frames: ZmtpMessage,
     size: usize,
 }
 
-impl Inbox {
+impl FrameAssembler {
     /// Takes bytes that arrived.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.drain(..self.read);
@@ -70,7 +70,7 @@ impl Inbox {
     ///
     /// # Errors
     /// What came is no message, or a larger one than there are.
-    pub fn next_message(&mut self) -> io::Result<Option<Message>> {
+    pub fn next_message(&mut self) -> io::Result<Option<ZmtpMessage>> {
         while let Some((flags, body)) = self.next_frame()? {
             if flags & COMMAND != 0 {
                 continue;
@@ -115,23 +115,23 @@ impl Inbox {
 
 /// A connection to a socket of another program.
 #[derive(Debug)]
-pub struct Connection {
+pub struct ZmtpConnection {
     stream: TcpStream,
-    inbox: Inbox,
+    inbox: FrameAssembler,
     chunk: Vec<u8>,
 }
 
-impl Connection {
+impl ZmtpConnection {
     /// Connects, and agrees on the protocol.
     ///
     /// # Errors
     /// Nobody listens there, or nobody who speaks it.
-    pub async fn open(address: &str, port: u16, role: Role) -> io::Result<Connection> {
+    pub async fn open(address: &str, port: u16, role: SocketRole) -> io::Result<ZmtpConnection> {
         let late = |_| io::Error::new(io::ErrorKind::TimedOut, "no answer");
-        timeout(PATIENCE, Connection::agree(address, port, role)).await.map_err(late)?
+        timeout(PATIENCE, ZmtpConnection::agree(address, port, role)).await.map_err(late)?
     }
 
-    async fn agree(address: &str, port: u16, role: Role) -> io::Result<Connection> {
+    async fn agree(address: &str, port: u16, role: SocketRole) -> io::Result<ZmtpConnection> {
         let mut stream = TcpStream::connect((address, port)).await?;
         stream.set_nodelay(true)?;
         let mut greeting = [0u8; GREETING];
@@ -148,11 +148,11 @@ impl Connection {
         }
         let mut ready = b"\x05READY".to_vec();
         ready.extend(property("Socket-Type", role.name()));
-        if role == Role::Req {
+        if role == SocketRole::Req {
             ready.extend(property("Identity", ""));
         }
         stream.write_all(&[&[COMMAND, ready.len() as u8], ready.as_slice()].concat()).await?;
-        let mut connection = Connection { stream, inbox: Inbox::default(), chunk: vec![0; 1 << 16] };
+        let mut connection = ZmtpConnection { stream, inbox: FrameAssembler::default(), chunk: vec![0; 1 << 16] };
         // Their READY comes before anything else.
         let flags = loop {
             match connection.inbox.next_frame()? {
@@ -181,7 +181,7 @@ impl Connection {
     ///
     /// # Errors
     /// The connection ended, or what came is no message.
-    pub async fn receive(&mut self) -> io::Result<Message> {
+    pub async fn receive(&mut self) -> io::Result<ZmtpMessage> {
         loop {
             if let Some(message) = self.inbox.next_message()? {
                 return Ok(message);
@@ -214,7 +214,7 @@ impl Connection {
     /// Asks for all messages whose first frame begins so.
     ///
     /// # Errors
-    /// Those of [`Connection::send`].
+    /// Those of [`ZmtpConnection::send`].
     pub async fn subscribe(&mut self, topic: &str) -> io::Result<()> {
         self.send(&[&[b"\x01", topic.as_bytes()].concat()]).await
     }
@@ -222,7 +222,7 @@ impl Connection {
     /// Asks, and waits for the answer.
     ///
     /// # Errors
-    /// Those of [`Connection::send`], no answer in time, or one that is no text.
+    /// Those of [`ZmtpConnection::send`], no answer in time, or one that is no text.
     pub async fn ask(&mut self, frames: &[&[u8]]) -> io::Result<String> {
         self.send(&[&[b"".as_slice()], frames].concat()).await?;
         let late = |_| io::Error::new(io::ErrorKind::TimedOut, "no answer");

@@ -13,7 +13,7 @@ use re_sdk::external::re_log_types::{BlueprintActivationCommand, LogMsg, TimeInt
 use re_sdk::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
 use re_sdk_types::blueprint::archetypes::{EyeControls3D, PlotLegend, ScalarAxis, TextLogColumns};
 
-use super::{APPLICATION, Lane, TRIAL_TIME};
+use super::{APPLICATION, StreamLane, TRIAL_TIME};
 use crate::base::time::SessionTime;
 
 /// From where the arm is looked at, and what at, in metres from its base: the whole table, from the human's side.
@@ -27,7 +27,7 @@ type Property = (String, Vec<SerializedComponentBatch>);
 
 /// What a viewer does when it has opened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Opens {
+pub(super) enum ViewerStart {
     /// It stands at the beginning.
     Waiting,
     /// It shows the newest, because more is to come.
@@ -37,14 +37,14 @@ pub(super) enum Opens {
 }
 
 /// The views, and properties that Rerun's own description of views leaves out.
-pub(super) struct Layout {
+pub(super) struct ViewerLayout {
     blueprint: Blueprint,
     properties: Vec<Property>,
 }
 
-impl Layout {
+impl ViewerLayout {
     /// The layout of these recordings.
-    pub(super) fn of(lanes: &[Lane], opens: Opens) -> Layout {
+    pub(super) fn from_lanes(lanes: &[StreamLane], opens: ViewerStart) -> ViewerLayout {
         let mut properties = Vec::new();
         let root: ContainerLike = match lanes {
             [only] => alone(only, &mut properties),
@@ -53,9 +53,9 @@ impl Layout {
         let hidden = PanelState::Hidden;
         let time = TimePanel::new().with_state(PanelState::Collapsed).with_timeline(TRIAL_TIME);
         let time = match opens {
-            Opens::Waiting => time.with_play_state(PlayState::Paused),
-            Opens::Following => time.with_play_state(PlayState::Following),
-            Opens::From(at) => {
+            ViewerStart::Waiting => time.with_play_state(PlayState::Paused),
+            ViewerStart::Following => time.with_play_state(PlayState::Following),
+            ViewerStart::From(at) => {
                 let from = TimeInt::new_temporal(i64::try_from(at.0).unwrap_or(i64::MAX));
                 time.with_play_state(PlayState::Playing)
                     .with_loop_mode(LoopMode::Selection)
@@ -67,7 +67,7 @@ impl Layout {
             .with_selection_panel(SelectionPanel::from_state(hidden))
             .with_time_panel(time)
             .with_auto_views(false);
-        Layout { blueprint, properties }
+        ViewerLayout { blueprint, properties }
     }
 
     /// Sends it ahead of what a stream shows. The properties go into the same blueprint as the views, before it is made the
@@ -98,7 +98,7 @@ impl Layout {
 }
 
 /// One recording.
-fn alone(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
+fn alone(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     let above = Horizontal::new([kitchen(lane), arm(lane, properties)]).with_column_shares([3.0, 2.0]);
     let wrong = StateTimelineView::new("Believed wrong")
         .with_origin(path(lane, "human/belief/wrong"))
@@ -118,19 +118,19 @@ fn alone(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
 }
 
 /// One of several recordings.
-fn beside(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
+fn beside(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     let belief = beliefs(lane, "P(truth)", "human/belief/estimated/**", properties);
     let below = Horizontal::new([belief, benefit(lane, properties)]);
     let words = Horizontal::new([believed(lane), happened(lane, properties)]);
     Vertical::new([kitchen(lane), below.into(), words.into()]).with_row_shares([5.0, 3.0, 3.0]).into()
 }
 
-fn path(lane: &Lane, entities: &str) -> String {
+fn path(lane: &StreamLane, entities: &str) -> String {
     let path = format!("{}/{entities}", lane.root);
     format!("/{}", path.trim_matches('/'))
 }
 
-fn titled(lane: &Lane, name: &str) -> String {
+fn titled(lane: &StreamLane, name: &str) -> String {
     if lane.title.is_empty() { name.to_string() } else { format!("{}: {name}", lane.title) }
 }
 
@@ -148,12 +148,12 @@ fn with(
     view
 }
 
-fn kitchen(lane: &Lane) -> ContainerLike {
+fn kitchen(lane: &StreamLane) -> ContainerLike {
     let contents = ["kitchen/**", "human/gaze"].map(|entities| path(lane, entities));
     Spatial2DView::new(titled(lane, "Kitchen")).with_origin(path(lane, "kitchen")).with_contents(contents).into()
 }
 
-fn arm(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
+fn arm(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     let contents = ["robot/**", "human/hand/**"].map(|entities| path(lane, entities));
     let view = Spatial3DView::new(titled(lane, "Arm")).with_origin(path(lane, "robot")).with_contents(contents);
     let eye = EyeControls3D::new().with_position(EYE_M).with_look_target(LOOKED_AT_M).with_eye_up([0.0, 0.0, 1.0]);
@@ -162,22 +162,22 @@ fn arm(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
 
 /// Curves. A legend would cover them: their colours are those of the names in the kitchen, and a viewer names the one that
 /// the mouse is over.
-fn series(lane: &Lane, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
+fn series(lane: &StreamLane, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
     let contents: Vec<String> = entities.iter().map(|entities| path(lane, entities)).collect();
     let view = TimeSeriesView::new(titled(lane, name)).with_origin(path(lane, "")).with_contents(contents);
     with(view, "PlotLegend", &PlotLegend::new().with_visible(false), properties)
 }
 
-fn beliefs(lane: &Lane, name: &str, entities: &str, properties: &mut Vec<Property>) -> ContainerLike {
+fn beliefs(lane: &StreamLane, name: &str, entities: &str, properties: &mut Vec<Property>) -> ContainerLike {
     let view = series(lane, name, &[entities, "human/errors/**"], properties);
     with(view, "ScalarAxis", &ScalarAxis::new().with_range(PROBABILITY), properties)
 }
 
-fn benefit(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
+fn benefit(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     series(lane, "Net benefit of signals (presses)", &["assistant/benefit/**"], properties)
 }
 
-fn believed(lane: &Lane) -> ContainerLike {
+fn believed(lane: &StreamLane) -> ContainerLike {
     let page = path(lane, "human/belief/page");
     TextDocumentView::new(titled(lane, "What the participant believes"))
         .with_origin(page.clone())
@@ -186,7 +186,7 @@ fn believed(lane: &Lane) -> ContainerLike {
 }
 
 /// What happened, with nothing beside it but the trial's clock.
-fn happened(lane: &Lane, properties: &mut Vec<Property>) -> ContainerLike {
+fn happened(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     let lines = path(lane, "happened");
     let view = TextLogView::new(titled(lane, "What happened")).with_origin(path(lane, "")).with_contents([lines]);
     let column = |kind, visible: bool| TextLogColumn { kind, visible: visible.into() };

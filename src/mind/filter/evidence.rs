@@ -104,7 +104,7 @@ struct Alike {
 }
 
 /// What a press is judged by.
-pub struct Judge<'a> {
+pub struct EvidenceModel<'a> {
     pub kitchen: &'a Kitchen,
     pub likelihood: &'a PressLikelihood,
     pub inference: &'a InferenceModel,
@@ -118,7 +118,7 @@ impl Sampler {
     /// Updates the belief by the evidence of a press of the human.
     pub fn weigh(
         &mut self,
-        judge: &Judge,
+        judge: &EvidenceModel,
         cost: &mut CostToGo,
         belief: &mut DirichletBelief,
         button: ButtonId,
@@ -153,7 +153,14 @@ impl Sampler {
     }
 
     /// Draws belief samples until there are so many.
-    fn draw(&mut self, judge: &Judge, cost: &mut CostToGo, button: ButtonId, wanted: usize, random: &mut Stream) {
+    fn draw(
+        &mut self,
+        judge: &EvidenceModel,
+        cost: &mut CostToGo,
+        button: ButtonId,
+        wanted: usize,
+        random: &mut Stream,
+    ) {
         let (kitchen, states) = (judge.kitchen, judge.inference.states);
         let (aspects, old) = (self.urns.len(), self.samples.len());
         let new = wanted - old;
@@ -247,7 +254,7 @@ impl Sampler {
     }
 
     /// Weighs the belief samples from this one on by p(a | belief).
-    fn press_chances(&mut self, judge: &Judge, button: ButtonId, from: usize) {
+    fn press_chances(&mut self, judge: &EvidenceModel, button: ButtonId, from: usize) {
         let buttons = judge.kitchen.buttons[Agent::Human.index()].len();
         self.posteriors.truncate(from);
         for (sample, prior) in self.samples.iter().zip(&self.priors).skip(from) {
@@ -256,7 +263,7 @@ impl Sampler {
                 let after = self.cases.after(run.case);
                 sums.iter_mut().zip(after).for_each(|(sum, &after)| *sum += run.draws * u32::from(after));
             }
-            let likelihood = judge.likelihood.of(&sums[..buttons], button);
+            let likelihood = judge.likelihood.probability(&sums[..buttons], button);
             self.posteriors.push(prior * likelihood);
         }
     }
@@ -289,7 +296,7 @@ impl Sampler {
     /// Maps the weighted samples back to Dirichlets.
     fn collapse(&self, belief: &mut DirichletBelief, states: usize) {
         let (before, total): (f64, f64) = (self.priors.iter().sum(), self.posteriors.iter().sum());
-        let mut all: Vec<Moments> = belief.aspects.iter().map(Moments::of).collect();
+        let mut all: Vec<Moments> = belief.aspects.iter().map(Moments::from_prior).collect();
         let samples = self.samples.iter().zip(self.firsts.chunks_exact(all.len()));
         for ((sample, firsts), (after, prior)) in samples.zip(self.posteriors.iter().zip(&self.priors)) {
             let weight = after / total - prior / before;
@@ -332,7 +339,7 @@ struct Moments<'a> {
 }
 
 impl Moments<'_> {
-    fn of(prior: &Dirichlet) -> Moments<'_> {
+    fn from_prior(prior: &Dirichlet) -> Moments<'_> {
         let mean = prior.mean().to_vec();
         let square = mean.iter().map(|m| m * m).sum();
         let pure = vec![0.0; mean.len() + 1];

@@ -85,7 +85,7 @@ impl Exchange {
 
     /// Learns from a press of this button.
     pub fn learn(&self, belief: &mut DirichletBelief, effective: bool, draws: usize, random: &mut Stream) {
-        let sides = [&self.hand, &self.location].map(|side| Parts::of(belief.of(side.aspect), side));
+        let sides = [&self.hand, &self.location].map(|side| Parts::from_prior(belief.aspect(side.aspect), side));
         let shares = self.shares(&sides, effective, draws, random);
         let [of_hand, of_location] = match effective {
             true => self.exchanged(&sides, &shares),
@@ -184,7 +184,7 @@ struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    fn of(belief: &'a Dirichlet, side: &'a Side) -> Parts<'a> {
+    fn from_prior(belief: &'a Dirichlet, side: &'a Side) -> Parts<'a> {
         let (mut means, mut squares) = (vec![0.0; side.kinds], vec![0.0; side.kinds]);
         for (&mean, &kind) in belief.mean().iter().zip(&side.kind_of) {
             means[kind] += mean;

@@ -28,7 +28,7 @@ use crate::kitchen::{
     Agent, AspectId, AspectKind, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent,
 };
 pub use evidence::Evidence;
-use evidence::{Judge, Sampler};
+use evidence::{EvidenceModel, Sampler};
 use exchange::Exchange;
 use reading::Reader;
 use serving::Serving;
@@ -164,7 +164,8 @@ impl BeliefFilter {
     }
 
     fn human_pressed(&mut self, button: ButtonId, effective: bool, cost: &mut CostToGo, random: &mut Stream) {
-        let judge = Judge { kitchen: &self.kitchen, likelihood: &self.likelihood, inference: &self.model.inference };
+        let judge =
+            EvidenceModel { kitchen: &self.kitchen, likelihood: &self.likelihood, inference: &self.model.inference };
         self.evidence = Some(self.sampler.weigh(&judge, cost, &mut self.belief, button, random));
         let draws = self.model.inference.beliefs;
         match &self.lessons[button.index()] {

@@ -59,10 +59,11 @@ impl Serving {
 
     /// Learns from a press of this button.
     pub fn learn(&self, belief: &mut DirichletBelief, effective: bool, draws: usize, random: &mut Stream) {
-        let expected = belief.of(self.order).mean();
+        let expected = belief.aspect(self.order).mean();
         let dishes: Vec<&Served> = self.dishes.iter().filter(|dish| expected[dish.ordered] >= NEGLIGIBLE).collect();
         let aspects = [self.order, self.plate].into_iter().chain(dishes.iter().map(|dish| dish.recipe));
-        let mut draw_of: Vec<Draw> = aspects.map(|aspect| Draw::of(belief.of(aspect), aspect)).collect();
+        let mut draw_of: Vec<Draw> =
+            aspects.map(|aspect| Draw::from_dirichlet(belief.aspect(aspect), aspect)).collect();
         for draw in &mut draw_of[1..2] {
             // Only what may be a dish is of interest on the plate.
             draw.lump(|value| !self.dishes.iter().any(|dish| dish.on_plate.contains(&Some(value))));
@@ -77,12 +78,12 @@ impl Serving {
             }
         }
         for (tally, draw) in tallies.iter().zip(&draw_of) {
-            let changed = draw.changed(belief.of(draw.aspect), tally);
+            let changed = draw.changed(belief.aspect(draw.aspect), tally);
             belief.aspects[draw.aspect.index()] = changed;
         }
         if effective {
             for (aspect, value) in [(self.order, self.served), (self.plate, self.empty)] {
-                let mut mean = vec![0.0; belief.of(aspect).mean().len()];
+                let mut mean = vec![0.0; belief.aspect(aspect).mean().len()];
                 mean[value] = 1.0;
                 belief.aspects[aspect.index()] = Dirichlet::of_moments(mean, 1.0);
             }
@@ -156,7 +157,7 @@ fn gammas(means: &[f64], precision: f64) -> Gammas {
 }
 
 impl Draw {
-    fn of(dirichlet: &Dirichlet, aspect: AspectId) -> Draw {
+    fn from_dirichlet(dirichlet: &Dirichlet, aspect: AspectId) -> Draw {
         let means = dirichlet.mean().to_vec();
         let precision = dirichlet.precision();
         let part_of = (0..means.len()).collect();

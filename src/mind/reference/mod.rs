@@ -15,8 +15,8 @@ use std::sync::Arc;
 
 use rand::RngExt;
 
-use self::people::People;
-use self::person::Person;
+use self::people::Particles;
+use self::person::Particle;
 use super::dirichlet::DirichletBelief;
 use super::model::HumanModel;
 use super::observation::{Observation, Observed};
@@ -31,7 +31,7 @@ pub struct ReferenceFilter {
     /// Belief samples.
     beliefs: usize,
     seed: u64,
-    people: People,
+    people: Particles,
     /// Observations so far.
     observed: u64,
     /// Gaze has moved them on since they were last drawn.
@@ -44,7 +44,7 @@ impl ReferenceFilter {
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel, seed: u64) -> ReferenceFilter {
         let beliefs = model.inference.beliefs;
         ReferenceFilter {
-            people: People::new(kitchen.clone(), model),
+            people: Particles::new(kitchen.clone(), model),
             kitchen,
             beliefs,
             seed,
@@ -104,7 +104,7 @@ impl ReferenceFilter {
         let read = |index: usize| self.people.of.iter().filter(|person| person.read[index]).count() as f64 / count;
         let read: Vec<f64> = (0..self.kitchen.locations.len()).map(read).collect();
         let person = |random: &mut Stream| {
-            let mut person = Person::draw(&self.kitchen, estimate, random);
+            let mut person = Particle::draw(&self.kitchen, estimate, random);
             person.read = read.iter().map(|&share| random.random::<f64>() < share).collect();
             person
         };

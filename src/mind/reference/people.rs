@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use rand::RngExt;
 
-use super::person::Person;
-use super::sight::Sight;
+use super::person::Particle;
+use super::sight::GazeFollower;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
@@ -17,34 +17,34 @@ use crate::mind::observation::{Observation, Observed};
 
 /// Explicit beliefs, and all that they have in common.
 #[derive(Clone, Debug)]
-pub struct People {
+pub struct Particles {
     kitchen: Arc<Kitchen>,
     model: HumanModel,
     /// What is believed at the start, and what recipes are forgotten to.
     pub prior: DirichletBelief,
     /// What is believed in doubt: where something happens that was held impossible.
     pub doubt: DirichletBelief,
-    pub of: Vec<Person>,
-    sight: Sight,
+    pub of: Vec<Particle>,
+    sight: GazeFollower,
     shown: State,
     /// When it was last forgotten; nothing while the trial stands still.
     forgot: Option<SessionTime>,
 }
 
-impl People {
+impl Particles {
     /// Nobody, before the trial's start.
-    pub fn new(kitchen: Arc<Kitchen>, model: HumanModel) -> People {
+    pub fn new(kitchen: Arc<Kitchen>, model: HumanModel) -> Particles {
         let shown = kitchen.empty_state();
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
-        let (doubt, sight) = (prior.clone(), Sight::default());
-        People { kitchen, model, prior, doubt, of: Vec::new(), sight, shown, forgot: None }
+        let (doubt, sight) = (prior.clone(), GazeFollower::default());
+        Particles { kitchen, model, prior, doubt, of: Vec::new(), sight, shown, forgot: None }
     }
 
     /// The trial starts in this state, with so many beliefs drawn from the prior.
     pub fn start(&mut self, now: SessionTime, state: State, count: usize, random: &mut Stream) {
         self.prior = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);
         self.doubt.clone_from(&self.prior);
-        self.of = (0..count).map(|_| Person::draw(&self.kitchen, &self.prior, random)).collect();
+        self.of = (0..count).map(|_| Particle::draw(&self.kitchen, &self.prior, random)).collect();
         self.forgot = Some(now);
         self.show(now, state);
     }

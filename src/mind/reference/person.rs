@@ -7,7 +7,7 @@
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma};
 
-use super::sight::Glance;
+use super::sight::LocationReading;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{Agent, AspectId, AspectKind, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId};
@@ -23,7 +23,7 @@ const NEGLIGIBLE: f64 = 1e-4;
 
 /// A belief: for every aspect the probabilities of its values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Person {
+pub struct Particle {
     pub of: Vec<Vec<f64>>,
     /// By location, whether it was read in the present look.
     pub read: Vec<bool>,
@@ -31,21 +31,21 @@ pub struct Person {
 
 /// A way the kitchen may be, and its probability.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Way {
+pub struct PossibleWorld {
     pub state: State,
     pub recipes: Recipes,
     pub p: f64,
 }
 
-impl Person {
+impl Particle {
     /// A belief drawn from an estimate, every component by a gamma draw.
-    pub fn draw(kitchen: &Kitchen, estimate: &DirichletBelief, random: &mut Stream) -> Person {
+    pub fn draw(kitchen: &Kitchen, estimate: &DirichletBelief, random: &mut Stream) -> Particle {
         let of = estimate.aspects.iter().map(|dirichlet| draw(dirichlet, random)).collect();
-        Person { of, read: vec![false; kitchen.locations.len()] }
+        Particle { of, read: vec![false; kitchen.locations.len()] }
     }
 
     /// Looks: what was not read yet in this look is read by chance, and believed as it was read.
-    pub fn look(&mut self, glances: &[Glance], random: &mut Stream) {
+    pub fn look(&mut self, glances: &[LocationReading], random: &mut Stream) {
         for glance in glances {
             let location = glance.location.index();
             if glance.begins {
@@ -137,7 +137,7 @@ impl Person {
         let before: Vec<Vec<f64>> = (0..self.of.len()).map(doubtful).collect();
         let mut after: Vec<Vec<f64>> = before.iter().map(|values| vec![0.0; values.len()]).collect();
         let mut total = 0.0;
-        let mut outcome = |way: Way, dish: Option<(AspectId, usize)>| {
+        let mut outcome = |way: PossibleWorld, dish: Option<(AspectId, usize)>| {
             let next = kitchen.act(way.state, &way.recipes, Agent::Human, action);
             let is_possible = match (action, effective) {
                 (ButtonAction::Trash, _) | (ButtonAction::Take(_), true) => true,
@@ -212,19 +212,19 @@ impl Person {
     }
 
     /// The ways the kitchen may be under this belief: all of them if they are not more than `draws`, else so many draws.
-    pub fn ways(&self, kitchen: &Kitchen, draws: usize, random: &mut Stream) -> Vec<Way> {
+    pub fn ways(&self, kitchen: &Kitchen, draws: usize, random: &mut Stream) -> Vec<PossibleWorld> {
         let count = self.of.iter().map(|values| values.iter().filter(|p| **p > NEGLIGIBLE).count());
         let count = count.fold(1usize, |product, values| product.saturating_mul(values));
-        let start = Way { state: kitchen.empty_state(), recipes: kitchen.true_recipes(), p: 1.0 };
+        let start = PossibleWorld { state: kitchen.empty_state(), recipes: kitchen.true_recipes(), p: 1.0 };
         if count > draws {
             let p = 1.0 / draws as f64;
-            return (0..draws).map(|_| Way { p, ..self.draw_way(kitchen, start, random) }).collect();
+            return (0..draws).map(|_| PossibleWorld { p, ..self.draw_way(kitchen, start, random) }).collect();
         }
         let mut ways = vec![start];
         for (index, values) in self.of.iter().enumerate() {
             let likely = || values.iter().enumerate().filter(|(_, p)| **p > NEGLIGIBLE);
-            let with = |way: &Way, value: usize, p: f64| {
-                let mut way = Way { p: way.p * p, ..*way };
+            let with = |way: &PossibleWorld, value: usize, p: f64| {
+                let mut way = PossibleWorld { p: way.p * p, ..*way };
                 kitchen.set_value(&mut way.state, &mut way.recipes, AspectId(index as u8), value);
                 way
             };
@@ -234,7 +234,7 @@ impl Person {
         ways
     }
 
-    fn draw_way(&self, kitchen: &Kitchen, mut way: Way, random: &mut Stream) -> Way {
+    fn draw_way(&self, kitchen: &Kitchen, mut way: PossibleWorld, random: &mut Stream) -> PossibleWorld {
         for (index, values) in self.of.iter().enumerate() {
             let value = pick(values, random);
             kitchen.set_value(&mut way.state, &mut way.recipes, AspectId(index as u8), value);
@@ -248,14 +248,14 @@ fn each_exchange(
     kitchen: &Kitchen,
     belief: &[Vec<f64>],
     places: &[LocationId],
-    outcome: &mut impl FnMut(Way, Option<(AspectId, usize)>),
+    outcome: &mut impl FnMut(PossibleWorld, Option<(AspectId, usize)>),
 ) {
-    let start = Way { state: kitchen.empty_state(), recipes: kitchen.true_recipes(), p: 1.0 };
+    let start = PossibleWorld { state: kitchen.empty_state(), recipes: kitchen.true_recipes(), p: 1.0 };
     let mut ways = vec![start];
     for place in places {
         let aspect = &kitchen.aspects[place.index()];
-        let with = |way: &Way, value: usize| {
-            let mut way = Way { p: way.p * belief[place.index()][value], ..*way };
+        let with = |way: &PossibleWorld, value: usize| {
+            let mut way = PossibleWorld { p: way.p * belief[place.index()][value], ..*way };
             way.state.set_code(*place, aspect.values[value]);
             way
         };
@@ -269,13 +269,13 @@ fn each_serving(
     kitchen: &Kitchen,
     belief: &[Vec<f64>],
     order: LocationId,
-    outcome: &mut impl FnMut(Way, Option<(AspectId, usize)>),
+    outcome: &mut impl FnMut(PossibleWorld, Option<(AspectId, usize)>),
 ) {
     let (orders, plates) = (&kitchen.aspects[order.index()], &kitchen.aspects[kitchen.plate.index()]);
     for (wanted, &code) in orders.values.iter().enumerate() {
         for (held, &content) in plates.values.iter().enumerate() {
             let p = belief[order.index()][wanted] * belief[kitchen.plate.index()][held];
-            let mut way = Way { state: kitchen.empty_state(), recipes: kitchen.true_recipes(), p };
+            let mut way = PossibleWorld { state: kitchen.empty_state(), recipes: kitchen.true_recipes(), p };
             way.state.set_code(order, code);
             way.state.set_content(kitchen.plate, ContentId(content));
             let OrderContent::Dish(dish) = OrderContent::from_code(code) else {
@@ -290,13 +290,13 @@ fn each_serving(
 fn each_recipe(
     kitchen: &Kitchen,
     belief: &[Vec<f64>],
-    way: Way,
+    way: PossibleWorld,
     dish: DishId,
-    outcome: &mut impl FnMut(Way, Option<(AspectId, usize)>),
+    outcome: &mut impl FnMut(PossibleWorld, Option<(AspectId, usize)>),
 ) {
     let recipe = kitchen.aspect_of_dish(dish);
     for (variant, p) in belief[recipe.index()].iter().enumerate() {
-        let mut way = Way { p: way.p * p, ..way };
+        let mut way = PossibleWorld { p: way.p * p, ..way };
         way.recipes.set(dish, ContentId(kitchen.aspects[recipe.index()].values[variant]));
         outcome(way, Some((recipe, variant)));
     }

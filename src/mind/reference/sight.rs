@@ -10,7 +10,7 @@ const ELSEWHERE: f64 = 0.1;
 
 /// What a sample does at one location.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Glance {
+pub struct LocationReading {
     pub location: LocationId,
     /// A new look begins: it can be read anew.
     pub begins: bool,
@@ -22,7 +22,7 @@ pub struct Glance {
 
 /// Follows gaze and display.
 #[derive(Clone, Debug, Default)]
-pub struct Sight {
+pub struct GazeFollower {
     /// What the display showed, and since when.
     shown: Vec<(SessionTime, State)>,
     /// By location, what it showed in the present look, and when the gaze was last there.
@@ -30,7 +30,7 @@ pub struct Sight {
     last: Option<SessionTime>,
 }
 
-impl Sight {
+impl GazeFollower {
     /// The display shows this from now on.
     pub fn show(&mut self, now: SessionTime, state: State) {
         self.shown.push((now, state));
@@ -48,7 +48,7 @@ impl Sight {
         model: &PerceptionModel,
         sample: &GazeSample,
         taken: SessionTime,
-    ) -> Vec<Glance> {
+    ) -> Vec<LocationReading> {
         let covers_s = self.last.map_or(model.max_sample_s, |last| taken.secs_since(last)).min(model.max_sample_s);
         self.last = Some(self.last.map_or(taken, |last| last.max(taken)));
         let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
@@ -72,7 +72,12 @@ impl Sight {
             }
             let Some(value) = kitchen.aspects[index].index_of(code) else { continue };
             let chance = 1.0 - (-rate_hz * covers_s).exp();
-            glances.push(Glance { location, begins, chance, reading: reading(kitchen, model, location, value) });
+            glances.push(LocationReading {
+                location,
+                begins,
+                chance,
+                reading: reading(kitchen, model, location, value),
+            });
         }
         glances
     }

@@ -1,6 +1,6 @@
 //! The participant's display at the desk.
 
-use crate::display::words::Words;
+use crate::display::words::DisplayWords;
 use crate::edge::display::Display;
 pub(in crate::run) use crate::edge::display::PageInput;
 use crate::run::live::LiveError;
@@ -20,7 +20,7 @@ impl WallDisplay {
             return Ok(WallDisplay(None));
         }
         let (address, port) = (spec.display.listen, spec.display.port);
-        let opened = Display::open(address, port, &Words::of(&spec.display)).await;
+        let opened = Display::open(address, port, &DisplayWords::for_display(&spec.display)).await;
         opened.map(|display| WallDisplay(Some(display))).map_err(|reason| LiveError::Display { address, port, reason })
     }
 

@@ -6,7 +6,7 @@ use super::Engine;
 use crate::kitchen::{Change, Kitchen};
 use crate::participant::SimulatedParticipant;
 use crate::participant::population::Experience;
-use crate::session::calibration::Check;
+use crate::session::calibration::RunningGazeCheck;
 use crate::session::{Event, SessionSpec, Stamped};
 
 /// The simulated participant of a trial. In a plan the same person has several trials, and has learnt from the earlier ones
@@ -37,7 +37,9 @@ impl Engine {
                 }
             }
             Event::SignalEnded { .. } => participant.on_signal_end(now),
-            Event::Calibration(_) => participant.on_target(now, session.calibration.as_ref().and_then(Check::target)),
+            Event::Calibration(_) => {
+                participant.on_target(now, session.calibration.as_ref().and_then(RunningGazeCheck::target))
+            }
             _ => {}
         }
     }

@@ -4,16 +4,17 @@ use tokio::time::Instant;
 
 use super::Live;
 use crate::session::Event;
-use crate::session::calibration::{Calibrated, CalibrationEvent, Check};
+use crate::session::calibration::{AcceptedGazeCheck, CalibrationEvent, RunningGazeCheck};
 use crate::session::settings::GazeSource;
 
 impl Live {
     /// What was accepted before this recording holds on: neither the tracker nor the participant was changed. A participant
     /// who is simulated has new eyes in every recording.
-    pub(super) fn carry_calibration(&mut self, before: Option<&Calibrated>) {
+    pub(super) fn carry_calibration(&mut self, before: Option<&AcceptedGazeCheck>) {
         let session = self.engine.session();
         let is_wanted = !matches!(session.spec.participant.gaze, GazeSource::None | GazeSource::Simulated);
-        if let Some(Calibrated { found, corrected, .. }) = before.filter(|_| is_wanted && session.calibrated.is_none())
+        if let Some(AcceptedGazeCheck { found, corrected, .. }) =
+            before.filter(|_| is_wanted && session.calibrated.is_none())
         {
             let event = CalibrationEvent::Carried { found: found.clone(), corrected: *corrected };
             self.input(Event::Calibration(event));
@@ -22,13 +23,13 @@ impl Live {
 
     /// When the next target is to be shown; nothing while no check goes on.
     pub(super) fn next_target(&self) -> Option<Instant> {
-        let (time, _) = self.engine.session().calibration.as_ref().and_then(Check::next)?;
+        let (time, _) = self.engine.session().calibration.as_ref().and_then(RunningGazeCheck::next)?;
         Some(Instant::from_std(self.clock.instant_of(time)))
     }
 
     /// Shows the next target, or hides the last one.
     pub(super) fn show_target(&mut self) {
-        if let Some((_, event)) = self.engine.session().calibration.as_ref().and_then(Check::next) {
+        if let Some((_, event)) = self.engine.session().calibration.as_ref().and_then(RunningGazeCheck::next) {
             self.input(Event::Calibration(event));
         }
     }

@@ -6,7 +6,7 @@ use super::Live;
 use crate::base::time::SessionTime;
 use crate::console::display::DisplayHealth;
 use crate::console::model::NoticeLevel;
-use crate::display::{Sight, scene, sight};
+use crate::display::{DisplayUpdate, scene, sight};
 use crate::edge::display::{Display, PageScreen};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
@@ -20,7 +20,7 @@ use crate::session::{Event, Phase};
 pub(super) struct ParticipantDisplay {
     screen: PageScreen,
     /// What it shows.
-    shown: Option<Sight>,
+    shown: Option<DisplayUpdate>,
 }
 
 impl ParticipantDisplay {

@@ -8,8 +8,8 @@ use tokio::time::Instant;
 use super::Live;
 use crate::base::time::SessionTime;
 use crate::edge::gaze_file::GazeFile;
-use crate::edge::gaze_input::{GazeNews, Taken};
-use crate::edge::pupil::Order;
+use crate::edge::gaze_input::{GazeNews, SampleTime};
+use crate::edge::pupil::CaptureRequest;
 use crate::gaze::GazeSample;
 use crate::gaze::device_clock::DeviceClock;
 use crate::gaze::quality::{DropCounts, RateLimit};
@@ -30,7 +30,7 @@ pub(super) struct GazeInput {
     file: Option<Arc<GazeFile>>,
     next: usize,
     /// Where Capture takes orders.
-    orders: Option<Sender<Order>>,
+    orders: Option<Sender<CaptureRequest>>,
     is_recording: bool,
 }
 
@@ -112,7 +112,7 @@ impl Live {
         self.input(Event::Gaze(GazeSample { taken_ns, ..sample }));
     }
 
-    fn session_time(&mut self, taken: Taken) -> SessionTime {
+    fn session_time(&mut self, taken: SampleTime) -> SessionTime {
         let now = self.clock.now();
         taken.at.map_or(now, |at| ago(now, at))
     }
@@ -163,22 +163,22 @@ impl Live {
             _ => return,
         };
         if !label.is_empty() {
-            self.order(Order::Annotate(label, self.clock.instant_of(stamped.time)));
+            self.order(CaptureRequest::Annotate(label, self.clock.instant_of(stamped.time)));
         }
         let ends = matches!(stamped.event, Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded);
         if ends && std::mem::take(&mut self.gaze.is_recording) {
-            self.order(Order::StopRecording);
+            self.order(CaptureRequest::StopRecording);
         }
     }
 
     fn order_recording(&mut self) {
         let name = self.log.folder().file_name().unwrap_or_default().to_string_lossy().into_owned();
         self.gaze.is_recording = true;
-        self.order(Order::Record(name));
+        self.order(CaptureRequest::Record(name));
     }
 
     /// Capture is told as long as it listens; that it does not is said in the health line.
-    fn order(&self, order: Order) {
+    fn order(&self, order: CaptureRequest) {
         if let Some(orders) = &self.gaze.orders {
             let _ = orders.try_send(order);
         }

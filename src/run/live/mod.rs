@@ -35,8 +35,8 @@ use crate::edge::clock::{SessionClock, WallTime};
 use crate::edge::doctor::free_bytes;
 use crate::edge::file_error::FileError;
 use crate::edge::key_file::key_map;
-use crate::edge::log::{Lock, LogWriter, WriteError};
-use crate::edge::terminal::{Screen, theme};
+use crate::edge::log::{LogWriter, RecordingLock, WriteError};
+use crate::edge::terminal::{TerminalScreen, theme};
 use crate::gaze::tags::TagError;
 use crate::run::advisor_desk::{AdvisorDesk, next_advice};
 use crate::run::desk::OperatorDesk;
@@ -46,7 +46,7 @@ use crate::run::options::SessionStart;
 use crate::run::resume::ResumeError;
 use crate::run::standing::ExclusionStatus;
 use crate::session::protocol::ProtocolEvent;
-use crate::session::screen::Screen as OnScreen;
+use crate::session::screen::VisibleScreen as OnScreen;
 use crate::session::settings::GazeSource;
 use crate::session::{Event, Header, Session};
 
@@ -118,7 +118,7 @@ struct Live {
     /// What Rerun's viewers see.
     viewing: Option<viewing::StreamedSession>,
     /// The part that is continued is not to be written by anybody else.
-    _before: Option<Lock>,
+    _before: Option<RecordingLock>,
     /// The log cannot be written any more.
     failed: Option<WriteError>,
     clock: SessionClock,
@@ -154,7 +154,7 @@ impl Live {
             RecordingPlace::In(root) => (LogWriter::create_live(&root, &wall.date(), &header)?, None),
             RecordingPlace::After(folder, lock) => (LogWriter::create_part(&folder, &header)?, Some(lock)),
         };
-        let size = Screen::size().map_err(LiveError::Terminal)?;
+        let size = TerminalScreen::size().map_err(LiveError::Terminal)?;
         let mut model = ConsoleModel::new(keys, theme(&spec.console, desk.screen.ground), size);
         model.recording = RecordingStatus::On(log.folder().display().to_string());
         model.comparison = compare.as_ref().map(|_| ComparisonView::default());

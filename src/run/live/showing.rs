@@ -4,7 +4,7 @@ use std::io;
 
 use super::Live;
 use crate::console::screen::screen as on_screen;
-use crate::edge::terminal::Screen;
+use crate::edge::terminal::TerminalScreen;
 use crate::run::watch_desk::ComparisonDesk;
 use crate::session::{Event, Phase};
 
@@ -15,7 +15,7 @@ impl Live {
         self.model.clock = self.model.now;
     }
 
-    pub(super) fn draw(&mut self, screen: &mut Screen) -> io::Result<()> {
+    pub(super) fn draw(&mut self, screen: &mut TerminalScreen) -> io::Result<()> {
         self.tick();
         if let (Some(newest), Some(compared)) =
             (self.watch.as_ref().and_then(ComparisonDesk::newest), &mut self.model.comparison)

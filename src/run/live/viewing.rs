@@ -6,10 +6,10 @@ use super::Live;
 use crate::base::time::SessionTime;
 use crate::console::model::{NoticeLevel, ViewerStreamStatus};
 use crate::edge::log::{LOG_NAME, LogWriter};
-use crate::edge::rerun::{Identity, uri};
+use crate::edge::rerun::{StreamIdentity, uri};
 use crate::edge::rrd::{self, RRD_NAME};
-use crate::edge::stream::Stream;
-use crate::scene::{Derived, Scene};
+use crate::edge::stream::RerunStream;
+use crate::scene::{DerivedData, SessionScene};
 use crate::session::Stamped;
 
 /// What moves between events is shown so late, so that no event of before is still to come.
@@ -17,8 +17,8 @@ const BEHIND: SessionTime = SessionTime(100_000_000);
 
 /// A session that is streamed.
 pub(super) struct StreamedSession {
-    scene: Scene,
-    stream: Stream,
+    scene: SessionScene,
+    stream: RerunStream,
     /// It shows the session from its beginning.
     is_whole: bool,
 }
@@ -42,17 +42,17 @@ impl Live {
         if !spec.is_on() {
             return;
         }
-        let mut scene = Scene::new(session, next);
+        let mut scene = SessionScene::new(session, next);
         let (fixed, opening) = (scene.fixed(), scene.opening());
         let folder = self.log.folder();
         let file = spec.record.then(|| folder.join(RRD_NAME));
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let began = self.header.started.as_deref().unwrap_or_default();
         let whole = if is_new { rrd::mark() } else { "part".to_string() };
-        let identity = Identity { id: format!("{name} {began} {whole}"), name };
+        let identity = StreamIdentity { id: format!("{name} {began} {whole}"), name };
         let address = spec.live.then(|| spec.address.parse::<SocketAddr>()).transpose();
         let opened = address.map_err(|error| format!("{}: {error}", spec.address)).and_then(|server| {
-            Stream::open(&identity, file.as_deref(), server, fixed, opening).map_err(|error| error.to_string())
+            RerunStream::open(&identity, file.as_deref(), server, fixed, opening).map_err(|error| error.to_string())
         });
         match opened {
             Ok(stream) => {
@@ -72,7 +72,7 @@ impl Live {
         let judged = self.engine.judged();
         for (index, stamped) in events.iter().enumerate() {
             let belief = (index + 1 == events.len()).then(|| self.engine.belief());
-            stream.tell(scene.see(stamped, Derived { judged, belief }));
+            stream.tell(scene.see(stamped, DerivedData { judged, belief }));
         }
     }
 

@@ -12,14 +12,14 @@ use self::reading::{AnalysisScope, RecordingAnalysis};
 pub use self::tell::describe;
 use super::parallel;
 use super::replay::SameKitchen;
-use crate::edge::export::{Export, ExportError, Rows};
+use crate::edge::export::{ExportError, ExportFolder, TableRows};
 use crate::edge::file_error::FileError;
 use crate::edge::log::LogReader;
 use crate::edge::recordings;
 use crate::kitchen::Kitchen;
 use crate::study::dictionary::DICTIONARY;
 use crate::study::facts::Facts;
-use crate::study::figures::StudyFigures;
+use crate::study::figures::StudySummary;
 use crate::study::report;
 use crate::study::tables::{self, Table};
 use crate::study::trial::{Trial, arrange};
@@ -101,8 +101,8 @@ pub fn study(
     analysis: &AnalysisRequest,
     recordings: &NamedRecordings,
     done: impl Fn() + Sync,
-) -> Result<(StudyFigures, PathBuf), StudyError> {
-    let export = Export::create(&analysis.out)?;
+) -> Result<(StudySummary, PathBuf), StudyError> {
+    let export = ExportFolder::create(&analysis.out)?;
     let Some((first, _)) = recordings.found.first() else { return Err(nothing(analysis)) };
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
@@ -126,18 +126,18 @@ pub fn study(
     }
     arrange(&mut trials);
     let practice = (recordings.number() - trials.len()) as u64;
-    let figures = StudyFigures::of(&trials, &facts, practice);
+    let figures = StudySummary::from_trials(&trials, &facts, practice);
     if !analysis.extent.events {
         kept.clear();
     }
     let mut filled = export.tables_of_events(&kept)?;
     let counting = || trials.iter().filter(|trial| trial.counts());
     for (table, rows) in [
-        (Table::Participants, Rows::of(tables::participants(&trials))),
-        (Table::Trials, Rows::of(trials.iter().map(trial_row::row))),
-        (Table::Questionnaires, Rows::of(trials.iter().flat_map(tables::answers))),
-        (Table::Concepts, Rows::of(counting().flat_map(tables::concepts))),
-        (Table::Dictionary, Rows::of(DICTIONARY)),
+        (Table::Participants, TableRows::from_rows(tables::participants(&trials))),
+        (Table::Trials, TableRows::from_rows(trials.iter().map(trial_row::row))),
+        (Table::Questionnaires, TableRows::from_rows(trials.iter().flat_map(tables::answers))),
+        (Table::Concepts, TableRows::from_rows(counting().flat_map(tables::concepts))),
+        (Table::Dictionary, TableRows::from_rows(DICTIONARY)),
     ] {
         filled.extend(export.table(table, &rows)?.then_some(table));
     }
@@ -155,5 +155,5 @@ fn same_kitchen(first: (&Path, &Arc<Kitchen>), other: (&Path, &Arc<Kitchen>)) ->
 fn nothing(analysis: &AnalysisRequest) -> StudyError {
     let path = analysis.paths.first().map_or(Path::new("."), PathBuf::as_path);
     let remedy = "at least one recording".to_string();
-    StudyError::from(FileError::of(path, "no recording".to_string(), remedy))
+    StudyError::from(FileError::from_finding(path, "no recording".to_string(), remedy))
 }

@@ -16,8 +16,8 @@ use crate::history::comparison::CommunicationContent;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Change, Kitchen};
 use crate::measures::attribution::{Attributor, Cause};
-use crate::measures::coding::{Codable, Codes, Kind};
-use crate::measures::matching::{Said, WINDOW};
+use crate::measures::coding::{CauseKind, Codable, Codes};
+use crate::measures::matching::{CommunicationEvent, WINDOW};
 use crate::measures::sequences::{Sequence, sequences, sequences_by_target};
 use crate::measures::{JudgedPress, median};
 use crate::mind::belief::Belief;
@@ -25,12 +25,12 @@ use crate::mind::dirichlet::DirichletBelief;
 use crate::run::standing::ExclusionStatus;
 use crate::session::apply::ApplyError;
 use crate::session::plan::PhaseSpec;
-use crate::session::protocol::{Answer, ProtocolEvent};
+use crate::session::protocol::{ItemAnswer, ProtocolEvent};
 use crate::session::settings::{Condition, ParticipantKind};
-use crate::session::{Event, Happening, Header, Phase, Session, Stamped};
+use crate::session::{Event, Header, Phase, Session, Stamped, TimelineEvent};
 use crate::study::facts::Facts;
-use crate::study::robot::{RobotFigures, RobotTally};
-use crate::study::trial::{Answered, Basis, Beliefs, Trial};
+use crate::study::robot::{RobotSummary, RobotTally};
+use crate::study::trial::{BeliefBasis, BeliefErrors, QuestionnaireAnswer, Trial};
 
 /// What a recording gives.
 #[derive(Debug)]
@@ -123,7 +123,7 @@ fn expected(kitchen: &Kitchen, state: crate::kitchen::State, estimate: &Dirichle
     let mut belief = Belief::of_truth(kitchen, state);
     for index in 0..kitchen.aspects.len() {
         let aspect = AspectId(index as u8);
-        belief.set(aspect, estimate.of(aspect).mean());
+        belief.set(aspect, estimate.aspect(aspect).mean());
     }
     belief
 }
@@ -187,7 +187,7 @@ pub fn read(
     trial.answers = answers;
     trial.wizard = (header.session.trial.condition == Condition::Wizard).then(|| hands.figures(follower).measures);
     if let Pass::Swept(sweeper) = &pass {
-        let is_known = basis == Some(Basis::Recorded);
+        let is_known = basis == Some(BeliefBasis::Recorded);
         trial.swept = if is_known { sweeper.swept() } else { Vec::new() };
     }
     if let [(_, of), (_, with)] = &lanes[..] {
@@ -202,12 +202,12 @@ pub fn read(
         raters: raters.as_ref(),
     };
     let rows = rows.finish(&follower.session, &known, &lanes, WINDOW);
-    trial.raters = raters.filter(|_| basis == Some(Basis::Raters));
-    Ok(Some((kitchen, RecordingAnalysis { trial, facts: Facts::of(&header, &follower.session), rows })))
+    trial.raters = raters.filter(|_| basis == Some(BeliefBasis::Raters));
+    Ok(Some((kitchen, RecordingAnalysis { trial, facts: Facts::from_session(&header, &follower.session), rows })))
 }
 
 /// What was sent, and in a wizard's trial beside it what the assistant would have said.
-fn lanes(pass: &mut Pass) -> Vec<(String, Vec<Said>)> {
+fn lanes(pass: &mut Pass) -> Vec<(String, Vec<CommunicationEvent>)> {
     if let Pass::Beside(watcher) = pass {
         watcher.finish();
         let lanes = watcher.comparison(true).lanes;
@@ -219,15 +219,15 @@ fn lanes(pass: &mut Pass) -> Vec<(String, Vec<Said>)> {
 }
 
 /// The signals that were shown.
-fn sent(session: &Session) -> Vec<Said> {
+fn sent(session: &Session) -> Vec<CommunicationEvent> {
     let mut press = 0;
     let mut said = Vec::new();
     for entry in &session.timeline {
         match &entry.what {
-            Happening::Press { agent: Agent::Human, .. } => press += 1,
-            Happening::Signal { signal, .. } => {
+            TimelineEvent::Press { agent: Agent::Human, .. } => press += 1,
+            TimelineEvent::Signal { signal, .. } => {
                 let content = CommunicationContent::Signal(signal.clone()).content(&session.kitchen);
-                said.push(Said { press, clock: clock_at(session, entry.time), content });
+                said.push(CommunicationEvent { press, clock: clock_at(session, entry.time), content });
             }
             _ => {}
         }
@@ -237,7 +237,7 @@ fn sent(session: &Session) -> Vec<Said> {
 
 /// What the first two raters by name say about a recording; nothing where there are not two.
 fn raters(log: &LogReader, follower: &Follower) -> FileResult<Option<[Codes; 2]>> {
-    let codable = Codable::of(&follower.session.kitchen, &follower.judged);
+    let codable = Codable::from_presses(&follower.session.kitchen, &follower.judged);
     let mut all = codes::read_all(log.folder(), &codable)?.into_values();
     Ok(all.next().zip(all.next()).map(|(one, other)| [one, other]))
 }
@@ -249,11 +249,11 @@ fn judged(
     follower: &Follower,
     by_estimate: Option<&[(u64, Cause)]>,
     raters: Option<&[Codes; 2]>,
-) -> (Vec<JudgedPress>, Option<Basis>) {
+) -> (Vec<JudgedPress>, Option<BeliefBasis>) {
     let mut judged = follower.judged.clone();
     let Some(estimated) = by_estimate else {
         let is_known = judged.iter().all(|press| press.belief_known);
-        return (judged, is_known.then_some(Basis::Recorded));
+        return (judged, is_known.then_some(BeliefBasis::Recorded));
     };
     let coded = |codes: &Codes| judged.iter().all(|press| !press.verdict.error || codes.0.contains_key(&press.seq));
     let raters = raters.filter(|raters| raters.iter().all(coded));
@@ -263,14 +263,14 @@ fn judged(
             None => estimated.iter().find(|(seq, _)| *seq == press.seq).map(|(_, cause)| *cause),
         };
     }
-    (judged, Some(if raters.is_some() { Basis::Raters } else { Basis::Estimate }))
+    (judged, Some(if raters.is_some() { BeliefBasis::Raters } else { BeliefBasis::Estimate }))
 }
 
 /// The cause that two raters agree on. Where both put an error down to a belief, it is about what the first of them says;
 /// where they differ, it is no belief related error.
 fn agreed(session: &Session, press: u64, [one, other]: &[Codes; 2]) -> Option<Cause> {
     let (a, b) = (one.0.get(&press)?, other.0.get(&press)?);
-    if a.kind() != Kind::Belief || b.kind() != Kind::Belief {
+    if a.kind() != CauseKind::Belief || b.kind() != CauseKind::Belief {
         return Some(Cause::Slip);
     }
     // In which state the press was met makes no difference to the place that it is about.
@@ -278,19 +278,19 @@ fn agreed(session: &Session, press: u64, [one, other]: &[Codes; 2]) -> Option<Ca
     Some(Cause::Belief { gain_nats: f64::NAN, target, with: None })
 }
 
-fn beliefs(follower: &Follower, judged: &[JudgedPress], basis: Basis) -> Beliefs {
+fn beliefs(follower: &Follower, judged: &[JudgedPress], basis: BeliefBasis) -> BeliefErrors {
     let count = |is: fn(Cause) -> bool| judged.iter().filter_map(|press| press.cause).filter(|&c| is(c)).count() as u64;
     let lengths = |sequences: &[Sequence]| sequences.iter().map(|sequence| sequence.length).collect();
     let all = sequences(judged);
     let recovery = |sequence: &Sequence| Some(since(&follower.session, sequence.began, sequence.recovered?));
-    Beliefs {
+    BeliefErrors {
         basis,
         errors: count(|cause| matches!(cause, Cause::Belief { .. })),
         of_two: count(|cause| matches!(cause, Cause::Belief { with: Some(_), .. })),
         lengths: lengths(&all),
         lengths_by_aspect: lengths(&sequences_by_target(judged)),
         recovery_s: all.iter().filter_map(recovery).collect(),
-        episodes: (basis == Basis::Recorded).then(|| follower.episodes.harmful().count() as u64),
+        episodes: (basis == BeliefBasis::Recorded).then(|| follower.episodes.harmful().count() as u64),
     }
 }
 
@@ -307,19 +307,19 @@ pub(super) fn sequence_errors(judged: &[JudgedPress]) -> Vec<(Sequence, Vec<usiz
 }
 
 /// The answers that were just confirmed.
-fn confirmed(session: &Session) -> Vec<Answered> {
+fn confirmed(session: &Session) -> Vec<QuestionnaireAnswer> {
     let Some((step, protocol)) = session.step() else { return Vec::new() };
     let phase = protocol.number.checked_sub(1).and_then(|index| step.phases.get(index));
     let Some(PhaseSpec::Questionnaire { questionnaire }) = phase else { return Vec::new() };
-    let answered = |(index, item): (usize, &crate::session::plan::Item)| Answered {
+    let answered = |(index, item): (usize, &crate::session::plan::Item)| QuestionnaireAnswer {
         questionnaire: questionnaire.name.clone(),
         item: item.id.clone(),
         text: item.text.clone(),
         about: item.about.clone(),
         reversed: item.reversed,
         answer: match protocol.answers.get(index).copied().flatten() {
-            Some(Answer::Rated(answer)) => Some(answer),
-            Some(Answer::Skipped) | None => None,
+            Some(ItemAnswer::Rated(answer)) => Some(answer),
+            Some(ItemAnswer::Skipped) | None => None,
         },
         points: questionnaire.scale.points,
     };
@@ -355,7 +355,7 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         left_out,
         ended: None,
         arm: spec.robot.arm,
-        robot: RobotFigures::default(),
+        robot: RobotSummary::default(),
         human_presses: u64::from(session.presses[Agent::Human.index()]),
         robot_presses: u64::from(session.presses[Agent::Robot.index()]),
         errors: follower.errors() as u64,

@@ -5,13 +5,13 @@ use serde::Serialize;
 use crate::analysis::follower::Follower;
 use crate::analysis::wizard_log::clock_at;
 use crate::base::time::SessionTime;
-use crate::edge::export::Rows;
+use crate::edge::export::TableRows;
 use crate::gaze::{MIN_CONFIDENCE, nearest_location};
 use crate::kitchen::{Agent, AspectId, Change, LocationId, Press};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
 use crate::measures::coding::{Code, Codes};
-use crate::measures::matching::{Kind, Likeness, Said, matched};
+use crate::measures::matching::{CommunicationEvent, CommunicationKind, MatchCriterion, matched};
 use crate::mind::BeliefWitness;
 use crate::mind::witness::{EstimateWitness, rounded};
 use crate::session::{Event, Session, Stamped};
@@ -32,7 +32,7 @@ struct Look {
 #[derive(Debug)]
 pub struct RowCollector {
     recording: String,
-    rows: [Rows; 4],
+    rows: [TableRows; 4],
     /// When each agent pressed last.
     pressed_at: [Option<SessionTime>; 2],
     /// Presses, of which those of the human are judged later.
@@ -92,7 +92,7 @@ impl RowCollector {
     pub fn new(recording: &str) -> RowCollector {
         RowCollector {
             recording: recording.to_string(),
-            rows: Table::OF_EVENTS.map(|_| Rows::default()),
+            rows: Table::OF_EVENTS.map(|_| TableRows::default()),
             pressed_at: [None; 2],
             actions: Vec::new(),
             witness: None,
@@ -221,7 +221,7 @@ impl RowCollector {
         mut self,
         session: &Session,
         known: &PressFacts,
-        lanes: &[(String, Vec<Said>)],
+        lanes: &[(String, Vec<CommunicationEvent>)],
         window: u32,
     ) -> [Vec<u8>; 4] {
         self.end_look(session);
@@ -233,12 +233,12 @@ impl RowCollector {
             self.write(Table::Actions, &row);
         }
         self.communications(session, lanes, window);
-        self.rows.map(Rows::into_bytes)
+        self.rows.map(TableRows::into_bytes)
     }
 
-    fn communications(&mut self, session: &Session, lanes: &[(String, Vec<Said>)], window: u32) {
+    fn communications(&mut self, session: &Session, lanes: &[(String, Vec<CommunicationEvent>)], window: u32) {
         let pairs = match lanes {
-            [(_, of), (_, with)] => Some(matched(of, with, window, Likeness::Strict)),
+            [(_, of), (_, with)] => Some(matched(of, with, window, MatchCriterion::Strict)),
             _ => None,
         };
         for (lane, (name, said)) in lanes.iter().enumerate() {
@@ -250,9 +250,9 @@ impl RowCollector {
                     time_s: rounded(said.clock.as_secs_f64()),
                     press: said.press,
                     kind: match said.content.kind {
-                        Kind::Recipe => "recipe",
-                        Kind::Highlight => "highlight",
-                        Kind::Proposal => "proposal",
+                        CommunicationKind::Recipe => "recipe",
+                        CommunicationKind::Highlight => "highlight",
+                        CommunicationKind::Proposal => "proposal",
                     },
                     target: said.content.target.map(|location| session.kitchen.location(location).name.clone()),
                     matched: pairs.as_ref().map(is_matched),

@@ -12,14 +12,14 @@ use crate::communication::planner::Planner;
 use crate::communication::recommendation::{SignalOption, aspects_told};
 use crate::communication::repeats::Repeats;
 use crate::communication::settings::AssistantSpec;
-use crate::communication::tom::Tom;
+use crate::communication::tom::TomConcept;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Change};
 use crate::measures::attribution::Cause;
 use crate::session::apply::ApplyError;
 use crate::session::{Applied, Event, Session, Stamped};
-use crate::study::prevention::{PressTruth, Sent, SequenceTruth, SpellTruth, Truth};
-use crate::study::roc::{CONCEPTS, LEAST_COST, Swept, parameters};
+use crate::study::prevention::{ConceptSignal, FalseBeliefTruth, PressTruth, SequenceTruth, TrialTruth};
+use crate::study::roc::{CONCEPTS, LEAST_COST, SweptTrial, parameters};
 
 /// A concept with one value of its parameter.
 #[derive(Debug)]
@@ -28,7 +28,7 @@ struct Voice {
     parameter: f64,
     /// What it has said.
     repeats: Repeats,
-    sent: Vec<Sent>,
+    sent: Vec<ConceptSignal>,
 }
 
 /// Follows a session, and asks after every press and order change, as the engine does.
@@ -36,7 +36,7 @@ struct Voice {
 pub struct ConceptSweep {
     pub follower: Follower,
     planner: Planner,
-    tom: Tom,
+    tom: TomConcept,
     cost: CostToGo,
     voices: Vec<Voice>,
     /// The newest event after which is asked, when all that follows at once has happened.
@@ -59,7 +59,7 @@ impl ConceptSweep {
         let speaking = CONCEPTS.into_iter().filter(|concept| *concept != ConceptName::Dev);
         ConceptSweep {
             planner: Planner::new(kitchen.clone(), &spec.human, assistant, session.seed()),
-            tom: Tom::new(kitchen, 0.0),
+            tom: TomConcept::new(kitchen, 0.0),
             follower: Follower::new(session, cost.clone()),
             cost,
             voices: speaking.flat_map(of_concept).collect(),
@@ -112,20 +112,20 @@ impl ConceptSweep {
             let best = options.iter().find(|option| allowed.contains(&option.signal));
             if let Some(option) = best.filter(|option| option.benefit > voice.parameter) {
                 voice.repeats.shown(kitchen, state, &option.signal);
-                voice.sent.push(Sent { time, press, aspects: aspects_told(kitchen, state, &option.signal) });
+                voice.sent.push(ConceptSignal { time, press, aspects: aspects_told(kitchen, state, &option.signal) });
             }
         }
     }
 
     /// What they would have done; call it after the last event.
-    pub fn swept(&self) -> Vec<Swept> {
+    pub fn swept(&self) -> Vec<SweptTrial> {
         let truth = truth(&self.follower);
-        let spoken = self.voices.iter().map(|voice| Swept {
+        let spoken = self.voices.iter().map(|voice| SweptTrial {
             concept: voice.concept,
             parameter: voice.parameter,
             count: truth.count_signals(&voice.sent),
         });
-        let proposed = parameters(ConceptName::Dev).into_iter().map(|parameter| Swept {
+        let proposed = parameters(ConceptName::Dev).into_iter().map(|parameter| SweptTrial {
             concept: ConceptName::Dev,
             parameter,
             count: truth.count_proposals(parameter as usize),
@@ -135,14 +135,14 @@ impl ConceptSweep {
 }
 
 /// What was true in a session that was followed to its end, where it is known what the human believed.
-fn truth(follower: &Follower) -> Truth {
+fn truth(follower: &Follower) -> TrialTruth {
     let kitchen = &follower.session.kitchen;
     let press = |press: &crate::measures::JudgedPress| PressTruth {
         time: press.time,
         error: press.verdict.error,
         related: matches!(press.cause, Some(Cause::Belief { .. })),
     };
-    let spell = |episode: &crate::measures::sequences::Episode| SpellTruth {
+    let spell = |episode: &crate::measures::sequences::Episode| FalseBeliefTruth {
         aspect: episode.aspect,
         began: episode.began,
         ended: episode.corrected,
@@ -152,7 +152,7 @@ fn truth(follower: &Follower) -> Truth {
         aspects: sequence.target.aspects(kitchen).collect(),
         errors: errors.into_iter().map(|index| follower.judged[index].time).collect(),
     };
-    Truth {
+    TrialTruth {
         presses: follower.judged.iter().map(press).collect(),
         spells: follower.episodes.all().map(spell).collect(),
         sequences: sequence_errors(&follower.judged).into_iter().map(sequence).collect(),

@@ -2,13 +2,13 @@
 
 use crate::base::words::count;
 use crate::session::event::EndReason;
-use crate::study::effect::Effect;
-use crate::study::figures::StudyFigures;
+use crate::study::effect::AssistanceEffect;
+use crate::study::figures::StudySummary;
 use crate::study::roc::EQUAL_SIGNALS;
-use crate::study::trial::Basis;
+use crate::study::trial::BeliefBasis;
 
 /// The figures for people, in lines.
-pub fn describe(figures: &StudyFigures) -> String {
+pub fn describe(figures: &StudySummary) -> String {
     let totals = &figures.totals;
     let percent = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{:.1} %", 100.0 * value));
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
@@ -34,7 +34,7 @@ pub fn describe(figures: &StudyFigures) -> String {
             number(totals.mean_sequence_length),
             number(totals.mean_sequence_length_by_aspect),
             number(totals.mean_recovery_s),
-            if totals.beliefs_from == Some(Basis::Estimate) { "; by the assistant's estimate alone" } else { "" },
+            if totals.beliefs_from == Some(BeliefBasis::Estimate) { "; by the assistant's estimate alone" } else { "" },
         ),
         _ => "belief related errors: not known\n".to_string(),
     };
@@ -101,7 +101,7 @@ pub fn describe(figures: &StudyFigures) -> String {
     text
 }
 
-fn of_effect(effect: &Effect) -> String {
+fn of_effect(effect: &AssistanceEffect) -> String {
     let (Some(test), Some(pearson)) = (effect.assistance(), effect.pearson) else {
         let [with, without] = effect.groups;
         return format!("effect of assistance: not to be told from {} pairs of trials\n", with + without);

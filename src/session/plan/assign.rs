@@ -10,7 +10,7 @@ use crate::session::settings::Condition;
 
 /// A starting group: an order of the conditions.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Group {
+pub struct StartingGroup {
     /// "AB": the first condition of the plan comes first.
     pub name: String,
     /// The condition of each trial.
@@ -36,7 +36,7 @@ pub fn groups(count: usize) -> Vec<Vec<usize>> {
 
 impl PlanSpec {
     /// The group of the participant with this index: a function of plan and seed alone.
-    pub fn group(&self, seed: u64, participant: usize) -> Group {
+    pub fn group(&self, seed: u64, participant: usize) -> StartingGroup {
         let orders = groups(self.conditions.len());
         let block = self.block.map_or(2 * orders.len(), |block| block as usize);
         let mut places: Vec<usize> = (0..block).map(|place| place % orders.len()).collect();
@@ -46,7 +46,7 @@ impl PlanSpec {
             places.swap(last, random.random_range(0..=last));
         }
         let order = &orders[places[participant % block]];
-        Group {
+        StartingGroup {
             name: order.iter().map(|&index| char::from(b'A' + index as u8)).collect(),
             conditions: order.iter().map(|&index| self.conditions[index]).collect(),
         }

@@ -9,10 +9,10 @@ mod step;
 use serde::{Deserialize, Serialize};
 
 use super::settings::{Condition, SettingError, is_code};
-pub use assign::{Group, groups};
-pub use progress::{Made, Next, Outcome, Progress, Stand};
+pub use assign::{StartingGroup, groups};
+pub use progress::{NextRecording, PlanRecording, Progress, RecordingOutcome, SlotProgress};
 pub use questionnaire::{Item, Questionnaire, Scale};
-pub use step::{Criterion, PhaseSpec, Slot, StepSpec, Study, Wanted};
+pub use step::{Criterion, PhaseSpec, Slot, StepSpec, Study, WantedRecording};
 
 /// More conditions give more orders than a study has participants.
 const MAX_CONDITIONS: usize = 4;

@@ -3,12 +3,12 @@
 
 use serde::Serialize;
 
-use super::{Slot, StepSpec, Study, Wanted};
+use super::{Slot, StepSpec, Study, WantedRecording};
 
 /// How a recording ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "is", rename_all = "snake_case")]
-pub enum Outcome {
+pub enum RecordingOutcome {
     /// Everything was done that it is for.
     Complete,
     /// It was cut, or left before everything was done: it can be continued.
@@ -21,7 +21,7 @@ pub enum Outcome {
 
 /// What a recording of a plan says of itself, all its parts together.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Made {
+pub struct PlanRecording {
     /// The name of its last folder.
     pub recording: String,
     /// The participant's code.
@@ -33,13 +33,13 @@ pub struct Made {
     pub instructed: bool,
     /// The presses of both agents in its trial.
     pub presses: u32,
-    pub outcome: Outcome,
+    pub outcome: RecordingOutcome,
 }
 
 /// What comes next for a participant.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "is", rename_all = "snake_case")]
-pub enum Next {
+pub enum NextRecording {
     /// A new recording.
     Begin {
         slot: usize,
@@ -54,19 +54,19 @@ pub enum Next {
     Finished,
 }
 
-impl Next {
+impl NextRecording {
     /// The place in the series, from 0; after it, when everything is done.
     pub fn slot(&self) -> Option<usize> {
         match self {
-            Next::Begin { slot, .. } | Next::Choose { slot, .. } => Some(*slot),
-            Next::Finished => None,
+            NextRecording::Begin { slot, .. } | NextRecording::Choose { slot, .. } => Some(*slot),
+            NextRecording::Finished => None,
         }
     }
 }
 
 /// A place of the series with what was made for it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Stand {
+pub struct SlotProgress {
     #[serde(flatten)]
     pub slot: Slot,
     pub is_done: bool,
@@ -81,7 +81,7 @@ pub struct Attempt {
     /// 1 the first.
     pub attempt: u32,
     pub presses: u32,
-    pub outcome: Outcome,
+    pub outcome: RecordingOutcome,
     /// It was recorded under another version of the plan.
     pub other_version: bool,
 }
@@ -97,8 +97,8 @@ pub struct Progress {
     pub consent: bool,
     #[serde(skip)]
     pub instructed: bool,
-    pub steps: Vec<Stand>,
-    pub next: Next,
+    pub steps: Vec<SlotProgress>,
+    pub next: NextRecording,
 }
 
 impl Progress {
@@ -106,31 +106,33 @@ impl Progress {
     ///
     /// # Errors
     /// In words: a recording that this plan would not have asked for.
-    pub fn of(study: &Study, participant: usize, made: &[Made]) -> Result<Progress, String> {
+    pub fn from_recordings(study: &Study, participant: usize, made: &[PlanRecording]) -> Result<Progress, String> {
         let code = study.plan.code(participant);
         let group = study.group(participant).name;
-        let own: Vec<&Made> = made.iter().filter(|made| made.code == code).collect();
+        let own: Vec<&PlanRecording> = made.iter().filter(|made| made.code == code).collect();
         if let Some(other) = own.iter().find(|made| made.step.group != group) {
             let (recording, recorded) = (&other.recording, &other.step.group);
             return Err(format!("{code} was in group {recorded} in {recording}, and is in {group} now"));
         }
         let slots = study.slots(participant);
-        let steps: Vec<Stand> = slots.iter().map(|slot| Stand::of(study, *slot, &own)).collect();
-        let next = steps.iter().enumerate().find_map(|(index, stand)| stand.next(index)).unwrap_or(Next::Finished);
+        let steps: Vec<SlotProgress> =
+            slots.iter().map(|slot| SlotProgress::from_recordings(study, *slot, &own)).collect();
+        let next =
+            steps.iter().enumerate().find_map(|(index, stand)| stand.next(index)).unwrap_or(NextRecording::Finished);
         let consent = own.iter().any(|made| made.consent);
         let instructed = own.iter().any(|made| made.instructed);
         Ok(Progress { code, participant, group, consent, instructed, steps, next })
     }
 
     /// The recording that is to be made anew at a place.
-    pub fn wanted(&self, slot: usize, attempt: u32) -> Wanted {
-        Wanted { participant: self.participant, slot, attempt, instructed: self.instructed }
+    pub fn wanted(&self, slot: usize, attempt: u32) -> WantedRecording {
+        WantedRecording { participant: self.participant, slot, attempt, instructed: self.instructed }
     }
 
     /// What comes next is this place again, whatever was made for it.
     pub fn redo(&mut self, slot: Option<usize>) {
         if let Some((slot, stand)) = slot.and_then(|slot| Some((slot, self.steps.get(slot)?))) {
-            self.next = Next::Begin { slot, attempt: stand.attempts() + 1 };
+            self.next = NextRecording::Begin { slot, attempt: stand.attempts() + 1 };
         }
     }
 
@@ -140,11 +142,12 @@ impl Progress {
     }
 }
 
-impl Stand {
-    fn of(study: &Study, slot: Slot, own: &[&Made]) -> Stand {
-        let mut here: Vec<&Made> = own.iter().filter(|made| made.step.period == slot.period).copied().collect();
+impl SlotProgress {
+    fn from_recordings(study: &Study, slot: Slot, own: &[&PlanRecording]) -> SlotProgress {
+        let mut here: Vec<&PlanRecording> =
+            own.iter().filter(|made| made.step.period == slot.period).copied().collect();
         here.sort_by(|a, b| (a.step.attempt, &a.recording).cmp(&(b.step.attempt, &b.recording)));
-        let attempt = |made: &&Made| Attempt {
+        let attempt = |made: &&PlanRecording| Attempt {
             recording: made.recording.clone(),
             attempt: made.step.attempt,
             presses: made.presses,
@@ -152,9 +155,10 @@ impl Stand {
             other_version: made.step.digest != study.digest,
         };
         // A later attempt was asked for by somebody who knew the earlier ones.
-        let is_done =
-            here.last().is_some_and(|made| matches!(made.outcome, Outcome::Complete | Outcome::Excluded { .. }));
-        Stand { slot, is_done, recordings: here.iter().map(attempt).collect() }
+        let is_done = here
+            .last()
+            .is_some_and(|made| matches!(made.outcome, RecordingOutcome::Complete | RecordingOutcome::Excluded { .. }));
+        SlotProgress { slot, is_done, recordings: here.iter().map(attempt).collect() }
     }
 
     /// The number of the last attempt.
@@ -163,14 +167,14 @@ impl Stand {
     }
 
     /// What has to be done here; nothing if it is done.
-    fn next(&self, slot: usize) -> Option<Next> {
+    fn next(&self, slot: usize) -> Option<NextRecording> {
         let attempt = self.attempts() + 1;
         match self.recordings.last() {
             _ if self.is_done => None,
-            Some(last) if last.outcome == Outcome::Open => {
-                Some(Next::Choose { recording: last.recording.clone(), slot, attempt })
+            Some(last) if last.outcome == RecordingOutcome::Open => {
+                Some(NextRecording::Choose { recording: last.recording.clone(), slot, attempt })
             }
-            _ => Some(Next::Begin { slot, attempt }),
+            _ => Some(NextRecording::Begin { slot, attempt }),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Group, PlanSpec, Questionnaire};
+use super::{PlanSpec, Questionnaire, StartingGroup};
 use crate::base::rng::mix;
 use crate::session::protocol::StudyPhase;
 use crate::session::settings::{Condition, SessionSpec};
@@ -114,7 +114,7 @@ pub struct Study {
 
 /// Which recording of a study is wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wanted {
+pub struct WantedRecording {
     /// The participant's place in the plan, from 0.
     pub participant: usize,
     /// The place in its series, from 0.
@@ -136,7 +136,7 @@ impl Study {
         Some(Study { plan, questionnaires, session, digest })
     }
 
-    pub fn group(&self, participant: usize) -> Group {
+    pub fn group(&self, participant: usize) -> StartingGroup {
         self.plan.group(self.session.seed, participant)
     }
 
@@ -149,7 +149,7 @@ impl Study {
     }
 
     /// The settings of a recording with people, and the number of its trial.
-    pub fn settings(&self, wanted: Wanted) -> (SessionSpec, u64) {
+    pub fn settings(&self, wanted: WantedRecording) -> (SessionSpec, u64) {
         let slots = self.slots(wanted.participant);
         let slot = slots[wanted.slot];
         let mut spec = self.session.clone();
@@ -180,7 +180,7 @@ impl Study {
     pub fn simulated(&self, participant: usize, period: u32) -> (SessionSpec, u64) {
         let slots = self.slots(participant);
         let slot = slots.iter().position(|slot| slot.period == Some(period)).unwrap_or(0);
-        let (mut spec, trial) = self.settings(Wanted { participant, slot, attempt: 1, instructed: true });
+        let (mut spec, trial) = self.settings(WantedRecording { participant, slot, attempt: 1, instructed: true });
         spec.trial.condition = spec.unattended(spec.trial.condition);
         if let Some(step) = &mut spec.step {
             step.phases = vec![PhaseSpec::Trial];
@@ -188,7 +188,7 @@ impl Study {
         (spec, trial)
     }
 
-    fn phases(&self, slot: Slot, wanted: Wanted) -> Vec<PhaseSpec> {
+    fn phases(&self, slot: Slot, wanted: WantedRecording) -> Vec<PhaseSpec> {
         let mut phases = Vec::new();
         if !wanted.instructed && !self.plan.instruction.is_empty() {
             phases.push(PhaseSpec::Instruction { steps: self.plan.instruction.clone() });
@@ -212,7 +212,7 @@ impl Study {
 }
 
 /// A number of its own for every recording of a plan, which says in decimals which one it is: participant, slot, attempt.
-fn trial_number(wanted: Wanted) -> u64 {
+fn trial_number(wanted: WantedRecording) -> u64 {
     (wanted.participant as u64 + 1) * 1_000_000 + wanted.slot as u64 * 10_000 + u64::from(wanted.attempt)
 }
 

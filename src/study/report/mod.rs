@@ -5,7 +5,7 @@ mod robot;
 mod sections;
 
 use super::facts::Facts;
-use super::figures::StudyFigures;
+use super::figures::StudySummary;
 use super::svg::{escaped, minus};
 use super::tables::Table;
 use super::trial::Trial;
@@ -14,7 +14,7 @@ use super::trial::Trial;
 const STYLE: &str = include_str!("style.css");
 
 /// The page, as HTML. Beside it are files of these tables.
-pub fn page(figures: &StudyFigures, trials: &[Trial], facts: &Facts, tables: &[Table]) -> String {
+pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[Table]) -> String {
     let body = [
         sections::summary(figures),
         results::beside_the_paper(figures),

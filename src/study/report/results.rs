@@ -3,15 +3,15 @@
 use super::{count, figure, keys, number, p_sentence, p_value, percent, range, section, table};
 use crate::measures::wizard::WizardMeasures;
 use crate::study::charts;
-use crate::study::effect::Effect;
-use crate::study::figures::StudyFigures;
+use crate::study::effect::AssistanceEffect;
+use crate::study::figures::StudySummary;
 use crate::study::roc::EQUAL_SIGNALS;
 use crate::study::statistics::FTest;
 use crate::study::svg::escaped;
 use crate::study::trial::Trial;
 
 /// What the paper found, beside what was found here.
-pub(super) fn beside_the_paper(figures: &StudyFigures) -> String {
+pub(super) fn beside_the_paper(figures: &StudySummary) -> String {
     let totals = &figures.totals;
     let row = |what: &str, here: String, paper: &str| vec![what.to_string(), here, paper.to_string()];
     let per_trial = (figures.trials > 0).then(|| totals.actions as f64 / figures.trials as f64);
@@ -44,7 +44,7 @@ pub(super) fn beside_the_paper(figures: &StudyFigures) -> String {
 }
 
 /// The effect of assistance.
-pub(super) fn assistance(figures: &StudyFigures, trials: &[Trial]) -> String {
+pub(super) fn assistance(figures: &StudySummary, trials: &[Trial]) -> String {
     let key = keys(&[("first", "assisted first"), ("second", "unassisted first")]);
     let of_conditions = keys(&[("unassisted", "unassisted"), ("assisted", "assisted")]);
     let pictures = figure(
@@ -94,7 +94,7 @@ pub(super) fn assistance(figures: &StudyFigures, trials: &[Trial]) -> String {
     section("Does assistance help?", &text)
 }
 
-fn conditions(figures: &StudyFigures) -> String {
+fn conditions(figures: &StudySummary) -> String {
     let rows: Vec<Vec<String>> = figures
         .conditions
         .iter()
@@ -134,7 +134,7 @@ fn conditions(figures: &StudyFigures) -> String {
 }
 
 /// What the first effect says, in a sentence.
-fn in_words(effect: &Effect) -> String {
+fn in_words(effect: &AssistanceEffect) -> String {
     let (Some(reduction), Some(test)) = (effect.reduction, effect.assistance()) else { return String::new() };
     let [estimate, low, high] = [reduction.estimate, reduction.low, reduction.high].map(|value| 100.0 * value);
     let interval = match low.is_finite() && high.is_finite() {
@@ -152,7 +152,7 @@ fn in_words(effect: &Effect) -> String {
     )
 }
 
-fn effect_row(effect: &Effect) -> Vec<String> {
+fn effect_row(effect: &AssistanceEffect) -> Vec<String> {
     let test = effect.assistance();
     let (reduction, digits) = (effect.reduction, effect.measure.digits());
     let interval = reduction.map_or("\u{2013}".to_string(), |found| {
@@ -174,7 +174,7 @@ fn effect_row(effect: &Effect) -> Vec<String> {
 }
 
 /// The whole analysis of variance, in both codings.
-fn anova(effect: &Effect) -> String {
+fn anova(effect: &AssistanceEffect) -> String {
     let row = |what: &str, test: Option<FTest>| {
         vec![
             what.to_string(),
@@ -205,7 +205,7 @@ fn anova(effect: &Effect) -> String {
 }
 
 /// The comparison of communication concepts.
-pub(super) fn concepts(figures: &StudyFigures) -> String {
+pub(super) fn concepts(figures: &StudySummary) -> String {
     let key = keys(&[("tom-com", "ToM-Com"), ("tom", "ToM"), ("dev", "DEV")]);
     let pictures = figure(
         charts::roc(figures),
@@ -272,10 +272,10 @@ fn banded(value: Option<f64>, low: Option<f64>, high: Option<f64>) -> String {
 }
 
 /// Wizard and assistant.
-pub(super) fn similarity(figures: &StudyFigures) -> String {
+pub(super) fn similarity(figures: &StudySummary) -> String {
     let mut text = String::new();
     if let Some(found) = &figures.similarity {
-        let share = |what: &str, level: &crate::measures::matching::Level, chance: Option<f64>| {
+        let share = |what: &str, level: &crate::measures::matching::MatchShares, chance: Option<f64>| {
             let [recall, precision, f1] = [level.recall, level.precision, level.f1].map(|value| number(value, 2));
             vec![what.to_string(), recall, number(chance, 2), precision, f1]
         };
@@ -321,7 +321,7 @@ pub(super) fn similarity(figures: &StudyFigures) -> String {
 }
 
 /// What keeps the wizard's signals from having a match; of participants who tell what they believed.
-fn limits(figures: &StudyFigures, wizard: &WizardMeasures) -> String {
+fn limits(figures: &StudySummary, wizard: &WizardMeasures) -> String {
     let (Some(late), Some(wrong), Some(needless)) = (wizard.late, wizard.wrong_targets, wizard.needless) else {
         return String::new();
     };
@@ -336,7 +336,7 @@ fn limits(figures: &StudyFigures, wizard: &WizardMeasures) -> String {
 }
 
 /// What participants said.
-pub(super) fn people(figures: &StudyFigures) -> String {
+pub(super) fn people(figures: &StudySummary) -> String {
     let mut text = String::new();
     if let Some(found) = &figures.acceptance {
         text += &format!(

@@ -3,8 +3,8 @@
 use super::{count, number, section, table};
 use crate::robot::AbortReason;
 use crate::session::settings::ArmKind;
-use crate::study::figures::StudyFigures;
-use crate::study::robot::{ArmFigures, ArmGroup};
+use crate::study::figures::StudySummary;
+use crate::study::robot::{ArmGroup, ArmSummary};
 
 /// An arm in words.
 pub(super) fn arm(kind: ArmKind) -> &'static str {
@@ -15,7 +15,7 @@ pub(super) fn arm(kind: ArmKind) -> &'static str {
 }
 
 /// A table with a column for each kind of arm.
-pub(super) fn robot(figures: &StudyFigures) -> String {
+pub(super) fn robot(figures: &StudySummary) -> String {
     let groups = &figures.robot;
     if groups.is_empty() {
         return String::new();
@@ -23,8 +23,8 @@ pub(super) fn robot(figures: &StudyFigures) -> String {
     let row = |what: &str, of: &dyn Fn(&ArmGroup) -> String| {
         std::iter::once(what.to_string()).chain(groups.iter().map(of)).collect::<Vec<String>>()
     };
-    let felt = |what: &str, of: fn(&ArmFigures) -> u64| row(what, &|group| count(group.robot.arm.as_ref().map(of)));
-    let seconds = |what: &str, of: fn(&ArmFigures) -> Option<f64>| {
+    let felt = |what: &str, of: fn(&ArmSummary) -> u64| row(what, &|group| count(group.robot.arm.as_ref().map(of)));
+    let seconds = |what: &str, of: fn(&ArmSummary) -> Option<f64>| {
         row(what, &|group| number(group.robot.arm.as_ref().and_then(of), 1))
     };
     let did = |what: &str, of: fn(&ArmGroup) -> u64| row(what, &|group| of(group).to_string());

@@ -6,14 +6,14 @@ use crate::session::event::EndReason;
 use crate::session::settings::Condition;
 use crate::study::definitions::DEFINITIONS;
 use crate::study::facts::Facts;
-use crate::study::figures::StudyFigures;
+use crate::study::figures::StudySummary;
 use crate::study::robot::ArmGroup;
 use crate::study::svg::escaped;
 use crate::study::tables::Table;
-use crate::study::trial::{Basis, Trial};
+use crate::study::trial::{BeliefBasis, Trial};
 
 /// What it is about, and the main figures.
-pub(super) fn summary(figures: &StudyFigures) -> String {
+pub(super) fn summary(figures: &StudySummary) -> String {
     let totals = &figures.totals;
     let mut text = format!(
         "<p class=\"lead\">{} of {}, {} recorded presses.</p>\n",
@@ -25,7 +25,7 @@ pub(super) fn summary(figures: &StudyFigures) -> String {
         text += "<p class=\"warning\">Participants are simulated. Their errors, beliefs and presses are those of a program that \
                  is there to try machinery and parameters. Nothing here is evidence about people.</p>\n";
     }
-    if totals.beliefs_from == Some(Basis::Estimate) {
+    if totals.beliefs_from == Some(BeliefBasis::Estimate) {
         text += "<p class=\"warning\">What participants believed is known only as the assistant's estimate. Figures that rest on \
                  it, such as the share of belief related errors, need the codes of two raters to be more than that.</p>\n";
     }
@@ -62,7 +62,7 @@ pub(super) fn summary(figures: &StudyFigures) -> String {
 const MOST_TRIALS: usize = 60;
 
 /// Every trial, and those that are left out with the reasons.
-pub(super) fn trials(figures: &StudyFigures, trials: &[Trial]) -> String {
+pub(super) fn trials(figures: &StudySummary, trials: &[Trial]) -> String {
     let row = |trial: &Trial| {
         vec![
             escaped(&trial.participant),
@@ -140,7 +140,7 @@ pub(super) fn condition(condition: Condition) -> &'static str {
 }
 
 /// How it was done, from what the recordings say.
-pub(super) fn methods(figures: &StudyFigures, facts: &Facts) -> String {
+pub(super) fn methods(figures: &StudySummary, facts: &Facts) -> String {
     let all = |key: &str| facts.all(key).map_or("unknown".to_string(), |text| escaped(&text));
     let planned = facts.all("plan").map_or(" without a plan".to_string(), |plan| {
         format!(
@@ -196,10 +196,11 @@ pub(super) fn methods(figures: &StudyFigures, facts: &Facts) -> String {
             false => " and the estimate of beliefs",
         },
         match figures.totals.beliefs_from {
-            Some(Basis::Recorded) =>
+            Some(BeliefBasis::Recorded) =>
                 "Why presses were errors was judged by what the simulated participants recorded of their beliefs.",
-            Some(Basis::Raters) => "Why presses were errors was coded by two raters.",
-            Some(Basis::Estimate) => "Why presses were errors was judged by the assistant's estimate of the beliefs.",
+            Some(BeliefBasis::Raters) => "Why presses were errors was coded by two raters.",
+            Some(BeliefBasis::Estimate) =>
+                "Why presses were errors was judged by the assistant's estimate of the beliefs.",
             None => "Why presses were errors is not known for all trials.",
         }
     );
@@ -207,7 +208,7 @@ pub(super) fn methods(figures: &StudyFigures, facts: &Facts) -> String {
 }
 
 /// How many trials ended how, in a sentence.
-fn endings(figures: &StudyFigures) -> String {
+fn endings(figures: &StudySummary) -> String {
     let one = |(reason, &count): (&EndReason, &u64)| {
         let how = match reason {
             EndReason::Presses => "with the presses",
@@ -230,7 +231,7 @@ fn endings(figures: &StudyFigures) -> String {
 }
 
 /// With which arms, in a sentence.
-fn arms(figures: &StudyFigures) -> String {
+fn arms(figures: &StudySummary) -> String {
     let trials = |group: &ArmGroup| {
         format!("{} in {}", super::robot::arm(group.kind), words::count(group.trials, "trial", "trials"))
     };

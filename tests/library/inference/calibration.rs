@@ -102,7 +102,8 @@ fn what_is_called_likely_is_held_as_often() {
             }
             cost = world.cost;
         }
-        let [found, of_most] = [named, held_most].map(|called| Calibration::of(called, [0.05, 0.95], BINS));
+        let [found, of_most] =
+            [named, held_most].map(|called| Calibration::from_predictions(called, [0.05, 0.95], BINS));
         let [ece, ece_of_most] = [&found, &of_most].map(|found| found.ece.expect("predictions"));
         println!(
             "{layout}, {LOOKED_AT} humans asked once about each aspect: expected calibration error {ece:.4} ({ece_of_most:.4} \

@@ -13,9 +13,9 @@ use tomcom::kitchen::{Agent, AspectId, Kitchen};
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, Observed};
-use tomcom::mind::reference::people::People;
-use tomcom::mind::reference::person::Person;
-use tomcom::mind::reference::sight::Sight;
+use tomcom::mind::reference::people::Particles;
+use tomcom::mind::reference::person::Particle;
+use tomcom::mind::reference::sight::GazeFollower;
 
 /// The grid has at most so many nodes, …
 const MOST_NODES: usize = 40_000;
@@ -36,8 +36,8 @@ pub struct GridFilter {
     kitchen: Arc<Kitchen>,
     model: HumanModel,
     /// On the grid, everybody thinks every press of the robot through.
-    people: People,
-    sight: Sight,
+    people: Particles,
+    sight: GazeFollower,
     looks: Vec<Look>,
     pub belief: DirichletBelief,
     /// The largest grid so far.
@@ -48,11 +48,11 @@ impl GridFilter {
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel) -> GridFilter {
         let mut thoughtful = model.clone();
         thoughtful.transition.foresight = 1.0;
-        let people = People::new(kitchen.clone(), thoughtful);
+        let people = Particles::new(kitchen.clone(), thoughtful);
         let belief = people.prior.clone();
         let places = belief.aspects.iter().take(kitchen.locations.len());
         let looks = places.map(|of| Look { before: of.clone(), unread: 1.0, survived: 1.0 }).collect();
-        GridFilter { kitchen, people, model, sight: Sight::default(), looks, belief, nodes: 0 }
+        GridFilter { kitchen, people, model, sight: GazeFollower::default(), looks, belief, nodes: 0 }
     }
 
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
@@ -108,7 +108,7 @@ impl GridFilter {
 }
 
 /// Explicit beliefs on the grid of an estimate, and their weights.
-fn grid(kitchen: &Kitchen, belief: &DirichletBelief) -> (Vec<Person>, Vec<f64>) {
+fn grid(kitchen: &Kitchen, belief: &DirichletBelief) -> (Vec<Particle>, Vec<f64>) {
     let mut fixed_below = 1e-7;
     let (supports, axes, at_once) = loop {
         let supports: Vec<Vec<usize>> = belief.aspects.iter().map(|of| support(of, fixed_below)).collect();
@@ -148,7 +148,7 @@ fn grid(kitchen: &Kitchen, belief: &DirichletBelief) -> (Vec<Person>, Vec<f64>) 
                     axis.nodes[at].0
                 })
                 .collect();
-            people.push(Person { of: broken(&mean, &supports, &shares), read: vec![false; kitchen.locations.len()] });
+            people.push(Particle { of: broken(&mean, &supports, &shares), read: vec![false; kitchen.locations.len()] });
             weights.push(weight);
         }
     }

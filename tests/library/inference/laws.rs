@@ -64,7 +64,7 @@ impl Bench {
     fn p(&self, aspect: &str, label: &str) -> f64 {
         let aspect = self.aspect(aspect);
         let value = self.kitchen.aspects[aspect.index()].labels.iter().position(|other| other == label);
-        self.filter.belief().of(aspect).mean()[value.expect("a value")]
+        self.filter.belief().aspect(aspect).mean()[value.expect("a value")]
     }
 
     fn order(&mut self, seconds: f64, order: &str, dish: &str) {
@@ -249,7 +249,7 @@ fn a_long_look_ends_in_the_confusion_matrix_and_elsewhere_nothing_changes() {
     let [right, alike] = [bench.p("robot_hand", "salmon raw"), bench.p("robot_hand", "tuna raw")];
     assert!((right - 0.95).abs() < 1e-3 && (alike - 0.04).abs() < 1e-3, "{right} {alike}");
     let far = bench.aspect("order_2");
-    let moved = before.of(far).mean()[0] - bench.filter.belief().of(far).mean()[0];
+    let moved = before.aspect(far).mean()[0] - bench.filter.belief().aspect(far).mean()[0];
     assert!(moved.abs() < 1e-6, "order 2 is {moved} otherwise");
 }
 
@@ -362,7 +362,7 @@ fn an_unseen_press_of_the_robot_makes_uncertain_what_its_policy_may_change_and_n
     assert!(may > 0.6 && empty < 0.25, "in its hand is what it may take: {may}, {empty}");
     assert!(bench.p("robot_hand", "salmon maki") < 0.01);
     let counter = bench.aspect("counter");
-    let change = (before.of(counter).mean()[0] - bench.filter.belief().of(counter).mean()[0]).abs();
+    let change = (before.aspect(counter).mean()[0] - bench.filter.belief().aspect(counter).mean()[0]).abs();
     assert!(change < 0.05, "the counter hardly: {change}");
 }
 

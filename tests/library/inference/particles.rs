@@ -9,10 +9,10 @@ use tomcom::kitchen::Kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, Observed};
-use tomcom::mind::reference::people::People;
+use tomcom::mind::reference::people::Particles;
 
 pub struct ParticleFilter {
-    pub people: People,
+    pub people: Particles,
     pub weights: Vec<f64>,
     count: usize,
     chance: Stream,
@@ -20,7 +20,7 @@ pub struct ParticleFilter {
 
 impl ParticleFilter {
     pub fn new(kitchen: &Arc<Kitchen>, model: &HumanModel, count: usize, seed: u64, index: u64) -> ParticleFilter {
-        let people = People::new(kitchen.clone(), model.clone());
+        let people = Particles::new(kitchen.clone(), model.clone());
         ParticleFilter { people, weights: Vec::new(), count, chance: stream(seed, "particles", index) }
     }
 

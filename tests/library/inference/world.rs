@@ -13,7 +13,7 @@ use tomcom::kitchen::cost_to_go::{CostToGo, Fidelity};
 use tomcom::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, Observed};
-use tomcom::mind::reference::people::People;
+use tomcom::mind::reference::people::Particles;
 use tomcom::mind::reference::person::pick;
 use tomcom::robot::policy;
 
@@ -175,14 +175,14 @@ impl World {
 
 /// A human who is simulated from the model.
 pub struct Human {
-    pub people: People,
+    pub people: Particles,
     model: HumanModel,
     chance: Stream,
 }
 
 impl Human {
     pub fn new(kitchen: &Arc<Kitchen>, model: &HumanModel, seed: u64, index: u64) -> Human {
-        let people = People::new(kitchen.clone(), model.clone());
+        let people = Particles::new(kitchen.clone(), model.clone());
         Human { people, model: model.clone(), chance: stream(seed, "human of the model", index) }
     }
 

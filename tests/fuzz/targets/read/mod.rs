@@ -11,7 +11,7 @@ use tomcom::edge::key_file::key_map;
 use tomcom::edge::log::LogReader;
 use tomcom::edge::parse::parse;
 use tomcom::edge::pupil::message;
-use tomcom::edge::pupil::zmtp::Inbox;
+use tomcom::edge::pupil::zmtp::FrameAssembler;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::mind::model::HumanModel;
 use tomcom::session::SessionSpec;
@@ -64,7 +64,7 @@ pub fn read(data: &[u8]) {
 
 /// What a sender of frames may send, in pieces.
 fn frames(bytes: &[u8]) {
-    let mut inbox = Inbox::default();
+    let mut inbox = FrameAssembler::default();
     for piece in bytes.chunks(7) {
         inbox.push(piece);
         loop {

@@ -17,14 +17,14 @@
 //! - A **communication concept** ([`communication::concept`]) decides from state and belief which signal to send, if any. The
 //!   **planner** ([`communication::planner::Planner`]) compares paired rollouts with and without each signal: a signal is worth
 //!   sending if it saves more presses than it costs.
-//! - A **session** ([`session::Session`]) is its event log. [`session::apply`] is the only way to change one. The **engine**
+//! - A **session** ([`session::Session`]) is its event log. [`session::apply()`] is the only way to change one. The **engine**
 //!   ([`run::engine::Engine`]) raises the events of robot, simulated participant and clock; who runs it tells the time.
 //!
 //! # The rooms
 //!
 //! Imports go one way, from right to left: [`base`], [`kitchen`], [`robot`] and [`gaze`], [`mind`], [`measures`],
-//! [`communication`], [`participant`], [`wizard`] and [`arm`], [`session`]; then, as Cargo features ask for them, `console`,
-//! `study`, `display`, `scene`, `edge`; then [`run`], and `cli`. ARCHITECTURE.md says what each holds and must not know.
+//! [`communication`], [`participant`], [`wizard`] and [`arm`], [`session`], [`history`], [`analysis`]; then, as Cargo features ask
+//! for them, `console`, `study`, `display`, `scene`, `edge`; then [`run`], and `cli`. ARCHITECTURE.md says what each holds and must not know.
 //!
 //! # Features
 //!

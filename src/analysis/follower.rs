@@ -104,7 +104,7 @@ impl Follower {
     /// Moves on by one event.
     ///
     /// # Errors
-    /// Those of [`apply`].
+    /// Those of [`apply()`].
     pub fn apply(&mut self, stamped: &Stamped) -> Result<Applied, ApplyError> {
         let applied = apply(&mut self.session, stamped)?;
         match (&stamped.event, applied.change) {

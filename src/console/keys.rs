@@ -1,6 +1,6 @@
 //! The one table of keys: it makes the bindings, the footer, the help and the badges at the things in the kitchen.
 //!
-//! Letters of signals and buttons stand in the layout, all other keys in [`super::table`]; a key file
+//! Letters of signals and buttons stand in the layout, all other keys in `super::table`; a key file
 //! ([`super::keymap`]) may change both. The space bar is the robot stop in every view and layer, whatever a file says.
 
 use std::fmt;

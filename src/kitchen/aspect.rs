@@ -34,7 +34,7 @@ pub enum AspectKind {
 /// One state aspect and its possible values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aspect {
-    /// The location's name, or "recipe of <dish>".
+    /// The location's name, or "recipe of DISH".
     pub name: String,
     pub kind: AspectKind,
     /// The possible values, as codes (see [`AspectKind`]).

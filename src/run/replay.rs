@@ -1,4 +1,4 @@
-//! Replays a recording: feeds its events through the same [`apply`](crate::session::apply) as the live session.
+//! Replays a recording: feeds its events through the same [`apply`](crate::session::apply()) as the live session.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

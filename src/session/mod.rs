@@ -1,4 +1,4 @@
-//! A session: its settings, its state, and [`apply`], the one function through which a live run, a replay and an analysis
+//! A session: its settings, its state, and [`apply()`], the one function through which a live run, a replay and an analysis
 //! move it on. It knows no clock, no file and no chance.
 
 pub mod admit;

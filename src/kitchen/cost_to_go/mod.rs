@@ -1,10 +1,10 @@
 //! Cost to go: the least number of presses, of both agents one after another, until the orders are served.
 //!
-//! It is computed backwards from the goal. For every part of the wanted stacks the tables of [`journeys`] say how many presses
-//! it is away from the board, from every place and for everything that may be in the way. An [`assign::Assignment`] chooses
-//! which item becomes which part, which gives a lower bound; a [`plan::PressPlan`] carries it out, press by press, and clears what
+//! It is computed backwards from the goal. For every part of the wanted stacks the tables of `journeys` say how many presses
+//! it is away from the board, from every place and for everything that may be in the way. An `assign::Assignment` chooses
+//! which item becomes which part, which gives a lower bound; a `plan::PressPlan` carries it out, press by press, and clears what
 //! is in the way, which gives an upper bound. Where they agree, the value is settled; where they do not, a bounded
-//! [`search`] over single presses decides. What was found is kept by state classes (see [`goal`]: all that is of no use is
+//! `search` over single presses decides. What was found is kept by state classes (see `goal`: all that is of no use is
 //! one class), and whole decisions are kept by state. A value depends on the state and the recipes alone, never on what was
 //! asked before.
 

@@ -9,6 +9,8 @@ pub struct Page {
     pub blocks: Vec<Block>,
     pub headings: Vec<String>,
     pub links: Vec<Link>,
+    /// The project's files and folders that it names, with the lines where it does.
+    pub paths: Vec<(usize, String)>,
 }
 
 /// A fenced block.
@@ -30,7 +32,7 @@ pub struct Link {
 impl Page {
     pub fn read(path: &Path) -> Page {
         let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        let (mut blocks, mut headings, mut links) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut blocks, mut headings, mut links, mut paths) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (mut open, mut before): (Option<Block>, &str) = (None, "");
         for (line, text) in (1..).zip(text.lines()) {
             match (open.take(), text.strip_prefix("```")) {
@@ -47,13 +49,14 @@ impl Page {
                 }
                 (None, None) => {
                     headings.extend(text.strip_prefix('#').map(|rest| slug(rest.trim_start_matches('#'))));
+                    paths.extend(paths_in(text).map(|path| (line, path.to_string())));
                     links.extend(links_in(text).map(|target| Link { line, target: target.to_string() }));
                 }
             }
             before = text;
         }
         assert!(open.is_none(), "{}: a block is not closed", path.display());
-        Page { path: path.to_path_buf(), blocks, headings, links }
+        Page { path: path.to_path_buf(), blocks, headings, links, paths }
     }
 
     /// Where a block is, for messages.
@@ -89,6 +92,13 @@ impl Block {
 fn links_in(text: &str) -> impl Iterator<Item = &str> {
     let targets = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
     targets.filter(|target| !target.contains("://"))
+}
+
+/// What stands between backquotes in a line of text and begins like a path of the project.
+fn paths_in(text: &str) -> impl Iterator<Item = &str> {
+    let is_path =
+        |word: &&str| ["src/", "tests/", "benches/", "examples/"].iter().any(|folder| word.starts_with(folder));
+    text.split('`').skip(1).step_by(2).map(|code| code.split(' ').next().unwrap_or(code)).filter(is_path)
 }
 
 /// The name of a heading in links, as GitHub makes it.

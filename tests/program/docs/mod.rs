@@ -1,5 +1,5 @@
 //! README and docs/: every console block is run, every snippet of settings is read by the reader that it is for, every link
-//! leads somewhere. Blocks that build, or need a person, are marked; they are counted, and their options looked up.
+//! and path leads somewhere. Blocks that build, or need a person, are marked; they are counted, and their options looked up.
 //!
 //! An own reader, as `trycmd` runs each page where it stands, knows no settings, and cannot say why a block is left out.
 
@@ -207,7 +207,7 @@ fn what_is_not_run_names_commands_that_exist() {
 
 #[test]
 #[serial]
-fn links_lead_somewhere_and_the_index_knows_every_page() {
+fn links_and_paths_lead_somewhere_and_the_index_knows_every_page() {
     let pages = pages();
     for page in &pages {
         let folder = page.path.parent().unwrap_or(Path::new(""));
@@ -220,6 +220,12 @@ fn links_lead_somewhere_and_the_index_knows_every_page() {
                 let headings = Page::read(&target).headings;
                 assert!(headings.iter().any(|known| known == heading), "{place}: {} has no such heading", link.target);
             }
+        }
+    }
+    for page in pages.iter().filter(|page| page.path != Path::new("CHANGELOG.md")) {
+        for (line, path) in &page.paths {
+            let is_there = Path::new(path).exists() || path.contains(['*', '<']);
+            assert!(is_there, "{}: {path} is not there", page.at(*line));
         }
     }
     let index = Page::read(Path::new("docs/index.md"));

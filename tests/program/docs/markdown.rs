@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use serial_test::serial;
+
 /// A page.
 pub struct Page {
     pub path: PathBuf,
@@ -141,6 +143,7 @@ fn line_matches(expected: &str, found: &str) -> bool {
 }
 
 #[test]
+#[serial]
 fn lines_and_texts_may_be_left_out() {
     let lines = |text: &str| text.lines().map(str::to_string).collect::<Vec<String>>();
     let found = ["a 1 b", "x", "y", "end"];

@@ -13,16 +13,19 @@ pub mod look;
 pub mod recipe;
 pub mod rules;
 pub mod state;
+pub mod world;
 
 use crate::base::rng::mix;
 pub use action::{Agent, Button, ButtonAction, ButtonId};
 pub use aspect::{Aspect, AspectId, AspectKind};
 pub use change::{Change, Press};
 pub use content::{Content, ContentId};
+pub use cost_to_go::Fidelity;
 pub use layout::{DisplayArea, Location, LocationId, LocationKind};
 pub use look::Appearance;
 pub use recipe::{Dish, DishId};
 pub use state::{OrderContent, Recipes, State};
+pub use world::{WeightedWorld, WeightedWorlds, World};
 
 /// A compiled kitchen: tables over contents, locations, buttons and dishes. It never changes after loading.
 #[derive(Clone, Debug)]

@@ -7,8 +7,11 @@
 
 use crate::base::rng::stream;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{AspectId, ButtonId, DishId, Kitchen, LocationId, LocationKind, OrderContent, Press, State};
-use crate::mind::belief::{Belief, Case};
+use crate::kitchen::{
+    AspectId, ButtonId, DishId, Kitchen, LocationId, LocationKind, OrderContent, Press, State, WeightedWorlds, World,
+};
+use crate::mind::ChoiceModel;
+use crate::mind::belief::Belief;
 use crate::mind::decision::DecisionModel;
 
 /// So many times likelier under the belief than under the truth.
@@ -89,8 +92,9 @@ pub struct Attributor {
 /// An error that is looked into.
 struct Inquiry<'a> {
     kitchen: &'a Kitchen,
-    model: &'a DecisionModel,
-    cases: Vec<Case>,
+    model: ChoiceModel,
+    /// The worlds that stand for the belief.
+    worlds: WeightedWorlds,
     state: State,
     button: ButtonId,
 }
@@ -105,10 +109,11 @@ impl Attributor {
     pub fn cause(&self, kitchen: &Kitchen, cost: &mut CostToGo, belief: &Belief, press: &Press, number: u32) -> Cause {
         let (state, button) = (press.before, press.button);
         let mut random = stream(self.seed, "attribution", u64::from(number));
-        let cases = self.model.cases(kitchen, belief, &mut random);
-        let error = Inquiry { kitchen, model: &self.model, cases, state, button };
-        let believed = error.log_p(cost, &error.cases);
-        let informed = error.log_p(cost, &[Case { state, recipes: kitchen.true_recipes(), weight: 1.0 }]);
+        let worlds = self.model.worlds(kitchen, belief, &mut random);
+        let model = ChoiceModel::new(kitchen, &self.model);
+        let error = Inquiry { kitchen, model, worlds, state, button };
+        let believed = error.log_p(cost, &error.worlds);
+        let informed = error.log_p(cost, &WeightedWorlds::certain(World::with_true_recipes(kitchen, state)));
         let gain_nats = believed - informed;
         let is_related = gain_nats >= LIKELIER.ln();
         match is_related.then(|| error.explain(cost, informed)).flatten() {
@@ -119,9 +124,9 @@ impl Attributor {
 }
 
 impl Inquiry<'_> {
-    /// The log probability of the press for somebody who holds these cases for possible.
-    fn log_p(&self, cost: &mut CostToGo, cases: &[Case]) -> f64 {
-        self.model.chances(self.kitchen, cost, cases).press[self.button.index()].ln()
+    /// The log probability of the press under a belief.
+    fn log_p(&self, cost: &mut CostToGo, worlds: &WeightedWorlds) -> f64 {
+        self.model.probabilities(cost, worlds).press[self.button.index()].ln()
     }
 
     /// The target, or pair of targets, that makes the press unlikely when it is put right.
@@ -129,7 +134,7 @@ impl Inquiry<'_> {
         let mut targets = Target::all(self.kitchen, self.state);
         targets.retain(|&target| self.doubt(target) > 0.0);
         let mut singles: Vec<(f64, Target)> =
-            targets.into_iter().map(|target| (self.log_p(cost, &self.told(&self.cases, target)), target)).collect();
+            targets.into_iter().map(|target| (self.log_p(cost, &self.told(&self.worlds, target)), target)).collect();
         // The sort is stable: of equals the first location.
         singles.sort_by(|a, b| a.0.total_cmp(&b.0));
         let &(least, target) = singles.first()?;
@@ -145,7 +150,7 @@ impl Inquiry<'_> {
     fn best_pair(&self, cost: &mut CostToGo, targets: &[(f64, Target)], mut least: f64) -> Option<(Target, Target)> {
         let mut best = None;
         for (index, &(_, one)) in targets.iter().enumerate() {
-            let told = self.told(&self.cases, one);
+            let told = self.told(&self.worlds, one);
             for &(_, other) in &targets[index + 1..] {
                 let p = self.log_p(cost, &self.told(&told, other));
                 if p < least {
@@ -158,20 +163,20 @@ impl Inquiry<'_> {
 
     /// How likely it is, for the human, that the target is other than it truly is.
     fn doubt(&self, target: Target) -> f64 {
-        let told = self.told(&self.cases, target);
-        let wrong = self.cases.iter().zip(&told).filter(|(held, true_one)| held != true_one);
+        let told = self.told(&self.worlds, target);
+        let wrong = self.worlds.all.iter().zip(&told.all).filter(|(held, true_one)| held != true_one);
         wrong.map(|(held, _)| held.weight).sum()
     }
 
-    /// The same cases with one target as it truly is.
-    fn told(&self, cases: &[Case], target: Target) -> Vec<Case> {
-        let mut cases = cases.to_vec();
+    /// The same worlds with one target as it truly is.
+    fn told(&self, worlds: &WeightedWorlds, target: Target) -> WeightedWorlds {
+        let mut worlds = worlds.clone();
         for aspect in target.aspects(self.kitchen) {
             let truth = self.kitchen.true_value(self.state, aspect);
-            for case in &mut cases {
-                self.kitchen.set_value(&mut case.state, &mut case.recipes, aspect, truth);
+            for one in &mut worlds.all {
+                one.world.set_value(self.kitchen, aspect, truth);
             }
         }
-        cases
+        worlds
     }
 }

@@ -9,8 +9,8 @@ use super::beliefs::{PressView, TrialView};
 use crate::base::minimise::minimise;
 use crate::base::rng::stream;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Kitchen};
-use crate::mind::belief::Case;
+use crate::kitchen::{Agent, Kitchen, WeightedWorlds, World};
+use crate::mind::ChoiceModel;
 use crate::mind::decision::DecisionModel;
 
 /// Resamples of the bootstrap.
@@ -53,7 +53,8 @@ impl LogLikelihood {
             return LogLikelihood::default();
         }
         let total = |informed: &DecisionModel, cost: &mut CostToGo| -> Vec<f64> {
-            trials.iter().map(|trial| trial.iter().map(|press| log_p(kitchen, cost, informed, press)).sum()).collect()
+            let model = ChoiceModel::new(kitchen, informed);
+            trials.iter().map(|trial| trial.iter().map(|press| log_p(kitchen, cost, &model, press)).sum()).collect()
         };
         let with = |at: &[f64]| DecisionModel { tau: at[0].exp(), lapse: logistic(at[1]), ..model.clone() };
         let start = [model.tau.ln(), logit(model.lapse)];
@@ -81,9 +82,9 @@ impl LogLikelihood {
 }
 
 /// The log probability of a press for somebody who knows everything.
-fn log_p(kitchen: &Kitchen, cost: &mut CostToGo, model: &DecisionModel, press: &PressView) -> f64 {
-    let truth = Case { state: press.state, recipes: kitchen.true_recipes(), weight: 1.0 };
-    model.chances(kitchen, cost, &[truth]).press[press.button.index()].ln()
+fn log_p(kitchen: &Kitchen, cost: &mut CostToGo, model: &ChoiceModel, press: &PressView) -> f64 {
+    let truth = WeightedWorlds::certain(World::with_true_recipes(kitchen, press.state));
+    model.probabilities(cost, &truth).press[press.button.index()].ln()
 }
 
 fn logit(p: f64) -> f64 {

@@ -4,7 +4,7 @@ use rand::RngExt;
 
 use super::BeliefWitness;
 use crate::base::rng::Stream;
-use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, Recipes, State};
+use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, State, WeightedWorld, WeightedWorlds, World};
 
 /// Where a belief is summed over exactly, less likely values are left out.
 const NEGLIGIBLE: f64 = 0.002;
@@ -13,15 +13,6 @@ const NEGLIGIBLE: f64 = 0.002;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Belief {
     of: Vec<Vec<f64>>,
-}
-
-/// One way the kitchen may be, and how much it counts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Case {
-    pub state: State,
-    pub recipes: Recipes,
-    /// Its share; those of all cases of a belief sum to 1.
-    pub weight: f64,
 }
 
 impl Belief {
@@ -71,53 +62,54 @@ impl Belief {
         self.distribution(aspect)[kitchen.true_value(state, aspect)]
     }
 
-    /// The ways the kitchen may be: all of them, weighted, if there are at most `most`, else so many draws. In the draws
+    /// The worlds of this belief: all of them, weighted, if there are at most `most`, else so many draws. In the draws
     /// every aspect has each of its values as often as its share says, to a draw (a Latin hypercube; McKay et al. 1979).
-    pub fn cases(&self, kitchen: &Kitchen, most: usize, random: &mut Stream) -> Vec<Case> {
-        self.all_cases(kitchen, most).unwrap_or_else(|| self.drawn_cases(kitchen, most, random))
+    pub fn worlds(&self, kitchen: &Kitchen, most: usize, random: &mut Stream) -> WeightedWorlds {
+        let all = self.all_worlds(kitchen, most).unwrap_or_else(|| self.drawn_worlds(kitchen, most, random));
+        WeightedWorlds { all }
     }
 
-    fn all_cases(&self, kitchen: &Kitchen, most: usize) -> Option<Vec<Case>> {
-        let mut cases = vec![Case { state: kitchen.empty_state(), recipes: kitchen.true_recipes(), weight: 1.0 }];
+    fn all_worlds(&self, kitchen: &Kitchen, most: usize) -> Option<Vec<WeightedWorld>> {
+        let mut worlds = vec![WeightedWorld { world: World::empty(kitchen), weight: 1.0 }];
         for (index, values) in self.of.iter().enumerate() {
             let aspect = AspectId(index as u8);
             if !self.matters(kitchen, aspect) {
                 continue;
             }
             let likely = || values.iter().enumerate().filter(|(_, p)| **p >= NEGLIGIBLE);
-            if cases.len() * likely().count() > most {
+            if worlds.len() * likely().count() > most {
                 return None;
             }
             let total: f64 = likely().map(|(_, p)| p).sum();
-            let with = |case: &Case, (value, p): (usize, &f64)| {
-                let mut case = Case { weight: case.weight * p / total, ..*case };
-                kitchen.set_value(&mut case.state, &mut case.recipes, aspect, value);
-                case
+            let with = |one: &WeightedWorld, (value, p): (usize, &f64)| {
+                let mut one = WeightedWorld { weight: one.weight * p / total, ..*one };
+                one.world.set_value(kitchen, aspect, value);
+                one
             };
-            cases = cases.iter().flat_map(|case| likely().map(move |one| with(case, one))).collect();
+            worlds = worlds.iter().flat_map(|one| likely().map(move |value| with(one, value))).collect();
         }
-        Some(cases)
+        Some(worlds)
     }
 
-    fn drawn_cases(&self, kitchen: &Kitchen, count: usize, random: &mut Stream) -> Vec<Case> {
+    fn drawn_worlds(&self, kitchen: &Kitchen, count: usize, random: &mut Stream) -> Vec<WeightedWorld> {
         let weight = 1.0 / count as f64;
-        let mut cases = vec![Case { state: kitchen.empty_state(), recipes: kitchen.true_recipes(), weight }; count];
+        let mut worlds = vec![WeightedWorld { world: World::empty(kitchen), weight }; count];
         let mut strata: Vec<usize> = (0..count).collect();
         for (index, values) in self.of.iter().enumerate() {
             for last in (1..count).rev() {
                 strata.swap(last, random.random_range(0..=last));
             }
-            for (case, &stratum) in cases.iter_mut().zip(&strata) {
+            for (one, &stratum) in worlds.iter_mut().zip(&strata) {
                 let mut left = (stratum as f64 + random.random::<f64>()) * weight;
                 let reached = values.iter().position(|p| {
                     left -= p;
                     left < 0.0
                 });
                 let value = reached.unwrap_or(values.len() - 1);
-                kitchen.set_value(&mut case.state, &mut case.recipes, AspectId(index as u8), value);
+                one.world.set_value(kitchen, AspectId(index as u8), value);
             }
         }
-        cases
+        worlds
     }
 
     /// Whether decisions can depend on the aspect: not on recipes that no order is believed to want.

@@ -1,6 +1,7 @@
 //! The mind: what a human believes about the kitchen, one categorical distribution per state aspect, and how it decides.
 
 pub mod belief;
+pub mod choice;
 pub mod decision;
 pub mod dirichlet;
 pub mod filter;
@@ -12,6 +13,7 @@ pub mod witness;
 
 use std::collections::BTreeMap;
 
+pub use choice::ChoiceModel;
 use serde::{Deserialize, Serialize};
 
 /// What a simulated participant believes at a moment, and why it presses what it presses next.

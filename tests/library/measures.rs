@@ -11,7 +11,9 @@ use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
+use tomcom::kitchen::{
+    Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, State, WeightedWorlds, World,
+};
 use tomcom::measures::JudgedPress;
 use tomcom::measures::attribution::{Attributor, Cause, Target};
 use tomcom::measures::beliefs::{Detection, EstimateView, PressView, TrialView};
@@ -27,6 +29,7 @@ use tomcom::measures::wizard::{
     FalseBeliefPeriod, SignalVerdict, TimeSummary, TrainingCriterion, WizardMeasures, WizardSignal, worths,
 };
 use tomcom::mind::BeliefWitness;
+use tomcom::mind::ChoiceModel;
 use tomcom::mind::belief::Belief;
 use tomcom::mind::decision::DecisionModel;
 use tomcom::run::engine::Engine;
@@ -266,11 +269,11 @@ fn decisions_are_distributions_and_exact_sums_agree_with_many_draws() {
             held.set(id, &weights);
         }
         let exact_model = DecisionModel::default();
-        let exact_cases = exact_model.cases(&kitchen, &held, &mut stream(1, "test", 0));
-        assert!(exact_cases.len() <= 4, "{layout}: {} cases", exact_cases.len());
-        let weight: f64 = exact_cases.iter().map(|case| case.weight).sum();
+        let exact_worlds = exact_model.worlds(&kitchen, &held, &mut stream(1, "test", 0));
+        assert!(exact_worlds.all.len() <= 4, "{layout}: {} worlds", exact_worlds.all.len());
+        let weight: f64 = exact_worlds.all.iter().map(|one| one.weight).sum();
         assert!((weight - 1.0).abs() < 1e-12);
-        let exact = exact_model.chances(&kitchen, &mut cost, &exact_cases);
+        let exact = ChoiceModel::new(&kitchen, &exact_model).probabilities(&mut cost, &exact_worlds);
         // A trace of everything else keeps the sum from being exact, and leaves it where it was.
         for index in 0..kitchen.aspects.len() {
             let id = AspectId(index as u8);
@@ -280,8 +283,8 @@ fn decisions_are_distributions_and_exact_sums_agree_with_many_draws() {
         }
         for (index, count) in [1usize, 2, 32, 4096].into_iter().enumerate() {
             let model = DecisionModel { cases: count, ..DecisionModel::default() };
-            let cases = model.cases(&kitchen, &held, &mut stream(1, "test", index as u64));
-            let drawn = model.chances(&kitchen, &mut cost, &cases);
+            let worlds = model.worlds(&kitchen, &held, &mut stream(1, "test", index as u64));
+            let drawn = ChoiceModel::new(&kitchen, &model).probabilities(&mut cost, &worlds);
             let sum: f64 = drawn.press.iter().sum();
             assert!((sum - 1.0).abs() < 1e-9 && (0.0..=1.0).contains(&drawn.wait), "{layout}: {drawn:?}");
             assert!(drawn.press.iter().all(|&p| p > 1e-5), "no press is impossible");
@@ -299,8 +302,8 @@ fn one_waits_where_only_the_robot_can_go_on() {
     let model = DecisionModel::default();
     let mut waits = |there: &[&str]| {
         let belief = Belief::of_truth(&kitchen, state(&kitchen, there));
-        let cases = model.cases(&kitchen, &belief, &mut stream(1, "test", 0));
-        let chances = model.chances(&kitchen, &mut cost, &cases);
+        let worlds = model.worlds(&kitchen, &belief, &mut stream(1, "test", 0));
+        let chances = ChoiceModel::new(&kitchen, &model).probabilities(&mut cost, &worlds);
         // Compared with the likeliest press.
         chances.wait / ((1.0 - chances.wait) * chances.press.iter().copied().fold(0.0, f64::max))
     };
@@ -517,8 +520,8 @@ fn a_human_who_knows_everything_is_fitted_to_the_presses() {
     let informed = found.informed.expect("presses");
     let best = 0.9 * 0.9_f64.ln() + 0.1 * 0.1_f64.ln();
     assert!(informed < 0.0 && informed <= best + 1e-9, "no better than knowing the shares: {found:?}");
-    let truth = tomcom::mind::belief::Case { state: there, recipes: kitchen.true_recipes(), weight: 1.0 };
-    let unfitted = model.chances(&kitchen, &mut cost, &[truth]).press;
+    let truth = WeightedWorlds::certain(World::with_true_recipes(&kitchen, there));
+    let unfitted = ChoiceModel::new(&kitchen, &model).probabilities(&mut cost, &truth).press;
     let unfitted = 0.9 * unfitted[put.index()].ln() + 0.1 * unfitted[trash.index()].ln();
     assert!(informed > unfitted, "fitting makes it likelier: {informed} against {unfitted}");
     assert_eq!(found.uniform, Some(-(kitchen.buttons[Agent::Human.index()].len() as f64).ln()));

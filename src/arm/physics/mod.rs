@@ -123,7 +123,7 @@ impl Clone for PhysicsWorld {
 
 impl std::fmt::Debug for PhysicsWorld {
     fn fmt(&self, into: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        into.debug_struct("World").field("joints", &self.joints().0).finish_non_exhaustive()
+        into.debug_struct("PhysicsWorld").field("joints", &self.joints().0).finish_non_exhaustive()
     }
 }
 

@@ -90,7 +90,7 @@ fn hash(state: State, recipes: &Recipes) -> u64 {
     mix(mix(state as u64 ^ mix((state >> 64) as u64)) ^ mix(recipes as u64 ^ mix((recipes >> 64) as u64)))
 }
 
-/// A press that the arm is on its way to.
+/// A press that the robot's arm is on its way to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OngoingRobotPress {
     pub button: ButtonId,

@@ -1,19 +1,20 @@
 //! One rollout: a human who decides by a sample of the belief, and the robot in between.
 //!
-//! All rollouts of the same number share their random numbers, whatever was said, so that their differences are precise.
-//! A rollout that comes to be in the same situation as the one without a signal goes on like that one, and is not
+//! All rollouts of one number share their random numbers, with and without a signal (paired rollouts), so that their
+//! differences are precise. A rollout that reaches the same state as the baseline ends like the baseline, and is not
 //! continued.
 
 use rand::RngExt;
 
-use super::human::{Cases, Decider, HumanChoice};
+use super::human::choice_weights;
 use super::robot::{self, OngoingRobotPress, RobotChoices, RobotPolicy};
 use crate::base::rng::Stream;
 use crate::communication::settings::RolloutModel;
 use crate::communication::situation::{RobotIntent, Situation};
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, Recipes, State};
+use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, Recipes, State, WeightedWorlds};
+use crate::mind::choice::{ChoiceModel, HumanChoice};
 
 /// So many presses of the robot between two decisions have random numbers of their own.
 const ROBOT_DRAWS: usize = 4;
@@ -48,11 +49,11 @@ impl RolloutDraws {
     }
 }
 
-/// What a rollout stands on.
+/// What all rollouts of one recommendation share.
 pub struct RolloutContext<'a> {
     pub kitchen: &'a Kitchen,
     pub recipes: Recipes,
-    pub decider: &'a Decider,
+    pub choice: &'a ChoiceModel,
     /// By button of the human, the aspects of the places that decide what it does.
     pub involved: &'a [Vec<AspectId>],
     /// What is looked at before each of them is pressed.
@@ -67,44 +68,46 @@ pub struct RolloutContext<'a> {
     pub foresight: f64,
 }
 
-/// Where a rollout is, right before a decision of the human.
+/// The state of a rollout right before a decision of the human.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RolloutState {
-    pub state: State,
-    pub cases: Cases,
-    errand: Option<OngoingRobotPress>,
+    /// The true state of the kitchen.
+    pub kitchen: State,
+    /// The worlds that the human holds possible.
+    pub worlds: WeightedWorlds<u32>,
+    ongoing: Option<OngoingRobotPress>,
     is_still: bool,
     presses: i32,
     now_s: f64,
 }
 
-/// The moments and deeds of the rollout in which nothing was said.
+/// The rollout without a signal: its states, the human's choices, and its presses plus the cost to go at its end.
 #[derive(Clone, Debug, Default)]
 pub struct BaselineRollout {
-    moments: Vec<RolloutState>,
-    deeds: Vec<HumanChoice>,
+    states: Vec<RolloutState>,
+    choices: Vec<HumanChoice>,
     pub value: i32,
 }
 
-/// How a rollout with a signal went.
+/// What came of a rollout with a signal that is paired with the baseline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RolloutOutcome {
     /// Presses of both and the cost to go at the end.
     pub value: i32,
-    /// The first decision that was another one than without the signal: what was done without it, and with it.
-    pub parted: Option<(HumanChoice, HumanChoice)>,
+    /// The first choice that differs from the baseline's: the baseline's, and the one with the signal.
+    pub diverged: Option<(HumanChoice, HumanChoice)>,
 }
 
 impl RolloutState {
-    /// The rollout's beginning, when the human holds these cases for possible; `sees`: what has just changed draws its eye.
-    pub fn begin(&mut self, kitchen: &Kitchen, situation: &Situation, cases: &Cases, sees: bool) {
-        self.state = situation.state;
-        self.cases.copy_from(cases);
+    /// The beginning of a rollout in which the human holds these worlds possible; `sees`: what has just changed draws its eye.
+    pub fn begin(&mut self, kitchen: &Kitchen, situation: &Situation, worlds: &WeightedWorlds<u32>, sees: bool) {
+        self.kitchen = situation.state;
+        self.worlds.copy_from(worlds);
         for &aspect in situation.changed.iter().filter(|_| sees) {
-            self.cases.learn(kitchen, aspect, self.state);
+            self.worlds.learn(kitchen, aspect, self.kitchen);
         }
         self.is_still = situation.robot == RobotIntent::Still;
-        self.errand = match situation.robot {
+        self.ongoing = match situation.robot {
             RobotIntent::Busy { button, remaining_s, driven } => {
                 Some(OngoingRobotPress { button, due_s: remaining_s, driven })
             }
@@ -113,30 +116,30 @@ impl RolloutState {
         (self.presses, self.now_s) = (0, 0.0);
     }
 
-    /// The eye is drawn to what was otherwise before.
+    /// The human looks at every location that has just changed.
     fn see_changes(&mut self, kitchen: &Kitchen, before: State) {
-        for location in kitchen.changed(before, self.state) {
-            self.cases.learn(kitchen, AspectId::of_location(location), self.state);
+        for location in kitchen.changed(before, self.kitchen) {
+            self.worlds.learn(kitchen, AspectId::of_location(location), self.kitchen);
         }
     }
 
     fn copy_from(&mut self, other: &RolloutState) {
-        self.cases.copy_from(&other.cases);
-        self.state = other.state;
-        self.errand = other.errand;
+        self.worlds.copy_from(&other.worlds);
+        self.kitchen = other.kitchen;
+        self.ongoing = other.ongoing;
         self.is_still = other.is_still;
         (self.presses, self.now_s) = (other.presses, other.now_s);
     }
 
-    /// Whether all that follows is the same as from another moment of the same time.
-    fn goes_on_like(&self, other: &RolloutState) -> bool {
-        self.state == other.state && self.errand == other.errand && self.cases == other.cases
+    /// Whether all that follows is the same as from another state at the same time.
+    fn continues_like(&self, other: &RolloutState) -> bool {
+        self.kitchen == other.kitchen && self.ongoing == other.ongoing && self.worlds == other.worlds
     }
 }
 
-/// A rollout's machinery.
+/// One rollout, and what it computes with.
 pub struct Rollout<'a> {
-    pub stage: &'a RolloutContext<'a>,
+    pub context: &'a RolloutContext<'a>,
     pub cost: &'a mut CostToGo,
     pub policy: &'a mut RobotPolicy,
     pub draws: &'a [RolloutDraws],
@@ -145,124 +148,124 @@ pub struct Rollout<'a> {
 }
 
 impl Rollout<'_> {
-    /// The rollout in which nothing is said; remembers its moments.
-    pub fn silent(&mut self, moment: &mut RolloutState, trace: &mut BaselineRollout) {
-        trace.deeds.clear();
+    /// The rollout without a signal; keeps its states and choices.
+    pub fn baseline(&mut self, state: &mut RolloutState, baseline: &mut BaselineRollout) {
+        baseline.choices.clear();
         for step in 0..self.draws.len() {
-            self.until_decision(moment, step);
-            if trace.moments.len() == step {
-                trace.moments.push(RolloutState::default());
+            self.until_decision(state, step);
+            if baseline.states.len() == step {
+                baseline.states.push(RolloutState::default());
             }
-            trace.moments[step].copy_from(moment);
-            let deed = self.decide(moment, step);
-            trace.deeds.push(deed);
+            baseline.states[step].copy_from(state);
+            let choice = self.decide(state, step);
+            baseline.choices.push(choice);
         }
-        trace.value = self.value(moment);
+        baseline.value = self.value(state);
     }
 
-    /// A rollout in which something was said, beside the silent one.
-    pub fn told(&mut self, moment: &mut RolloutState, trace: &BaselineRollout) -> RolloutOutcome {
-        let mut parted = None;
+    /// The rollout with a signal, paired with the baseline: once both are in the same state, the rest is the baseline's.
+    pub fn with_signal(&mut self, state: &mut RolloutState, baseline: &BaselineRollout) -> RolloutOutcome {
+        let mut diverged = None;
         for step in 0..self.draws.len() {
-            self.until_decision(moment, step);
-            let silent = &trace.moments[step];
-            if moment.goes_on_like(silent) {
-                return RolloutOutcome { value: trace.value + moment.presses - silent.presses, parted };
+            self.until_decision(state, step);
+            let unsignalled = &baseline.states[step];
+            if state.continues_like(unsignalled) {
+                return RolloutOutcome { value: baseline.value + state.presses - unsignalled.presses, diverged };
             }
-            let deed = self.decide(moment, step);
-            let silent = trace.deeds[step];
-            if parted.is_none() && silent != deed {
-                parted = Some((silent, deed));
+            let choice = self.decide(state, step);
+            let unsignalled = baseline.choices[step];
+            if diverged.is_none() && unsignalled != choice {
+                diverged = Some((unsignalled, choice));
             }
         }
-        RolloutOutcome { value: self.value(moment), parted }
+        RolloutOutcome { value: self.value(state), diverged }
     }
 
-    fn value(&mut self, moment: &RolloutState) -> i32 {
-        moment.presses + self.cost.all_orders(moment.state, &self.stage.recipes) as i32
+    fn value(&mut self, state: &RolloutState) -> i32 {
+        state.presses + self.cost.all_orders(state.kitchen, &self.context.recipes) as i32
     }
 
     /// The robot goes on until the human decides.
-    fn until_decision(&mut self, moment: &mut RolloutState, step: usize) {
-        let until_s = self.first_s + step as f64 * self.stage.model.human_press_s;
+    fn until_decision(&mut self, state: &mut RolloutState, step: usize) {
+        let until_s = self.first_s + step as f64 * self.context.model.human_press_s;
         let mut presses = 0;
-        if moment.is_still {
-            moment.now_s = until_s;
+        if state.is_still {
+            state.now_s = until_s;
             return;
         }
         loop {
-            self.set_out(moment, step, presses);
-            let Some(errand) = moment.errand.filter(|errand| errand.due_s <= until_s) else { break };
-            moment.now_s = errand.due_s;
-            moment.errand = None;
-            let choices = self.choices(moment.state);
-            if errand.holds(choices) {
-                let before = moment.state;
-                moment.state = robot::press(self.stage.kitchen, before, &self.stage.recipes, errand.button);
-                moment.presses += 1;
+            self.set_out(state, step, presses);
+            let Some(ongoing) = state.ongoing.filter(|press| press.due_s <= until_s) else { break };
+            state.now_s = ongoing.due_s;
+            state.ongoing = None;
+            let choices = self.choices(state.kitchen);
+            if ongoing.holds(choices) {
+                let before = state.kitchen;
+                state.kitchen = robot::press(self.context.kitchen, before, &self.context.recipes, ongoing.button);
+                state.presses += 1;
                 let draw = self.draws[step].predictions[presses % ROBOT_DRAWS];
-                if draw < self.stage.foresight {
-                    let draw = draw / self.stage.foresight;
-                    moment.cases.robot_pressed(self.stage.kitchen, self.cost, self.policy, draw);
+                if draw < self.context.foresight {
+                    let draw = draw / self.context.foresight;
+                    state.worlds.robot_pressed(self.context.kitchen, self.cost, self.policy, draw);
                 }
-                if self.draws[step].captures[presses % ROBOT_DRAWS] < self.stage.model.capture {
-                    moment.see_changes(self.stage.kitchen, before);
+                if self.draws[step].captures[presses % ROBOT_DRAWS] < self.context.model.capture {
+                    state.see_changes(self.context.kitchen, before);
                 }
                 presses += 1;
             }
         }
-        moment.now_s = until_s;
+        state.now_s = until_s;
     }
 
     /// What the robot's policy says to the state as it truly is.
     fn choices(&mut self, state: State) -> RobotChoices {
-        self.policy.choices(self.stage.kitchen, self.cost, Fidelity::Exact, state, &self.stage.recipes)
+        self.policy.choices(self.context.kitchen, self.cost, Fidelity::Exact, state, &self.context.recipes)
     }
 
     /// A free arm sets out for what the policy says.
-    fn set_out(&mut self, moment: &mut RolloutState, step: usize, presses: usize) {
-        if moment.errand.is_some() {
+    fn set_out(&mut self, state: &mut RolloutState, step: usize, presses: usize) {
+        if state.ongoing.is_some() {
             return;
         }
-        let choices = self.choices(moment.state);
+        let choices = self.choices(state.kitchen);
         if choices.count() > 0 {
             let draw = self.draws[step].choices[presses % ROBOT_DRAWS];
             let button: ButtonId = choices.nth((draw * f64::from(choices.count())) as u32);
-            moment.errand =
-                Some(OngoingRobotPress { button, due_s: moment.now_s + self.stage.robot_press_s, driven: false });
+            state.ongoing =
+                Some(OngoingRobotPress { button, due_s: state.now_s + self.context.robot_press_s, driven: false });
         }
     }
 
     /// The human looks around and at what its next press needs, decides, and presses.
-    fn decide(&mut self, moment: &mut RolloutState, step: usize) -> HumanChoice {
-        let (stage, draws) = (self.stage, &self.draws[step]);
-        for (index, &draw) in draws.looks[..stage.kitchen.locations.len()].iter().enumerate() {
-            if draw < stage.other_looks {
-                moment.cases.learn(stage.kitchen, AspectId(index as u8), moment.state);
+    fn decide(&mut self, state: &mut RolloutState, step: usize) -> HumanChoice {
+        let (context, draws) = (self.context, &self.draws[step]);
+        for (index, &draw) in draws.looks[..context.kitchen.locations.len()].iter().enumerate() {
+            if draw < context.other_looks {
+                state.worlds.learn(context.kitchen, AspectId(index as u8), state.kitchen);
             }
         }
-        let inclination = stage.decider.inclination(self.cost, &moment.cases);
-        let mut meant = stage.decider.meant(&inclination, draws.decision);
-        if let HumanChoice::Press(button) = meant {
-            let mut is_news = false;
-            for &aspect in &stage.watched[button.index()] {
-                if draws.looks[aspect.index()] < stage.looks {
-                    is_news |= moment.cases.learn(stage.kitchen, aspect, moment.state);
+        let weights = choice_weights(context.choice, self.cost, &state.worlds);
+        let mut intended = context.choice.intended(&weights, draws.decision);
+        if let HumanChoice::Press(button) = intended {
+            let mut is_new = false;
+            for &aspect in &context.watched[button.index()] {
+                if draws.looks[aspect.index()] < context.looks {
+                    is_new |= state.worlds.learn(context.kitchen, aspect, state.kitchen);
                 }
             }
-            if is_news {
-                let inclination = stage.decider.inclination(self.cost, &moment.cases);
-                meant = stage.decider.meant(&inclination, draws.decision);
+            if is_new {
+                let weights = choice_weights(context.choice, self.cost, &state.worlds);
+                intended = context.choice.intended(&weights, draws.decision);
             }
         }
-        let deed = stage.decider.done(meant, draws.slip);
-        if let HumanChoice::Press(button) = deed {
-            let before = moment.state;
-            let after = stage.kitchen.press(before, &stage.recipes, Agent::Human, button);
-            moment.state = after.unwrap_or(before);
-            moment.presses += 1;
-            moment.cases.pressed(stage.kitchen, button, &stage.involved[button.index()], before, after);
+        let choice = context.choice.executed(intended, draws.slip);
+        if let HumanChoice::Press(button) = choice {
+            let before = state.kitchen;
+            let after = context.kitchen.press(before, &context.recipes, Agent::Human, button);
+            state.kitchen = after.unwrap_or(before);
+            state.presses += 1;
+            state.worlds.pressed(context.kitchen, button, &context.involved[button.index()], before, after);
         }
-        deed
+        choice
     }
 }

@@ -1,12 +1,11 @@
-//! Samples of the belief for rollouts: states and recipes, drawn from one belief that is drawn from the Dirichlets.
+//! BeliefSamples of the belief for rollouts: worlds, drawn from one belief that is drawn from the Dirichlets.
 
-use super::human::Cases;
 use crate::base::rng::Stream;
-use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, Recipes, State};
+use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, State, WeightedWorlds, World};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::urn::Urn;
 
-/// Samples of a belief. Over all samples every aspect has each of its values as often first as its mean says, to a sample.
+/// BeliefSamples of a belief. Over all samples every aspect has each of its values as often first as its mean says, to a sample.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefSamples {
     urns: Vec<Urn>,
@@ -34,8 +33,15 @@ impl BeliefSamples {
         }
     }
 
-    /// Draws one sample. Recipes count in cases whose orders want the dish, and where the true orders do.
-    pub fn draw(&mut self, kitchen: &Kitchen, truth: State, sample: usize, random: &mut Stream, cases: &mut Cases) {
+    /// RolloutDraws one sample. Recipes count in worlds whose orders want the dish, and where the true orders do.
+    pub fn draw(
+        &mut self,
+        kitchen: &Kitchen,
+        truth: State,
+        sample: usize,
+        random: &mut Stream,
+        worlds: &mut WeightedWorlds<u32>,
+    ) {
         let states = self.states;
         self.mixed.clear();
         for (index, urn) in self.urns.iter().enumerate() {
@@ -46,50 +52,42 @@ impl BeliefSamples {
                 false => self.mixed.push(index),
             }
         }
-        cases.all.clear();
+        worlds.all.clear();
         let all: Vec<usize> = (0..self.urns.len()).collect();
         if self.mixed.iter().any(|index| kitchen.orders.iter().any(|order| order.index() == *index)) {
             // Which recipes count differs from draw to draw.
             for draw in 0..states {
-                let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
-                self.set(kitchen, truth, draw, &all, &mut state, &mut recipes);
-                cases.add(state, recipes, 1);
+                let mut world = World::empty(kitchen);
+                self.set(kitchen, truth, draw, &all, &mut world);
+                worlds.add(world, 1);
             }
             return;
         }
-        let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
-        self.set(kitchen, truth, 0, &all, &mut state, &mut recipes);
+        let mut world = World::empty(kitchen);
+        self.set(kitchen, truth, 0, &all, &mut world);
         if self.mixed.is_empty() {
-            return cases.add(state, recipes, states as u32);
+            return worlds.add(world, states as u32);
         }
         for draw in 0..states {
-            self.set(kitchen, truth, draw, &self.mixed, &mut state, &mut recipes);
-            cases.add(state, recipes, 1);
+            self.set(kitchen, truth, draw, &self.mixed, &mut world);
+            worlds.add(world, 1);
         }
     }
 
     /// Gives these aspects the values of one draw; locations come before recipes.
-    fn set(
-        &self,
-        kitchen: &Kitchen,
-        truth: State,
-        draw: usize,
-        aspects: &[usize],
-        state: &mut State,
-        recipes: &mut Recipes,
-    ) {
+    fn set(&self, kitchen: &Kitchen, truth: State, draw: usize, aspects: &[usize], world: &mut World) {
         for &index in aspects {
             let counts = match kitchen.aspects[index].kind {
                 AspectKind::Location(_) => true,
                 AspectKind::Recipe(dish) => {
                     let wanted = OrderContent::Dish(dish);
-                    let is_wanted = |&order| state.order(order) == wanted || truth.order(order) == wanted;
+                    let is_wanted = |&order| world.state.order(order) == wanted || truth.order(order) == wanted;
                     kitchen.orders.iter().any(is_wanted)
                 }
             };
             if counts {
                 let value = usize::from(self.drawn[index * self.states + draw]);
-                kitchen.set_value(state, recipes, AspectId(index as u8), value);
+                world.set_value(kitchen, AspectId(index as u8), value);
             }
         }
     }

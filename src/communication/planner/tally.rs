@@ -1,7 +1,7 @@
-//! What the rollouts of one signal came to.
+//! What the paired rollouts of one signal saved.
 
-use super::human::HumanChoice;
 use crate::kitchen::ButtonId;
+use crate::mind::choice::HumanChoice;
 
 /// Differences between paired rollouts.
 #[derive(Clone, Debug, Default)]
@@ -9,20 +9,20 @@ pub struct PairedDifferences {
     count: u32,
     sum: f64,
     squares: f64,
-    partings: Vec<Parting>,
+    divergences: Vec<Divergence>,
 }
 
-/// Where rollouts with the signal and without it first differ.
+/// The choices at which rollouts without and with the signal first differ.
 #[derive(Clone, Copy, Debug)]
-struct Parting {
-    silent: HumanChoice,
-    told: HumanChoice,
+struct Divergence {
+    baseline: HumanChoice,
+    signalled: HumanChoice,
     /// What that saved in all, and the sum of its squares.
     sum: f64,
     squares: f64,
 }
 
-impl Parting {
+impl Divergence {
     /// What it saved at least, by a standard error: what saved much by chance, once, is no reason.
     fn surely_saved(&self) -> f64 {
         self.sum - self.squares.sqrt()
@@ -30,18 +30,22 @@ impl Parting {
 }
 
 impl PairedDifferences {
-    /// Adds what a rollout saved, and where it parted from the silent one.
-    pub fn add(&mut self, saved: f64, parted: Option<(HumanChoice, HumanChoice)>) {
+    /// Adds what a rollout saved, and where it diverged from the baseline.
+    pub fn add(&mut self, saved: f64, diverged: Option<(HumanChoice, HumanChoice)>) {
         self.count += 1;
         self.sum += saved;
         self.squares += saved * saved;
-        if let Some((silent, told)) = parted {
-            match self.partings.iter_mut().find(|parting| parting.silent == silent && parting.told == told) {
-                Some(parting) => {
-                    parting.sum += saved;
-                    parting.squares += saved * saved;
+        if let Some((baseline, signalled)) = diverged {
+            match self
+                .divergences
+                .iter_mut()
+                .find(|divergence| divergence.baseline == baseline && divergence.signalled == signalled)
+            {
+                Some(divergence) => {
+                    divergence.sum += saved;
+                    divergence.squares += saved * saved;
                 }
-                None => self.partings.push(Parting { silent, told, sum: saved, squares: saved * saved }),
+                None => self.divergences.push(Divergence { baseline, signalled, sum: saved, squares: saved * saved }),
             }
         }
     }
@@ -72,11 +76,14 @@ impl PairedDifferences {
 
     /// The press that the signal prevents where that saves most, and what is pressed instead (nothing: waiting).
     pub fn turning_point(&self) -> Option<(ButtonId, Option<ButtonId>)> {
-        let presses = self.partings.iter().filter_map(|parting| match (parting.silent, parting.told) {
-            (HumanChoice::Press(silent), HumanChoice::Press(told)) => Some((silent, Some(told), parting)),
-            (HumanChoice::Press(silent), HumanChoice::Wait) => Some((silent, None, parting)),
-            (HumanChoice::Wait, _) => None,
-        });
+        let presses =
+            self.divergences.iter().filter_map(|divergence| match (divergence.baseline, divergence.signalled) {
+                (HumanChoice::Press(baseline), HumanChoice::Press(signalled)) => {
+                    Some((baseline, Some(signalled), divergence))
+                }
+                (HumanChoice::Press(baseline), HumanChoice::Wait) => Some((baseline, None, divergence)),
+                (HumanChoice::Wait, _) => None,
+            });
         let most = presses.reduce(|best, one| if one.2.surely_saved() > best.2.surely_saved() { one } else { best })?;
         (most.2.sum > 0.0).then_some((most.0, most.1))
     }

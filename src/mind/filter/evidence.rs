@@ -9,12 +9,12 @@
 use crate::base::bits::ones;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
-use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, OrderContent};
-use crate::mind::decision::PressLikelihood;
+use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, OrderContent, World};
+use crate::mind::choice::ChoiceModel;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::model::InferenceModel;
 
-use super::cases::Cases;
+use super::distinct::DistinctWorlds;
 use super::urn::Urn;
 
 /// This share of the first draws of a recipe is spread evenly over its variants: false recipes show in presses alone, and
@@ -52,15 +52,15 @@ pub struct Sampler {
     /// How much each belief sample counts, before its likelihood p(a | belief) and with it.
     priors: Vec<f64>,
     posteriors: Vec<f64>,
-    cases: Cases,
-    /// The different cases among the draws of all belief samples, one sample after another.
+    worlds: DistinctWorlds,
+    /// The different worlds among the draws of all belief samples, one sample after another.
     runs: Vec<Run>,
     /// The different draws of one belief sample.
     alike: Vec<Alike>,
     /// By draw, its values of the mixed aspects.
     keys: Vec<Key>,
-    /// By case, the weight of its draws after the press.
-    case_weights: Vec<f64>,
+    /// By world, the weight of its draws after the press.
+    world_weights: Vec<f64>,
 }
 
 /// A belief sample.
@@ -82,10 +82,10 @@ impl Sample {
     }
 }
 
-/// Draws of one belief sample that are the same case: the first of them, and how many there are.
+/// Draws of one belief sample that are the same world: the first of them, and how many there are.
 #[derive(Clone, Copy, Debug)]
 struct Run {
-    case: u32,
+    world: u32,
     first: u32,
     draws: u32,
 }
@@ -103,10 +103,10 @@ struct Alike {
     draws: u32,
 }
 
-/// What a press is judged by.
+/// The models by which a press is weighed.
 pub struct EvidenceModel<'a> {
     pub kitchen: &'a Kitchen,
-    pub likelihood: &'a PressLikelihood,
+    pub choice: &'a ChoiceModel,
     pub inference: &'a InferenceModel,
 }
 
@@ -118,33 +118,33 @@ impl Sampler {
     /// Updates the belief by the evidence of a press of the human.
     pub fn weigh(
         &mut self,
-        judge: &EvidenceModel,
+        model: &EvidenceModel,
         cost: &mut CostToGo,
         belief: &mut DirichletBelief,
         button: ButtonId,
         random: &mut Stream,
     ) -> Evidence {
-        let states = judge.inference.states;
+        let states = model.inference.states;
         self.urns.resize(belief.aspects.len(), Urn::default());
         self.counts.clear();
-        for ((urn, dirichlet), aspect) in self.urns.iter_mut().zip(&belief.aspects).zip(&judge.kitchen.aspects) {
+        for ((urn, dirichlet), aspect) in self.urns.iter_mut().zip(&belief.aspects).zip(&model.kitchen.aspects) {
             urn.fill(dirichlet, states, random);
             let is_recipe = matches!(aspect.kind, AspectKind::Recipe(_));
             self.counts.push(if is_recipe { urn.spread(SPREAD) } else { Vec::new() });
         }
-        let mut wanted = judge.inference.beliefs;
+        let mut wanted = model.inference.beliefs;
         self.firsts.clear();
         self.rows.clear();
         self.samples.clear();
         self.runs.clear();
         self.priors.clear();
         self.posteriors.clear();
-        self.cases.clear(states * wanted.max(judge.inference.max_beliefs));
+        self.worlds.clear(states * wanted.max(model.inference.max_beliefs));
         loop {
-            self.draw(judge, cost, button, wanted, random);
+            self.draw(model, cost, button, wanted, random);
             let evidence = self.evidence();
-            let can_double = wanted * 2 <= judge.inference.max_beliefs;
-            if evidence.effective >= judge.inference.min_effective || !can_double {
+            let can_double = wanted * 2 <= model.inference.max_beliefs;
+            if evidence.effective >= model.inference.min_effective || !can_double {
                 self.collapse(belief, states);
                 return evidence;
             }
@@ -155,13 +155,13 @@ impl Sampler {
     /// Draws belief samples until there are so many.
     fn draw(
         &mut self,
-        judge: &EvidenceModel,
+        model: &EvidenceModel,
         cost: &mut CostToGo,
         button: ButtonId,
         wanted: usize,
         random: &mut Stream,
     ) {
-        let (kitchen, states) = (judge.kitchen, judge.inference.states);
+        let (kitchen, states) = (model.kitchen, model.inference.states);
         let (aspects, old) = (self.urns.len(), self.samples.len());
         let new = wanted - old;
         self.proposed.resize(new * aspects, 0);
@@ -172,13 +172,13 @@ impl Sampler {
             let rows = self.rows.len();
             let mixed = self.draw_on(kitchen, new, sample, states, random);
             let begin = self.runs.len();
-            self.count_cases(kitchen, states, mixed, rows);
+            self.count_worlds(kitchen, states, mixed, rows);
             self.samples.push(Sample { mixed, rows, runs: [begin, self.runs.len()] });
         }
-        self.cases.rate(cost, wanted * states);
-        self.press_chances(judge, button, old);
+        self.worlds.rate(cost, wanted * states);
+        self.weigh_samples(model, button, old);
         while self.rate_again(cost, states) {
-            self.press_chances(judge, button, 0);
+            self.weigh_samples(model, button, 0);
         }
     }
 
@@ -214,20 +214,20 @@ impl Sampler {
         mixed
     }
 
-    /// Counts the cases among the draws of the newest belief sample, whose rows begin here.
-    fn count_cases(&mut self, kitchen: &Kitchen, states: usize, mixed: u32, rows: usize) {
+    /// Counts the worlds among the draws of the newest belief sample, whose rows begin here.
+    fn count_worlds(&mut self, kitchen: &Kitchen, states: usize, mixed: u32, rows: usize) {
         self.tell_apart(states, mixed, rows);
-        let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
+        let mut world = World::empty(kitchen);
         let firsts = &self.firsts[self.firsts.len() - self.urns.len()..];
         for (aspect, &value) in firsts.iter().enumerate().filter(|(_, value)| **value != UNDRAWN) {
-            kitchen.set_value(&mut state, &mut recipes, AspectId(aspect as u8), usize::from(value));
+            world.set_value(kitchen, AspectId(aspect as u8), usize::from(value));
         }
         for &Alike { first, draws, .. } in &self.alike {
             for (aspect, row) in ones(mixed).zip(self.rows[rows..].chunks_exact(states)) {
-                kitchen.set_value(&mut state, &mut recipes, AspectId(aspect as u8), usize::from(row[first]));
+                world.set_value(kitchen, AspectId(aspect as u8), usize::from(row[first]));
             }
-            let case = self.cases.count(state, recipes, draws);
-            self.runs.push(Run { case, first: first as u32, draws });
+            let index = self.worlds.count(world, draws);
+            self.runs.push(Run { world: index, first: first as u32, draws });
         }
     }
 
@@ -254,16 +254,16 @@ impl Sampler {
     }
 
     /// Weighs the belief samples from this one on by p(a | belief).
-    fn press_chances(&mut self, judge: &EvidenceModel, button: ButtonId, from: usize) {
-        let buttons = judge.kitchen.buttons[Agent::Human.index()].len();
+    fn weigh_samples(&mut self, model: &EvidenceModel, button: ButtonId, from: usize) {
+        let buttons = model.kitchen.buttons[Agent::Human.index()].len();
         self.posteriors.truncate(from);
         for (sample, prior) in self.samples.iter().zip(&self.priors).skip(from) {
             let mut sums = [0u32; MAX_BUTTONS];
             for run in self.runs_of(sample) {
-                let after = self.cases.after(run.case);
+                let after = self.worlds.after(run.world);
                 sums.iter_mut().zip(after).for_each(|(sum, &after)| *sum += run.draws * u32::from(after));
             }
-            let likelihood = judge.likelihood.probability(&sums[..buttons], button);
+            let likelihood = model.choice.press_likelihood(&sums[..buttons], button);
             self.posteriors.push(prior * likelihood);
         }
     }
@@ -274,17 +274,17 @@ impl Sampler {
         &self.runs[sample.runs[0]..sample.runs[1]]
     }
 
-    /// Plans for the cases that hardly counted before the press, and do now; whether there were any.
+    /// Plans for the worlds that hardly counted before the press, and do now; whether there were any.
     fn rate_again(&mut self, cost: &mut CostToGo, states: usize) -> bool {
-        self.case_weights.clear();
-        self.case_weights.resize(self.cases.len(), 0.0);
+        self.world_weights.clear();
+        self.world_weights.resize(self.worlds.len(), 0.0);
         for (sample, weight) in self.samples.iter().zip(&self.posteriors) {
             for run in &self.runs[sample.runs[0]..sample.runs[1]] {
-                self.case_weights[run.case as usize] += weight * f64::from(run.draws);
+                self.world_weights[run.world as usize] += weight * f64::from(run.draws);
             }
         }
         let sum = self.posteriors.iter().sum::<f64>() * states as f64;
-        self.cases.rate_again(cost, &self.case_weights, sum)
+        self.worlds.rate_again(cost, &self.world_weights, sum)
     }
 
     fn evidence(&self) -> Evidence {

@@ -4,7 +4,7 @@
 //! What has a closed form is computed by it: reading, forgetting, signals, own presses that one location decides. Only the
 //! evidence of a press needs samples, and what a press of several locations or of the robot may have done.
 
-mod cases;
+mod distinct;
 mod evidence;
 mod exchange;
 mod gamma;
@@ -16,7 +16,7 @@ pub mod urn;
 
 use std::sync::Arc;
 
-use super::decision::PressLikelihood;
+use super::choice::ChoiceModel;
 use super::dirichlet::{Dirichlet, DirichletBelief};
 use super::model::HumanModel;
 use super::observation::{Observation, Observed};
@@ -51,7 +51,7 @@ pub struct BeliefFilter {
     /// What recipes are forgotten to.
     prior: DirichletBelief,
     reader: Reader,
-    likelihood: PressLikelihood,
+    choice: ChoiceModel,
     /// By button of the human.
     lessons: Vec<Lesson>,
     sampler: Sampler,
@@ -77,7 +77,7 @@ impl BeliefFilter {
         let lessons = kitchen.buttons[Agent::Human.index()].iter().map(|button| lesson(button.action)).collect();
         BeliefFilter {
             reader: Reader::new(&kitchen, &model.perception),
-            likelihood: PressLikelihood::new(&kitchen, &model.decision, model.inference.states),
+            choice: ChoiceModel::for_draws(&kitchen, &model.decision, model.inference.states),
             belief: prior.clone(),
             sampler: Sampler::new(&kitchen),
             forgot: None,
@@ -164,9 +164,8 @@ impl BeliefFilter {
     }
 
     fn human_pressed(&mut self, button: ButtonId, effective: bool, cost: &mut CostToGo, random: &mut Stream) {
-        let judge =
-            EvidenceModel { kitchen: &self.kitchen, likelihood: &self.likelihood, inference: &self.model.inference };
-        self.evidence = Some(self.sampler.weigh(&judge, cost, &mut self.belief, button, random));
+        let model = EvidenceModel { kitchen: &self.kitchen, choice: &self.choice, inference: &self.model.inference };
+        self.evidence = Some(self.sampler.weigh(&model, cost, &mut self.belief, button, random));
         let draws = self.model.inference.beliefs;
         match &self.lessons[button.index()] {
             Lesson::Alone => {

@@ -8,13 +8,14 @@
 
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
-use crate::kitchen::{Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, Recipes, State};
+use crate::kitchen::{Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, State};
+use crate::kitchen::{WeightedWorld, WeightedWorlds, World};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::robot::policy;
 
 use super::urn::Urn;
 
-/// At least this share of all draws has to be of a case for plans to be made in it.
+/// At least this share of all draws has to be of a world for plans to be made in it.
 const COUNTS: f64 = 0.05;
 
 /// One way a value may go, and how often it did.
@@ -40,7 +41,7 @@ pub fn predict(
     let mut flows: Vec<Flow> = Vec::new();
     let mut occurred: Vec<Vec<f64>> =
         kitchen.aspects[..locations].iter().map(|aspect| vec![0.0; aspect.values.len()]).collect();
-    for (state, recipes, count) in drawn {
+    for WeightedWorld { world: World { state, recipes }, weight: count } in drawn.all {
         for (index, occurred) in occurred.iter_mut().enumerate() {
             if let Some(value) = kitchen.aspects[index].index_of(state.code(LocationId(index as u8))) {
                 occurred[value] += count;
@@ -97,30 +98,30 @@ fn moved(dirichlet: &Dirichlet, flows: &[Flow], occurred: &[f64]) -> Dirichlet {
     Dirichlet::of_moments(mean, (precision * square + spread) / (precision + 1.0))
 }
 
-/// States and recipes drawn from the expected belief, each value as often as its share says; equal ones together.
-fn draw(kitchen: &Kitchen, belief: &DirichletBelief, draws: usize, random: &mut Stream) -> Vec<(State, Recipes, f64)> {
-    let mut cases = vec![(kitchen.empty_state(), kitchen.true_recipes()); draws];
+/// Worlds drawn from the expected belief, each value as often as its share says; the weight is the number of draws.
+fn draw(kitchen: &Kitchen, belief: &DirichletBelief, draws: usize, random: &mut Stream) -> WeightedWorlds {
+    let mut worlds = vec![World::empty(kitchen); draws];
     let mut values = vec![0; draws];
     let mut urn = Urn::default();
     for (index, dirichlet) in belief.aspects.iter().enumerate() {
         urn.fill(dirichlet, 1, random);
         urn.first_draws(random, &mut values);
-        for ((state, recipes), &value) in cases.iter_mut().zip(&values) {
+        for (world, &value) in worlds.iter_mut().zip(&values) {
             let is_open = match kitchen.aspects[index].kind {
                 AspectKind::Location(_) => true,
-                AspectKind::Recipe(dish) => is_wanted(kitchen, *state, OrderContent::Dish(dish)),
+                AspectKind::Recipe(dish) => is_wanted(kitchen, world.state, OrderContent::Dish(dish)),
             };
             if is_open {
-                kitchen.set_value(state, recipes, AspectId(index as u8), usize::from(value));
+                world.set_value(kitchen, AspectId(index as u8), usize::from(value));
             }
         }
     }
-    cases.sort_unstable();
-    let mut together: Vec<(State, Recipes, f64)> = Vec::new();
-    for (state, recipes) in cases {
-        match together.last_mut() {
-            Some((last, others, count)) if *last == state && *others == recipes => *count += 1.0,
-            _ => together.push((state, recipes, 1.0)),
+    worlds.sort_unstable();
+    let mut together = WeightedWorlds::default();
+    for world in worlds {
+        match together.all.last_mut() {
+            Some(last) if last.world == world => last.weight += 1.0,
+            _ => together.all.push(WeightedWorld { world, weight: 1.0 }),
         }
     }
     together

@@ -1,0 +1,195 @@
+//! The choice model: a softmax with lapses over the expected cost to go.
+//!
+//! p(a | b) ~ exp(tau Q(b, a)) with Q(b, a) = -E_b[1 + C(s')] over the worlds of belief b, and -(E_b[C(s)] + 0.5) for
+//! waiting (paper, section "Human model"). A few presses slip: to the neighbouring button, to the look-alike symbol, or
+//! anywhere. The belief filter asks for the likelihood of one press, the planner draws choices, and attribution asks for all
+//! probabilities. The plain references of filter and planner have their own, to be compared with this one.
+
+use super::decision::DecisionModel;
+use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
+use crate::kitchen::{Agent, ButtonId, Kitchen, WeightedWorlds};
+
+/// The planner counts softmax weights below e^-20 as 0.
+const NEGLIGIBLE_EXPONENT: f64 = 20.0;
+
+/// What a human chooses at a decision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HumanChoice {
+    Wait,
+    Press(ButtonId),
+}
+
+/// The probabilities of all choices.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChoiceProbabilities {
+    /// Of waiting.
+    pub wait: f64,
+    /// Of pressing each button, by [`ButtonId`], given that one is pressed.
+    pub press: Vec<f64>,
+}
+
+/// The softmax weights of one decision, before slips, to draw choices from.
+#[derive(Clone, Copy, Debug)]
+pub struct ChoiceWeights {
+    wait: f64,
+    /// By button.
+    press: [f64; MAX_BUTTONS],
+    total: f64,
+}
+
+/// How a human with a belief chooses.
+#[derive(Clone, Debug)]
+pub struct ChoiceModel {
+    parameters: DecisionModel,
+    /// By intended button, where a press of it slips to: the nearest other button, and the one with the look-alike symbol or
+    /// else the nearest one again.
+    slips_to: Vec<[ButtonId; 2]>,
+    /// By button, which other intended buttons slip to it, and with which probability.
+    slips_from: Vec<Vec<(usize, f64)>>,
+    /// The probability that a press slips to one given button, whatever was intended.
+    anywhere: f64,
+    /// `[n][k]`: exp(-tau k / n), the weight of a button with k presses more than the best one, summed over n draws.
+    weights: Vec<Vec<f64>>,
+}
+
+impl ChoiceModel {
+    /// For beliefs that are weighted worlds.
+    pub fn new(kitchen: &Kitchen, parameters: &DecisionModel) -> ChoiceModel {
+        let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+        let slips = |button| {
+            let next = kitchen.nearest_button(Agent::Human, button).unwrap_or(button);
+            [next, kitchen.look_alike_button(Agent::Human, button).unwrap_or(next)]
+        };
+        let slips_to: Vec<[ButtonId; 2]> = buttons.map(slips).collect();
+        let [anywhere, slipping] = parameters.slip_probabilities(slips_to.len());
+        let of_button = |button: usize| {
+            let times = |to: &[ButtonId; 2]| to.iter().filter(|slipped| slipped.index() == button).count();
+            let all = slips_to.iter().map(times).enumerate().filter(|(_, times)| *times > 0);
+            all.map(|(from, times)| (from, slipping * times as f64)).collect()
+        };
+        let slips_from = (0..slips_to.len()).map(of_button).collect();
+        ChoiceModel { parameters: parameters.clone(), slips_from, slips_to, anywhere, weights: Vec::new() }
+    }
+
+    /// For beliefs that exactly `draws` drawn worlds stand for; weights are exact down to the smallest number.
+    pub fn for_draws(kitchen: &Kitchen, parameters: &DecisionModel, draws: usize) -> ChoiceModel {
+        let mut model = ChoiceModel::new(kitchen, parameters);
+        let row = (0..=draws * usize::from(u8::MAX)).map(|more| parameters.weight(more, draws));
+        model.weights.resize(draws, Vec::new());
+        model.weights.push(row.take_while(|weight| *weight > 0.0).collect());
+        model
+    }
+
+    /// For beliefs that up to `draws` drawn worlds stand for; weights below e^-20 are 0.
+    pub fn up_to_draws(kitchen: &Kitchen, parameters: &DecisionModel, draws: usize) -> ChoiceModel {
+        let row = |n: usize| {
+            let last = (NEGLIGIBLE_EXPONENT * n as f64 / parameters.tau) as usize;
+            (0..=last).map(|more| parameters.weight(more, n.max(1))).collect()
+        };
+        ChoiceModel { weights: (0..=draws).map(row).collect(), ..ChoiceModel::new(kitchen, parameters) }
+    }
+
+    /// The number of the human's buttons.
+    pub fn buttons(&self) -> usize {
+        self.slips_to.len()
+    }
+
+    /// The probabilities of all choices under a belief.
+    pub fn probabilities(&self, cost: &mut CostToGo, worlds: &WeightedWorlds) -> ChoiceProbabilities {
+        let (tau, count) = (self.parameters.tau, self.buttons());
+        let mut here = 0.0;
+        let mut after = [0.0; MAX_BUTTONS];
+        for one in &worlds.all {
+            let decision = cost.decision(one.world.state, &one.world.recipes, Agent::Human);
+            here += one.weight * f64::from(decision.here);
+            for (sum, &value) in after.iter_mut().zip(&decision.after[..count]) {
+                *sum += one.weight * f64::from(value);
+            }
+        }
+        let least = after[..count].iter().copied().fold(f64::INFINITY, f64::min);
+        let intended: Vec<f64> = after[..count].iter().map(|value| (-tau * (value - least)).exp()).collect();
+        let total: f64 = intended.iter().sum();
+        let wait = (-tau * (here + self.parameters.wait_cost - 1.0 - least)).min(f64::MAX.ln() / 2.0).exp();
+        let intended: Vec<f64> = intended.iter().map(|weight| weight / total).collect();
+        ChoiceProbabilities { wait: wait / (wait + total), press: self.with_slips(&intended) }
+    }
+
+    /// The probability that each button is pressed, from the probability that it is intended.
+    fn with_slips(&self, intended: &[f64]) -> Vec<f64> {
+        let lapse = self.parameters.lapse;
+        let [anywhere, slipping] = self.parameters.slip_probabilities(intended.len());
+        let mut pressed: Vec<f64> = intended.iter().map(|p| (1.0 - lapse) * p + anywhere).collect();
+        for (to, p) in self.slips_to.iter().zip(intended) {
+            for button in to {
+                pressed[button.index()] += slipping * p;
+            }
+        }
+        pressed
+    }
+
+    /// p(a | b), given that a button is pressed: `sums[x]` is the cost to go after button x, summed over the drawn worlds
+    /// that stand for b. For a model that was made [`ChoiceModel::for_draws`].
+    #[inline]
+    pub fn press_likelihood(&self, sums: &[u32], button: ButtonId) -> f64 {
+        let weights = self.weights.last().map_or(&[][..], Vec::as_slice);
+        let least = sums.iter().copied().min().unwrap_or(0);
+        let weight = |sum: u32| weights.get((sum - least) as usize).copied().unwrap_or(0.0);
+        let total: f64 = sums.iter().map(|&sum| weight(sum)).sum();
+        let slipped = |&(from, chance): &(usize, f64)| chance * weight(sums[from]);
+        let slips = self.slips_from[button.index()].iter().map(slipped);
+        let intended = (1.0 - self.parameters.lapse) * weight(sums[button.index()]);
+        let pressed = slips.fold(intended, |pressed, slipped| pressed + slipped);
+        pressed / total + self.anywhere
+    }
+
+    /// The weights of all choices: `here` is the cost to go now and `sums[x]` that after button x, summed over `draws` drawn
+    /// worlds. For a model that was made for [`ChoiceModel::up_to_draws`].
+    #[inline]
+    pub fn weights(&self, here: u32, sums: &[u32], draws: u32) -> ChoiceWeights {
+        let least = sums.iter().copied().min().unwrap_or(0);
+        let row = &self.weights[draws as usize];
+        let mut press = [0.0; MAX_BUTTONS];
+        let mut total = 0.0;
+        for (weight, &sum) in press.iter_mut().zip(sums) {
+            *weight = row.get((sum - least) as usize).copied().unwrap_or(0.0);
+            total += *weight;
+        }
+        let gain = (f64::from(least) - f64::from(here)) / f64::from(draws) + 1.0 - self.parameters.wait_cost;
+        let wait = (self.parameters.tau * gain).min(f64::MAX.ln() / 2.0).exp();
+        ChoiceWeights { wait, press, total }
+    }
+
+    /// What the human intends, by a random number from 0 to 1.
+    pub fn intended(&self, weights: &ChoiceWeights, draw: f64) -> HumanChoice {
+        let mut left = draw * (weights.wait + weights.total) - weights.wait;
+        if left < 0.0 {
+            return HumanChoice::Wait;
+        }
+        let mut last = 0;
+        for (button, &weight) in weights.press[..self.buttons()].iter().enumerate() {
+            if weight > 0.0 {
+                last = button;
+                left -= weight;
+                if left < 0.0 {
+                    break;
+                }
+            }
+        }
+        HumanChoice::Press(ButtonId(last as u8))
+    }
+
+    /// What the human does when it intends this, by a random number from 0 to 1: a few presses slip.
+    pub fn executed(&self, intended: HumanChoice, draw: f64) -> HumanChoice {
+        let HumanChoice::Press(button) = intended else { return intended };
+        let DecisionModel { lapse, lapse_anywhere: anywhere, .. } = self.parameters;
+        if draw >= lapse {
+            return intended;
+        }
+        let at = draw / lapse;
+        if at < anywhere {
+            return HumanChoice::Press(ButtonId(((at / anywhere) * self.buttons() as f64) as u8));
+        }
+        let [next, alike] = self.slips_to[button.index()];
+        HumanChoice::Press(if at < (1.0 + anywhere) / 2.0 { next } else { alike })
+    }
+}

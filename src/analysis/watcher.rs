@@ -70,9 +70,9 @@ struct Voice {
     spoken: Vec<Communication>,
 }
 
-/// The estimate without a signal, and without those after it.
+/// The estimate that leaves out one signal and all later ones.
 #[derive(Debug)]
-struct Without {
+struct CounterfactualFilter {
     /// Presses of the human before the signal.
     press: u32,
     signal: Signal,
@@ -87,8 +87,8 @@ pub struct ComparisonFollower {
     pub follower: Follower,
     window: u32,
     voices: Vec<Voice>,
-    /// Of the signals that were sent within the window, the oldest first.
-    without: VecDeque<Without>,
+    /// One for each signal that was sent within the window, the oldest first.
+    counterfactuals: VecDeque<CounterfactualFilter>,
     /// Those before.
     shown: Repeats,
     sent: Vec<Communication>,
@@ -117,7 +117,7 @@ impl ComparisonFollower {
             follower: Follower::new(session, cost),
             window: request.window,
             voices,
-            without: VecDeque::new(),
+            counterfactuals: VecDeque::new(),
             shown: Repeats::default(),
             sent: Vec::new(),
             to_ask: None,
@@ -143,10 +143,10 @@ impl ComparisonFollower {
         let is_sent = matches!(stamped.event, Event::SignalShown { .. });
         let filter = is_sent.then(|| self.follower.filter.clone());
         let Applied { change, .. } = self.follower.apply(stamped)?;
-        self.estimate_without(stamped, &change);
+        self.update_counterfactuals(stamped, &change);
         if let (Some(filter), Event::SignalShown { signal, .. }) = (filter, &stamped.event) {
             let (press, state) = (self.presses(), self.follower.session.state);
-            self.without.push_back(Without { press, signal: signal.clone(), state, filter });
+            self.counterfactuals.push_back(CounterfactualFilter { press, signal: signal.clone(), state, filter });
             let spoken = self.spoken(CommunicationContent::Signal(signal.clone()), stamped.time);
             self.sent.push(spoken);
         }
@@ -187,13 +187,13 @@ impl ComparisonFollower {
         self.follower.session.presses[Agent::Human.index()]
     }
 
-    /// Moves the estimates on that leave signals out. They learn all but signals.
-    fn estimate_without(&mut self, stamped: &Stamped, change: &Change) {
+    /// Updates the counterfactual filters by an event, unless it is a signal.
+    fn update_counterfactuals(&mut self, stamped: &Stamped, change: &Change) {
         let (press, window) = (self.presses(), self.window);
-        while let Some(oldest) = self.without.pop_front_if(|oldest| press > oldest.press + window) {
+        while let Some(oldest) = self.counterfactuals.pop_front_if(|oldest| press > oldest.press + window) {
             self.shown.shown(&self.follower.session.kitchen, oldest.state, &oldest.signal);
         }
-        if self.without.is_empty() {
+        if self.counterfactuals.is_empty() {
             return;
         }
         let Some(what) = self.follower.observed(stamped, change) else { return };
@@ -201,7 +201,7 @@ impl ComparisonFollower {
             return;
         }
         let observation = Observation { time: stamped.time, what };
-        for one in &mut self.without {
+        for one in &mut self.counterfactuals {
             one.filter.observe(&observation, &mut self.follower.cost);
         }
     }
@@ -209,13 +209,14 @@ impl ComparisonFollower {
     fn forget_what_was_said(&mut self) {
         let session = &self.follower.session;
         let press = session.presses[Agent::Human.index()];
-        let belief = estimate(&self.follower, &self.without);
+        let belief = estimate(&self.follower, &self.counterfactuals);
         self.shown.update(&session.kitchen, session.state, belief);
         for voice in &mut self.voices {
             // What was sent as well is not asked for once more.
             let is_sent = |location: &LocationId| {
-                let is_it = |one: &Without| session.kitchen.location_named(one.signal.target()) == Some(*location);
-                self.without.iter().any(is_it)
+                let is_it =
+                    |one: &CounterfactualFilter| session.kitchen.location_named(one.signal.target()) == Some(*location);
+                self.counterfactuals.iter().any(is_it)
             };
             voice.said.retain(|(said, location)| {
                 let is_kept = press <= said + self.window || is_sent(location);
@@ -242,7 +243,7 @@ impl ComparisonFollower {
         let session = &self.follower.session;
         let (kitchen, own_hand) = (session.kitchen.clone(), session.spec.signals.own_hand);
         let question = AdviceRequest::from_follower(&self.follower, seq, time);
-        let belief = estimate(&self.follower, &self.without);
+        let belief = estimate(&self.follower, &self.counterfactuals);
         let shown = &self.shown;
         let answer = |voice: &mut Voice| {
             let mut signals = shown.allowed(&kitchen, own_hand);
@@ -295,9 +296,9 @@ impl ComparisonFollower {
     }
 }
 
-/// The estimate without what was sent within the window.
-fn estimate<'a>(follower: &'a Follower, without: &'a VecDeque<Without>) -> &'a DirichletBelief {
-    without.front().map_or(follower.filter.belief(), |oldest| oldest.filter.belief())
+/// The estimate that leaves out what was sent within the window.
+fn estimate<'a>(follower: &'a Follower, counterfactuals: &'a VecDeque<CounterfactualFilter>) -> &'a DirichletBelief {
+    counterfactuals.front().map_or(follower.filter.belief(), |oldest| oldest.filter.belief())
 }
 
 /// Whether an event belongs to what the event at `time` led to at once.

@@ -1,4 +1,4 @@
-//! The arm in the physics and the human's hand beside it, in time; and what is told of them.
+//! The simulated arm and the human's hand beside it, stepped in session time, and the events that they report.
 
 use super::controller::{ControlCycle, PhysicalArm};
 use super::physics::CYCLE_S;
@@ -11,46 +11,46 @@ use crate::robot::moment::{ArmPhase, ArmSample};
 use crate::robot::safety::SafetyMode;
 use crate::robot::{AbortReason, RobotActivity};
 
-/// So often it is told where a moving arm is: some twelve times a second.
+/// Interval between recorded samples of a moving arm: about twelve a second.
 const TOLD_EVERY: SessionTime = SessionTime(80_000_000);
 
 fn rounded(value: f64, parts: f64) -> f64 {
-    // Not -0, which is written otherwise than 0.
+    // Adding 0 turns -0 into 0, which is written differently in the log.
     (value * parts).round() / parts + 0.0
 }
 
-/// What was told last.
+/// The last arm sample that was reported.
 #[derive(Clone, Copy, Debug, Default)]
 struct Told {
     at: SessionTime,
     phase: ArmPhase,
     mode: SafetyMode,
     moving: bool,
-    /// Felt since then, in newtons.
+    /// Greatest force since the last report, in newtons.
     force_n: f64,
 }
 
-/// The arm, and when it was there.
+/// The simulated arm with the human's hand and the session time that the simulation has reached.
 #[derive(Clone, Debug)]
 pub struct SteppedArm {
     /// The arm.
     pub arm: PhysicalArm,
     hand: ReachingHand,
-    /// The time of its last cycle.
+    /// Session time of the last controller cycle.
     at: SessionTime,
-    /// Where it goes when it stands still.
+    /// The button that the arm sets out for once it stands still.
     next: Option<ButtonId>,
-    /// There is nothing to do.
+    /// The robot has no press to make.
     idle: bool,
     told: Told,
-    /// The state in which the press that it makes was last found useful.
+    /// The state in which the current press was last found useful.
     found_useful: Option<State>,
-    /// The stick is on its button.
+    /// The stick touches the button.
     on_button: bool,
 }
 
 impl SteppedArm {
-    /// An arm at rest beside a human's hand that moves so.
+    /// An arm at rest, beside a human's hand with this behaviour.
     pub fn new(kitchen: &Kitchen, hand: ReachingBehaviour, seed: u64, trial: u64) -> SteppedArm {
         let hand = ReachingHand::new(kitchen, hand, stream(seed, "human's hand", trial));
         let arm = PhysicalArm::new(kitchen);
@@ -66,7 +66,8 @@ impl SteppedArm {
         }
     }
 
-    /// When its next cycle is due; none: all is at rest. `may_press`: nobody holds it above its button.
+    /// The time of the next controller cycle; none if arm and hand are at rest. `may_press`: the wizard does not hold
+    /// the arm above the button.
     pub fn next_due(&self, may_press: bool) -> Option<SessionTime> {
         let goes_down = self.arm.phase() == ArmPhase::Hovers && may_press && !self.arm.mode.is_stopped();
         let goes_home = self.idle && self.arm.is_out();
@@ -75,7 +76,7 @@ impl SteppedArm {
         next.into_iter().chain(self.hand.next_move(self.at)).min()
     }
 
-    /// Sets out for a button, at once or when it stands still; how long that takes if nothing comes between, in seconds.
+    /// Starts the way to a button, at once or when the arm stands still. Returns the undisturbed duration in seconds.
     pub fn set_out(&mut self, now: SessionTime, button: ButtonId) -> Result<f64, AbortReason> {
         (self.found_useful, self.idle) = (None, false);
         if self.arm.withdraws() {
@@ -85,19 +86,19 @@ impl SteppedArm {
             self.next = Some(button);
             return Ok(self.arm.takes_s(button)?);
         }
-        // While it was at rest nothing happened to it.
+        // Nothing happened to the arm while it was at rest.
         self.at = self.at.max(now);
         Ok(self.arm.set_out(button)?)
     }
 
-    /// Gives up what it set out for, or was about to.
+    /// Gives up the current press and the pending one.
     pub fn give_up(&mut self) {
         self.next = None;
         self.arm.give_up();
     }
 
-    /// Whether it has to be decided now if the press is still useful: above the button, and whenever the state has become
-    /// another one before the stick touches it, or while a hand is in the way.
+    /// Whether the caller has to decide now if the press is still useful: above the button, whenever the state changed
+    /// before the stick touches it, and while a hand blocks the arm.
     pub fn asks(&self, may_press: bool, state: State) -> bool {
         match self.arm.phase() {
             _ if self.next.is_some() => false,
@@ -108,7 +109,7 @@ impl SteppedArm {
         }
     }
 
-    /// The press is useful in this state: above the button it is made.
+    /// The press is useful in this state; the arm above the button presses it.
     pub fn go_for_it(&mut self, may_press: bool, state: State) {
         self.found_useful = Some(state);
         if self.arm.phase() == ArmPhase::Hovers && may_press {
@@ -116,14 +117,15 @@ impl SteppedArm {
         }
     }
 
-    /// Sets out for where it was about to go, if it stands still by now; the button that it cannot reach from there, and why.
+    /// Starts the pending press if the arm stands still. Returns the button that cannot be reached from there, and the
+    /// reason.
     pub fn go_on(&mut self) -> Option<(ButtonId, AbortReason)> {
         let halts = self.arm.halts() || self.arm.mode.is_stopped();
         let button = self.next.take_if(|_| !halts)?;
         self.arm.set_out(button).err().map(|why| (button, why.into()))
     }
 
-    /// A cycle that ends now: what came of it, and what is to be told.
+    /// Runs the controller cycle that ends now, and returns its result with the events to record.
     pub fn cycle(&mut self, now: SessionTime) -> CycleNews {
         self.at = now;
         if self.idle && self.arm.is_out() {
@@ -165,18 +167,18 @@ impl SteppedArm {
         news
     }
 
-    /// There is nothing to do until it sets out again.
+    /// The arm stays idle until the next press.
     pub fn has_nothing_to_do(&mut self) {
         self.idle = true;
     }
 
-    /// The wizard stops it.
+    /// The wizard stops the arm.
     pub fn stop(&mut self) -> Option<RobotActivity> {
         self.arm.stop(SafetyMode::EmergencyStop);
         self.safety(None, None)
     }
 
-    /// The person means to press the button at this place of the table (metres) at `at`, as far as is known now.
+    /// The person intends to press the button at this place of the table (metres) at the predicted time `at`.
     pub fn human_means(&mut self, now: SessionTime, button_m: [f64; 2], at: SessionTime) {
         self.hand.means(now, button_m, at);
     }
@@ -186,21 +188,21 @@ impl SteppedArm {
         self.hand.pressed(now, button_m);
     }
 
-    /// That it is safe in another way than was told, if it is.
+    /// The change of the safety mode since the last report, if there is one.
     fn safety(&mut self, force_n: Option<f64>, joint: Option<u8>) -> Option<RobotActivity> {
         let mode = self.arm.mode;
         let changed = std::mem::replace(&mut self.told.mode, mode) != mode;
         changed.then_some(RobotActivity::Safety { mode, force_n, joint })
     }
 
-    /// The wizard lets it go on.
+    /// The wizard releases the arm after a stop.
     pub fn resume(&mut self, now: SessionTime) -> Option<RobotActivity> {
         self.at = self.at.max(now);
         self.arm.resume();
         self.safety(None, None)
     }
 
-    /// A pause of this length is over.
+    /// Shifts all pending times by the length of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         self.at = self.at + by;
         self.told.at = self.told.at + by;

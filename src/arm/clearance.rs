@@ -1,4 +1,4 @@
-//! How far an arm is from the table, from itself and from other things: its solids as capsules.
+//! Clearance of the arm from the table, from its own links and from obstacles. Solids are approximated by capsules.
 
 use nalgebra::{Isometry3, Point3};
 use rapier3d::math::Vector;
@@ -8,27 +8,27 @@ use super::kinematics::Arm;
 use super::link::{CollisionSolid, LinkShape};
 use crate::robot::moment::{JOINTS, JointAngles};
 
-/// Its links keep at least so far from each other and from the table, in metres.
+/// Least clearance between links, and between links and table, in metres.
 pub const KEPT_M: f64 = 0.02;
 
-/// Everything within a radius of a segment: the shape of a link, a hand, an obstacle.
+/// A capsule: all points within a radius of a segment. Links, hands and obstacles have this shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
     pub ends_m: [Point3<f64>; 2],
     pub radius_m: f64,
 }
 
-/// Where two capsules are nearest.
+/// The nearest points of two capsules and their distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CapsuleDistance {
-    /// Between the surfaces; below 0 where they overlap.
+    /// Distance between the surfaces; negative where the capsules overlap.
     pub distance_m: f64,
-    /// On the axis of each.
+    /// The nearest point on the axis of each capsule.
     pub at_m: [Point3<f64>; 2],
 }
 
 impl Capsule {
-    /// The capsule in a solid; of a box the one along its longest side.
+    /// The capsule that approximates a solid; for a box, along its longest side.
     fn from_solid(solid: &CollisionSolid, base_from_link: &Isometry3<f64>) -> Capsule {
         let (half_m, radius_m, axis) = match solid.shape {
             LinkShape::Cylinder { radius_m, length_m } => ((length_m / 2.0 - radius_m).max(0.0), radius_m, 2),
@@ -48,7 +48,7 @@ impl Capsule {
         Capsule { ends_m: [end(-1.0), end(1.0)], radius_m }
     }
 
-    /// Where it is nearest to another one.
+    /// The nearest points of this capsule and another one.
     pub fn nearest(&self, other: &Capsule) -> CapsuleDistance {
         let single = |point: Point3<f64>| Vector::new(point.x as f32, point.y as f32, point.z as f32);
         let [a, b] = self.ends_m.map(single);
@@ -64,16 +64,16 @@ impl Capsule {
     }
 }
 
-/// What an arm is too near to, or in.
+/// What blocks a pose or a path of the arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstruction {
     Table,
     ItsOwnLinks,
-    /// Something that is known to stand there.
+    /// A known obstacle.
     Obstacle,
 }
 
-/// What is around an arm.
+/// The table and the obstacles around the arm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArmSurroundings {
     pub table_m: f64,
@@ -81,7 +81,7 @@ pub struct ArmSurroundings {
 }
 
 impl Arm {
-    /// The capsules in its solids, with the numbers of their links, in the frame of the base.
+    /// The capsules of all links at these joint angles, each with its link number, in the base frame.
     pub fn capsules(&self, joints: &JointAngles) -> Vec<(usize, Capsule)> {
         let places = self.forward(joints);
         let links = self.links.iter().zip(&places).enumerate();
@@ -92,7 +92,7 @@ impl Arm {
             .collect()
     }
 
-    /// What it is nearer to than [`KEPT_M`]. The stick alone may come down to the table.
+    /// The first obstruction nearer than [`KEPT_M`]. Only the stick may come down to the table.
     pub fn in_the_way(&self, joints: &JointAngles, around: &ArmSurroundings) -> Option<Obstruction> {
         let capsules = self.capsules(joints);
         let stick = self.links.len() - 1;
@@ -116,8 +116,8 @@ impl Arm {
     }
 }
 
-/// Whether two links can come near each other: neither next to each other on the chain, nor base and upper arm, nor two of
-/// the wrist's or the stick, which their joints keep at their distance.
+/// Whether two links can collide. Neighbours on the chain cannot; nor can base and upper arm, or two of wrist and
+/// stick, whose joints keep them apart.
 fn can_meet(link: usize, other: usize) -> bool {
     other > link + 1 && other > 2 && link < JOINTS - 2
 }

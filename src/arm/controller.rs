@@ -18,31 +18,32 @@ use crate::kitchen::{Agent, ButtonId, Kitchen};
 use crate::robot::moment::{ArmPhase, JOINTS, JointAngles};
 use crate::robot::safety::{SLOWS_M, SafetyMode};
 
-/// How fast it slows and speeds up again: changes of its share of the speed planned for, a second; the second for stops.
+/// Deceleration and acceleration along the path: change of the share of the planned speed per second; the second value
+/// is for stops.
 const SLOWS: f64 = 10.0;
 const STOPS: f64 = 20.0;
 const SPEEDS_UP: f64 = 3.0;
-/// It looks so far ahead along its way whether it comes nearer to a hand, in seconds.
+/// Look-ahead along the path for the distance to a hand, in seconds.
 const AHEAD_S: f64 = 0.08;
-/// A hand in the way for so long makes it give its press up, in seconds.
+/// After this long with a hand in the way the arm gives the press up, in seconds.
 const BLOCKED_S: f64 = 4.0;
-/// And for so long out of it before that counts as over.
+/// The way counts as free after this long without a hand, in seconds.
 const FREE_S: f64 = 0.25;
-/// A joint so far from where it was told to be, in radians, for so many cycles, is at fault.
+/// Tracking error of a joint, in radians, and number of cycles, from which the joint counts as faulty.
 const ASTRAY_RAD: f64 = 0.05;
 const ASTRAY_CYCLES: u32 = 3;
-/// Down on a button that has not clicked it waits so long, in seconds.
+/// Longest wait for the click of a pressed button, in seconds.
 const CLICKS_WITHIN_S: f64 = 0.1;
-/// Below this speed of every joint it stands still, in radians a second.
+/// The arm stands still if all joints are slower than this, in radians per second.
 pub const STILL_RAD_S: f64 = 0.02;
 
-/// A hand further away than this matters to nothing, in metres.
+/// Hands further away than this have no influence, in metres.
 const FAR_M: f64 = SLOWS_M + MARGIN_M + 0.02;
 
-/// A cycle, and what came of it.
+/// The result of one controller cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ControlCycle {
-    /// This button clicked: it is pressed, also where the arm was about to give that up.
+    /// The button that clicked. A click counts as a press even if the arm was about to give up.
     pub clicked: Option<ButtonId>,
     pub report: Option<PressFailure>,
     pub felt: CycleForces,
@@ -51,32 +52,32 @@ pub struct ControlCycle {
     pub touched_n: Option<f64>,
 }
 
-/// The arm.
+/// The simulated arm with its controller.
 #[derive(Clone, Debug)]
 pub struct PhysicalArm {
     arm: Arm,
     world: PhysicsWorld,
     around: ArmSurroundings,
-    /// Where it stands while there is nothing to do.
+    /// Pose in which the arm waits while it has no press to make.
     home: JointAngles,
     buttons: Vec<Result<ButtonPoses, Unreachable>>,
     way: VecDeque<TrajectoryLeg>,
-    /// How far it is on the first leg, in seconds of that leg.
+    /// Progress on the current leg, in seconds.
     since_s: f64,
-    /// Share of the planned speed.
+    /// Current share of the planned speed.
     rate: f64,
-    /// The last command.
+    /// The last commanded joint angles.
     here: JointAngles,
     goal: Option<ButtonId>,
     may_press: bool,
-    /// It gave its press up, and slows down to go up.
+    /// The arm has given up its press and slows down before it goes up.
     halts: bool,
     pub mode: SafetyMode,
-    /// Whether it slows near hands; without, it only feels them.
+    /// Whether speed and separation monitoring is on; without it the arm only reacts to forces.
     pub watches_hands: bool,
-    /// How long it waits for a hand in its way, or for a button to click.
+    /// Time waited for a hand in the way or for a click, in seconds.
     waited_s: f64,
-    /// How long no hand is in its way.
+    /// Time without a hand in the way, in seconds.
     free_s: f64,
     astray: u32,
     touch: ContactTracker,
@@ -89,7 +90,7 @@ impl PhysicalArm {
         let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
         let places: Vec<[f64; 2]> = kitchen.buttons[Agent::Robot.index()].iter().map(|button| button.at_m).collect();
         let buttons: Vec<_> = places.iter().map(|&place| arm.at_button(place, &around)).collect();
-        // Over those that are its alone it is out of the human's way.
+        // Above the buttons that only the robot has, the arm is out of the human's way.
         let is_shared = |place: &[f64; 2]| kitchen.buttons[Agent::Human.index()].iter().any(|it| it.at_m == *place);
         let own =
             places.iter().zip(&buttons).filter(|(place, _)| !is_shared(place)).filter_map(|(_, at)| at.as_ref().ok());
@@ -145,22 +146,22 @@ impl PhysicalArm {
         way_to(&self.arm, &self.here, &at, &self.around)
     }
 
-    /// Puts something in its surroundings that it plans its ways around.
+    /// The obstacles that paths are planned around.
     pub fn around(&mut self) -> &mut ArmSurroundings {
         &mut self.around
     }
 
-    /// The bodies.
+    /// The simulated bodies.
     pub fn world(&mut self) -> &mut PhysicsWorld {
         &mut self.world
     }
 
-    /// It may press the button above which it stands.
+    /// Allows the arm to press the button that it hovers over.
     pub fn press(&mut self) {
         self.may_press = true;
     }
 
-    /// Has done with its press: slows down, and goes up where it is.
+    /// Ends the press: the arm slows down and goes up where it is.
     pub fn give_up(&mut self) {
         self.goal = None;
         self.waited_s = 0.0;
@@ -170,13 +171,13 @@ impl PhysicalArm {
         }
     }
 
-    /// Whether it stands elsewhere than where it waits, with nothing to do.
+    /// Whether the arm is away from its waiting pose with no press to make.
     pub fn is_out(&self) -> bool {
         let is_away = (0..JOINTS).any(|joint| (self.here[joint] - self.home[joint]).abs() > 1e-3);
         self.way.is_empty() && !self.mode.is_stopped() && is_away
     }
 
-    /// Goes where it waits; where it cannot, it waits where it is.
+    /// Returns to the waiting pose; stays in place if there is no free path.
     pub fn go_home(&mut self) {
         match way_over(&self.arm, &self.here, &self.home, &self.around) {
             Ok(way) => (self.way, self.since_s, self.rate) = (way.into(), 0.0, 0.0),
@@ -184,12 +185,12 @@ impl PhysicalArm {
         }
     }
 
-    /// Whether it moves without a button to press.
+    /// Whether the arm moves without a button to press.
     pub fn withdraws(&self) -> bool {
         self.goal.is_none() && self.rate > 0.0
     }
 
-    /// Whether it still slows down, before it can set out for something else.
+    /// Whether the arm still slows down, so that it cannot set out for another button.
     pub fn halts(&self) -> bool {
         self.halts
     }
@@ -199,13 +200,13 @@ impl PhysicalArm {
         self.way = way_up(&self.arm, &self.here, &self.around).unwrap_or_default().into();
     }
 
-    /// Stops where it is, as fast as it can, until [`Self::resume`].
+    /// Stops the arm in place, as fast as possible, until [`Self::resume`].
     pub fn stop(&mut self, mode: SafetyMode) {
         self.mode = mode;
         self.goal = None;
     }
 
-    /// The wizard lets it go on: up, and then wherever it sets out for.
+    /// The wizard releases the arm: it goes up and is ready for the next press.
     pub fn resume(&mut self) {
         if self.mode.is_stopped() {
             self.mode = SafetyMode::Normal;
@@ -215,7 +216,7 @@ impl PhysicalArm {
         }
     }
 
-    /// What it does.
+    /// The phase of the current motion.
     pub fn phase(&self) -> ArmPhase {
         match (self.way.front(), self.goal) {
             (None, _) => ArmPhase::Rests,
@@ -228,7 +229,7 @@ impl PhysicalArm {
         }
     }
 
-    /// Whether its next cycle changes anything: it has a way to go and may, or it is not at rest yet.
+    /// Whether the next cycle changes anything: a path to follow, or motion that has not settled.
     pub fn is_busy(&self) -> bool {
         let goes_on = !self.way.is_empty() && !self.mode.is_stopped() && self.phase() != ArmPhase::Hovers;
         goes_on || self.rate > 0.0 || self.moves() || self.touch.is_to_be_told()
@@ -244,13 +245,13 @@ impl PhysicalArm {
         self.world.joints().0
     }
 
-    /// How far a hand is from it, in metres.
+    /// The distance between a hand and the arm, in metres.
     pub fn distance(&self, hand: &HandPose) -> f64 {
         self.world.distance(hand)
     }
 
-    /// One cycle, with the human's hand where the person holds it, if there is one. With nothing to do and nobody near
-    /// nothing is computed.
+    /// Runs one controller cycle with the human's hand at this pose, if there is one. An idle arm with no hand nearby
+    /// costs nothing.
     pub fn cycle(&mut self, hand: Option<HandPose>) -> ControlCycle {
         let hand = hand.filter(|hand| self.distance(hand) < FAR_M);
         let share = self.share_allowed(hand);
@@ -275,7 +276,7 @@ impl PhysicalArm {
         ControlCycle { clicked, report, felt, touched_n }
     }
 
-    /// The share of the planned speed that it may go now.
+    /// The share of the planned speed that the distance to the hand allows.
     fn share_allowed(&mut self, hand: Option<HandPose>) -> f64 {
         if self.mode.is_stopped() {
             return 0.0;
@@ -290,7 +291,7 @@ impl PhysicalArm {
         let share = self.share_near(&hand, distance_m);
         let blocked = share == 0.0 && !self.way.is_empty();
         self.free_s = if blocked { 0.0 } else { self.free_s + CYCLE_S };
-        // A hand that moves at its edge does not make the mode flicker.
+        // Hysteresis: a hand at the edge of the limit must not make the mode flicker.
         let waited = self.mode == SafetyMode::Safeguard && self.free_s < FREE_S;
         self.mode = mode_near(self.mode, distance_m, blocked || waited);
         self.waited_s = match blocked && self.goal.is_some() {
@@ -308,12 +309,12 @@ impl PhysicalArm {
         let limit_m_s = speed_limit(distance_m, comes_nearer);
         let tip = |joints: &JointAngles| self.arm.tip(joints).translation.vector;
         let planned_m_s = (tip(&ahead) - tip(&leg.at(self.since_s))).norm() / AHEAD_S;
-        // Also where a leg begins or ends slowly, a hand at the arm stops it.
+        // The lower bound stops the arm near a hand even where a leg begins or ends slowly.
         let share = limit_m_s / planned_m_s.max(limit_m_s).max(1e-3);
         if limit_m_s == 0.0 { 0.0 } else { share }
     }
 
-    /// Goes on along the way for a cycle.
+    /// Advances along the path for one cycle.
     fn go_on(&mut self) {
         if self.halts && self.rate == 0.0 && !self.mode.is_stopped() {
             self.go_up();
@@ -322,7 +323,7 @@ impl PhysicalArm {
         self.since_s += self.rate * CYCLE_S;
         self.here = leg.at(self.since_s);
         let ends = self.since_s >= leg.takes_s;
-        // On a button it stays until it clicks or does not.
+        // On a button the arm waits for the click or for the timeout.
         if ends && leg.kind != LegKind::Down {
             self.since_s -= leg.takes_s;
             self.way.pop_front();
@@ -336,7 +337,7 @@ impl PhysicalArm {
         }
     }
 
-    /// The button under the stick takes part in the physics.
+    /// Activates the button under the stick in the physics.
     fn aim(&mut self) {
         match self.way.front().map(|leg| leg.kind) {
             Some(LegKind::Down) => self.world.aim_at(self.goal.map(ButtonId::index)),
@@ -345,7 +346,7 @@ impl PhysicalArm {
         }
     }
 
-    /// What follows from what was felt.
+    /// The press failure that follows from the measured forces.
     fn judge(&mut self, felt: &CycleForces) -> Option<PressFailure> {
         if self.mode.is_stopped() {
             return None;
@@ -378,7 +379,7 @@ impl PhysicalArm {
         None
     }
 
-    /// The joint that is not where it was told to be.
+    /// The joint whose tracking error is too large.
     fn joint_astray(&mut self) -> Option<usize> {
         let (angles, _) = self.world.joints();
         let off = |joint: &usize| (angles[*joint] - self.here[*joint]).abs();

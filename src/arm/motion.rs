@@ -1,4 +1,6 @@
-//! The motion of the timed arm: it knows when it touches a button, this says where its joints are in between.
+//! Joint angles of the timed arm between presses. The timed arm draws when it touches a button; this module
+//! interpolates the joints with a quintic (Craig, Introduction to Robotics): up from the last button, across, and down
+//! on the next.
 //!
 //! From pose to pose the joints go together, slowly at both ends (a quintic; Craig, Introduction to Robotics): up from the
 //! last button, above the next one, down on it.
@@ -10,19 +12,19 @@ use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, Button, ButtonId, Kitchen};
 use crate::robot::moment::{JOINTS, JointAngles};
 
-/// Of the time until it touches, the arm goes up for the first part, and down for the last.
+/// Shares of the motion that go up (first) and down (last).
 const UP: f64 = 0.15;
 const DOWN: f64 = 0.2;
-/// How long it takes to go up without another button to go to, in seconds.
+/// Duration of going up without a next button, in seconds.
 const UP_S: f64 = 0.4;
-/// Where the joints of an arm are from moment to moment.
+/// The joint angles of the timed arm over time.
 #[derive(Clone, Debug)]
 pub struct JointMotion {
-    /// By button of the robot; none for one out of reach, over which the arm stays where it is.
+    /// Poses at each robot button; none where the button is out of reach, and the arm stays in place.
     buttons: Vec<Option<ButtonPoses>>,
-    /// Poses with the times at which they are taken; never empty.
+    /// Waypoints with their times; never empty.
     way: Vec<(SessionTime, JointAngles)>,
-    /// The button that the tip touches, goes down on or comes up from, so that it has to go up first.
+    /// The button at which the tip is down, so that the arm has to go up first.
     down_on: Option<ButtonId>,
 }
 
@@ -38,7 +40,7 @@ impl JointMotion {
         JointMotion { buttons, way: vec![(SessionTime::ZERO, rest)], down_on: None }
     }
 
-    /// The joint angles at a moment.
+    /// The joint angles at a time.
     pub fn at(&self, now: SessionTime) -> JointAngles {
         let next = self.way.partition_point(|(time, _)| *time <= now);
         let ((since, from), Some((until, to))) = (self.way[next.saturating_sub(1)], self.way.get(next)) else {
@@ -50,12 +52,12 @@ impl JointMotion {
         std::array::from_fn::<f64, JOINTS, _>(|joint| from[joint] + (to[joint] - from[joint]) * eased)
     }
 
-    /// When it comes to rest, if nothing comes between.
+    /// The time at which the arm comes to rest without interruption.
     pub fn rests_at(&self) -> SessionTime {
         self.way.last().map_or(SessionTime::ZERO, |(time, _)| *time)
     }
 
-    /// Sets out to touch a button at `until`.
+    /// Starts a motion that touches the button at `until`.
     pub fn set_out(&mut self, now: SessionTime, button: ButtonId, until: SessionTime) {
         let Some(Some(goal)) = self.buttons.get(button.index()).copied() else { return };
         let takes_s = until.secs_since(now).max(0.0);
@@ -70,7 +72,7 @@ impl JointMotion {
         self.down_on = Some(button);
     }
 
-    /// Goes up where it is: the press is made or given up. On the way to a button it is up, and stops.
+    /// Goes up after a press was made or given up; on the way to a button the arm just stops.
     pub fn go_up(&mut self, now: SessionTime) {
         let here = self.at(now);
         let goes_down = self.way.iter().rev().nth(1).is_none_or(|(since, _)| *since <= now);

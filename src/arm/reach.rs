@@ -1,4 +1,4 @@
-//! How the arm stands at a button: above it and on it, stick down, away from table and own links.
+//! Poses of the arm at a button, above and touching, with the stick down and with clearance from table and own links.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -13,11 +13,11 @@ use crate::robot::moment::{JOINTS, JointAngles};
 
 /// The height of a button above the table, in metres.
 pub const BUTTON_M: f64 = 0.02;
-/// The tip goes from button to button so high above them, in metres.
+/// Height of the tip above the buttons while it travels, in metres.
 pub const ABOVE_M: f64 = 0.08;
-/// The arm's usual posture: elbow up, stick down. Of all ways to stand at a button the nearest to it is taken.
+/// Preferred posture: elbow up, stick down. Of all inverse solutions the nearest to it is chosen.
 pub const BENT: JointAngles = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
-/// The elbow does not bend further, in radians.
+/// Limit of the elbow angle, in radians.
 const ELBOW: usize = 2;
 const ELBOW_RAD: f64 = PI;
 /// Below this least singular value of the Jacobian the pose counts as singular.
@@ -27,9 +27,9 @@ const SINGULAR: f64 = 0.03;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unreachable {
     TooFar,
-    /// The joints do not turn so far.
+    /// A joint limit is exceeded.
     JointLimit,
-    /// The arm could not go on from there in every direction.
+    /// The pose is singular: the arm could not move in every direction.
     Singular,
     Blocked(Obstruction),
 }
@@ -58,7 +58,7 @@ impl From<Unreachable> for AbortReason {
     }
 }
 
-/// How the arm stands at a button.
+/// The joint angles above a button and touching it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ButtonPoses {
     pub above: JointAngles,
@@ -107,7 +107,7 @@ impl Arm {
         Err(why)
     }
 
-    /// Why it should not stand so.
+    /// The reason why a pose is not allowed.
     pub fn fault(&self, joints: &JointAngles, around: &ArmSurroundings) -> Option<Unreachable> {
         if !self.is_within_limits(joints) || joints[ELBOW].abs() > ELBOW_RAD {
             return Some(Unreachable::JointLimit);

@@ -1,4 +1,5 @@
-//! The human's hand between its place at the edge of the table and the buttons: a smooth reach, a press, and back.
+//! Motion of the human's hand between its resting place and the buttons: minimum-jerk reaches (Flash and Hogan 1985).
+//! The hand follows the recorded presses and never delays one; it exists so that the arm can meet it.
 //!
 //! A reach is a minimum-jerk movement (Flash and Hogan 1985). Presses are what they are without it: a hand that is late, or
 //! that keeps off the arm, delays none. It is there for the arm to meet.
@@ -12,40 +13,41 @@ use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, Kitchen};
 
-/// A reach takes so long, and so much longer a metre, in seconds.
+/// Duration of a reach in seconds: a constant part, and a part per metre.
 const REACH_S: f64 = 0.3;
 const REACH_S_M: f64 = 0.8;
-/// In the middle of its way it is so much higher, in metres.
+/// Height added in the middle of a reach, in metres.
 const LIFTED_M: f64 = 0.04;
-/// The middle of the hand, which is a ball without fingers, is so far behind the button that it presses, and so high above
-/// the table while it does, in metres.
+/// Offset of the hand's centre behind the pressed button, and its height above the table, in metres (the hand is a ball
+/// without fingers).
 const FINGER_M: f64 = 0.02;
 const PRESSES_M: f64 = 0.05;
-/// At rest it is so far beyond the last of its buttons, and so high above the table, in metres.
+/// Resting place: distance behind the last button and height above the table, in metres.
 const BEYOND_M: f64 = 0.16;
 const RESTS_M: f64 = 0.08;
-/// Who sees the arm keeps so far off it, in metres, and gives a reach up that it holds up for so long, in seconds.
+/// Distance that an attentive hand keeps from the arm, in metres, and time after which a blocked reach is given up, in
+/// seconds.
 const KEEPS_OFF_M: f64 = 0.06;
 const GIVES_UP_S: f64 = 1.5;
 
-/// How a person moves the hand.
+/// Parameters of a person's hand motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReachingBehaviour {
-    /// After a press the hand stays for so long, in seconds.
+    /// Time that the hand stays at a button after a press, in seconds.
     pub lingers_s: f64,
-    /// Share of reaches without an eye on the arm.
+    /// Share of reaches without attention to the arm.
     pub heedless: f64,
 }
 
 impl ReachingBehaviour {
-    /// Of simulated participants; how often they do not mind the arm is an estimate.
+    /// Parameters of simulated participants. The share of heedless reaches is an estimate.
     pub const SIMULATED: ReachingBehaviour = ReachingBehaviour { lingers_s: 0.3, heedless: 0.005 };
-    /// Of people, whose hands nobody sees: it is taken to be for a while where the last press was, and never to go into an
-    /// arm that is not there.
+    /// Parameters for real people, whose hands are not tracked: the hand is assumed to stay at the last press for a
+    /// while, and never to move into the arm.
     pub const UNSEEN: ReachingBehaviour = ReachingBehaviour { lingers_s: 1.5, heedless: 0.0 };
 }
 
-/// A movement that is under way.
+/// The current movement of the hand.
 #[derive(Clone, Copy, Debug)]
 struct Way {
     from_m: Point3<f64>,
@@ -53,11 +55,11 @@ struct Way {
     done_s: f64,
     takes_s: f64,
     held_up_s: f64,
-    /// Afterwards the hand goes back.
+    /// The hand returns after this movement.
     presses: bool,
 }
 
-/// A reach that is still to come.
+/// A planned reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Planned {
     to_m: Point3<f64>,
@@ -74,9 +76,9 @@ pub struct ReachingHand {
     at_m: Point3<f64>,
     way: Option<Way>,
     planned: Option<Planned>,
-    /// What it reaches for, or last did.
+    /// Target of the current or last reach.
     goal_m: Option<Point3<f64>>,
-    /// When it goes back after a press.
+    /// The time at which the hand returns after a press.
     leaves: Option<SessionTime>,
     heedless: bool,
 }
@@ -132,14 +134,14 @@ impl ReachingHand {
         self.planned = None;
         let lingers = SessionTime::from_secs_f64(self.how.lingers_s);
         match self.way.filter(|way| way.presses && way.to_m == to_m) {
-            // It is late, and goes back when it was there.
+            // A late hand turns back when it arrives.
             Some(_) => {}
             None if self.at_m == to_m => self.leaves = Some(now + lingers),
             None => self.reach(to_m),
         }
     }
 
-    /// The person feels the arm, draws back, and minds it from now on.
+    /// The person feels the arm, withdraws the hand, and pays attention to the arm from now on.
     pub fn feels_the_arm(&mut self) {
         self.heedless = false;
         if self.way.is_none_or(|way| way.presses) {
@@ -162,7 +164,7 @@ impl ReachingHand {
         self.way = Some(Way { from_m: self.at_m, to_m, done_s: 0.0, takes_s, held_up_s: 0.0, presses });
     }
 
-    /// Where it is.
+    /// The current pose of the hand.
     pub fn place(&self) -> HandPose {
         self.at(self.at_m)
     }
@@ -171,7 +173,7 @@ impl ReachingHand {
         HandPose::reaching(at_m, self.table_m)
     }
 
-    /// When it moves next, if it was looked at until `since`.
+    /// The time of the next movement after `since`.
     pub fn next_move(&self, since: SessionTime) -> Option<SessionTime> {
         let cycle = since + SessionTime::from_secs_f64(CYCLE_S);
         if self.way.is_some() {
@@ -181,7 +183,7 @@ impl ReachingHand {
         begins.into_iter().chain(self.leaves).min().map(|time| time.max(cycle))
     }
 
-    /// Moves on for a cycle that ends now; `distance_m`: how far a hand somewhere would be from the arm.
+    /// Moves the hand for the cycle that ends now. `distance_m`: distance between a hand pose and the arm.
     pub fn cycle(&mut self, now: SessionTime, distance_m: impl Fn(&HandPose) -> f64) {
         if let Some(planned) = self.planned.take_if(|planned| planned.begins <= now) {
             self.reach(planned.to_m);

@@ -1,4 +1,4 @@
-//! What the arm in the physics reports of a press, and of a cycle of its controller: plain data, without the physics.
+//! Results of a press and of a controller cycle of the simulated arm, as plain data without the physics.
 
 use crate::kitchen::ButtonId;
 use crate::robot::RobotActivity;
@@ -8,21 +8,21 @@ use crate::robot::RobotActivity;
 pub enum PressFailure {
     /// The arm gave up the press: a hand was in the way for too long.
     Blocked(ButtonId),
-    /// It was down on the button, which did not click.
+    /// The button was pressed down and did not click.
     NoClick(ButtonId),
-    /// It felt somebody, with this force in newtons, and stops; the press is given up.
+    /// The arm measured a contact force above the threshold (newtons); it stops, and the press is given up.
     Contact(f64),
-    /// This joint, 0 the first, did not follow; the brakes hold, the press is given up.
+    /// This joint (0 is the first) did not follow its command; the brakes hold the arm, and the press is given up.
     Fault(usize),
 }
 
-/// What came of a cycle for the press, and what is to be recorded.
+/// The result of a cycle for the press, and the events to record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CycleNews {
-    /// This button clicked: it is pressed, also where the arm was about to give that up.
+    /// The button that clicked. A click counts as a press even if the arm was about to give up.
     pub clicked: Option<ButtonId>,
     /// Why the arm did not press.
     pub report: Option<PressFailure>,
-    /// To be recorded, in order.
+    /// Events to record, in order.
     pub news: Vec<RobotActivity>,
 }

@@ -1,19 +1,20 @@
-//! Speed and separation monitoring (ISO/TS 15066, 5.5.4): the arm slows near a hand, and waits for one in its way.
+//! Speed and separation monitoring (ISO/TS 15066, 5.5.4): the arm slows down near a hand and waits for a hand in its
+//! way.
 
 use crate::robot::safety::{SLOWS_M, SafetyMode};
 
-/// A hand nearer than this lets the arm come no nearer, in metres.
+/// Protective separation distance in metres: the arm does not approach a nearer hand.
 const WAITS_M: f64 = 0.03;
-/// At the first of these distances the tip may be so fast, in metres a second; in between less, in proportion.
+/// Highest tip speed in m/s at the larger distance; it falls in proportion to the distance below that.
 const SLOWED_M_S: f64 = 0.8;
-/// Slower than this it does not come nearer, but waits: in metres a second.
+/// Speeds below this limit, in m/s, count as waiting.
 const CREEPS_M_S: f64 = 0.02;
-/// Away from a hand it may always move so fast.
+/// Speed limit for motion away from a hand, in m/s.
 const LEAVES_M_S: f64 = 0.1;
-/// A hand is away again a little further out, so that the mode does not flicker, in metres.
+/// Hysteresis of the distances in metres, so that the mode does not flicker.
 pub const MARGIN_M: f64 = 0.03;
 
-/// How fast the tip may be with a hand at this distance of the arm, which comes nearer or not (metres a second).
+/// The tip's speed limit in m/s for a hand at this distance, depending on whether the arm approaches the hand.
 pub fn speed_limit(distance_m: f64, comes_nearer: bool) -> f64 {
     let by_distance = match distance_m {
         far if far >= SLOWS_M => f64::INFINITY,
@@ -26,7 +27,7 @@ pub fn speed_limit(distance_m: f64, comes_nearer: bool) -> f64 {
     }
 }
 
-/// The mode with a hand at this distance, for an arm that is not stopped; it waits if it may not move at all.
+/// The safety mode for a hand at this distance while the arm is not stopped. `waits`: the arm may not move at all.
 pub fn mode_near(before: SafetyMode, distance_m: f64, waits: bool) -> SafetyMode {
     let is_out = distance_m >= SLOWS_M + if before == SafetyMode::Normal { 0.0 } else { MARGIN_M };
     match (waits, is_out) {

@@ -1,9 +1,9 @@
-//! Contacts between arm and human, each told once.
+//! Contacts between arm and human: each contact is reported once.
 
-/// A contact is told so many cycles after it began, when its first blow is over, and is over after so many without a force.
+/// Number of cycles after which a contact is reported, and number of cycles without force after which it has ended.
 const CYCLES: u32 = 12;
 
-/// A contact that goes on, if there is one.
+/// The current contact, if there is one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ContactTracker(Option<Contact>);
 
@@ -11,12 +11,12 @@ pub(super) struct ContactTracker(Option<Contact>);
 struct Contact {
     most_n: f64,
     cycles: u32,
-    /// Cycles without a force.
+    /// Number of cycles without force.
     quiet: u32,
 }
 
 impl ContactTracker {
-    /// A cycle with this force in newtons; the greatest force of a contact that is to be told now.
+    /// Adds the force of a cycle, in newtons. Returns the greatest force of a contact that has to be reported now.
     pub fn feel(&mut self, force_n: f64) -> Option<f64> {
         if force_n > 0.0 {
             self.0.get_or_insert_default();
@@ -32,7 +32,7 @@ impl ContactTracker {
         told
     }
 
-    /// Whether there is a contact that was not told yet.
+    /// Whether a contact has not been reported yet.
     pub fn is_to_be_told(&self) -> bool {
         self.0.is_some_and(|contact| contact.cycles < CYCLES)
     }

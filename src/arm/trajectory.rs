@@ -18,25 +18,25 @@ pub const TIP_ACCELERATION_M_S2: f64 = 1.2;
 /// The greatest speed and acceleration of a quintic from 0 to 1 in a time of 1.
 const QUINTIC_SPEED: f64 = 1.875;
 const QUINTIC_ACCELERATION: f64 = 5.7735;
-/// The tip aims so far below the top of a button, in metres: further than it clicks.
+/// Depth below a button's top that the tip aims for, in metres; more than the click needs.
 pub const BELOW_M: f64 = 0.006;
-/// So many places of a leg are looked at for limits and clearance.
+/// Number of points of a leg that are checked for limits and clearance.
 const LOOKS: usize = 24;
-/// A blocked way is tried again so much higher, in metres.
+/// Additional heights that are tried if a path is blocked, in metres.
 const HIGHER_M: [f64; 3] = [0.08, 0.16, 0.24];
 
-/// What a leg is for.
+/// The purpose of a leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LegKind {
     /// Straight up.
     Up,
-    /// From pose to pose.
+    /// Joint motion between two poses above the buttons.
     Over,
     /// Straight down on the button, until it clicks.
     Down,
 }
 
-/// A part of the way.
+/// One leg of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrajectoryLeg {
     pub kind: LegKind,
@@ -73,7 +73,7 @@ impl TrajectoryLeg {
         let by_tip_s = (QUINTIC_SPEED * length_m / TIP_SPEED_M_S)
             .max((QUINTIC_ACCELERATION * length_m / TIP_ACCELERATION_M_S2).sqrt());
         let leg = TrajectoryLeg { kind, poses, takes_s: by_tip_s.max(0.05) };
-        // Near the base a short way of the tip is a long way of the joints.
+        // Near the base a short path of the tip needs large joint motions.
         let steepest = (0..=LOOKS).map(|look| leg.slope(look as f64 / LOOKS as f64)).fold(0.0, f64::max);
         let fastest = arm.turns().map(|turn| turn.speed_rad_s).fold(f64::INFINITY, f64::min);
         Ok(TrajectoryLeg { takes_s: leg.takes_s.max(QUINTIC_SPEED * steepest / fastest), ..leg })
@@ -99,13 +99,13 @@ impl TrajectoryLeg {
         std::array::from_fn(|joint| (0..4).map(|part| weights[part] * self.poses[part][joint]).sum())
     }
 
-    /// The pose so many seconds after its start.
+    /// The pose this many seconds after the start of the leg.
     pub fn at(&self, since_s: f64) -> JointAngles {
         let t = if self.takes_s > 0.0 { (since_s / self.takes_s).clamp(0.0, 1.0) } else { 1.0 };
         self.pose(t.powi(3) * (10.0 - 15.0 * t + 6.0 * t * t))
     }
 
-    /// Where it leads to.
+    /// The final pose.
     pub fn end(&self) -> &JointAngles {
         &self.poses[3]
     }

@@ -1,6 +1,5 @@
-//! The robot at work: carries out the task policy with presses that take a while. How long they take follows from chance
-//! (the timed arm) or from the arm in the physics. It knows no events and no clock: it is told the time and the state, and
-//! answers what it does.
+//! Carries out the robot's task policy with timed presses. The duration of a press is drawn (timed arm) or results from
+//! the simulated arm. This module knows neither events nor clocks: the caller passes time and state.
 
 use rand_distr::{Distribution, LogNormal};
 
@@ -15,35 +14,35 @@ use crate::kitchen::{ButtonId, Kitchen, State};
 use crate::robot::policy::{self, PolicyDecision};
 use crate::robot::{AbortReason, IdleReason, RobotActivity};
 
-/// A press that was skipped is not decided for again within this time, in seconds.
+/// A skipped press is not chosen again within this time, in seconds.
 pub const SKIP_S: f64 = 5.0;
 
 /// A press that the arm is on its way to.
 #[derive(Clone, Copy, Debug)]
 struct OngoingPress {
     button: ButtonId,
-    /// When the arm touches the button.
+    /// The time at which the arm touches the button.
     until: SessionTime,
-    /// The wizard chose it: it is done, useful or not.
+    /// The wizard chose this press: the arm makes it even if it is not useful.
     driven: bool,
 }
 
-/// The robot's presses in time: on its way, idle, held or stopped.
+/// The robot's presses over time: moving, idle, held or stopped.
 #[derive(Clone, Debug)]
 pub struct Robot {
     random: Stream,
     duration_s: LogNormal<f64>,
     busy: Option<OngoingPress>,
     stopped: bool,
-    /// It sets out for nothing by itself and waits before the button that it has set out for.
+    /// The wizard holds the robot: it starts no press, and waits above the button of the current one.
     held: bool,
     /// The press that the wizard chose, until the arm sets out for it.
     driven: Option<ButtonId>,
-    /// The presses that the wizard skipped or that went wrong, and until when they are left out.
+    /// Presses that were skipped or failed, each with the time until which it is left out.
     skipped: Vec<(ButtonId, SessionTime)>,
-    /// Why it was said to be idle, and the state that it last decided for.
+    /// The last reported reason for idling, and the state of the last decision.
     idle: Option<(IdleReason, State)>,
-    /// The arm in the physics; none: presses take a while by chance.
+    /// The simulated arm; none for the timed arm.
     body: Option<Box<SteppedArm>>,
 }
 
@@ -77,8 +76,8 @@ impl Robot {
         self.body.as_mut().map(|body| &mut body.arm)
     }
 
-    /// When it does something next: touches the button that it is on its way to, moves its arm on for a cycle, or may decide
-    /// again for what was skipped. The time may have passed: an arm that was held touches as soon as it is released.
+    /// The time of the next action: a touch, a controller cycle, or a new decision after a skipped press. The time may
+    /// have passed: a held arm touches as soon as it is released.
     pub fn next_due(&self) -> Option<SessionTime> {
         let again = match (self.busy, self.idle) {
             (None, Some((IdleReason::Skipped, _))) if !self.held => self.skipped.iter().map(|(_, until)| *until).min(),
@@ -92,13 +91,13 @@ impl Robot {
         again.into_iter().chain(moves).min()
     }
 
-    /// Whether the wizard holds it before the button that it has set out for.
+    /// Whether the wizard holds the arm above its button.
     fn waits(&self) -> bool {
         self.held && self.busy.is_none_or(|errand| !errand.driven)
     }
 
-    /// Sets out for what the wizard chose; else decides what to do if the arm is free and the state is another one than
-    /// that of the last decision.
+    /// Starts the press that the wizard chose; otherwise decides if the arm is free and the state changed since the
+    /// last decision.
     pub fn decide(
         &mut self,
         kitchen: &Kitchen,
@@ -150,7 +149,7 @@ impl Robot {
         RobotActivity::Intend { button, until }
     }
 
-    /// What is due now: the timed arm touches its button, that in the physics goes on for a cycle.
+    /// Carries out what is due: a touch of the timed arm, or a cycle of the simulated arm.
     pub fn act(
         &mut self,
         kitchen: &Kitchen,
@@ -185,7 +184,7 @@ impl Robot {
         deeds
     }
 
-    /// What follows for the press that it was on its way to.
+    /// The consequence of a press failure.
     fn follow(&mut self, now: SessionTime, report: PressFailure) -> Option<RobotActivity> {
         let (button, reason) = match report {
             PressFailure::Contact(_) => return self.halt(AbortReason::Contact),
@@ -196,13 +195,13 @@ impl Robot {
         self.go_without(now, button, reason)
     }
 
-    /// Gives a press up that went wrong, and leaves it out for a while.
+    /// Gives up a failed press and leaves it out for a while.
     fn go_without(&mut self, now: SessionTime, button: ButtonId, reason: AbortReason) -> Option<RobotActivity> {
         self.leave_out(now, button);
         self.give_up(reason)
     }
 
-    /// Stopped until the wizard lets it go on; it gives up what it is on its way to.
+    /// Stops the robot until the wizard releases it; the current press is given up.
     fn halt(&mut self, reason: AbortReason) -> Option<RobotActivity> {
         self.stopped = true;
         self.idle = None;
@@ -210,14 +209,14 @@ impl Robot {
         self.give_up(reason)
     }
 
-    /// This press is not decided for for a while.
+    /// Leaves this press out for a while.
     fn leave_out(&mut self, now: SessionTime, button: ButtonId) {
         self.skipped.push((button, now + SessionTime::from_secs_f64(SKIP_S)));
         self.idle = None;
     }
 
-    /// The timed arm touches the button: presses it if that is still one of the best presses or the wizard chose it, else
-    /// gives it up.
+    /// The timed arm touches the button. It presses if the press is still among the best or the wizard chose it, and
+    /// otherwise gives up.
     fn touch(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotActivity> {
         let errand = self.busy.take()?;
         match is_useful(kitchen, cost, state, errand) {
@@ -226,7 +225,7 @@ impl Robot {
         }
     }
 
-    /// Something else than a press changed the state: what is no longer useful is given up at once.
+    /// The state changed without a press: a press that is no longer useful is given up at once.
     pub fn reconsider(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotActivity> {
         let errand = self.busy?;
         match is_useful(kitchen, cost, state, errand) {
@@ -243,21 +242,21 @@ impl Robot {
         Some(RobotActivity::Abort(errand.button, reason))
     }
 
-    /// The wizard stops the robot; it gives up what it is on its way to.
+    /// The wizard stops the robot; the current press is given up.
     pub fn stop(&mut self) -> Vec<RobotActivity> {
         let safety = self.body.as_mut().and_then(|body| body.stop());
         let given_up = self.halt(AbortReason::Stopped);
         safety.into_iter().chain(given_up).collect()
     }
 
-    /// The wizard holds the robot before its next press, or lets it go.
+    /// The wizard holds the robot above its next button, or releases it.
     pub fn hold(&mut self, held: bool) {
         self.held = held;
         self.idle = None;
     }
 
-    /// The wizard skips the press that the arm is on its way to, instead of what was left out before; it is not decided for
-    /// again for a while.
+    /// The wizard skips the current press. It is not chosen again for a while; an earlier skipped press becomes
+    /// available again.
     pub fn skip(&mut self, now: SessionTime) -> Option<RobotActivity> {
         let errand = self.busy?;
         self.skipped.clear();
@@ -265,13 +264,13 @@ impl Robot {
         self.give_up(AbortReason::Skipped)
     }
 
-    /// The wizard chooses the next press; the arm gives up what it is on its way to.
+    /// The wizard chooses the next press; the current press is given up.
     pub fn drive(&mut self, button: ButtonId) -> Option<RobotActivity> {
         self.driven = Some(button);
         self.give_up(AbortReason::Driven)
     }
 
-    /// The wizard lets the robot go on.
+    /// The wizard releases a stopped robot.
     pub fn resume(&mut self, now: SessionTime) -> Option<RobotActivity> {
         self.stopped = false;
         self.body.as_mut()?.resume(now)
@@ -299,7 +298,7 @@ impl Robot {
         self.skipped.clear();
     }
 
-    /// A pause of this length is over.
+    /// Shifts all pending times by the length of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         if let Some(errand) = &mut self.busy {
             errand.until = errand.until + by;
@@ -313,7 +312,7 @@ impl Robot {
     }
 }
 
-/// Whether a press is still one of the best, or the wizard chose it.
+/// Whether a press is among the best, or the wizard chose it.
 fn is_useful(kitchen: &Kitchen, cost: &mut CostToGo, state: State, errand: OngoingPress) -> bool {
     let best =
         |cost: &mut CostToGo| policy::best_presses(kitchen, cost, Fidelity::Exact, state, &kitchen.true_recipes());

@@ -1,4 +1,4 @@
-//! The optional parts of the crate: which of them this build has. What a build does not have it refuses, and says so.
+//! The optional parts of the crate (Cargo features), and which of them this build contains.
 
 use std::fmt;
 
@@ -19,7 +19,7 @@ impl Feature {
     /// All optional parts.
     pub const ALL: [Feature; 4] = [Feature::Console, Feature::Display, Feature::Physics, Feature::Rerun];
 
-    /// Whether this build has it.
+    /// Whether this build contains the part.
     pub const fn is_built(self) -> bool {
         match self {
             Feature::Console => cfg!(feature = "console"),
@@ -39,7 +39,7 @@ impl Feature {
         }
     }
 
-    /// What a build without it cannot do, in words.
+    /// What a build without the part cannot do, in words.
     pub const fn lacks(self) -> &'static str {
         match self {
             Feature::Console => "no session can be run or looked at in the terminal",
@@ -69,7 +69,7 @@ impl fmt::Display for Feature {
     }
 }
 
-/// Something was asked for that this build does not have.
+/// The build lacks a part that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("built without {0}: {lacks}", lacks = .0.lacks())]
 pub struct NotBuilt(pub Feature);

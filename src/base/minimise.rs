@@ -9,15 +9,15 @@ const EXPAND: f64 = 2.0;
 const CONTRACT: f64 = 0.5;
 const SHRINK: f64 = 0.5;
 
-/// A value of the function, and where.
+/// A corner of the simplex: the function's value and the point.
 type Corner = (f64, Vec<f64>);
 
-/// Where a function is least, as far as was found.
+/// The smallest value that was found, and where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minimum {
     pub at: Vec<f64>,
     pub value: f64,
-    /// How often the function was asked.
+    /// Number of function evaluations.
     pub evaluations: usize,
     /// The values at the corners of the last simplex are within the tolerance.
     pub converged: bool,

@@ -1,4 +1,4 @@
-//! What every room may use: time, random streams, words, and a search for a minimum.
+//! Basics that every room may use: session time, random streams, bit sets, words.
 
 pub mod bits;
 pub mod features;

@@ -13,7 +13,7 @@ pub fn stream(seed: u64, name: &str, index: u64) -> Stream {
     Stream::seed_from_u64(mix(key ^ mix(index)))
 }
 
-/// The seed of what follows from one trial alone, among the trials with this seed.
+/// The seed for everything that depends on one trial alone.
 pub fn of_trial(seed: u64, trial: u64) -> u64 {
     mix(seed ^ mix(trial))
 }

@@ -17,35 +17,36 @@ const LEAST_TARGETS: usize = 3;
 pub const GOOD_DEG: f64 = 2.0;
 pub const USABLE_DEG: f64 = 3.0;
 
-/// What a check found. Degrees are of visual angle, seen from the set distance in front of the display's centre.
+/// The result of a gaze accuracy check. Degrees are of visual angle, seen from the configured distance in front of the
+/// display's centre.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GazeAccuracy {
     /// Mean angle from target to gaze, over the targets (accuracy).
     pub accuracy_deg: f64,
-    /// The same after the offset is taken off.
+    /// Accuracy in degrees after the offset is subtracted.
     pub corrected_deg: f64,
     /// Root mean square of the angles from one sample to the next (precision; Holmqvist et al. 2012).
     pub precision_deg: f64,
-    /// What has to be added to gaze, in fractions of the display: the mean over targets of how far the median of the gaze is
-    /// from them.
+    /// Offset to add to gaze, in fractions of the display: mean over targets of the distance between target and median
+    /// gaze.
     pub offset: [f64; 2],
     /// By target, in the order in which they were shown.
     pub targets: Vec<TargetAccuracy>,
 }
 
-/// What was found at a target.
+/// The result at one target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TargetAccuracy {
     /// Samples with enough confidence.
     pub samples: usize,
-    /// Nothing: too few samples.
+    /// None if there were too few samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy_deg: Option<f64>,
 }
 
-/// The geometry of a display and who looks at it.
+/// The size of the display and the viewing distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewingGeometry {
     /// Width and height of the display in metres.
@@ -109,7 +110,7 @@ pub fn measure(viewing: &ViewingGeometry, targets: &[[f64; 2]], samples: &[Vec<G
     })
 }
 
-/// No check knows more digits.
+/// Rounds to thousandths: a check is not more precise.
 fn thousandths(value: f64) -> f64 {
     (value * 1e3).round() / 1e3
 }

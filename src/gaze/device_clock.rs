@@ -1,15 +1,15 @@
-//! The clock of a tracker that only stamps its samples: how it stands to session time is seen from when they arrive.
+//! Estimates the offset of a tracker's clock from the arrival times of its samples.
 
 use crate::base::time::SessionTime;
 
-/// The shortest way of a window of so many seconds counts: longer than any hiccup, shorter than clocks take to drift apart
-/// by a millisecond.
+/// Length of the window whose shortest delay counts, in seconds: longer than a network delay, shorter than the time in
+/// which clocks drift by a millisecond.
 const WINDOW_S: f64 = 10.0;
-/// A clock that goes back by more than so many seconds was started anew.
+/// A device clock that jumps back by more than this was restarted, in seconds.
 const RESTART_S: f64 = 1.0;
 
-/// Maps device time to session time. The offset is that of the samples that took the shortest way, of this window and the
-/// one before: what comes late was under way, and was not taken later (Cristian 1989).
+/// Maps device time to session time. The offset comes from the samples with the shortest delay in this window and the
+/// previous one (Cristian 1989).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeviceClock {
     /// Arrival less device time, in nanoseconds: the least of the window before, and of this one.
@@ -20,7 +20,7 @@ pub struct DeviceClock {
 }
 
 impl DeviceClock {
-    /// When a sample with this device time was taken, that arrived now; never after its arrival.
+    /// The session time at which a sample with this device time was taken; never later than its arrival.
     pub fn session_time(&mut self, device_ns: u64, arrived: SessionTime) -> SessionTime {
         let back_s = self.newest_ns.saturating_sub(device_ns) as f64 / 1e9;
         if back_s > RESTART_S {

@@ -22,17 +22,17 @@ pub struct GazeSample {
     pub y: f64,
     /// 0 to 1.
     pub confidence: f64,
-    /// The tracker's own clock, in nanoseconds, where it has one.
+    /// Time on the tracker's clock in nanoseconds, if the tracker reports it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub device_ns: Option<u64>,
-    /// The session time at which it was taken, where the tracker's clock is known to stand to session time; else it counts as
-    /// taken when it arrived.
+    /// Session time at which the sample was taken, if the offset of the tracker's clock is known; otherwise the arrival
+    /// time counts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taken_ns: Option<SessionTime>,
 }
 
 impl GazeSample {
-    /// A sample of which the tracker says no time.
+    /// A sample without a device time.
     pub fn new(x: f64, y: f64, confidence: f64) -> GazeSample {
         GazeSample { x, y, confidence, device_ns: None, taken_ns: None }
     }

@@ -1,18 +1,18 @@
-//! What real streams of gaze have wrong, counted by kind. Trackers go back in time, send things twice, pause, hold numbers
-//! that are none, and change their rate; nothing of it may reach a belief.
+//! Faults of real gaze streams, counted by kind: clocks that jump back, duplicates, pauses, invalid numbers, changing
+//! rates. No faulty sample may reach the belief estimate.
 
 use serde::{Deserialize, Serialize};
 
 use super::GazeSample;
 use crate::base::time::SessionTime;
 
-/// Contents of the display are remembered for so many seconds: an older sample may have shown something else.
+/// Samples older than this are not read, in seconds: the display may have shown something else when they were taken.
 pub const TOO_OLD_S: f64 = 0.5;
-/// No tracker sends so many samples a second for long.
+/// Upper limit of a tracker's sampling rate, in Hz.
 pub const MAX_HZ: f64 = 2000.0;
-/// So many samples may come at once after a pause.
+/// Number of samples that may arrive at once after a pause.
 const BURST: f64 = 1000.0;
-/// Among so many of the newest samples a repeated one is found.
+/// Number of recent samples among which duplicates are detected.
 const RECENT: usize = 32;
 
 /// Why a recorded sample is not read.
@@ -41,15 +41,15 @@ impl FaultCounts {
     }
 }
 
-/// What came from a tracker and is no sample that could be recorded, counted since the session began.
+/// Input from a tracker that cannot be recorded, counted since the session began.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DropCounts {
-    /// Messages, lines and samples that are none: broken, wrongly typed, not a number.
+    /// Malformed messages, lines and samples: broken, wrongly typed, not a number.
     pub malformed: u64,
-    /// Beyond [`MAX_HZ`].
+    /// Samples beyond [`MAX_HZ`].
     pub too_frequent: u64,
-    /// Came faster than they could be taken.
+    /// Samples that arrived faster than they could be processed.
     pub overrun: u64,
 }
 
@@ -60,7 +60,7 @@ impl DropCounts {
     }
 }
 
-/// Finds the faults of a stream, sample by sample. Only samples of which the tracker says when they were taken are judged.
+/// Detects faults of a stream, sample by sample. Only samples with a device time are checked.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SampleChecker {
     newest: Option<SessionTime>,
@@ -70,7 +70,7 @@ pub struct SampleChecker {
 }
 
 impl SampleChecker {
-    /// What is wrong with a sample that arrived now; nothing if it can be read.
+    /// The fault of a sample that arrived now; none if the sample can be read.
     pub fn judge(&mut self, sample: &GazeSample, arrived: SessionTime) -> Option<GazeFault> {
         let taken = sample.taken_ns?.min(arrived);
         let mark = (sample.device_ns, [sample.x.to_bits(), sample.y.to_bits()]);
@@ -96,7 +96,7 @@ impl SampleChecker {
     }
 }
 
-/// Lets through as many samples as a tracker can send.
+/// Limits the sampling rate to what a tracker can send.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateLimit {
     left: f64,

@@ -1,6 +1,6 @@
 //! From a tracker's surface to the wall display.
 
-/// Corners that span less than this part of the display are no surface.
+/// Least area of a valid surface, as a share of the display.
 const LEAST_AREA: f64 = 1e-3;
 
 /// The homography of a tracked surface to the display.

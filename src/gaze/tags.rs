@@ -7,7 +7,7 @@ use crate::kitchen::{DisplayArea, Kitchen};
 
 /// The ids of the corners' tags: top left, top right, bottom right, bottom left.
 pub const IDS: [u16; 4] = [0, 1, 2, 3];
-/// The black edge in millimetres: as long as the corners have room for, between these.
+/// Smallest and largest edge of the black square, in millimetres; the largest that fits is used.
 const EDGE_MM: (u32, u32) = (80, 100);
 /// Cells of the black square's side: six of data, and the black border.
 const BLACK_CELLS: usize = 8;
@@ -113,7 +113,7 @@ impl DisplayTags {
 }
 
 impl DisplayTag {
-    /// What is to be drawn: rows from the top, cells from the left; true for black.
+    /// The cells of a tag: rows from the top, cells from the left; true is black.
     pub fn cells(&self) -> [[bool; CELLS]; CELLS] {
         let data = IDS.iter().position(|id| *id == self.id).map_or(0, |index| DATA[index]);
         let mut cells = [[false; CELLS]; CELLS];

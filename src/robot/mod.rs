@@ -25,17 +25,17 @@ pub enum AbortReason {
     Driven,
     /// The button is out of the arm's reach.
     OutOfReach,
-    /// The arm would be stretched there, or in line with itself.
+    /// The pose at the button is singular.
     Singular,
-    /// Something stands in every way to it, or the arm would be in its own.
+    /// Every path to the button is blocked by an obstacle or by the arm itself.
     Obstructed,
     /// A hand was in the way for too long.
     HandInTheWay,
-    /// The arm was down on the button, which did not click.
+    /// The button was pressed down and did not click.
     NoClick,
-    /// The arm felt somebody, and stopped.
+    /// The arm measured a contact force above the threshold and stopped.
     Contact,
-    /// A joint did not follow, and the arm stopped.
+    /// A joint did not follow its command, and the arm stopped.
     Fault,
 }
 
@@ -54,7 +54,7 @@ impl AbortReason {
         AbortReason::Fault,
     ];
 
-    /// Whether only an arm in the physics can have it.
+    /// Whether only the simulated arm can have this reason.
     pub fn is_of_physics(self) -> bool {
         use AbortReason::{Driven, NoLongerUseful, Skipped, Stopped};
         !matches!(self, NoLongerUseful | Stopped | Skipped | Driven)
@@ -84,28 +84,28 @@ impl AbortReason {
 pub enum IdleReason {
     /// No order is present.
     NoOrder,
-    /// Only the human can go on.
+    /// No press of the robot brings the orders nearer; the human has to act.
     HumanTurn,
     /// The wizard skipped the only press that would help, a moment ago.
     Skipped,
 }
 
-/// What the robot does at a moment.
+/// Something that the robot does at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RobotActivity {
-    /// Sets out to press a button, which it will touch at `until`.
+    /// Starts a press; the arm will touch the button at `until`.
     Intend { button: ButtonId, until: SessionTime },
     /// Presses the button that it set out for.
     Press(ButtonId),
     /// Gives up the press that it set out for, or was about to.
     Abort(ButtonId, AbortReason),
-    /// Begins to do nothing, or goes on doing nothing for another reason.
+    /// Becomes idle, or stays idle for another reason.
     Idle(IdleReason),
-    /// The arm moves, or begins to do something else.
+    /// A sample of the arm's motion.
     Move(ArmSample),
-    /// The arm is safe in another way: slower, waiting, or stopped. With what it felt in newtons where that is why, and with
-    /// the joint at fault, 1 the first.
+    /// The safety mode changed. With the force in newtons or the number of the faulty joint (1 is the first) that
+    /// caused the change.
     Safety { mode: SafetyMode, force_n: Option<f64>, joint: Option<u8> },
-    /// Somebody touched the arm, with so much force in newtons.
+    /// Somebody touched the arm with this force, in newtons.
     Touched { force_n: f64 },
 }

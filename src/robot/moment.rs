@@ -1,4 +1,4 @@
-//! How the arm in the physics stands, as it is recorded: plain data, without the physics.
+//! A recorded sample of the simulated arm, as plain data without the physics.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ pub const JOINTS: usize = 6;
 /// Angles of the joints, from the base on, in radians.
 pub type JointAngles = [f64; JOINTS];
 
-/// What the arm does.
+/// Phase of the arm's motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ArmPhase {
@@ -18,13 +18,13 @@ pub enum ArmPhase {
     Retracts,
     /// On its way over the buttons.
     Travels,
-    /// Above its button: it may be told to press now.
+    /// Above its button, ready to press.
     Hovers,
     /// Down on its button.
     Presses,
 }
 
-/// How the arm stands, as it is recorded.
+/// A sample of the arm's motion, as it is recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ArmSample {
     pub phase: ArmPhase,

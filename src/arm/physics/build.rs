@@ -1,4 +1,4 @@
-//! The arm's bodies, as its URDF describes them.
+//! Builds the rapier multibody of the arm from its URDF.
 
 use nalgebra::{Isometry3, Vector3};
 use rapier3d::prelude::{
@@ -11,12 +11,12 @@ use super::{PhysicsWorld, button};
 use crate::arm::link::{ArmLink, LinkShape};
 use crate::robot::moment::{JOINTS, JointAngles};
 
-/// What a drive's rotor adds to the inertia of its joint through the gear (rotor times ratio squared), in kg m²: an estimate
-/// for the large and the small drives, as the maker does not say.
+/// Reflected rotor inertia of large and small drives (rotor inertia times gear ratio squared), in kg m². An estimate:
+/// the maker does not publish it.
 const ARMATURE_KG_M2: [f32; JOINTS] = [1.0, 1.0, 1.0, 0.2, 0.2, 0.2];
 
 impl PhysicsWorld {
-    /// Puts an arm together that stands so.
+    /// Assembles the arm at these joint angles.
     pub(super) fn build(&mut self, joints: &JointAngles) {
         let mut carried_from = Isometry3::identity();
         for link in self.arm.links.clone() {

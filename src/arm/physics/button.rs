@@ -7,11 +7,11 @@ use rapier3d::prelude::{
 
 use crate::arm::reach::BUTTON_M;
 
-/// How far the cap goes, where it closes on its way down and opens on its way up, in metres.
+/// Travel of the cap, and the depths at which the contact closes and opens, in metres.
 const TRAVEL_M: f32 = 0.004;
 const CLOSES_M: f32 = 0.0025;
 const OPENS_M: f32 = 0.001;
-/// The spring: newtons a metre, and so far compressed when the button is up.
+/// Spring constant in N/m and preload of a released button.
 const SPRING_N_M: f32 = 600.0;
 const PRELOAD_M: f32 = 0.003;
 const DAMPING_NS_M: f32 = 3.0;
@@ -62,7 +62,7 @@ impl PhysicalButton {
         self.collider
     }
 
-    /// Takes part in the simulation, or is put back up and out of it.
+    /// Activates the button in the simulation, or releases and deactivates it.
     pub fn set_active(&mut self, bodies: &mut RigidBodySet, active: bool) {
         let Some(body) = bodies.get_mut(self.body) else { return };
         let at = body.translation();
@@ -72,14 +72,14 @@ impl PhysicalButton {
         self.closed = false;
     }
 
-    /// It does not move any more.
+    /// Blocks the cap, to simulate a fault.
     pub fn jam(&mut self, bodies: &mut RigidBodySet) {
         if let Some(body) = bodies.get_mut(self.body) {
             body.lock_translations(true, false);
         }
     }
 
-    /// Whether it closed since it was asked last.
+    /// Whether the contact closed since the last call.
     pub fn clicks(&mut self, bodies: &RigidBodySet) -> bool {
         let down_m = bodies.get(self.body).map_or(0.0, |body| self.up_m - body.translation().z);
         let was_closed = self.closed;
@@ -88,8 +88,8 @@ impl PhysicalButton {
     }
 }
 
-/// Caps meet the stick, and nothing else.
+/// Collision groups: caps collide with the stick only.
 const CAP: InteractionGroups = InteractionGroups::new(Group::GROUP_1, Group::GROUP_2, InteractionTestMode::And);
-/// The stick meets caps.
+/// Collision group of the stick.
 pub(super) const STICK: InteractionGroups =
     InteractionGroups::new(Group::GROUP_2, Group::GROUP_1, InteractionTestMode::And);

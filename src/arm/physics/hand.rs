@@ -1,17 +1,17 @@
-//! The human's hand and forearm: a body on the spring that the person's arm is.
+//! The human's hand and forearm: one rigid body, held by a spring that stands for the person's arm.
 
 use nalgebra::{Point3, Vector3};
 use rapier3d::prelude::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Vector};
 
 use crate::arm::clearance::Capsule;
 
-/// A hand's effective mass and its stiffness, of ISO/TS 15066, annex A.
+/// Effective mass and stiffness of a hand (ISO/TS 15066, annex A).
 const MASS_KG: f32 = 0.6;
 pub const STIFFNESS_N_M: f64 = 75_000.0;
-/// What skin and flesh take of the blow, in newtons a metre and a second: little, so that the peak is the spring's.
+/// Damping of skin and flesh, in N s/m; small, so that the spring determines the peak force.
 pub const FLESH_NS_M: f64 = 40.0;
-/// What the person's arm holds the hand in its place with: newtons a metre and a metre a second, for an arm at rest about
-/// what is measured (Mussa-Ivaldi, Hogan and Bizzi 1985), damped so that it does not swing.
+/// Stiffness and damping of the person's arm, in N/m and N s/m: near measured values for an arm at rest (Mussa-Ivaldi,
+/// Hogan and Bizzi 1985), critically damped.
 const HELD_N_M: f64 = 400.0;
 const HELD_NS_M: f64 = 24.0;
 /// Radii of hand and forearm, and the length of the hand, in metres.
@@ -19,7 +19,7 @@ const HAND_M: f64 = 0.04;
 const FOREARM_M: f64 = 0.04;
 const HAND_LENGTH_M: f64 = 0.09;
 
-/// Where a person holds the hand.
+/// The pose of a person's hand and elbow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandPose {
     /// The middle of the hand, in the frame of the arm's base.
@@ -73,7 +73,7 @@ impl PhysicalHand {
         self.body
     }
 
-    /// Where it is: pushed away from where it is wanted, with the forearm.
+    /// The current pose, displaced by contact forces.
     pub fn place(&self, bodies: &RigidBodySet) -> HandPose {
         let Some(body) = bodies.get(self.body) else { return self.wanted };
         let at_m = Point3::from(double(body.translation()));
@@ -86,7 +86,7 @@ impl PhysicalHand {
         bodies.get(self.body).map_or_else(Vector3::zeros, |body| double(body.linvel()))
     }
 
-    /// The forces of a step: the person's arm, and what the robot does to it (newtons).
+    /// Applies the forces of a step: the person's arm, and the contact with the robot (newtons).
     pub fn push(&self, bodies: &mut RigidBodySet, by_robot_n: Vector3<f64>) {
         let at_m = self.place(bodies).at_m;
         let away = self.wanted.at_m - at_m;

@@ -29,22 +29,22 @@ pub const CYCLE_S: f64 = STEP_S * STEPS_A_CYCLE as f64;
 /// Iterations of the solver in a step, which is short.
 const ITERATIONS: usize = 2;
 const GRAVITY_M_S2: f32 = -9.81;
-/// Where the angle stands among a joint's coordinates.
+/// Index of the angle among a joint's coordinates.
 const ANGLE: usize = 3;
-/// Cycles that a new arm settles for.
+/// Number of cycles that a new arm needs to settle.
 const SETTLES: usize = 125;
-/// How a joint follows: acceleration a radian and a radian a second off, critically damped.
+/// Joint drive gains: stiffness per radian, and critical damping.
 const STIFFNESS: f32 = 10_000.0;
 const DAMPING: f32 = 200.0;
 
-/// The commanded angles are corrected by this share of what a joint stays behind in every cycle, and never by more than
-/// so much, in radians: the weight of the arm is held up.
+/// Share of the tracking error by which commands are corrected per cycle, and the limit in radians: compensates the
+/// arm's weight.
 const CORRECTED: f64 = 0.1;
 const MOST_CORRECTED_RAD: f64 = 0.05;
-/// While human and arm are further apart than this, in metres, they do not meet within a cycle.
+/// At more than this distance, in metres, human and arm cannot meet within a cycle.
 const APART_M: f64 = 0.05;
 
-/// What was felt in a cycle.
+/// The forces measured in one controller cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CycleForces {
     /// The greatest force between arm and human, in newtons.
@@ -65,7 +65,7 @@ impl Arm {
     }
 }
 
-/// The bodies.
+/// All simulated bodies: arm, buttons, hand.
 pub struct PhysicsWorld {
     arm: Arm,
     parameters: IntegrationParameters,
@@ -188,7 +188,7 @@ impl PhysicsWorld {
         self.hand.as_ref().map(|hand| hand.place(&self.bodies))
     }
 
-    /// The button that the stick is about to meet; none: it is above them all.
+    /// Selects the button that the stick can touch; none while the stick is above all buttons.
     pub fn aim_at(&mut self, button: Option<usize>) {
         if let Some(before) = self.active.filter(|_| self.active != button) {
             self.buttons[before].set_active(&mut self.bodies, false);
@@ -199,12 +199,12 @@ impl PhysicsWorld {
         self.active = button;
     }
 
-    /// The button that the stick may meet.
+    /// The button that the stick can touch.
     pub fn aimed_at(&self) -> Option<usize> {
         self.active
     }
 
-    /// From now on the motor of this joint gives nothing, or all do again.
+    /// Disables the motor of this joint, or restores all motors.
     pub fn fail(&mut self, joint: Option<usize>) {
         for (index, (handle, turn)) in self.joints.iter().zip(self.arm.turns()).enumerate() {
             let Some((multibody, link)) = self.multibodies.get_mut(*handle) else { continue };
@@ -280,7 +280,7 @@ impl PhysicsWorld {
         self.arm.distance(&self.joints().0, hand)
     }
 
-    /// From now on this button does not move: a fault to be tried.
+    /// Blocks this button, to simulate a fault.
     pub fn jam(&mut self, button: usize) {
         self.buttons[button].jam(&mut self.bodies);
     }
@@ -301,7 +301,7 @@ impl PhysicsWorld {
         }
     }
 
-    /// Lets arm and human push each other, where they are in each other deepest; the force in newtons.
+    /// Applies the contact force between arm and human at the deepest overlap. Returns the force in newtons.
     fn touch(&mut self, near: bool) -> f64 {
         let Some(hand) = self.hand else { return 0.0 };
         let deepest = if near { self.deepest(&hand) } else { None };
@@ -319,7 +319,7 @@ impl PhysicsWorld {
         onto_human_n.norm()
     }
 
-    /// The link that is deepest in the human, the force on the human in newtons, and where.
+    /// The link with the deepest overlap with the human, the force on the human in newtons, and the contact point.
     fn deepest(&self, hand: &PhysicalHand) -> Option<(usize, Vector3<f64>, Point3<f64>)> {
         let human = hand.place(&self.bodies).capsules();
         let arm = self.arm.capsules(&self.joints().0);

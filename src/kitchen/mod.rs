@@ -28,7 +28,7 @@ pub use state::{OrderContent, Recipes, State};
 pub use world::{WeightedWorld, WeightedWorlds, World};
 
 /// A compiled kitchen: tables over contents, locations, buttons and dishes. It never changes after loading.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Kitchen {
     /// Identifier, from the layout file.
     pub name: String,

@@ -8,7 +8,7 @@ use super::state::{OrderContent, Recipes, State};
 use super::{Kitchen, LocationKind};
 
 /// Transition tables over contents, computed once.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TransitionTables {
     /// Number of contents.
     pub(super) width: usize,

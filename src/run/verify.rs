@@ -145,15 +145,12 @@ impl RerunSession {
         }
     }
 
-    /// Whether the re-run stands where applying the recorded events leads, with nothing left over.
+    /// Whether the re-run stands where applying the recorded events leads, in everything that a session holds and in the
+    /// estimated belief, with nothing left over.
     fn ends_like(&self, replayed: &Follower) -> bool {
-        let (again, replayed) = (self.engine.session(), &replayed.session);
         self.produced.is_empty()
-            && again.state == replayed.state
-            && again.phase == replayed.phase
-            && again.presses == replayed.presses
-            && again.served == replayed.served
-            && again.timeline == replayed.timeline
+            && *self.engine.session() == replayed.session
+            && self.engine.belief() == replayed.filter.belief()
     }
 }
 

@@ -55,7 +55,7 @@ pub enum Phase {
 }
 
 /// Everything that follows from the events so far.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Session {
     pub kitchen: Arc<Kitchen>,
     pub spec: SessionSpec,

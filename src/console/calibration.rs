@@ -4,8 +4,9 @@
 use crossterm::event::KeyCode;
 
 use super::message::ConsoleCommand;
-use super::model::{ConsoleModel, Dialog, NoticeLevel};
-use super::update::send;
+use super::model::{ConsoleModel, Dialog};
+use super::notice::NoticeLevel;
+use super::sending::send;
 use crate::gaze::calibration::{GazeAccuracy, USABLE_DEG};
 use crate::session::calibration::CalibrationEvent;
 use crate::session::{Event, Session};

@@ -1,74 +1,20 @@
 //! Coding the errors of a recording: which error one stands at, and what the rater says about it.
 
+use super::key_action::RaterKey;
 use super::message::ConsoleCommand;
-use super::model::{ConsoleModel, NoticeLevel};
+use super::model::ConsoleModel;
+use super::notice::NoticeLevel;
 use super::playback::ReplayKey;
 use crate::history::wording;
-use crate::kitchen::{Kitchen, LocationId};
-use crate::measures::coding::{CauseKind, Code, Codes};
+use crate::kitchen::Kitchen;
+use crate::measures::coding::Code;
 use crate::session::{Session, TimelineEvent};
-
-/// What a key asks of a rater's console.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RaterKey {
-    /// To the next error, or the one before.
-    Next,
-    Last,
-    /// The participant believed something wrong about this place, or the order there and the recipe of its dish.
-    Belief(LocationId),
-    /// Another cause.
-    Cause(CauseKind),
-    /// Nothing is said about the error after all.
-    Clear,
-}
-
-/// What one rater has said about a recording so far.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct RaterSession {
-    pub rater: String,
-    /// The numbers of the presses that were errors, in order.
-    pub errors: Vec<u64>,
-    pub codes: Codes,
-}
-
-impl RaterSession {
-    /// The error at which a replay stands that has applied so many events: the last one until then.
-    pub fn at(&self, events: usize) -> Option<usize> {
-        self.errors.partition_point(|&press| press < events as u64).checked_sub(1)
-    }
-
-    /// Where the rater stands, in words; `press` is the last error until then, in words too.
-    pub fn describe(&self, kitchen: &Kitchen, events: usize, press: &str) -> String {
-        let (all, coded) = (self.errors.len(), self.codes.0.len());
-        let here = match self.at(events) {
-            None => format!("before the first of {all} errors"),
-            Some(index) => {
-                let said = match self.codes.0.get(&self.errors[index]) {
-                    None => "not coded".to_string(),
-                    Some(code) => describe(kitchen, code),
-                };
-                format!("error {} of {all}, {press}: {said}", index + 1)
-            }
-        };
-        format!("{}, {here} ({coded} coded)", self.rater)
-    }
-}
 
 /// A press in words: its button, and whether it did anything.
 pub fn press(kitchen: &Kitchen, what: &TimelineEvent) -> String {
     let TimelineEvent::Press { agent, button, effective } = what else { return String::new() };
     let effect = if *effective { "with" } else { "without" };
     format!("\"{}\" {effect} effect", wording::button(kitchen, *agent, *button))
-}
-
-fn describe(kitchen: &Kitchen, code: &Code) -> String {
-    match code {
-        Code::Belief(name) => {
-            let label = kitchen.location_named(name).map(|location| kitchen.location(location).label());
-            format!("wrong about {}", label.unwrap_or_else(|| name.clone()))
-        }
-        other => other.kind().name().to_string(),
-    }
 }
 
 /// Does what a key asks for.

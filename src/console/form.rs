@@ -4,8 +4,9 @@
 use crossterm::event::KeyCode;
 
 use super::message::ConsoleCommand;
-use super::model::{ConsoleModel, NoticeLevel};
-use super::update::send;
+use super::model::ConsoleModel;
+use super::notice::NoticeLevel;
+use super::sending::send;
 use crate::session::plan::{PhaseSpec, Questionnaire};
 use crate::session::protocol::{Protocol, ProtocolEvent};
 use crate::session::{Event, Session};

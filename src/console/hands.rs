@@ -1,40 +1,17 @@
 //! The experimenter's hands at the console: keys that correct the kitchen and the robot, and the lists that they open.
 
+use super::key_action::ManualAction;
 use super::message::ConsoleCommand;
-use super::model::{ConsoleModel, Dialog, NoticeLevel};
+use super::model::{ConsoleModel, Dialog};
 use super::note::TextInput;
+use super::notice::NoticeLevel;
 use super::picker::{Picker, PickerAnswer, PickerOutcome, PickerQuestion};
-use super::update::send;
+use super::sending::send;
 use crate::communication::Sender;
 use crate::history::wording;
 use crate::kitchen::Agent;
 use crate::session::{Event, Phase, Session};
 use crossterm::event::KeyCode;
-
-/// What a key of the hands does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ManualAction {
-    /// Say what really lies at a location.
-    Correct,
-    /// Hold the robot before its next press, or release it.
-    HoldRobot,
-    /// The robot gives up its press and decides anew.
-    SkipPress,
-    /// Choose the robot's next press.
-    DriveRobot,
-    /// Abort the trial, for a reason.
-    Abort,
-    /// Do a trial again that was aborted or excluded.
-    Redo,
-    /// Show what is ready for the trial, and what is not.
-    Preflight,
-    /// Check the calibration of the eye tracker.
-    Calibrate,
-    /// Write a note in words.
-    NoteInWords,
-    /// Leave the trial out of the analysis, for a reason; or take that back.
-    Exclude,
-}
 
 /// Does what a key of the hands says, or asks.
 pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualAction) -> Option<ConsoleCommand> {

@@ -9,7 +9,7 @@ use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use toml::Spanned;
 
 use super::chord::KeyChord;
-use super::keys::{KeyAction, KeyBinding, KeyError, KeyPlace, KeySection};
+use super::key_action::{KeyAction, KeyBinding, KeyError, KeyPlace, KeySection};
 
 /// A key file as it is written: for each table, names with their keys. What is not there stays as it is.
 #[derive(Clone, Debug, Default, Deserialize)]

@@ -1,6 +1,6 @@
 //! A wizard's training at the console: what is asked, and what each signal was.
 
-use super::model::NoticeLevel;
+use super::notice::NoticeLevel;
 use crate::base::time::SessionTime;
 
 /// What the console shows of a training.

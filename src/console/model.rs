@@ -4,15 +4,17 @@ use std::collections::VecDeque;
 
 use crossterm::event::KeyCode;
 
-use super::coding::RaterSession;
 use super::compared::ComparisonView;
 use super::display::DisplayHealth;
-use super::keys::{KeyBindings, KeyLayer};
+use super::key_action::KeyLayer;
+use super::keys::KeyBindings;
 use super::lesson::TrainingPanel;
 use super::note::TextInput;
-use super::panels::Panel;
+use super::notice::NoticeLevel;
+use super::panel::Panel;
 use super::picker::Picker;
 use super::playback::Playback;
+use super::rater_session::RaterSession;
 use super::view::theme::Theme;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
@@ -44,17 +46,6 @@ pub enum Dialog {
     Difference(Vec<String>),
     /// What came of a training, in lines; it stays until enter.
     Report(Vec<String>),
-}
-
-/// How much a notice matters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NoticeLevel {
-    /// Something was done.
-    Done,
-    /// Something was not done.
-    Refused,
-    /// Something is wrong until it is mended.
-    Alarm,
 }
 
 /// A line to the wizard.

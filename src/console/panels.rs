@@ -2,65 +2,16 @@
 //! participant; what was on the wizard's screen is recorded by [`super::screen`].
 
 use super::arrange::{KitchenMap, MapElement};
-use super::keys::KeyLayer;
-use super::model::{ConsoleModel, Dialog, NoticeLevel};
+use super::key_action::KeyLayer;
+use super::key_action::PanelKey;
+use super::model::{ConsoleModel, Dialog};
+use super::notice::NoticeLevel;
+use super::panel::Panel;
 use super::view::dialog::help_pages;
 use super::view::regions::Regions;
 use crate::kitchen::{Agent, ButtonAction as Use, ButtonId, LocationId};
 use crate::session::Session;
-use crate::session::settings::{ParticipantKind, Visibility};
-
-/// A panel that may be shown alone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Panel {
-    Kitchen,
-    Belief,
-    Recommendation,
-    GazeMap,
-    Events,
-    Timeline,
-    Comparison,
-}
-
-impl Panel {
-    /// In the order in which the keys go through them.
-    const ALL: [Panel; 7] = [
-        Panel::Comparison,
-        Panel::Kitchen,
-        Panel::Belief,
-        Panel::Recommendation,
-        Panel::GazeMap,
-        Panel::Events,
-        Panel::Timeline,
-    ];
-
-    /// Whether the wizard may see it.
-    fn may_be_seen(self, visibility: Visibility, compares: bool) -> bool {
-        match self {
-            Panel::Comparison => compares,
-            Panel::Belief => visibility >= Visibility::Belief,
-            Panel::Recommendation => visibility >= Visibility::Recommendation,
-            _ => true,
-        }
-    }
-
-    /// The panel under a cell.
-    fn at(regions: &Regions, cell: (u16, u16)) -> Option<Panel> {
-        Panel::ALL.into_iter().find(|panel| regions.panel_area(*panel).contains(cell.into()))
-    }
-}
-
-/// What a key asks of the screen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PanelKey {
-    /// The next panel alone; after the last all of them.
-    Next,
-    Last,
-    All,
-    /// Further back in time, and forward again.
-    Back,
-    Forward,
-}
+use crate::session::settings::ParticipantKind;
 
 /// How far one step goes back in the timeline, in seconds, and in the list of events, in lines.
 const STEP: (u32, usize) = (5, 1);
@@ -112,7 +63,7 @@ pub fn wheel(model: &mut ConsoleModel, session: &Session, cell: (u16, u16), step
         return;
     }
     let regions = Regions::showing(model.size, session, model);
-    scroll(model, session, Panel::at(&regions, cell), steps);
+    scroll(model, session, panel_at(&regions, cell), steps);
 }
 
 /// A click tells what a place's key does, since a signal sent by mistake cannot be unseen; beside the places it shows the
@@ -130,7 +81,7 @@ pub fn click(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) {
             return tell(model, session, location);
         }
     }
-    match (model.alone, Panel::at(&regions, cell)) {
+    match (model.alone, panel_at(&regions, cell)) {
         (Some(_), _) => model.alone = None,
         (None, panel) => model.alone = panel,
     }
@@ -141,8 +92,8 @@ fn tell(model: &mut ConsoleModel, session: &Session, location: LocationId) {
     let is_main = |action| matches!(action, Use::Use(at) | Use::Serve(at) if at == location);
     let buttons = &session.kitchen.buttons[Agent::Human.index()];
     let line = model.keys.bindings.iter().find(|line| match (&line.action, model.layer) {
-        (super::keys::KeyAction::Signal(about, _), KeyLayer::Wizard) => *about == location,
-        (super::keys::KeyAction::Press(ButtonId(button)), KeyLayer::Participant) => {
+        (super::key_action::KeyAction::Signal(about, _), KeyLayer::Wizard) => *about == location,
+        (super::key_action::KeyAction::Press(ButtonId(button)), KeyLayer::Participant) => {
             is_main(buttons[usize::from(*button)].action)
         }
         _ => false,
@@ -150,4 +101,9 @@ fn tell(model: &mut ConsoleModel, session: &Session, location: LocationId) {
     let told = line.and_then(|line| Some(format!("{}: {}", line.chords.first()?, line.help)));
     let label = session.kitchen.location(location).label();
     model.say(NoticeLevel::Done, told.unwrap_or_else(|| format!("{label}: no key is about it")));
+}
+
+/// The panel under a cell.
+fn panel_at(regions: &Regions, cell: (u16, u16)) -> Option<Panel> {
+    Panel::ALL.into_iter().find(|panel| regions.panel_area(*panel).contains(cell.into()))
 }

@@ -4,10 +4,11 @@
 use crossterm::event::KeyCode;
 
 use super::display::DisplayHealth;
-use super::hands::ManualAction;
-use super::keys::KeyAction;
+use super::key_action::KeyAction;
+use super::key_action::ManualAction;
 use super::message::ConsoleCommand;
-use super::model::{ConsoleModel, Dialog, NoticeLevel, RecordingStatus, ViewerStreamStatus};
+use super::model::{ConsoleModel, Dialog, RecordingStatus, ViewerStreamStatus};
+use super::notice::NoticeLevel;
 use crate::session::admit::admit;
 use crate::session::preflight::{PreflightCheck, PreflightVerdict, participant, space};
 use crate::session::{Event, Session};
@@ -131,7 +132,7 @@ pub(super) fn answer(
             None
         }
         // What mends it works here, too.
-        (_, Some(KeyAction::ResumeRobot)) => super::update::act(model, session, KeyAction::ResumeRobot),
+        (_, Some(KeyAction::ResumeRobot)) => super::sending::resume_robot(model, session),
         (_, Some(KeyAction::Hand(ManualAction::HoldRobot))) if is_press => {
             super::hands::act(model, session, ManualAction::HoldRobot)
         }

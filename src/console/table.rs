@@ -5,11 +5,11 @@ use crossterm::event::KeyCode::{
 };
 
 use super::chord::KeyChord;
-use super::coding::RaterKey;
 use super::compared::ComparisonKey;
-use super::hands::ManualAction;
-use super::keys::{KeyAction, KeyBinding, KeyLayer, KeySection};
-use super::panels::PanelKey;
+use super::key_action::ManualAction;
+use super::key_action::PanelKey;
+use super::key_action::RaterKey;
+use super::key_action::{KeyAction, KeyBinding, KeyLayer, KeySection};
 use super::playback::ReplayKey;
 use crate::communication::{self, Signal};
 use crate::history::landmark::ReplayLandmark;

@@ -7,19 +7,23 @@ use super::chord::KeyChord;
 use super::coding;
 use super::compared::ComparisonKey;
 use super::form::{self, sheet};
-use super::hands::{self, ManualAction};
-use super::keys::{KeyAction, KeyLayer};
+use super::hands;
+use super::key_action::ManualAction;
+use super::key_action::PanelKey;
+use super::key_action::{KeyAction, KeyLayer};
 use super::message::{ConsoleCommand, ConsoleMessage};
-use super::model::{ConsoleModel, Dialog, NoticeLevel, PressedKey};
-use super::panels::{self, PanelKey};
+use super::model::{ConsoleModel, Dialog, PressedKey};
+use super::notice::NoticeLevel;
+use super::panels;
 use super::preflight;
+use super::sending::{resume_robot, send};
 use super::view::dialog::{help_pages, report_rest};
 use super::view::regions::Regions;
 use crate::communication::Sender;
 use crate::history::belief_track;
 use crate::history::wording;
 use crate::kitchen::Agent;
-use crate::session::admit::{admit, hygiene, may_send};
+use crate::session::admit::may_send;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::settings::{ParticipantKind, Visibility};
 use crate::session::{Event, Phase, Session};
@@ -293,7 +297,7 @@ fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand>
     send(model, session, event, NoticeLevel::Done, &words)
 }
 
-pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option<ConsoleCommand> {
+fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option<ConsoleCommand> {
     match action {
         KeyAction::Signal(_, signal) => {
             let words = format!("shown: {}", wording::signal(&signal));
@@ -319,10 +323,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
             send(model, session, Event::Marker { note }, NoticeLevel::Done, &words)
         }
         KeyAction::Advance => advance(model, session),
-        KeyAction::ResumeRobot => {
-            let words = if session.robot.held { "no longer stopped, still held" } else { "the robot goes on" };
-            send(model, session, Event::RobotResumed, NoticeLevel::Done, words)
-        }
+        KeyAction::ResumeRobot => resume_robot(model, session),
         KeyAction::EndTrial => match session.phase {
             Phase::Running | Phase::Paused => {
                 model.dialog = Some(Dialog::EndTrial);
@@ -398,26 +399,6 @@ fn advance(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand
         }
     };
     send(model, session, event, NoticeLevel::Done, words)
-}
-
-/// Sends an input if the session takes it now; else says why not.
-pub(super) fn send(
-    model: &mut ConsoleModel,
-    session: &Session,
-    event: Event,
-    level: NoticeLevel,
-    words: &str,
-) -> Option<ConsoleCommand> {
-    let refused = admit(session, &event).map_err(str::to_string).and_then(|()| hygiene(session, model.now, &event));
-    if let Err(reason) = refused {
-        model.say(NoticeLevel::Refused, reason);
-        return None;
-    }
-    match words {
-        "" => model.notice = None,
-        words => model.say(level, words),
-    }
-    Some(ConsoleCommand::Input(event))
 }
 
 /// A key without a meaning here: says so if it has one in the other layer.

@@ -2,8 +2,8 @@
 
 use ratatui::layout::Rect;
 
-use super::dialog::open;
 use super::paint::Painter;
+use super::popup::open;
 use super::theme::TextRole;
 use crate::console::arrange::KitchenMap;
 use crate::console::calibration::{AS_IT_IS, CORRECTED, CalibrationAdvice, REPEAT};

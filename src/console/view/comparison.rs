@@ -9,7 +9,7 @@ use super::theme::TextRole;
 use super::timeline::{axis, until};
 use crate::base::time::SessionTime;
 use crate::console::compared::ComparisonKey;
-use crate::console::keys::KeyAction;
+use crate::console::key_action::KeyAction;
 use crate::console::model::ConsoleModel;
 use crate::history::comparison::{Communication, CommunicationContent, LaneComparison, UnmatchedCommunication};
 use crate::session::Session;

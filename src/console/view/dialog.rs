@@ -5,10 +5,11 @@ use ratatui::layout::Rect;
 use super::hands;
 use super::paint::{Painter, width, wrap};
 use super::picker;
-use super::regions::inside;
+use super::popup::open;
 use super::theme::{Glyphs, TextRole, Theme};
 use crate::console::chord::KeyChord;
-use crate::console::keys::{KeyAction, KeyBinding, KeyBindings, KeyLayer};
+use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer};
+use crate::console::keys::KeyBindings;
 use crate::console::model::{ConsoleModel, Dialog};
 use crate::session::{Phase, Session};
 
@@ -40,31 +41,6 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
             ask(brush, screen, "Quit tomcom?", lines, &yes);
         }
     }
-}
-
-/// Clears the middle of the screen and frames it.
-pub(super) fn open(brush: &mut Painter, screen: Rect, size: (u16, u16), title: &str, remark: &str) -> Rect {
-    let (columns, rows) = (size.0.min(screen.width), size.1.min(screen.height));
-    let area = Rect {
-        x: screen.x + (screen.width - columns) / 2,
-        y: screen.y + (screen.height - rows) / 2,
-        width: columns,
-        height: rows,
-    };
-    for y in area.y..area.bottom() {
-        for x in area.x..area.right() {
-            if let Some(cell) = brush.buffer.cell_mut((x, y)) {
-                cell.reset();
-            }
-        }
-    }
-    let style = brush.style(TextRole::Strong);
-    brush.frame(area, &brush.theme.signs().frame, style);
-    brush.text(area.x + 2, area.y, columns, &format!(" {title} "), style);
-    if !remark.is_empty() {
-        brush.text_right(area.right() - 2, area.y, columns, &format!(" {remark} "), style);
-    }
-    inside(area)
 }
 
 /// A question, and the keys that say yes.

@@ -2,10 +2,10 @@
 
 use ratatui::layout::Rect;
 
-use super::dialog::open;
 use super::paint::{Painter, wrap};
+use super::popup::open;
 use super::theme::TextRole;
-use crate::console::keys::KeyAction;
+use crate::console::key_action::KeyAction;
 use crate::console::model::ConsoleModel;
 use crate::console::note::TextInput;
 use crate::console::preflight::{OVERRIDE, all_ok, checks};

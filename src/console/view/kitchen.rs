@@ -9,7 +9,7 @@ use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::console::arrange::{KitchenMap, MapElement};
-use crate::console::keys::KeyLayer;
+use crate::console::key_action::KeyLayer;
 use crate::console::model::ConsoleModel;
 use crate::history::wording;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};

@@ -4,7 +4,8 @@ use super::paint::{Painter, wrap};
 use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
 use crate::console::lesson::{TrainingFeedback, TrainingPanel};
-use crate::console::model::{ConsoleModel, NoticeLevel};
+use crate::console::model::ConsoleModel;
+use crate::console::notice::NoticeLevel;
 
 /// Columns of the clock before what is said.
 const CLOCK: u16 = 6;

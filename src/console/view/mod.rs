@@ -13,6 +13,7 @@ pub mod kitchen;
 pub mod lesson;
 pub mod paint;
 pub mod picker;
+mod popup;
 pub mod recommendation;
 pub mod regions;
 pub mod robot;

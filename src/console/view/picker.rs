@@ -2,8 +2,8 @@
 
 use ratatui::layout::Rect;
 
-use super::dialog::open;
 use super::paint::{Painter, width};
+use super::popup::open;
 use super::theme::TextRole;
 use crate::console::picker::{Picker, PickerEntry};
 use crate::session::Session;

@@ -9,7 +9,7 @@ use crate::base::words::count;
 use crate::communication::Sender;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::{Proposal, Recommendation, SignalOption};
-use crate::console::keys::KeyAction;
+use crate::console::key_action::KeyAction;
 use crate::console::model::ConsoleModel;
 use crate::history::wording;
 use crate::session::Session;

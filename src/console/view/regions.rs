@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 
 use crate::console::compared::ComparisonView;
 use crate::console::model::ConsoleModel;
-use crate::console::panels::Panel;
+use crate::console::panel::Panel;
 use crate::session::Session;
 use crate::session::settings::Visibility;
 

@@ -4,8 +4,8 @@
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-use super::dialog::open;
 use super::paint::{Painter, width, wrap};
+use super::popup::open;
 use super::theme::{TextRole, Theme};
 use crate::console::form::{SheetContent, WAIVERS, sheet};
 use crate::console::model::ConsoleModel;

@@ -4,7 +4,7 @@ use super::paint::{Painter, width, wrap};
 use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
 use crate::communication::Signal;
-use crate::console::keys::KeyAction;
+use crate::console::key_action::KeyAction;
 use crate::console::model::ConsoleModel;
 use crate::history::wording;
 use crate::session::{Phase, Session, ShownSignal};

@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::Live;
 use crate::base::time::SessionTime;
 use crate::console::display::DisplayHealth;
-use crate::console::model::NoticeLevel;
+use crate::console::notice::NoticeLevel;
 use crate::display::{DisplayUpdate, scene, sight};
 use crate::edge::display::{Display, PageScreen};
 use crate::gaze::GazeSample;

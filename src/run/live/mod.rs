@@ -28,7 +28,7 @@ use super::watch_desk::ComparisonDesk;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::analysis::watcher::ComparisonFollower;
 use crate::console::compared::ComparisonView;
-use crate::console::keys::KeyError;
+use crate::console::key_action::KeyError;
 use crate::console::model::RecordingStatus;
 use crate::console::{ConsoleModel, KeyBindings};
 use crate::edge::clock::{SessionClock, WallTime};

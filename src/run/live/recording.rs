@@ -1,7 +1,8 @@
 //! Every event into the log, and to whoever else wants to know of it; what is done when that fails.
 
 use super::Live;
-use crate::console::model::{NoticeLevel, RecordingStatus};
+use crate::console::model::RecordingStatus;
+use crate::console::notice::NoticeLevel;
 use crate::edge::doctor::free_bytes;
 use crate::edge::log::WriteError;
 use crate::history::belief_track::{self, BeliefSnapshot};

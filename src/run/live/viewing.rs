@@ -4,7 +4,8 @@ use std::net::SocketAddr;
 
 use super::Live;
 use crate::base::time::SessionTime;
-use crate::console::model::{NoticeLevel, ViewerStreamStatus};
+use crate::console::model::ViewerStreamStatus;
+use crate::console::notice::NoticeLevel;
 use crate::edge::log::{LOG_NAME, LogWriter};
 use crate::edge::rerun::{StreamIdentity, uri};
 use crate::edge::rrd::{self, RRD_NAME};

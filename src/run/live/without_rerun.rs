@@ -3,7 +3,7 @@
 
 use super::Live;
 use crate::base::features::{Feature, NotBuilt};
-use crate::console::model::NoticeLevel;
+use crate::console::notice::NoticeLevel;
 use crate::edge::log::LogWriter;
 use crate::session::Stamped;
 

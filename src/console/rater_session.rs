@@ -1,0 +1,46 @@
+//! What a rater has said about the errors of a recording.
+
+use crate::kitchen::Kitchen;
+use crate::measures::coding::{Code, Codes};
+
+/// What one rater has said about a recording so far.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RaterSession {
+    pub rater: String,
+    /// The numbers of the presses that were errors, in order.
+    pub errors: Vec<u64>,
+    pub codes: Codes,
+}
+
+impl RaterSession {
+    /// The error at which a replay stands that has applied so many events: the last one until then.
+    pub fn at(&self, events: usize) -> Option<usize> {
+        self.errors.partition_point(|&press| press < events as u64).checked_sub(1)
+    }
+
+    /// Where the rater stands, in words; `press` is the last error until then, in words too.
+    pub fn describe(&self, kitchen: &Kitchen, events: usize, press: &str) -> String {
+        let (all, coded) = (self.errors.len(), self.codes.0.len());
+        let here = match self.at(events) {
+            None => format!("before the first of {all} errors"),
+            Some(index) => {
+                let said = match self.codes.0.get(&self.errors[index]) {
+                    None => "not coded".to_string(),
+                    Some(code) => describe(kitchen, code),
+                };
+                format!("error {} of {all}, {press}: {said}", index + 1)
+            }
+        };
+        format!("{}, {here} ({coded} coded)", self.rater)
+    }
+}
+
+fn describe(kitchen: &Kitchen, code: &Code) -> String {
+    match code {
+        Code::Belief(name) => {
+            let label = kitchen.location_named(name).map(|location| kitchen.location(location).label());
+            format!("wrong about {}", label.unwrap_or_else(|| name.clone()))
+        }
+        other => other.kind().name().to_string(),
+    }
+}

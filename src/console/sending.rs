@@ -1,0 +1,33 @@
+//! Sends inputs to the session, or says to the wizard why it takes none.
+
+use super::message::ConsoleCommand;
+use super::model::ConsoleModel;
+use super::notice::NoticeLevel;
+use crate::session::admit::{admit, hygiene};
+use crate::session::{Event, Session};
+
+/// Sends an input if the session takes it now; else says why not.
+pub(super) fn send(
+    model: &mut ConsoleModel,
+    session: &Session,
+    event: Event,
+    level: NoticeLevel,
+    words: &str,
+) -> Option<ConsoleCommand> {
+    let refused = admit(session, &event).map_err(str::to_string).and_then(|()| hygiene(session, model.now, &event));
+    if let Err(reason) = refused {
+        model.say(NoticeLevel::Refused, reason);
+        return None;
+    }
+    match words {
+        "" => model.notice = None,
+        words => model.say(level, words),
+    }
+    Some(ConsoleCommand::Input(event))
+}
+
+/// Lets a stopped robot go on.
+pub(super) fn resume_robot(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
+    let words = if session.robot.held { "no longer stopped, still held" } else { "the robot goes on" };
+    send(model, session, Event::RobotResumed, NoticeLevel::Done, words)
+}

@@ -1,0 +1,32 @@
+//! The frame of what is drawn in front of the console.
+
+use ratatui::layout::Rect;
+
+use super::paint::Painter;
+use super::regions::inside;
+use super::theme::TextRole;
+
+/// Clears the middle of the screen and frames it.
+pub(super) fn open(brush: &mut Painter, screen: Rect, size: (u16, u16), title: &str, remark: &str) -> Rect {
+    let (columns, rows) = (size.0.min(screen.width), size.1.min(screen.height));
+    let area = Rect {
+        x: screen.x + (screen.width - columns) / 2,
+        y: screen.y + (screen.height - rows) / 2,
+        width: columns,
+        height: rows,
+    };
+    for y in area.y..area.bottom() {
+        for x in area.x..area.right() {
+            if let Some(cell) = brush.buffer.cell_mut((x, y)) {
+                cell.reset();
+            }
+        }
+    }
+    let style = brush.style(TextRole::Strong);
+    brush.frame(area, &brush.theme.signs().frame, style);
+    brush.text(area.x + 2, area.y, columns, &format!(" {title} "), style);
+    if !remark.is_empty() {
+        brush.text_right(area.right() - 2, area.y, columns, &format!(" {remark} "), style);
+    }
+    inside(area)
+}

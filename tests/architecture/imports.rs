@@ -111,7 +111,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     /// A path as it stands in this file, from the crate's root; none for what comes from another crate or a `use`.
-    fn from_root(&self, names: &[String]) -> Option<ModulePath> {
+    fn path_of_names(&self, names: &[String]) -> Option<ModulePath> {
         let first = names.first()?;
         let ups = names.iter().take_while(|name| *name == "super").count();
         match first.as_str() {
@@ -152,7 +152,7 @@ impl<'ast> Visit<'ast> for Reader<'_> {
         let mut leaves = Vec::new();
         Self::leaves(&item.tree, &[], &mut leaves);
         for (name, path) in leaves {
-            let Some(path) = self.from_root(&path) else { continue };
+            let Some(path) = self.path_of_names(&path) else { continue };
             match item.vis {
                 Visibility::Inherited => drop(self.used.insert(path)),
                 _ => drop(self.handed_on.insert(name, path)),
@@ -163,7 +163,7 @@ impl<'ast> Visit<'ast> for Reader<'_> {
     fn visit_path(&mut self, path: &'ast syn::Path) {
         let names: Vec<String> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
         if names.len() > 1 {
-            self.used.extend(self.from_root(&names));
+            self.used.extend(self.path_of_names(&names));
         }
         syn::visit::visit_path(self, path);
     }
@@ -174,7 +174,7 @@ impl<'ast> Visit<'ast> for Reader<'_> {
         let words = tokens.split(|sign: char| !(sign.is_alphanumeric() || sign == '_' || sign == ':'));
         for word in words.filter(|word| word.starts_with("crate::") || word.starts_with("super::")) {
             let names: Vec<String> = word.split("::").filter(|name| !name.is_empty()).map(str::to_string).collect();
-            self.used.extend(self.from_root(&names));
+            self.used.extend(self.path_of_names(&names));
         }
     }
 }

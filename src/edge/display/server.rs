@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io;
+use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -113,15 +114,27 @@ async fn connect(State(hub): State<Arc<ServerState>>, headers: HeaderMap, upgrad
     upgrade.on_upgrade(move |socket| talk(socket, hub, number))
 }
 
-/// Whether a request comes from a page of this server. On localhost the name counts, too: another name that leads there
-/// belongs to somebody else (DNS rebinding); in the network the code keeps them out.
+/// Whether a request comes from a page of this server. Without a pairing code the host must be a loopback address or
+/// `localhost`: any other name that resolves to this machine, `127.evil.example` too, belongs to a foreign page (DNS
+/// rebinding). In the network the pairing code keeps foreign pages out.
 fn is_own(headers: &HeaderMap, has_code: bool) -> bool {
     let text = |name| headers.get(name).and_then(|value| value.to_str().ok());
     let Some(host) = text(header::HOST) else { return false };
     let is_same = text(header::ORIGIN).is_none_or(|origin| origin.strip_prefix("http://") == Some(host));
-    let name = host.rsplit_once(':').map_or(host, |(name, _)| name);
-    let is_local = name.starts_with("127.") || ["localhost", "[::1]"].contains(&name);
-    is_same && (has_code || is_local)
+    is_same && (has_code || is_local(host))
+}
+
+/// Whether the value of a `Host` header, with or without a port, is a loopback address or `localhost`.
+fn is_local(host: &str) -> bool {
+    if let Ok(address) = host.parse::<SocketAddr>() {
+        return address.ip().is_loopback();
+    }
+    let name = match host.rsplit_once(':') {
+        Some((name, port)) if port.parse::<u16>().is_ok() => name,
+        _ => host,
+    };
+    let address = name.strip_prefix('[').and_then(|name| name.strip_suffix(']')).unwrap_or(name);
+    name.eq_ignore_ascii_case("localhost") || address.parse::<IpAddr>().is_ok_and(|address| address.is_loopback())
 }
 
 #[cfg(test)]
@@ -141,6 +154,18 @@ mod tests {
         assert!(is_own("localhost:50022", None, false));
         assert!(!is_own("localhost:50022", Some("http://somewhere.example"), false));
         assert!(!is_own("somewhere.example:50022", Some("http://somewhere.example:50022"), false));
+        // Names that only look like an address of this machine.
+        for foreign in [
+            "127.evil.example", "127.0.0.1.evil.example", "localhost.evil.example", "127.0.0.1x", "127.1", "10.0.0.7", "[::2]",
+        ] {
+            let named: &'static str = format!("{foreign}:50022").leak();
+            let origin: &'static str = format!("http://{foreign}:50022").leak();
+            assert!(!is_own(named, Some(origin), false), "{foreign}");
+            assert!(!is_own(foreign, None, false), "{foreign}");
+        }
+        for own in ["127.0.0.1", "127.8.8.8:50022", "LOCALHOST:50022", "localhost", "[::1]:50022", "[::1]"] {
+            assert!(is_own(own, None, false), "{own}");
+        }
         assert!(is_own("10.0.0.7:50022", Some("http://10.0.0.7:50022"), true));
         assert!(!is_own("10.0.0.7:50022", Some("http://10.0.0.8:50022"), true));
     }

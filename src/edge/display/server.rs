@@ -156,7 +156,13 @@ mod tests {
         assert!(!is_own("somewhere.example:50022", Some("http://somewhere.example:50022"), false));
         // Names that only look like an address of this machine.
         for foreign in [
-            "127.evil.example", "127.0.0.1.evil.example", "localhost.evil.example", "127.0.0.1x", "127.1", "10.0.0.7", "[::2]",
+            "127.evil.example",
+            "127.0.0.1.evil.example",
+            "localhost.evil.example",
+            "127.0.0.1x",
+            "127.1",
+            "10.0.0.7",
+            "[::2]",
         ] {
             let named: &'static str = format!("{foreign}:50022").leak();
             let origin: &'static str = format!("http://{foreign}:50022").leak();

@@ -1,0 +1,147 @@
+//! Raters' codes: agreement, the file beside the log, export and import.
+
+use std::fs;
+use std::path::PathBuf;
+
+use miette::Diagnostic;
+use tomcom::edge::log::LOG_NAME;
+use tomcom::edge::log::codes::{read_all, write};
+use tomcom::measures::coding::{AgreementTable, CauseKind, Code, Codes};
+use tomcom::run::codes::{CodedRecording, CodesSummary, export, import};
+use tomcom::run::simulate::Shard;
+use tomcom::run::study::reading::{self, AnalysisScope};
+
+use super::{folder, paper, run};
+
+/// The errors of one recording, coded by two people: so many pairs of what the one and the other say.
+fn coded(pairs: &[(&str, &str, u64)]) -> AgreementTable {
+    let code = |text: &str| match text.split_once(' ') {
+        Some(("belief", place)) => Code::Belief(place.to_string()),
+        _ => Code::new(CauseKind::named(text).expect("a kind"), None).expect("a code"),
+    };
+    let (mut one, mut other) = (Codes::default(), Codes::default());
+    for (a, b, number) in pairs {
+        for _ in 0..*number {
+            let press = one.0.len() as u64;
+            one.0.insert(press, code(a));
+            other.0.insert(press, code(b));
+        }
+    }
+    // What only one of them has coded does not count.
+    one.0.insert(10_000, Code::Slip);
+    let mut table = AgreementTable::default();
+    table.add(&one, &other);
+    table
+}
+
+#[test]
+fn kappa_is_that_of_known_tables() {
+    // Fleiss, Levin and Paik, "Statistical Methods for Rates and Proportions", 2003, table 18.1: 200 subjects by two
+    // raters, agreement .89, kappa .676.
+    let rows = [
+        ("slip", "slip", 106),
+        ("slip", "race", 10),
+        ("slip", "other", 4),
+        ("race", "slip", 22),
+        ("race", "race", 28),
+        ("race", "other", 10),
+        ("other", "slip", 2),
+        ("other", "race", 12),
+        ("other", "other", 6),
+    ];
+    let found = coded(&rows).agreement();
+    // By hand: (140/200 - (120*130 + 60*50 + 20*20)/200^2) / (1 - the same).
+    let expected = (0.7 - 0.475) / (1.0 - 0.475);
+    assert_eq!((found.errors, found.same_cause), (200, 140));
+    assert!((found.kappa_cause.expect("a kappa") - expected).abs() < 1e-12, "{found:?}");
+    assert_eq!((found.beliefs, found.kappa_aspect), (0, None));
+
+    // Cohen's textbook case of two categories: 20 and 15 agreed, 5 and 10 not: kappa 0.4.
+    let two = coded(&[("slip", "slip", 20), ("slip", "other", 5), ("other", "slip", 10), ("other", "other", 15)]);
+    assert!((two.agreement().kappa_cause.expect("a kappa") - 0.4).abs() < 1e-12);
+
+    // The aspect is held against only where both see a belief, the cause whatever the aspect.
+    let beliefs = coded(&[
+        ("belief pot", "belief pot", 20),
+        ("belief pot", "belief board", 5),
+        ("belief board", "belief pot", 10),
+        ("belief board", "belief board", 15),
+        ("belief pot", "slip", 3),
+    ]);
+    let found = beliefs.agreement();
+    assert_eq!((found.errors, found.same_cause, found.beliefs, found.same_aspect), (53, 50, 50, 35));
+    assert!((found.kappa_aspect.expect("a kappa") - 0.4).abs() < 1e-12);
+    assert_eq!(coded(&[("slip", "slip", 9)]).agreement().kappa_cause, None, "who always says the same proves nothing");
+}
+
+#[test]
+fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
+    let out = folder("codes");
+    let made = run(&paper(120), 1, Shard::WHOLE, &out);
+    let recording = PathBuf::from(&made.recordings[0]);
+    let log = fs::read(recording.join(LOG_NAME)).expect("a log");
+    let mut coded = vec![CodedRecording::open(&recording).expect("a recording")];
+    assert_eq!(coded[0].codable.errors.len() as u64, made.errors);
+    let truth = coded[0].known.clone().expect("a simulated participant tells");
+    assert_eq!(truth.0.len(), coded[0].codable.errors.len());
+    write(&recording, "R1", &truth).expect("written");
+    // The second rater takes every belief for a slip.
+    let slips = Codes(truth.0.keys().map(|press| (*press, Code::Slip)).collect());
+    write(&recording, "R2", &slips).expect("written");
+    assert_eq!(read_all(&recording, &coded[0].codable).expect("readable")["R1"], truth);
+
+    coded = vec![CodedRecording::open(&recording).expect("a recording")];
+    let figures = CodesSummary::from_recordings(&coded);
+    assert_eq!(figures.agreements.len(), 1);
+    let right: Vec<(&str, u64)> =
+        figures.known.iter().map(|pair| (pair.of.as_str(), pair.agreement.same_cause)).collect();
+    let slips_in_truth = truth.0.values().filter(|code| **code == Code::Slip).count() as u64;
+    assert_eq!(right, [("R1", made.errors), ("R2", slips_in_truth)]);
+    assert_eq!(truth.agreed(&slips).0.len() as u64, figures.agreements[0].agreement.same_cause);
+
+    let table = out.join("codes.csv");
+    assert_eq!(export(&coded, &table).expect("written"), 2 * truth.0.len() as u64);
+    for rater in ["R1", "R2"] {
+        fs::remove_file(recording.join(format!("codes-{rater}.csv"))).expect("removed");
+    }
+    coded = vec![CodedRecording::open(&recording).expect("a recording")];
+    import(&mut coded, &table).expect("its own export");
+    assert_eq!(
+        read_all(&recording, &coded[0].codable).expect("readable"),
+        [("R1".into(), truth), ("R2".into(), slips)].into()
+    );
+    assert!(fs::read(recording.join(LOG_NAME)).expect("a log") == log, "the log stays as it is");
+
+    let name = recording.file_name().expect("a name").to_string_lossy().into_owned();
+    let [first, second] = [0, 1].map(|index| coded[0].codable.errors[index]);
+    let right = format!("{name},R3,{second},slip,");
+    for (row, found, remedy) in [
+        (format!("{name},R1,{first},belief,the_moon"), "the aspect \"the_moon\"", "cooking_pot"),
+        (format!("{name},R1,{first},belief,"), "the cause \"belief\" with the aspect \"\"", "location"),
+        (format!("{name},R1,{first},slip,plate"), "the cause \"slip\" with the aspect \"plate\"", "none"),
+        (format!("{name},R1,{first},hunger,"), "the cause \"hunger\"", "belief, slip, race or other"),
+        (format!("{name},R1,1,slip,"), "press 1, which was no error", &format!("the nearest: {first}")),
+        (format!("{name},R1,first,slip,"), "the press \"first\"", "number"),
+        (format!("{name},R3,{second},race,"), &format!("press {second} again, after line 2"), "one line"),
+        (format!("{name},Jane Doe,{first},slip,"), "the rater \"Jane Doe\"", "never a name"),
+        (format!("elsewhere,R1,{first},slip,"), "the recording \"elsewhere\"", name.as_str()),
+        (format!("{name},R1,{first}"), "found record with 3 fields", "as many fields"),
+    ] {
+        fs::write(&table, format!("recording,rater,press,cause,aspect\n{right}\n{row}\n")).expect("written");
+        let told = import(&mut coded, &table).expect_err(&row);
+        let help = told.help().map(|help| help.to_string()).unwrap_or_default();
+        let told = told.to_string();
+        assert!(told.contains("codes.csv:3:") && told.contains(found) && help.contains(remedy), "{told}; {help}");
+    }
+    assert!(!recording.join("codes-R3.csv").exists(), "nothing of a table with a wrong row is taken over");
+
+    // The same beside the log, which somebody may have written by hand.
+    for (row, found) in [(format!("{first},belief,the_moon"), "the_moon"), ("1,slip,".to_string(), "no error")] {
+        fs::write(recording.join("codes-R3.csv"), format!("press,cause,aspect\n{row}\n")).expect("written");
+        let told = CodedRecording::open(&recording).expect_err(&row).to_string();
+        assert!(told.contains("codes-R3.csv:2:") && told.contains(found), "{told}");
+        let extent = AnalysisScope { concepts: false, events: false };
+        let told = reading::read(&recording, "one", extent).err().map(|error| error.to_string());
+        assert!(told.as_ref().is_some_and(|told| told.contains("codes-R3.csv:2:")), "{told:?}");
+    }
+}

@@ -1,0 +1,48 @@
+//! Cohorts of simulated participants: scripted wizards, what one trial teaches for the next, parts of a job array, and what
+//! was made before.
+
+mod codes;
+mod forget;
+mod job_array;
+mod learning;
+mod wizard;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use tomcom::edge::files::{SessionFiles, read_session};
+use tomcom::edge::log::LogReader;
+use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
+use tomcom::session::Stamped;
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cohort").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    folder
+}
+
+/// The paper's plan with short trials.
+fn paper(presses: u32) -> SessionFiles {
+    let mut files = read_session(Path::new("sessions/paper.toml")).expect("the paper's session");
+    files.spec.trial.presses = presses;
+    files
+}
+
+fn run(
+    files: &SessionFiles,
+    trials: u64,
+    shard: Shard,
+    out: &Path,
+) -> tomcom::analysis::trial_summary::SimulationSummary {
+    let simulation = SimulationRequest { files: files.clone(), trials, shard, out: out.to_path_buf() };
+    simulate(&simulation, || ()).expect("the folder can be written")
+}
+
+fn events(recording: &Path) -> (tomcom::session::Header, Vec<Stamped>) {
+    let mut log = LogReader::open(recording).expect("a recording");
+    let mut all = Vec::new();
+    while let Some(line) = log.next_line().expect("an event") {
+        all.push(line.stamped);
+    }
+    (log.header, all)
+}

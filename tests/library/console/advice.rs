@@ -1,0 +1,90 @@
+//! The recommendation panel, and the key that accepts a recommendation.
+
+use crossterm::event::KeyCode;
+use tomcom::base::time::SessionTime;
+use tomcom::communication::recommendation::{Reason, Recommendation, SignalOption};
+use tomcom::communication::settings::Shadow;
+use tomcom::communication::{Sender, Signal};
+use tomcom::session::event::{Event, SignalEnd};
+use tomcom::session::settings::{ParticipantKind, Visibility};
+
+use super::{Stage, input};
+use crate::check_snapshot;
+
+/// The sushi kitchen with an assistant that advises beside the wizard, and its advice.
+fn advised(best: bool) -> Stage {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.assistant.shadow = Shadow::On;
+    stage.at(21.85, Event::SignalEnded { reason: SignalEnd::TakenBack });
+    let option = |signal, benefit: f64, standard_error| SignalOption {
+        signal,
+        benefit,
+        standard_error,
+        net: benefit - 1.5,
+        rollouts: 256,
+    };
+    let recipe = |order: &str| Signal::ShowRecipe(order.to_string());
+    let highlight = |place: &str| Signal::Highlight(place.to_string());
+    let options = vec![
+        option(recipe("order_1"), if best { 4.2 } else { 1.2 }, 0.2),
+        option(highlight("cooking_pot"), 1.1, 0.15),
+        option(recipe("order_2"), 0.3, 0.1),
+        option(highlight("robot_hand"), 0.0, 0.0),
+    ];
+    let reason = Reason {
+        aspect: "recipe of tuna nigiri".to_string(),
+        believes: "salmon nigiri".to_string(),
+        truth: "tuna nigiri".to_string(),
+        p_believes: 0.83,
+        prevents: Some("take salmon".to_string()),
+        instead: None,
+    };
+    let best = best.then(|| recipe("order_1"));
+    let for_ns = SessionTime::from_secs_f64(21.9);
+    let advice = Recommendation { options, best, reason: Some(reason), ..Recommendation::silent(17, for_ns) };
+    stage.at(21.9, Event::Advised(advice));
+    stage.model.now = SessionTime::from_secs_f64(22.6);
+    stage
+}
+
+#[test]
+fn advice_is_ranked_with_its_errors_against_the_cost_of_a_signal() {
+    check_snapshot("console", "advised_80x24", advised(true).screen((80, 24)));
+    check_snapshot("console", "advised_120x40", advised(true).screen((120, 40)));
+    check_snapshot("console", "advised_200x60", advised(true).screen((200, 60)));
+    check_snapshot("console", "advised_silence_120x40", advised(false).screen((120, 40)));
+}
+
+#[test]
+fn enter_accepts_what_is_recommended_and_says_so() {
+    let mut seen = advised(true);
+    // Signals keep apart.
+    seen.model.now = SessionTime::from_secs_f64(30.0);
+    let accepted = input(seen.key(KeyCode::Enter));
+    let Some(Event::SignalShown { by: Sender::Wizard, signal, accepted: Some(17) }) = accepted else {
+        panic!("not accepted: {accepted:?}");
+    };
+    assert_eq!(signal, Signal::ShowRecipe("order_1".to_string()));
+    assert_eq!(input(advised(false).key(KeyCode::Enter)), None, "there is nothing to accept");
+    let mut unseen = advised(true);
+    unseen.session.spec.console.visibility = Visibility::State;
+    assert_eq!(input(unseen.key(KeyCode::Enter)), None, "what is not shown is not accepted");
+}
+
+#[test]
+fn what_was_sent_is_not_offered_again_before_there_is_newer_advice() {
+    let mut stage = advised(true);
+    let advice = stage.session.advice.clone().expect("advice");
+    let sent = advice.best.clone().expect("a recommendation");
+    stage.at(22.6, Event::SignalShown { by: Sender::Wizard, signal: sent, accepted: Some(17) });
+    stage.model.now = SessionTime::from_secs_f64(23.2);
+    assert_eq!(input(stage.key(KeyCode::Enter)), None);
+    // The answer to what was asked before comes late, and does not know of it.
+    let late = |at| Recommendation { for_ns: SessionTime::from_secs_f64(at), ..advice.clone() };
+    stage.at(23.2, Event::Advised(late(22.5)));
+    assert_eq!(input(stage.key(KeyCode::Enter)), None);
+    stage.at(26.6, Event::SignalEnded { reason: SignalEnd::TakenBack });
+    stage.at(30.0, Event::Advised(late(30.0)));
+    stage.model.now = SessionTime::from_secs_f64(30.0);
+    assert!(input(stage.key(KeyCode::Enter)).is_some(), "that is newer");
+}

@@ -1,0 +1,61 @@
+//! The belief panel, and the track of estimates behind it.
+
+use tomcom::base::time::SessionTime;
+use tomcom::history::belief_track;
+use tomcom::session::event::Event;
+use tomcom::session::settings::{ParticipantKind, Visibility};
+
+use super::{SIZES, Stage};
+use crate::check_snapshot;
+
+#[test]
+fn one_belief_is_looked_at_over_time_and_then_the_next() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let ranked = belief_track::ranked(stage.model.belief.until(stage.model.now));
+    let name = |index: usize| stage.session.kitchen.aspects[index].name.clone();
+    let wrong: Vec<String> = ranked.iter().take(3).map(|&index| name(index)).collect();
+    assert_eq!(wrong, ["order_2", "recipe of tuna nigiri", "robot_hand"], "the longest first");
+    stage.control('b');
+    assert_eq!(stage.model.belief_focus.map(|aspect| aspect.index()), ranked.first().copied());
+    stage.wait(1.0);
+    stage.control('b');
+    stage.wait(1.0);
+    stage.control('b');
+    for size in SIZES {
+        check_snapshot("console", format!("belief_over_time_{}x{}", size.0, size.1), stage.screen(size));
+    }
+    for _ in 0..ranked.len() - 2 {
+        stage.wait(1.0);
+        stage.control('b');
+    }
+    assert_eq!(stage.model.belief_focus, None, "after the last one none");
+}
+
+#[test]
+fn the_belief_has_the_room_of_the_recommendation_where_there_is_none() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.console.visibility = Visibility::Belief;
+    check_snapshot("console", "belief_120x40", stage.screen((120, 40)));
+}
+
+/// A long session needs no more memory than a short one, and still knows since when what is believed wrong.
+#[test]
+fn the_belief_forgets_what_no_panel_shows() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.at(1.0, Event::TrialStarted);
+    stage.estimate(&[("cooking_pot", "rice raw", 0.9)], false);
+    let aspect = stage.session.kitchen.location_named("cooking_pot").expect("a pot").index();
+    for second in 2..3600 {
+        stage.model.now = SessionTime::from_secs_f64(f64::from(second));
+        let p = if second % 2 == 0 { 0.8 } else { 0.9 };
+        stage.estimate(&[("cooking_pot", "rice raw", p)], false);
+        stage.model.belief.forget(stage.model.now, belief_track::SHOWN_S);
+        let moments = stage.model.belief.until(stage.model.now);
+        assert!(moments.len() <= 200, "{} moments", moments.len());
+        assert!(second < 70 || moments[0].time.as_secs_f64() <= f64::from(second) - belief_track::SHOWN_S);
+        assert_eq!(belief_track::wrong_since(moments, aspect), Some(SessionTime::from_secs_f64(1.0)));
+    }
+    stage.model.now = SessionTime::from_secs_f64(3700.0);
+    stage.estimate(&[("cooking_pot", "empty", 0.9)], true);
+    assert_eq!(belief_track::wrong_since(stage.model.belief.until(stage.model.now), aspect), None);
+}

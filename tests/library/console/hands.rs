@@ -1,0 +1,74 @@
+//! The wizard's hands in the kitchen: corrections, and the robot held, skipped and driven.
+
+use crossterm::event::KeyCode;
+use tomcom::communication::Sender;
+use tomcom::console::model::Dialog;
+use tomcom::console::picker::{Picker, PickerQuestion};
+use tomcom::session::event::{EndReason, Event};
+use tomcom::session::settings::ParticipantKind;
+
+use super::{SIZES, Stage, input, type_in};
+use crate::check_snapshot;
+
+#[test]
+fn the_kitchen_is_corrected_from_two_lists() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('k');
+    for size in SIZES {
+        check_snapshot("console", format!("correct_{}x{}", size.0, size.1), stage.screen(size));
+    }
+    type_in(&mut stage, "pot");
+    stage.wait(0.05);
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    check_snapshot("console", "correct_content_80x24", stage.screen((80, 24)));
+    for _ in 0..20 {
+        stage.wait(0.03);
+        assert_eq!(stage.key(KeyCode::Enter), None, "a held enter answers one question");
+    }
+    type_in(&mut stage, "riceco");
+    stage.wait(0.05);
+    let corrected = Event::KitchenCorrected { location: "cooking_pot".to_string(), content: "rice cooked".to_string() };
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(corrected.clone()), "{}", stage.notice());
+    assert_eq!(stage.model.dialog, None);
+    stage.at(23.0, corrected);
+    assert!(stage.screen((120, 40)).contains("rice cooked"));
+    // Esc goes back a step, then leaves; what nothing is called leads nowhere.
+    stage.wait(1.0);
+    stage.control('k');
+    type_in(&mut stage, "zzz");
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    for left in [3, 2, 1] {
+        assert!(matches!(&stage.model.dialog, Some(Dialog::Pick(list)) if list.filter.len() == left));
+        stage.key(KeyCode::Backspace);
+    }
+    stage.key(KeyCode::Down);
+    stage.wait(1.0);
+    stage.key(KeyCode::Enter);
+    stage.key(KeyCode::Esc);
+    assert_eq!(stage.model.dialog, Some(Dialog::Pick(Picker::new(PickerQuestion::Place))));
+    stage.key(KeyCode::Esc);
+    assert_eq!(stage.model.dialog, None);
+}
+
+#[test]
+fn the_robot_is_held_skipped_and_driven_by_keys() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let by = Sender::Wizard;
+    assert_eq!(input(stage.control('p')), Some(Event::RobotHeld { by }));
+    stage.at(22.7, Event::RobotHeld { by });
+    check_snapshot("console", "held_80x24", stage.screen((80, 24)));
+    let screen = stage.screen((120, 40));
+    assert!(screen.contains("HELD") && screen.contains("^p releases it"), "{screen}");
+    stage.wait(1.0);
+    assert_eq!(input(stage.control('s')), Some(Event::RobotSkipped { by }));
+    assert_eq!(stage.control('d'), None);
+    check_snapshot("console", "drive_120x40", stage.screen((120, 40)));
+    type_in(&mut stage, "counter");
+    let driven = Event::RobotDriven { by, button: "counter".to_string() };
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(driven));
+    stage.wait(1.0);
+    assert_eq!(input(stage.control('p')), Some(Event::RobotReleased { by }));
+    stage.at(30.0, Event::TrialEnded { reason: EndReason::Wizard });
+    assert_eq!(stage.control('d'), None);
+    assert!(stage.notice().contains("while the trial runs"), "{}", stage.notice());
+}

@@ -1,0 +1,121 @@
+//! Notices, alarms, notes and ages on the screen.
+
+use crossterm::event::KeyCode;
+use tomcom::base::time::SessionTime;
+use tomcom::console::preflight::checks;
+use tomcom::console::{ConsoleMessage, KeyBindings, KeyMap, update};
+use tomcom::session::event::{EndReason, Event};
+use tomcom::session::settings::{GazeSource, ParticipantKind};
+
+use super::{SIZES, Stage, input};
+use crate::check_snapshot;
+
+#[test]
+fn ages_stand_still_in_a_pause_and_after_the_end() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.at(1.0, Event::TrialStarted);
+    let shown = SessionTime::from_secs_f64(2.0);
+    stage.at(2.0, Event::OrderShown { order: "order_1".to_string(), dish: "tuna nigiri".to_string() });
+    stage.at(5.0, Event::TrialPaused);
+    let age_s = |stage: &Stage, now_s: f64| stage.session.age(shown, SessionTime::from_secs_f64(now_s)).as_secs_f64();
+    assert_eq!(age_s(&stage, 100.0), 3.0);
+    stage.at(105.0, Event::TrialResumed);
+    assert_eq!(age_s(&stage, 106.0), 4.0);
+    stage.at(107.0, Event::TrialEnded { reason: EndReason::Wizard });
+    assert_eq!(age_s(&stage, 200.0), 5.0);
+    let screen = stage.screen((120, 40));
+    assert!(screen.contains("^c closes the session"), "{screen}");
+    assert!(!screen.contains("STOP ROBOT"), "{screen}");
+}
+
+#[test]
+fn the_rate_of_the_gaze_begins_anew_after_a_gap() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Keyboard);
+    stage.at(1.0, Event::TrialStarted);
+    for start_s in [2.0, 7.0] {
+        for step in 0..24 {
+            stage.look(start_s + f64::from(step) / 120.0, 0.5, 0.5);
+        }
+        let hz = stage.session.gaze_hz(stage.model.now).expect("samples come");
+        assert!((hz - 120.0).abs() < 1.0, "{hz} Hz");
+        stage.wait(1.5);
+        assert_eq!(stage.session.gaze_hz(stage.model.now), None);
+        let screen = stage.screen((120, 40));
+        assert!(screen.contains("NO GAZE") && screen.contains("0 Hz, conf -"), "{screen}");
+    }
+}
+
+#[test]
+fn a_lost_keyboard_is_an_alarm_and_an_event() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let mut focus = |focused| input(update(&mut stage.model, &stage.session, ConsoleMessage::Focus(focused)));
+    assert_eq!(focus(true), None, "it has it already");
+    assert_eq!(focus(false), Some(Event::FocusLost));
+    assert_eq!(focus(false), None);
+    for size in SIZES {
+        let screen = stage.screen(size);
+        assert!(screen.contains("NO KEYBOARD") && screen.contains("THE KEYBOARD IS ELSEWHERE"), "{screen}");
+    }
+    assert_eq!(
+        input(update(&mut stage.model, &stage.session, ConsoleMessage::Focus(true))),
+        Some(Event::FocusRegained)
+    );
+}
+
+#[test]
+fn what_mends_is_told_with_the_keys_that_hold() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Display);
+    stage.session.spec.participant.gaze = GazeSource::Pupil;
+    let remedy = |stage: &Stage| {
+        let checks = checks(&stage.session, &stage.model);
+        checks.into_iter().find(|check| check.name == "calibration").and_then(|check| check.remedy).unwrap_or_default()
+    };
+    assert!(remedy(&stage).starts_with("^v checks the gaze"), "{}", remedy(&stage));
+    let map: KeyMap = toml::from_str("[console]\ncheck_gaze = \"f9\"\n").expect("a key file");
+    stage.model.keys = KeyBindings::live(&stage.session.kitchen, &stage.session.spec, &map).expect("f9 is free");
+    assert!(remedy(&stage).starts_with("F9 checks the gaze"), "{}", remedy(&stage));
+}
+
+#[test]
+fn the_notes_are_those_of_the_session() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.session.spec.console.notes = vec!["asked for help".to_string()];
+    stage.model.keys =
+        KeyBindings::live(&stage.session.kitchen, &stage.session.spec, &KeyMap::default()).expect("free keys");
+    assert_eq!(input(stage.key(KeyCode::Char('1'))), Some(Event::Marker { note: "asked for help".to_string() }));
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('2')), None);
+    stage.key(KeyCode::Char('?'));
+    let screen = stage.screen((120, 40));
+    assert!(screen.contains("asked for help") && !screen.contains("wrong recipe"), "{screen}");
+}
+
+#[test]
+fn notes_in_words_are_written_when_paused_and_only_there_the_space_bar_types() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    assert_eq!(stage.key(KeyCode::Char('0')), None);
+    assert!(stage.notice().contains("only when paused"), "{}", stage.notice());
+    stage.at(23.0, Event::TrialPaused);
+    stage.wait(1.0);
+    stage.key(KeyCode::Char('0'));
+    for letter in "Asks fhr  help".chars() {
+        stage.wait(0.05);
+        assert_eq!(stage.key(KeyCode::Char(letter)), None, "a space is typed, and stops nothing");
+    }
+    for _ in 0..7 {
+        stage.key(KeyCode::Left);
+    }
+    stage.key(KeyCode::Backspace);
+    stage.key(KeyCode::Char('o'));
+    stage.key(KeyCode::End);
+    for size in [(80, 24), (200, 60)] {
+        check_snapshot("console", format!("note_{}x{}", size.0, size.1), stage.screen(size));
+    }
+    let note = Event::Marker { note: "Asks for  help".to_string() };
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(note));
+    assert_eq!(input(stage.key(KeyCode::Char(' '))), Some(Event::RobotStopped));
+    stage.wait(1.0);
+    stage.key(KeyCode::Char('0'));
+    assert_eq!(stage.key(KeyCode::Esc), None);
+    assert_eq!(stage.model.dialog, None);
+}

@@ -1,0 +1,62 @@
+//! The mouse: the place on the display under the pointer, clicks and the wheel.
+
+use tomcom::console::arrange::{KitchenMap, MapElement};
+use tomcom::console::view::regions::Regions;
+use tomcom::console::{ConsoleMessage, update};
+use tomcom::session::settings::{ParticipantKind, Visibility};
+
+use super::{SIZES, Stage, kitchen, panels};
+
+#[test]
+fn every_place_of_the_panel_is_its_place_on_the_display_and_back() {
+    for name in ["sushi", "burger"] {
+        let kitchen = kitchen(name);
+        for size in SIZES {
+            let panel = Regions::new(size, Visibility::Recommendation, None).kitchen_inside();
+            let plan = KitchenMap::new(&kitchen, panel, size.0 == 120);
+            assert_eq!(plan.spots.len(), kitchen.locations.len() + kitchen.storages.len());
+            for spot in &plan.spots {
+                let area = match spot.thing {
+                    MapElement::Location(id) => kitchen.location(id).display,
+                    MapElement::Storage(index) => kitchen.storages[index].display,
+                };
+                assert_eq!(panel.union(spot.cells), panel, "{name} {size:?}: inside of the panel");
+                for (x, y) in [(spot.cells.x, spot.cells.y), (spot.cells.right() - 1, spot.cells.bottom() - 1)] {
+                    let point = plan.display_point(x, y);
+                    let distance_m = area.distance_m(point, kitchen.display_m);
+                    assert_eq!(distance_m, 0.0, "{name} {size:?} {:?} {point:?} {area:?}", spot.thing);
+                    assert_eq!(plan.cell(point), Some((x, y)), "{name} {size:?}");
+                }
+            }
+            for (index, spot) in plan.spots.iter().enumerate() {
+                let others = plan.spots[index + 1..].iter();
+                assert!(others.clone().all(|other| !spot.cells.intersects(other.cells)), "{name} {size:?}: apart");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_click_sends_no_signal_and_the_wheel_goes_back_in_time() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let regions = Regions::new((120, 40), Visibility::Recommendation, None);
+    let plan = KitchenMap::new(&stage.session.kitchen, regions.kitchen_inside(), false);
+    for spot in &plan.spots {
+        let MapElement::Location(location) = spot.thing else { continue };
+        let click = ConsoleMessage::Click(spot.cells.x + 1, spot.cells.y);
+        assert_eq!(update(&mut stage.model, &stage.session, click), None);
+        let label = stage.session.kitchen.location(location).label();
+        assert!(stage.notice().contains(&label), "{label}: {}", stage.notice());
+    }
+    let all = panels(&stage);
+    let (column, row) = (regions.belief.x + 1, regions.belief.y);
+    for expected in [vec!["belief".to_string()], all] {
+        assert_eq!(update(&mut stage.model, &stage.session, ConsoleMessage::Click(column, row)), None);
+        assert_eq!(panels(&stage), expected);
+    }
+    let (column, row) = (regions.timeline.x + 1, regions.timeline.y);
+    for (steps, back_s) in [(1, 5), (-3, 0)] {
+        assert_eq!(update(&mut stage.model, &stage.session, ConsoleMessage::Wheel(column, row, steps)), None);
+        assert_eq!(stage.model.timeline_back_s, back_s, "back, and not into the future");
+    }
+}

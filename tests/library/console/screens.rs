@@ -1,0 +1,211 @@
+//! Whole screens at each size: everything that a wizard has to recognise at a glance.
+
+use crossterm::event::KeyCode;
+use tomcom::communication::{Sender, Signal};
+use tomcom::console::key_action::KeyLayer;
+use tomcom::console::model::{Dialog, RecordingStatus};
+use tomcom::console::notice::NoticeLevel;
+use tomcom::console::playback::Playback;
+use tomcom::console::screen::screen;
+use tomcom::console::view::theme::{TerminalBackground, Theme};
+use tomcom::console::{ConsoleMessage, KeyBindings, KeyMap, update};
+use tomcom::gaze::GazeSample;
+use tomcom::session::event::Event;
+use tomcom::session::settings::{ParticipantKind, Visibility};
+
+use super::{SIZES, Stage, panels};
+use crate::check_snapshot;
+
+#[test]
+fn a_running_session_at_three_sizes() {
+    let stage = Stage::sushi(ParticipantKind::Simulated);
+    for size in SIZES {
+        check_snapshot("console", format!("running_{}x{}", size.0, size.1), stage.screen(size));
+    }
+}
+
+#[test]
+fn the_participants_keys_stand_at_their_places() {
+    for name in ["sushi", "burger"] {
+        let mut stage = match name {
+            "sushi" => Stage::sushi(ParticipantKind::Keyboard),
+            _ => Stage::new(name, ParticipantKind::Keyboard),
+        };
+        assert_eq!(stage.key(KeyCode::Tab), None);
+        assert_eq!(stage.model.layer, KeyLayer::Participant);
+        check_snapshot("console", format!("participant_{name}_120x40"), stage.screen((120, 40)));
+        check_snapshot("console", format!("participant_{name}_80x24"), stage.screen((80, 24)));
+    }
+}
+
+#[test]
+fn a_gaze_map_fills_the_room_of_what_the_wizard_may_not_see() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.console.visibility = Visibility::State;
+    stage.model.see(stage.model.now, GazeSample::new(0.30, 0.4, 0.97));
+    check_snapshot("console", "gaze_map_120x40", stage.screen((120, 40)));
+}
+
+#[test]
+fn help_and_questions_and_the_ascii_fallback() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.key(KeyCode::Char('?'));
+    assert_eq!(stage.model.dialog, Some(Dialog::Help));
+    check_snapshot("console", "help_80x24", stage.screen((80, 24)));
+    check_snapshot("console", "help_120x40", stage.screen((120, 40)));
+    stage.wait(1.0);
+    stage.key(KeyCode::Down);
+    assert_eq!(stage.model.dialog, None, "all of it is seen: every key closes");
+    stage.control('c');
+    check_snapshot("console", "quit_80x24", stage.screen((80, 24)));
+    stage.model.dialog = None;
+    stage.model.theme = Theme { colour: false, unicode: false, ground: TerminalBackground::Dark };
+    let screen = stage.screen((120, 40));
+    assert!(screen.is_ascii(), "only ASCII");
+}
+
+/// Every state that a wizard has to recognise at a glance, at each size.
+#[test]
+fn what_a_wizard_sees_at_each_size() {
+    let mut ready = Stage::new("sushi", ParticipantKind::Simulated);
+    ready.wait(1.0);
+    let mut paused = Stage::sushi(ParticipantKind::Simulated);
+    paused.at(22.6, Event::TrialPaused);
+    let mut stopped = Stage::sushi(ParticipantKind::Simulated);
+    stopped.at(22.6, Event::RobotStopped);
+    let mut highlight = Stage::sushi(ParticipantKind::Simulated);
+    highlight.at(
+        22.6,
+        Event::SignalShown {
+            by: Sender::Wizard,
+            signal: Signal::Highlight("cutting_board".to_string()),
+            accepted: None,
+        },
+    );
+    let mut alarm = Stage::sushi(ParticipantKind::Simulated);
+    alarm.at(22.6, Event::RobotStopped);
+    alarm.at(22.6, Event::SessionEnded);
+    alarm.model.recording = RecordingStatus::Lost;
+    alarm.model.say(NoticeLevel::Alarm, "session over, the recording ends here: no space left on the device");
+    let mut away = Stage::sushi(ParticipantKind::Simulated);
+    away.model.focused = false;
+    let mut replay = Stage::sushi(ParticipantKind::Simulated);
+    replay.model.keys = KeyBindings::replay(&replay.session.kitchen, &KeyMap::default()).expect("the keys are free");
+    let mut playback = Playback::new("2026-03-14-P01-1".to_string());
+    (playback.playing, playback.event, playback.events) = (true, 43210, 59289);
+    replay.model.playback = Some(playback);
+    let mut state = Stage::sushi(ParticipantKind::Simulated);
+    state.session.spec.console.visibility = Visibility::State;
+    let mut ascii = Stage::sushi(ParticipantKind::Simulated);
+    ascii.model.theme = Theme { colour: false, unicode: false, ground: TerminalBackground::Light };
+    let stages = [
+        ("ready", ready),
+        ("paused", paused),
+        ("robot_stopped", stopped),
+        ("highlight", highlight),
+        ("alarm", alarm),
+        ("away", away),
+        ("replay", replay),
+        ("state", state),
+        ("ascii", ascii),
+    ];
+    for (name, stage) in stages {
+        for size in SIZES {
+            check_snapshot("console", format!("{name}_{}x{}", size.0, size.1), stage.screen(size));
+        }
+    }
+}
+
+#[test]
+fn a_stopped_robot_is_seen_and_every_size_can_be_drawn() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.at(22.7, Event::RobotStopped);
+    for columns in (1..220).step_by(7) {
+        for rows in (1..70).step_by(3) {
+            stage.screen((columns, rows));
+        }
+    }
+}
+
+#[test]
+fn a_question_is_seen_in_the_smallest_window() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('c');
+    let screen = stage.screen((50, 12));
+    assert!(screen.contains("Quit tomcom? y yes, any other key no"), "{screen}");
+}
+
+#[test]
+fn the_timeline_loses_no_signal_no_note_and_no_error() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    for note in ["wrong recipe", "overlooked a change", "slip"] {
+        stage.at(22.6, Event::Marker { note: note.to_string() });
+    }
+    for size in SIZES {
+        assert!(stage.screen(size).contains("123"), "{}", stage.screen(size));
+    }
+}
+
+#[test]
+fn the_keys_of_a_replay_and_the_served_orders_fit_the_smallest_console() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.keys = KeyBindings::replay(&stage.session.kitchen, &KeyMap::default()).expect("the keys are free");
+    let mut playback = Playback::new("2026-03-14-P01-1".to_string());
+    (playback.playing, playback.event, playback.events) = (true, 43210, 59289);
+    stage.model.playback = Some(playback);
+    for size in SIZES {
+        let screen = stage.screen(size);
+        for words in ["q quit", "? help", "left/right step", "0 served", "play 1x"] {
+            assert!(screen.contains(words), "{words} is missing:\n{screen}");
+        }
+    }
+}
+
+#[test]
+fn each_panel_can_be_looked_at_alone() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.size = (80, 24);
+    let all = panels(&stage);
+    let mut seen = Vec::new();
+    for _ in 0..6 {
+        stage.wait(0.2);
+        assert_eq!(stage.key(KeyCode::Right), None);
+        let screen = stage.screen((80, 24));
+        assert!(screen.contains("STOP ROBOT") && screen.contains("esc all panels"), "{screen}");
+        seen.extend(panels(&stage));
+    }
+    assert_eq!(seen, ["kitchen", "belief", "recommendation", "gaze_map", "events", "timeline"]);
+    stage.wait(0.2);
+    stage.key(KeyCode::Up);
+    assert!(stage.screen((80, 24)).contains("-5 s"), "further back in time: {}", stage.screen((80, 24)));
+    stage.key(KeyCode::Esc);
+    assert_eq!((panels(&stage), stage.model.timeline_back_s), (all, 0));
+    stage.session.spec.console.visibility = Visibility::State;
+    for _ in 0..2 {
+        stage.wait(0.2);
+        stage.key(KeyCode::Right);
+    }
+    assert_eq!(panels(&stage), ["gaze_map"], "what may not be seen is left out");
+    stage.wait(0.2);
+    stage.key(KeyCode::Up);
+    update(&mut stage.model, &stage.session, ConsoleMessage::Wheel(40, 12, 1));
+    assert_eq!(stage.model.events_back, 0, "what is not seen does not move");
+}
+
+#[test]
+fn what_the_wizard_sees_is_told_by_size_visibility_and_dialog() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let mut rooms = Vec::new();
+    for size in [(50, 12), (80, 24), (120, 40), (200, 60)] {
+        stage.model.size = size;
+        let seen = screen(&stage.session, &stage.model);
+        assert_eq!(seen.panels.iter().any(|panel| panel == "belief"), seen.room != "too_small", "{seen:?}");
+        rooms.push(seen.room);
+    }
+    assert_eq!(rooms, ["too_small", "small", "medium", "large"]);
+    stage.session.spec.console.visibility = Visibility::State;
+    stage.control('k');
+    let seen = screen(&stage.session, &stage.model);
+    assert!(!seen.panels.iter().any(|panel| panel == "belief" || panel == "recommendation"), "{seen:?}");
+    assert_eq!((seen.visibility, seen.dialog.as_deref()), (Visibility::State, Some("correct_place")));
+}

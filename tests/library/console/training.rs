@@ -1,0 +1,50 @@
+//! The training of a wizard: its task, its feedback and its report.
+
+use crossterm::event::KeyCode;
+use tomcom::base::time::SessionTime;
+use tomcom::console::lesson::{TrainingFeedback, TrainingPanel};
+use tomcom::console::model::Dialog;
+use tomcom::console::notice::NoticeLevel;
+use tomcom::console::playback::Playback;
+use tomcom::session::settings::{ParticipantKind, Visibility};
+
+use super::{SIZES, Stage};
+use crate::check_snapshot;
+
+#[test]
+fn a_training_says_what_to_do_keeps_what_it_said_and_ends_when_that_is_read() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.console.visibility = Visibility::State;
+    stage.model.playback = Some(Playback::new("seed1-S001".to_string()));
+    let task = ["Press . to start.", "A hit is the first signal about a false belief that leads to an error."];
+    let lesson = TrainingPanel {
+        task: task.map(str::to_string).to_vec(),
+        score: "0 hit".to_string(),
+        ..TrainingPanel::default()
+    };
+    stage.model.lesson = Some(lesson.clone());
+    assert!(stage.screen((120, 40)).contains("A hit is the first signal"));
+    let said = |seconds: f64, level: NoticeLevel, text: &str| {
+        let clock = SessionTime::from_secs_f64(seconds);
+        TrainingFeedback { clock, level, text: text.to_string() }
+    };
+    let long = "missed, with 2 errors: recipe of tuna nigiri: believed salmon nigiri, truly tuna nigiri; right would have been: recipe of order 1";
+    let feedback = vec![
+        said(4.0, NoticeLevel::Done, "highlight plate: told already"),
+        said(9.0, NoticeLevel::Refused, long),
+        said(12.0, NoticeLevel::Done, "recipe of order 1: hit: believed wrong for 3.1 s"),
+    ];
+    stage.model.lesson = Some(TrainingPanel { feedback, begun: true, ..lesson });
+    for size in SIZES {
+        check_snapshot("console", format!("training_{}x{}", size.0, size.1), stage.screen(size));
+    }
+    stage.control('b');
+    assert!(stage.notice().contains("not shown in this session"), "{}", stage.notice());
+    stage.model.dialog = Some(Dialog::Report(vec!["1 of 2 hit".to_string(), "    missed; ".to_string() + long]));
+    check_snapshot("console", "training_over_120x40", stage.screen((120, 40)));
+    stage.wait(1.0);
+    stage.key(KeyCode::Char('q'));
+    assert!(stage.model.dialog.is_some(), "a signal that came too late closes nothing");
+    stage.key(KeyCode::Enter);
+    assert_eq!(stage.model.dialog, None);
+}

@@ -1,0 +1,127 @@
+//! A trial at the console: started, paused, aborted, excluded, and the checks before it.
+
+use crossterm::event::KeyCode;
+use tomcom::console::ConsoleCommand;
+use tomcom::console::model::Dialog;
+use tomcom::session::Phase;
+use tomcom::session::event::Event;
+use tomcom::session::preflight::PreflightVerdict;
+use tomcom::session::settings::{GazeSource, ParticipantKind};
+
+use super::{SIZES, Stage, input, type_in};
+use crate::check_snapshot;
+
+#[test]
+fn the_trial_is_started_paused_and_ended_by_keys() {
+    let mut stage = Stage::new("burger", ParticipantKind::Simulated);
+    assert_eq!(input(stage.key(KeyCode::Char('a'))), None, "no signal before the trial");
+    assert!(stage.notice().contains("while the trial runs"), "{}", stage.notice());
+    assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialStarted));
+    stage.at(1.0, Event::TrialStarted);
+    assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialPaused));
+    stage.at(2.0, Event::TrialPaused);
+    assert_eq!(stage.session.phase, Phase::Paused);
+    assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialResumed));
+    stage.at(3.0, Event::TrialResumed);
+    assert_eq!(input(stage.key(KeyCode::Char('3'))), Some(Event::Marker { note: "slip".to_string() }));
+    assert_eq!(stage.control('e'), None);
+    assert_eq!(stage.model.dialog, Some(Dialog::EndTrial));
+    stage.wait(1.0);
+    assert!(matches!(input(stage.key(KeyCode::Char('y'))), Some(Event::TrialEnded { .. })));
+    assert_eq!(stage.control('c'), None);
+    assert_eq!(stage.model.dialog, Some(Dialog::Quit));
+    assert_eq!(stage.key(KeyCode::Char('n')), None);
+    assert_eq!(stage.model.dialog, None);
+    stage.wait(1.0);
+    stage.control('c');
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('y')), Some(ConsoleCommand::Quit));
+}
+
+#[test]
+fn a_trial_is_aborted_with_a_reason_and_done_again() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    assert_eq!(stage.control('n'), None);
+    assert!(stage.notice().contains("abort the trial first"), "{}", stage.notice());
+    assert_eq!(stage.control('x'), None);
+    check_snapshot("console", "abort_80x24", stage.screen((80, 24)));
+    stage.key(KeyCode::Down);
+    let aborted = Event::TrialAborted { reason: "technical failure".to_string() };
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(aborted.clone()));
+    stage.at(30.0, aborted);
+    for size in SIZES {
+        let screen = stage.screen(size);
+        assert!(screen.contains("ABORTED") && screen.contains("^n do it again"), "{screen}");
+    }
+    assert_eq!(stage.control('n'), Some(ConsoleCommand::Redo));
+}
+
+#[test]
+fn a_trial_is_excluded_and_included_by_one_key() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('l');
+    type_in(&mut stage, "inter");
+    let excluded = Event::TrialExcluded { reason: "interrupted".to_string() };
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(excluded.clone()));
+    stage.at(23.0, excluded);
+    assert!(stage.screen((120, 40)).contains("EXCLUDED"));
+    stage.wait(1.0);
+    assert_eq!(input(stage.control('l')), Some(Event::TrialIncluded));
+}
+
+#[test]
+fn a_trial_starts_at_once_if_all_is_ok_and_what_was_found_is_recorded() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    let Some(ConsoleCommand::Start(Event::Preflight { checks, overridden })) = stage.key(KeyCode::Char('.')) else {
+        panic!("{}", stage.notice());
+    };
+    let names: Vec<&str> = checks.iter().map(|check| check.name.as_str()).collect();
+    assert_eq!(names, ["participant", "gaze", "robot", "recording", "free space", "keyboard"]);
+    assert!(!overridden && checks.iter().all(|check| check.verdict == PreflightVerdict::Ok), "{checks:?}");
+    stage.at(0.0, Event::Preflight { checks, overridden });
+    stage.at(0.0, Event::TrialStarted);
+    stage.wait(1.0);
+    stage.control('f');
+    assert!(stage.notice().contains("started already"), "{}", stage.notice());
+}
+
+#[test]
+fn what_is_not_ok_before_a_trial_is_listed_mended_or_overridden() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Keyboard);
+    stage.session.spec.participant.gaze = GazeSource::Json;
+    stage.at(0.1, Event::RobotStopped);
+    stage.model.free_bytes = Some(100 << 20);
+    assert_eq!(stage.key(KeyCode::Char('.')), None);
+    assert_eq!(stage.model.dialog, Some(Dialog::Preflight));
+    for size in SIZES {
+        check_snapshot("console", format!("preflight_{}x{}", size.0, size.1), stage.screen(size));
+    }
+    // The key that opened the list does not start the trial, held or pressed again.
+    for gap_s in [0.5, 0.03, 1.0] {
+        stage.wait(gap_s);
+        assert_eq!(stage.key(KeyCode::Char('.')), None);
+    }
+    assert_eq!(input(stage.control('r')), Some(Event::RobotResumed));
+    stage.at(3.0, Event::RobotResumed);
+    let started = stage.key(KeyCode::Char('o'));
+    let Some(ConsoleCommand::Start(Event::Preflight { checks, overridden: true })) = started else {
+        panic!("{started:?}")
+    };
+    let verdict = |name: &str| checks.iter().find(|check| check.name == name).map(|check| check.verdict);
+    assert_eq!(verdict("gaze"), Some(PreflightVerdict::Failed));
+    assert_eq!(verdict("free space"), Some(PreflightVerdict::Warning));
+    assert_eq!(verdict("robot"), Some(PreflightVerdict::Ok));
+    // As soon as all is mended, the key that starts a trial starts it.
+    stage.key(KeyCode::Char('.'));
+    stage.model.free_bytes = Some(1 << 40);
+    for step in 0..120 {
+        stage.look(4.0 + f64::from(step) / 120.0, 0.5, 0.5);
+    }
+    stage.wait(0.01);
+    stage.model.dialog = Some(Dialog::Preflight);
+    assert!(stage.screen((80, 24)).contains("usable, confidence 0.97"), "{}", stage.screen((80, 24)));
+    assert!(matches!(
+        stage.key(KeyCode::Char('.')),
+        Some(ConsoleCommand::Start(Event::Preflight { overridden: false, .. }))
+    ));
+}

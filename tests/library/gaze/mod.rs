@@ -1,0 +1,31 @@
+//! Gaze: the tags on the wall display, the mapping from a tracker's surface, and what comes of samples.
+
+mod calibration;
+mod formats;
+mod quality;
+mod rate;
+mod tags;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use tomcom::edge::files::{read_kitchen, read_session};
+use tomcom::kitchen::Kitchen;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::run::engine::Engine;
+use tomcom::session::SessionSpec;
+
+fn load(layout: &str) -> Kitchen {
+    match read_kitchen(Path::new(layout)) {
+        Ok(files) => files.kitchen,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// A session of the sushi kitchen with these settings.
+fn engine(change: impl Fn(&mut SessionSpec)) -> Engine {
+    let mut files = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    change(&mut files.spec);
+    let kitchen = Arc::new(files.kitchen.kitchen);
+    Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen))
+}

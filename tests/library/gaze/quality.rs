@@ -1,0 +1,95 @@
+//! Streams of samples: faults, delays, the device's clock, and floods.
+
+use tomcom::base::time::SessionTime;
+use tomcom::gaze::GazeSample;
+use tomcom::gaze::device_clock::DeviceClock;
+use tomcom::gaze::quality::{GazeFault, RateLimit};
+use tomcom::run::engine::Engine;
+use tomcom::session::Event;
+use tomcom::session::settings::{GazeSource, ParticipantKind};
+
+use super::engine;
+
+#[test]
+fn what_is_wrong_with_a_stream_is_counted_by_kind_and_not_read() {
+    let mut engine = engine(|spec| {
+        (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
+    });
+    let at = |ms: u64| SessionTime(ms * 1_000_000);
+    assert_eq!(engine.input(at(0), Event::TrialStarted).refused, None);
+    let send = |engine: &mut Engine, arrived: u64, taken: u64, x: f64| {
+        let sample =
+            GazeSample { device_ns: Some(taken + 5), taken_ns: Some(at(taken)), ..GazeSample::new(x, 0.35, 0.9) };
+        let before = engine.belief().clone();
+        assert_eq!(engine.input(at(arrived), Event::Gaze(sample)).refused, None);
+        (*engine.belief() != before, engine.session().gaze.fault)
+    };
+    assert_eq!(send(&mut engine, 1000, 990, 0.40), (true, None));
+    assert_eq!(send(&mut engine, 1000, 998, 0.40), (true, None));
+    assert_eq!(send(&mut engine, 1002, 998, 0.40), (false, Some(GazeFault::Duplicate)));
+    assert_eq!(send(&mut engine, 1003, 910, 0.40), (false, Some(GazeFault::OutOfOrder)));
+    assert_eq!(send(&mut engine, 1600, 1010, 0.40), (false, Some(GazeFault::TooOld)));
+    // One from the future counts as taken now; the stream goes on after it.
+    assert_eq!(send(&mut engine, 1610, 9000, 0.40), (true, None));
+    assert_eq!(send(&mut engine, 1620, 1618, 0.40), (true, None));
+    let counts = engine.session().gaze.judge.counts;
+    assert_eq!((counts.duplicate, counts.out_of_order, counts.too_old, counts.sum()), (1, 1, 1, 3));
+    assert_eq!(engine.session().gaze.samples, 7);
+}
+
+#[test]
+fn what_is_read_is_what_the_display_showed_when_the_sample_was_taken() {
+    let at = |ms: u64| SessionTime(ms * 1_000_000);
+    // Salmon is put down on the counter at 1000 ms; gaze of before and after arrives at 1100 ms.
+    let p_salmon = |taken_ms: u64| {
+        let mut engine = engine(|spec| {
+            (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
+        });
+        let kitchen = engine.session().kitchen.clone();
+        let counter = kitchen.location_named("counter").expect("a counter");
+        let [x, y] = kitchen.location(counter).display.centre();
+        let input = |engine: &mut Engine, ms: u64, event: Event| {
+            assert_eq!(engine.input(at(ms), event).refused, None);
+        };
+        input(&mut engine, 0, Event::TrialStarted);
+        let (location, content) = ("counter".to_string(), "salmon raw".to_string());
+        input(&mut engine, 1000, Event::KitchenCorrected { location, content });
+        for sample in 0..8 {
+            let taken_ns = Some(at(taken_ms + 5 * sample));
+            input(&mut engine, 1100, Event::Gaze(GazeSample { taken_ns, ..GazeSample::new(x, y, 0.9) }));
+        }
+        let salmon = kitchen.content_named("salmon raw").expect("salmon").0;
+        let value = kitchen.aspects[counter.index()].index_of(salmon).expect("a value");
+        engine.belief().aspects[counter.index()].mean()[value]
+    };
+    let (before, after) = (p_salmon(940), p_salmon(1040));
+    assert!(before < 0.05, "salmon was not there yet: {before}");
+    assert!(after > 0.15, "salmon lay there: {after}");
+}
+
+#[test]
+fn device_time_is_told_from_the_samples_that_took_the_shortest_way() {
+    let mut clock = DeviceClock::default();
+    let ms = |ms: u64| SessionTime(ms * 1_000_000);
+    // The device's clock is 5 s behind; samples take 3 ms at least, some of them longer.
+    for step in 0..200u64 {
+        let late = 3 + [0, 9, 4, 30][step as usize % 4];
+        let taken = clock.session_time(ms(1000 + 10 * step).0, ms(6000 + 10 * step + late));
+        assert_eq!(taken, ms(6000 + 10 * step + 3), "step {step}");
+    }
+    // It begins anew at zero: the old offset does not hold for it.
+    assert_eq!(clock.session_time(0, ms(9000)), ms(9000));
+    assert_eq!(clock.session_time(ms(10).0, ms(9015)), ms(9010));
+}
+
+#[test]
+fn a_flood_is_let_through_at_the_rate_of_the_fastest_tracker() {
+    let mut limit = RateLimit::default();
+    let passed = |limit: &mut RateLimit, hz: u64, from_s: u64, seconds: u64| {
+        let times = (0..hz * seconds).map(|n| SessionTime(from_s * 1_000_000_000 + n * 1_000_000_000 / hz));
+        times.filter(|&time| limit.admits(time)).count() as u64
+    };
+    assert_eq!(passed(&mut limit, 1000, 0, 20), 20_000, "a fast tracker loses nothing");
+    let flood = passed(&mut limit, 50_000, 20, 10);
+    assert!((20_000..=21_001).contains(&flood), "{flood} of a flood");
+}

@@ -1,0 +1,132 @@
+//! How well an estimate finds false beliefs: areas under the curve, calibration, thresholds.
+
+use tomcom::kitchen::{AspectId, ButtonId, Kitchen};
+use tomcom::measures::beliefs::{Detection, EstimateView, PressView, TrialView};
+use tomcom::measures::detection::{Calibration, auc};
+use tomcom::measures::flags::Thresholds;
+
+use super::{aspect, kitchen};
+
+#[test]
+fn the_area_under_the_roc_counts_pairs_in_order_and_ties_as_half() {
+    let check = |cases: &[f64], others: &[f64], expected: Option<f64>| {
+        let scored: Vec<(f64, bool)> =
+            cases.iter().map(|&score| (score, true)).chain(others.iter().map(|&score| (score, false))).collect();
+        assert_eq!(auc(&scored), expected, "{cases:?} against {others:?}");
+    };
+    check(&[0.9, 0.8], &[0.1, 0.2, 0.3], Some(1.0));
+    check(&[0.1], &[0.9], Some(0.0));
+    check(&[0.5, 0.5], &[0.5], Some(0.5));
+    // Pairs in order: 0.9 beats all three; 0.4 beats 0.1, ties with 0.4, loses to 0.6: 4.5 of 6.
+    check(&[0.4, 0.9], &[0.1, 0.4, 0.6], Some(0.75));
+    check(&[], &[0.5], None);
+    check(&[0.5], &[], None);
+}
+
+#[test]
+fn the_calibration_error_weighs_bins_by_their_predictions() {
+    let predictions = [(0.62, true), (0.68, false), (0.15, false), (0.01, true), (0.99, false)];
+    let found = Calibration::from_predictions(predictions, [0.0, 0.95], 19);
+    // Bins of 0.05: 0.62 in one, 0.68 in another, 0.15 (on the edge) in a third, 0.01 in the first; 0.99 is out of range.
+    assert!((found.ece.expect("predictions") - (0.38 + 0.68 + 0.15 + 0.99) / 4.0).abs() < 1e-12, "{found:?}");
+    let found = Calibration::from_predictions(predictions, [0.05, 0.95], 2);
+    // From 0.05 to 0.5: 0.15, none true; from 0.5 to 0.95: 0.62 and 0.68, half of them true.
+    assert!((found.ece.expect("predictions") - (0.15 + 2.0 * 0.15) / 3.0).abs() < 1e-12, "{found:?}");
+    assert_eq!(Calibration::from_predictions([(0.99, true)], [0.05, 0.95], 10).ece, None);
+}
+
+/// A trial about two aspects of a kitchen: letters of the location, then of the recipe, then the estimates in tenths.
+/// `.` is believed right, `w` wrong, `E` wrong and the reason of an error.
+fn trial(kitchen: &Kitchen, place: AspectId, recipe: AspectId, text: [&str; 4]) -> TrialView {
+    let letters: Vec<Vec<char>> = text.iter().map(|letters| letters.chars().collect()).collect();
+    let press = |index: usize| {
+        let (mut held, mut p_wrong) = (vec![0.9; kitchen.aspects.len()], vec![0.0; kitchen.aspects.len()]);
+        let mut errs_about = Vec::new();
+        for (group, aspect) in [place, recipe].into_iter().enumerate() {
+            if letters[group][index] != '.' {
+                held[aspect.index()] = 0.2;
+            }
+            if letters[group][index] == 'E' {
+                errs_about.push(aspect);
+            }
+            let tenths = letters[group + 2][index].to_digit(10).expect("a digit");
+            p_wrong[aspect.index()] = f64::from(tenths) / 10.0;
+        }
+        PressView {
+            state: kitchen.empty_state(),
+            button: ButtonId(0),
+            held: Some(held),
+            estimate: Some(EstimateView { p_wrong, log_p: -1.0 }),
+            unseen_change: vec![false; kitchen.locations.len()],
+            errs_about,
+        }
+    };
+    (0..letters[0].len()).map(press).collect()
+}
+
+#[test]
+fn flags_catch_an_episode_between_its_beginning_and_the_third_error() {
+    let kitchen = kitchen("sushi");
+    let (place, recipe) = (aspect(&kitchen, "cooking_pot"), aspect(&kitchen, "recipe of crab maki"));
+    let check = |text: [&str; 4], episodes: u64, caught: Option<f64>, false_flags: f64| {
+        let trials = [trial(&kitchen, place, recipe, text)];
+        let thresholds = Thresholds { locations: 0.5, recipes: 0.3 };
+        let flags = Detection::from_trials(&kitchen, &trials, Some(thresholds)).flags;
+        assert_eq!((flags.episodes, flags.flagged_before_third_error), (Some(episodes), caught), "{text:?}");
+        let rate = 20.0 * false_flags / text[0].len() as f64;
+        assert!((flags.false_flags_per_20_actions.expect("a rate") - rate).abs() < 1e-12, "{text:?}: {flags:?}");
+    };
+    // One error makes no episode of two; a flag before the belief is false is a false one; one that stays is raised once.
+    check([".wE..", ".....", "08800", "00000"], 0, None, 0.0);
+    check(["..EE.", ".....", "88880", "00000"], 1, Some(1.0), 1.0);
+    check(["..EE.", ".....", "88000", "00000"], 1, Some(0.0), 1.0);
+    // Before the third error counts, from then on not.
+    check(["EEEw.", ".....", "00800", "00000"], 1, Some(1.0), 0.0);
+    check(["EEEw.", ".....", "00080", "00000"], 1, Some(0.0), 0.0);
+    // Without a third error, until it is over; each group has its own threshold.
+    check(["EEww.", "EwwE.", "00040", "00400"], 2, Some(0.5), 0.0);
+    // A flag that was right and stays too long is not raised again; one that comes back is.
+    check(["EE...", ".....", "88808", "00000"], 1, Some(1.0), 1.0);
+}
+
+#[test]
+fn thresholds_are_chosen_that_catch_most_within_what_is_allowed() {
+    let kitchen = kitchen("sushi");
+    let (place, recipe) = (aspect(&kitchen, "cooking_pot"), aspect(&kitchen, "recipe of crab maki"));
+    let quiet = ".".repeat(60);
+    let zero = "0".repeat(60);
+    let text = [&format!("{quiet}EEw."), &format!("{quiet}...."), &format!("{zero}0702"), &format!("{zero}0000")];
+    let found = Detection::from_trials(&kitchen, &[trial(&kitchen, place, recipe, text.map(String::as_str))], None);
+    let flags = &found.flags;
+    assert_eq!((flags.episodes, flags.flagged_before_third_error), (Some(1), Some(1.0)), "{flags:?}");
+    assert_eq!(
+        flags.false_flags_per_20_actions,
+        Some(0.0),
+        "of the thresholds that catch it the one without false flags"
+    );
+    let thresholds = flags.thresholds.expect("thresholds");
+    assert!(thresholds.locations > 0.2 && thresholds.locations <= 0.7, "{thresholds:?}");
+    // Of the pairs of a press and a location three were wrong, at 0, 0.7 and 0; all others are at 0 but one at 0.2.
+    let others = (64 * kitchen.locations.len() - 3) as f64;
+    let area = (others + 0.5 * (others - 1.0) + 0.5 * (others - 1.0)) / (3.0 * others);
+    assert!((found.auc_locations.expect("an area") - area).abs() < 1e-12, "{:?} or {area}", found.auc_locations);
+    let of_pot = (61.0 + 0.5 * 60.0 + 0.5 * 60.0) / (3.0 * 61.0);
+    assert!((found.auc_mean_of_aspects.expect("an area") - of_pot).abs() < 1e-12, "{found:?}");
+    assert_eq!((found.auc, found.auc_recipes), (found.auc_locations, None));
+    assert_eq!(found.auc_baseline, Some(0.5), "nothing ever changed unseen");
+}
+
+#[test]
+fn what_may_be_flagged_wrongly_is_a_share_of_the_time_of_all_aspects_together() {
+    let kitchen = kitchen("sushi");
+    let (place, recipe) = (aspect(&kitchen, "cooking_pot"), aspect(&kitchen, "recipe of crab maki"));
+    let of = |doubted: usize| {
+        let (right, known) = (".".repeat(64), "0".repeat(66));
+        let estimates = format!("{}{}33", "0".repeat(64 - doubted), "3".repeat(doubted));
+        let text = [&format!("{right}.."), &format!("{right}EE"), &known, &estimates];
+        Detection::from_trials(&kitchen, &[trial(&kitchen, place, recipe, text.map(String::as_str))], None).flags
+    };
+    // 66 presses and 16 aspects: 1,056 pairs, of which 52 may be flagged wrongly; of the recipes' alone 5 % were 19.
+    assert_eq!(of(40).flagged_before_third_error, Some(1.0));
+    assert_eq!(of(60).flagged_before_third_error, Some(0.0));
+}

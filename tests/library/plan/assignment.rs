@@ -1,0 +1,110 @@
+//! Who comes under which condition with which orders, in which language.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use tomcom::edge::files::read_session;
+use tomcom::kitchen::DishId;
+use tomcom::session::orders::OrderList;
+use tomcom::session::plan::{Item, Participants, Study, WantedRecording};
+
+use super::{folder, study};
+
+/// The same questionnaire in another language: only words differ, so that answers are analysed together.
+#[test]
+fn a_session_asks_in_its_own_language() {
+    let folder = folder("language");
+    let root = env!("CARGO_MANIFEST_DIR");
+    let text = fs::read_to_string("sessions/study.toml").expect("the study of the project");
+    let text = text.replace("\"questionnaires/", &format!("\"{root}/sessions/questionnaires/"));
+    let text = text.replace("\"../", &format!("\"{root}/"));
+    fs::write(folder.join("dutch.toml"), "language = \"nl\"\n").expect("written");
+    let in_language = |language: &str| {
+        let session = folder.join("session.toml");
+        fs::write(&session, format!("{text}\n[display]\nlanguage = \"{language}\"\n")).expect("written");
+        match read_session(&session) {
+            Ok(files) => files.questionnaires.into_iter().next().expect("a questionnaire"),
+            Err(error) => panic!("{language}: {error}"),
+        }
+    };
+    let [english, german, dutch] = ["en", "de", "dutch.toml"].map(in_language);
+    assert_eq!((english.language.as_str(), german.language.as_str()), ("en", "de"));
+    assert_eq!(dutch, english, "what is not there in a language is asked as it stands in the plan");
+    assert_eq!((&german.name, german.scale.points), (&english.name, english.scale.points));
+    assert_eq!(german.items.len(), english.items.len());
+    for (one, other) in german.items.iter().zip(&english.items) {
+        assert_ne!(one.text, other.text);
+        assert_eq!(Item { text: other.text.clone(), ..one.clone() }, *other);
+    }
+}
+
+#[test]
+fn the_groups_are_balanced_in_every_block_and_belong_to_plan_and_seed() {
+    for (conditions, block, orders) in [(2, None, 2), (2, Some(2), 2), (2, Some(6), 2), (1, None, 1)] {
+        let study = study(|files| {
+            let plan = files.spec.plan.as_mut().expect("a plan");
+            plan.participants = Participants::Count(60);
+            plan.conditions.truncate(conditions);
+            plan.block = block;
+        });
+        let names: Vec<String> = (0..60).map(|participant| study.group(participant).name).collect();
+        for block in names.chunks(block.unwrap_or(2 * orders) as usize) {
+            let mut sizes = BTreeMap::new();
+            block.iter().for_each(|name| *sizes.entry(name).or_insert(0) += 1);
+            assert_eq!(sizes.len(), orders as usize, "{block:?}");
+            assert!(sizes.values().all(|&size| size == block.len() / orders as usize), "{block:?}");
+        }
+        for participant in 0..60 {
+            let mut conditions = study.group(participant).conditions;
+            conditions.sort_by_key(|condition| condition.name());
+            conditions.dedup();
+            assert_eq!(conditions.len(), study.plan.conditions.len(), "each condition once");
+        }
+    }
+    let names = |seed: u64, count: u32| {
+        let study = study(|files| {
+            files.spec.seed = seed;
+            files.spec.plan.as_mut().expect("a plan").participants = Participants::Count(count);
+        });
+        (0..12).map(|participant| study.group(participant).name).collect::<String>()
+    };
+    assert_eq!(names(1, 12), names(1, 99), "more participants change nobody's group");
+    assert!((2..6).any(|seed| names(seed, 12) != names(1, 12)), "another seed, other groups");
+}
+
+/// The first `count` orders of a recording of the plan.
+fn orders(study: &Study, wanted: WantedRecording, menu: usize, count: usize) -> Vec<DishId> {
+    let (spec, trial) = study.settings(wanted);
+    let mut list = OrderList::new(menu, &spec, trial);
+    (0..count).map(|_| list.draw()).collect()
+}
+
+#[test]
+fn the_trials_of_a_participant_ask_for_the_same_dishes_in_another_order() {
+    let study = study(|_| ());
+    let sorted = |dishes: &[DishId]| {
+        let mut dishes = dishes.to_vec();
+        dishes.sort_by_key(|dish| dish.index());
+        dishes
+    };
+    for (menu, run) in [(6, 3), (4, 3), (9, 3)] {
+        let mut differ = 0;
+        for participant in 0..14 {
+            let of = |slot, attempt| WantedRecording { participant, slot, attempt, instructed: true };
+            let lists =
+                [(1, 1), (2, 1), (1, 2)].map(|(slot, attempt)| orders(&study, of(slot, attempt), menu, 4 * menu));
+            for list in &lists[1..] {
+                differ += usize::from(list != &lists[0]);
+                // At the end of every block, and of every run in it, the same dishes were asked for.
+                for end in (menu..=4 * menu).step_by(menu) {
+                    assert_eq!(sorted(&list[..end]), sorted(&lists[0][..end]));
+                    let first = end - menu + run.min(menu);
+                    assert_eq!(sorted(&list[..first]), sorted(&lists[0][..first]), "after {first} of {menu}");
+                }
+            }
+            let block = sorted(&lists[0][..menu]);
+            assert_eq!(block.iter().map(|dish| dish.index()).collect::<Vec<_>>(), (0..menu).collect::<Vec<_>>());
+        }
+        assert!(differ > 25, "of 28 pairs only {differ} differ");
+    }
+}

@@ -1,0 +1,259 @@
+//! What assistants advise and send comes out the same again, beside the wizard too.
+
+use std::fs;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use rand::RngExt;
+use tomcom::analysis::watcher::{CompareRequest, ComparisonFollower};
+use tomcom::base::rng::stream;
+use tomcom::base::time::SessionTime;
+use tomcom::communication::concept::ConceptName;
+use tomcom::communication::recommendation::Recommendation;
+use tomcom::communication::settings::Shadow;
+use tomcom::communication::{Sender, Signal};
+use tomcom::edge::files::SessionFiles;
+use tomcom::edge::log::{LOG_NAME, LogReader};
+use tomcom::history::comparison::CommunicationContext;
+use tomcom::kitchen::Agent;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::measures::matching::CommunicationTarget;
+use tomcom::run::engine::Engine;
+use tomcom::run::headless;
+use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
+use tomcom::run::verify::verify;
+use tomcom::session::event::EndReason;
+use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
+use tomcom::session::{Event, Session, Stamped};
+
+use super::{SESSIONS, folder, same, session};
+
+/// Two trials in which the assistant acts by this concept, quickly and for little reason.
+fn assisted(name: &str, out: &str, by: ConceptName) -> PathBuf {
+    let mut files = session(name);
+    files.spec.robot.arm = ArmKind::Timed;
+    files.spec.trial.condition = Condition::Assistant;
+    files.spec.assistant.concept = by;
+    files.spec.trial.seconds = 45.0;
+    files.spec.assistant.cost_of_communication = 0.3;
+    files.spec.assistant.rollout.rollouts = 8;
+    files.spec.assistant.rollout.states = 8;
+    let out = folder(out);
+    simulate(&SimulationRequest { files, trials: 2, shard: Shard::WHOLE, out: out.clone() }, || ())
+        .expect("the folder can be written");
+    out
+}
+
+#[test]
+fn what_the_assistant_does_comes_out_the_same_again() {
+    for name in SESSIONS {
+        let [a, b] = ["assisted", "assisted-again"].map(|out| assisted(name, out, ConceptName::TomCom));
+        let mut signals = 0;
+        for trial in ["seed1-S001", "seed1-S002"] {
+            let [log, other] = [&a, &b].map(|out| out.join(trial).join(LOG_NAME));
+            same(&log, &other);
+            let found = verify(&log).expect("a recording");
+            assert!(found.verified, "{name}: {:?}", found.difference);
+            let text = fs::read_to_string(&log).expect("a recording");
+            signals += text.lines().filter(|line| line.contains(r#""signal_shown","by":"assistant""#)).count();
+        }
+        assert!(signals > 0, "{name}: the assistant said nothing");
+    }
+}
+
+#[test]
+fn each_concept_acts_by_itself_and_comes_out_the_same_again() {
+    for name in SESSIONS {
+        for (by, acts, proposes) in
+            [(ConceptName::Tom, true, false), (ConceptName::Dev, false, true), (ConceptName::None, false, false)]
+        {
+            let out = assisted(name, &format!("acts-{}-{name}", by.name()), by);
+            let mut log = String::new();
+            for trial in ["seed1-S001", "seed1-S002"] {
+                let found = verify(&out.join(trial)).expect("a recording");
+                assert!(found.verified, "{name}, {by:?}: {:?}", found.difference);
+                log += &fs::read_to_string(out.join(trial).join(LOG_NAME)).expect("a recording");
+            }
+            assert!(log.contains(r#""kind":"advised""#), "{name}, {by:?}");
+            assert_eq!(log.contains(r#""signal_shown","by":"assistant""#), acts, "{name}, {by:?}: signals");
+            assert_eq!(log.contains(r#""proposal":{"error":"#), proposes, "{name}, {by:?}: proposals");
+        }
+    }
+}
+
+#[test]
+fn advice_that_was_not_given_is_no_verified_advice() {
+    let log = assisted("default.toml", "assisted-changed", ConceptName::TomCom).join("seed1-S001").join(LOG_NAME);
+    let text = fs::read_to_string(&log).expect("a recording");
+    let number = 1 + text.lines().position(|line| line.contains(r#""kind":"advised""#)).expect("advice");
+    let change = |(index, line): (usize, &str)| match index + 1 == number {
+        true => line.replacen(r#""rollouts":8"#, r#""rollouts":9"#, 1) + "\n",
+        false => line.to_string() + "\n",
+    };
+    fs::write(&log, text.lines().enumerate().map(change).collect::<String>()).expect("the folder can be written");
+    let found = verify(&log).expect("a recording");
+    assert_eq!(found.difference.map(|difference| difference.line), Some(number));
+}
+
+/// The events of a trial in which somebody presses buttons every two seconds, whatever is shown, and a wizard sends these
+/// signals, each so many seconds after the beginning.
+fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionFiles, Vec<Stamped>) {
+    let mut files = session(name);
+    (files.spec.participant.kind, files.spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::None);
+    files.spec.assistant.concept = ConceptName::Tom;
+    let kitchen = Arc::new(files.kitchen.kitchen.clone());
+    let mut engine = Engine::new(kitchen.clone(), files.spec.clone(), 0, CostToGo::new(kitchen.clone()));
+    let mut random = stream(4, "presses", 0);
+    let mut inputs = vec![(0.0, Event::TrialStarted)];
+    let buttons = &kitchen.buttons[Agent::Human.index()];
+    inputs.extend((1..40).map(|number| {
+        let button = buttons[random.random_range(0..buttons.len())].name.clone();
+        (2.0 * f64::from(number), Event::Press { agent: Agent::Human, button, at_ns: None })
+    }));
+    inputs.extend(sent.iter().map(|(time_s, signal)| {
+        (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None })
+    }));
+    inputs.push((80.0, Event::TrialEnded { reason: EndReason::Wizard }));
+    inputs.push((81.0, Event::SessionEnded));
+    inputs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let take = |(time_s, event): (f64, Event)| {
+        let outcome = engine.input(SessionTime::from_secs_f64(time_s), event);
+        assert_eq!(outcome.refused, None);
+        outcome.events
+    };
+    let events = inputs.into_iter().flat_map(take).collect();
+    (files, events)
+}
+
+#[test]
+fn advice_that_nobody_sees_changes_nothing_else() {
+    let told = |shadow: Shadow| {
+        let mut files = session("default.toml");
+        (files.spec.robot.arm, files.spec.assistant.shadow) = (ArmKind::Timed, shadow);
+        (files.spec.trial.condition, files.spec.trial.seconds) = (Condition::None, 60.0);
+        let kitchen = Arc::new(files.kitchen.kitchen);
+        let mut engine = Engine::new(kitchen.clone(), files.spec, 3, CostToGo::new(kitchen));
+        let (mut told, mut advised) = (Vec::new(), 0);
+        let noted: Result<(), ()> = headless::run(&mut engine, |stamped| {
+            match &stamped.event {
+                Event::Advised(_) => advised += 1,
+                // The number of the press in the log counts the advice, too.
+                Event::BeliefEstimated(witness) => told.push(format!("{:?} {:?}", witness.log_p, witness.aspects)),
+                event => told.push(format!("{:?} {event:?}", stamped.time)),
+            }
+            Ok(())
+        });
+        assert_eq!(noted, Ok(()));
+        (told, advised)
+    };
+    let ((told_beside, advised), (told_alone, none)) = (told(Shadow::On), told(Shadow::Off));
+    assert!(advised > 20 && none == 0, "{advised} answers, and {none}");
+    assert_eq!(told_beside, told_alone);
+}
+
+/// What was known at every moment at which the concepts were asked, with the presses of the human until then.
+fn asked(
+    files: &SessionFiles,
+    events: &[Stamped],
+    window: u32,
+) -> (Vec<(u32, Arc<CommunicationContext>)>, ComparisonFollower) {
+    let request = CompareRequest { with: vec![ConceptName::Dev], window };
+    let mut watcher =
+        ComparisonFollower::new(Session::new(Arc::new(files.kitchen.kitchen.clone()), files.spec.clone(), 0), &request);
+    let mut known: Vec<(u32, Arc<CommunicationContext>)> = Vec::new();
+    for stamped in events {
+        let press = watcher.presses();
+        watcher.apply(stamped).expect("events of a session");
+        let newest = watcher.known().filter(|newest| known.last().is_none_or(|(_, last)| last.seq != newest.seq));
+        known.extend(newest.map(|newest| (press, newest.clone())));
+    }
+    watcher.finish();
+    (known, watcher)
+}
+
+#[test]
+fn what_the_wizard_said_is_left_out_of_the_estimate_for_the_window_and_no_longer() {
+    for name in SESSIONS {
+        let window = 3;
+        let (files, silent) = pressed_on(name, &[]);
+        let (known_silent, _) = asked(&files, &silent, window);
+        let kitchen = &files.kitchen.kitchen;
+        let place = |signal: &Signal| kitchen.location_named(signal.target()).expect("a location");
+        // Nobody looks at the order, so what it wants stays unknown.
+        let (press, signal) = (5, Signal::ShowRecipe(kitchen.location(kitchen.orders[0]).name.clone()));
+        let (files, told) = pressed_on(name, &[(2.0 * f64::from(press) + 1.9, signal.clone())]);
+        let (known_told, _) = asked(&files, &told, window);
+        let thought = |known: &[(u32, Arc<CommunicationContext>)], until: u32| -> Vec<_> {
+            let until = known.iter().filter(|(press, _)| *press <= until);
+            // Numbers of events differ by the signal's own.
+            let advice = |advice: &Recommendation| (advice.best.clone(), advice.options.clone());
+            until
+                .map(|(_, one)| (one.state, one.held.clone(), one.advice.iter().map(advice).collect::<Vec<_>>()))
+                .collect()
+        };
+        let [with, without] = [&known_told, &known_silent].map(|known| thought(known, press - 1));
+        assert!(with.len() > 4 && with == without, "{name}: until it was said");
+        let p_truth = |known: &[(u32, Arc<CommunicationContext>)], at: u32| {
+            let (_, known) = known.iter().rfind(|(press, _)| *press == at).expect("asked there");
+            known.held[place(&signal).index()].p_truth
+        };
+        // Chances follow from the numbers of events, which differ by one: the estimates are alike, and no more.
+        for at in press + 1..=press + window {
+            let [with, without] = [&known_told, &known_silent].map(|known| p_truth(known, at));
+            assert!(with < 0.6 && (with - without).abs() < 0.2, "{name}: at press {at}: {with} and {without}");
+        }
+        let later = p_truth(&known_told, press + window + 1);
+        assert!(later > 0.9, "{name}: after the window it counts: {later}");
+        let (known_at_once, _) = asked(&files, &told, 0);
+        let at_once = p_truth(&known_at_once, press + 1);
+        assert!(at_once > 0.9, "{name}: without a window it counts at once: {at_once}");
+    }
+}
+
+#[test]
+fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
+    let mut files = session("default.toml");
+    files.spec.robot.arm = ArmKind::Timed;
+    files.spec.trial.condition = Condition::None;
+    files.spec.trial.seconds = 45.0;
+    files.spec.assistant.concept = ConceptName::Tom;
+    let out = folder("shadow");
+    simulate(&SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out: out.clone() }, || ())
+        .expect("the folder can be written");
+    let mut log = LogReader::open(&out.join("seed1-S001")).expect("a recording");
+    let request = CompareRequest { with: vec![ConceptName::Dev], window: 3 };
+    let watcher = || ComparisonFollower::new(log.session(), &request);
+    let (mut here, there) = (watcher(), watcher().on_thread());
+    let mut compared = 0;
+    while let Some(line) = log.next_line().expect("an event") {
+        here.apply(&line.stamped).expect("an event of the session");
+        there.tell(&line.stamped);
+        let Event::Advised(recorded) = line.stamped.event else { continue };
+        let known = here.known().expect("it was asked");
+        assert_eq!((known.seq, known.advice[0].for_ns), (recorded.for_seq, recorded.for_ns));
+        // In the session nobody shows its advice, so that it may say it again; here it is silent within the window.
+        for option in &known.advice[0].options {
+            assert!(recorded.options.contains(option), "{option:?} at event {}", line.stamped.seq);
+            compared += 1;
+        }
+    }
+    assert!(compared > 50, "{compared} options");
+    here.finish();
+    let found = here.comparison(true);
+    // With what lay there: who tells of something else says nothing again.
+    let mut last: Vec<((CommunicationTarget, u8), u32)> = Vec::new();
+    let mut again = 0;
+    for spoken in &found.lanes[1].spoken {
+        let (said, state) = (spoken.said, spoken.known.as_ref().expect("an answer").state);
+        let what = (said.content, state.code(said.content.target.expect("a signal is about a place")));
+        match last.iter_mut().find(|(other, _)| *other == what) {
+            Some((_, press)) => {
+                assert!(said.press > *press + request.window, "{said:?} after press {press}");
+                (*press, again) = (said.press, again + 1);
+            }
+            None => last.push((what, said.press)),
+        }
+    }
+    assert!(again > 0, "what nobody shows stays to be said");
+    assert_eq!(there.last(), Some(found));
+}

@@ -1,0 +1,100 @@
+//! The same seed gives the same recording, and a recording the same session.
+
+use std::fs;
+use std::path::PathBuf;
+
+use tomcom::edge::log::LOG_NAME;
+use tomcom::kitchen::LocationId;
+use tomcom::run::replay::Replay;
+use tomcom::run::verify::verify;
+use tomcom::session::Phase;
+use tomcom::session::header::VERSION;
+use tomcom::session::settings::ArmKind;
+
+use super::{SESSIONS, by_hand, same, simulated};
+use crate::check_snapshot;
+
+#[test]
+fn the_same_seed_gives_the_same_recording_and_it_verifies() {
+    for name in SESSIONS {
+        let [a, b] = ["same-a", "same-b"].map(|out| simulated(name, ArmKind::Physics, out, 2, 7));
+        for trial in ["seed7-S001", "seed7-S002"] {
+            same(&a.join(trial).join(LOG_NAME), &b.join(trial).join(LOG_NAME));
+            let found = verify(&a.join(trial)).expect("a recording");
+            assert!(found.verified && !found.cut, "{name}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_trial_does_not_depend_on_how_many_there_are() {
+    let two = simulated("default.toml", ArmKind::Timed, "two", 2, 3);
+    let five = simulated("default.toml", ArmKind::Timed, "five", 5, 3);
+    for trial in ["seed3-S001", "seed3-S002"] {
+        same(&two.join(trial).join(LOG_NAME), &five.join(trial).join(LOG_NAME));
+    }
+}
+
+#[test]
+fn whatever_hands_do_the_recording_verifies_and_replays_to_the_same_session() {
+    for (name, seed) in SESSIONS.into_iter().zip(0..).flat_map(|(name, first)| [(name, first), (name, first + 2)]) {
+        let arm = if seed < 2 { ArmKind::Physics } else { ArmKind::Timed };
+        let (log, engine) = by_hand(name, arm, &format!("hand-{seed}"), seed);
+        let found = verify(&log).expect("a recording");
+        assert!(found.verified && !found.cut, "seed {seed}: {found:?}");
+        let mut replay = Replay::open(&log).expect("a recording");
+        replay.run().expect("a recording");
+        let (live, again) = (engine.session(), replay.session());
+        assert_eq!((live.state, live.presses, live.phase), (again.state, again.presses, Phase::Closed), "seed {seed}");
+        assert_eq!(live.timeline, again.timeline, "seed {seed}");
+        assert_eq!(engine.judged(), replay.follower.judged, "seed {seed}");
+    }
+}
+
+#[test]
+fn a_changed_recording_does_not_verify_and_the_first_difference_is_named() {
+    let (log, _) = by_hand("default.toml", ArmKind::Timed, "changed", 6);
+    let text = fs::read_to_string(&log).expect("a recording");
+    let (number, line) =
+        text.lines().enumerate().find(|(_, line)| line.contains("robot_intends")).expect("the robot does something");
+    let changed = log.with_file_name("changed.jsonl");
+    let later = line.replace("\"until_ns\":", "\"until_ns\":1");
+    fs::write(&changed, text.replace(line, &later)).expect("the folder can be written");
+    let found = verify(&changed).expect("a recording");
+    assert_eq!(found.difference.map(|difference| difference.line), Some(number + 1));
+    assert!(!found.verified);
+}
+
+/// What a replay came to, in lines.
+fn summary(replay: &Replay) -> String {
+    let (session, kitchen) = (replay.session(), &replay.log().kitchen);
+    let mut lines = vec![
+        format!("{:?} at {:.3} s", session.phase, session.time.as_secs_f64()),
+        format!("presses {:?}, errors {}", session.presses, replay.follower.errors()),
+        format!("served {}, on the timeline {}", session.served.len(), session.timeline.len()),
+        format!("gaze {}, unusable {}", session.gaze.samples, session.gaze.unusable),
+    ];
+    let places = kitchen.locations.iter().enumerate();
+    lines.extend(places.map(|(index, location)| {
+        format!("{}: {}", location.name, kitchen.content_label(session.state, LocationId(index as u8)))
+    }));
+    lines.join("\n")
+}
+
+#[test]
+fn recordings_of_every_format_replay_to_what_they_replayed_to() {
+    let entries = fs::read_dir("tests/golden").expect("the golden recordings");
+    let mut logs: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    logs.sort();
+    for version in 1..=VERSION {
+        let format = format!("format-{version}-");
+        let is_there = logs.iter().any(|log| log.display().to_string().contains(&format));
+        assert!(is_there, "a golden recording of format version {version}");
+    }
+    for log in logs {
+        let mut replay = Replay::open(&log).expect("a golden recording");
+        replay.run().unwrap_or_else(|error| panic!("{error}"));
+        let name = log.file_stem().expect("a name").to_string_lossy().into_owned();
+        check_snapshot("replay", name, summary(&replay));
+    }
+}

@@ -1,0 +1,114 @@
+//! Recordings that are cut, still written, or broken.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+use rand::RngExt;
+use tomcom::base::rng::stream;
+use tomcom::base::time::SessionTime;
+use tomcom::edge::log::{LOG_NAME, LogWriter};
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::run::engine::Engine;
+use tomcom::run::replay::Replay;
+use tomcom::run::verify::verify;
+use tomcom::session::settings::ArmKind;
+use tomcom::session::{Event, Header};
+
+use super::{by_hand, folder, session};
+
+/// The recording's text, changed, is refused with a message that names `line` and says all of `says`.
+fn refused(log: &Path, line: usize, says: &[&str], change: impl Fn(&str) -> String) {
+    let broken = log.with_file_name("broken.jsonl");
+    fs::write(&broken, change(&fs::read_to_string(log).expect("a recording"))).expect("the folder can be written");
+    let error = Replay::open(&broken).and_then(|mut replay| replay.run()).expect_err("a broken recording");
+    let told = format!("{:?}", miette::Report::new(error));
+    let place = format!("broken.jsonl:{line}:");
+    for text in std::iter::once(place.as_str()).chain(says.iter().copied()) {
+        assert!(told.contains(text), "{text:?} is not in\n{told}");
+    }
+}
+
+#[test]
+fn a_cut_recording_opens_says_so_and_verifies_up_to_its_cut() {
+    let (log, _) = by_hand("default.toml", ArmKind::Physics, "cut", 5);
+    let text = fs::read(&log).expect("a recording");
+    for cut in [text.len() - 1, text.len() - 30, text.len() / 2, text.len() * 3 / 4] {
+        let path = log.with_file_name("cut.jsonl");
+        fs::write(&path, &text[..cut]).expect("the folder can be written");
+        let found = verify(&path).expect("a cut recording");
+        assert!(found.verified && found.cut, "cut at {cut}: {found:?}");
+    }
+}
+
+#[test]
+fn a_session_that_is_still_recorded_can_be_followed() {
+    let (log, engine) = by_hand("default.toml", ArmKind::Timed, "followed", 9);
+    let text = fs::read(&log).expect("a recording");
+    let growing = log.with_file_name("growing.jsonl");
+    fs::write(&growing, &text[..text.len() / 2]).expect("the folder can be written");
+    let mut replay = Replay::open(&growing).expect("the header is there");
+    replay.run().expect("the first half");
+    assert!(replay.log().is_cut());
+    fs::write(&growing, &text).expect("the folder can be written");
+    replay.run().expect("the second half");
+    assert!(!replay.log().is_cut());
+    assert_eq!(replay.session().timeline, engine.session().timeline);
+}
+
+#[test]
+fn what_is_appended_to_a_live_recording_is_there_at_once_and_nothing_is_lost_silently() {
+    let files = session("default.toml");
+    let kitchen = Arc::new(files.kitchen.kitchen);
+    let header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+    let root = folder("prompt");
+    let [mut log, second] =
+        [1, 2].map(|_| LogWriter::create_live(&root, "2026-03-14", &header).expect("the folder can be written"));
+    let names = [&log, &second].map(|log| log.folder().file_name().map(|name| name.to_string_lossy().into_owned()));
+    assert_eq!(names, [1, 2].map(|n| Some(format!("2026-03-14-P01-{n}"))));
+    let mut engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+    let events = engine.input(SessionTime::ZERO, Event::TrialStarted).events;
+    events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
+    let written = fs::read_to_string(log.folder().join(LOG_NAME)).expect("a recording");
+    assert_eq!(written.lines().count(), events.len() + 1);
+    let no_folder = LogWriter::create_live(&log.folder().join(LOG_NAME), "2026-03-14", &header);
+    assert!(no_folder.expect_err("a file is no folder").to_string().contains("cannot be written"));
+}
+
+#[test]
+fn no_broken_byte_makes_the_reader_panic() {
+    let (log, _) = by_hand("burger.toml", ArmKind::Timed, "bytes", 11);
+    let text = fs::read(&log).expect("a recording");
+    let path = log.with_file_name("bytes.jsonl");
+    let mut random = stream(11, "bytes", 0);
+    for _ in 0..150 {
+        let mut broken = text.clone();
+        for _ in 0..random.random_range(1..4) {
+            // Half of the changes are in the header and the first events, where more depends on them.
+            let within = if random.random() { broken.len() } else { 12_000 };
+            broken[random.random_range(0..within)] = random.random_range(9..128);
+        }
+        fs::write(&path, &broken).expect("the folder can be written");
+        let _ = verify(&path).map_err(|error| format!("{:?}", miette::Report::new(error)));
+    }
+}
+
+#[test]
+fn what_is_broken_is_named_with_its_line_and_what_would_be_right() {
+    let (log, _) = by_hand("default.toml", ArmKind::Timed, "broken", 8);
+    let line = |number: usize, from: &'static str, to: &'static str| {
+        move |text: &str| {
+            let lines = text.lines().enumerate();
+            let changed = lines.map(|(at, line)| if at + 1 == number { line.replace(from, to) } else { line.into() });
+            changed.collect::<Vec<String>>().join("\n") + "\n"
+        }
+    };
+    refused(&log, 1, &["format version 9", "format version 1"], line(1, "\"version\":1", "\"version\":9"));
+    refused(&log, 1, &["no header"], |text| text.split_once('\n').map_or(String::new(), |(_, rest)| rest.to_string()));
+    refused(&log, 1, &["press_s = -2.4", "above 0"], line(1, "\"press_s\":2.4", "\"press_s\":-2.4"));
+    refused(&log, 3, &["\"order_9\"", "a location of the layout"], line(3, "order_1", "order_9"));
+    refused(&log, 3, &["seq 7", "without gaps"], line(3, "\"seq\":1,", "\"seq\":7,"));
+    refused(&log, 3, &["order_hidden"], line(3, "order_shown", "order_hidden"));
+    refused(&log, 3, &["after 500000000", "never decrease"], line(3, "\"t_ns\":500000000", "\"t_ns\":4"));
+    refused(&log, 3, &["the trial was started already"], line(3, "order_shown", "trial_started"));
+}

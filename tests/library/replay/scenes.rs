@@ -1,0 +1,109 @@
+//! The scene that Rerun shows of a session.
+
+use std::fs;
+use std::path::Path;
+
+use tomcom::base::time::SessionTime;
+use tomcom::communication::Sender;
+use tomcom::kitchen::Agent;
+use tomcom::run::replay::Replay;
+use tomcom::scene::{DerivedData, EntityData, EntityUpdate, SceneUpdate, SessionScene};
+use tomcom::session::settings::ArmKind;
+use tomcom::session::{Event, Stamped};
+
+use super::simulated;
+
+/// Everything that a recording shows, and its events.
+fn shown(recording: &Path) -> (Vec<SceneUpdate>, Vec<Stamped>) {
+    let mut replay = Replay::open(recording).expect("a recording");
+    let mut scene = SessionScene::new(replay.session(), 0);
+    let mut moments = vec![scene.opening()];
+    let mut events = Vec::new();
+    while let Some(line) = replay.step().expect("events of a session") {
+        let (judged, belief) = (&replay.follower.judged[..], Some(replay.follower.filter.belief()));
+        moments.extend(scene.see(&line.stamped, DerivedData { judged, belief }));
+        events.push(line.stamped);
+    }
+    (moments, events)
+}
+
+#[test]
+fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
+    for name in ["format-1-hand.jsonl", "format-1-simulated.jsonl"] {
+        let (moments, events) = shown(&Path::new("tests/golden").join(name));
+        let times: Vec<SessionTime> = moments.iter().map(|moment| moment.time).collect();
+        assert!(times.is_sorted(), "{name}: moments come in the order of their times");
+        let steps_of = |entity: &str| -> Vec<(u64, SessionTime)> {
+            let rows = |moment: &SceneUpdate| moment.rows.iter().filter(|row| row.entity == entity).count();
+            moments.iter().flat_map(|moment| vec![(moment.step, moment.time); rows(moment)]).collect()
+        };
+        let mut is_running = false;
+        let mut presses = [Vec::new(), Vec::new()];
+        let (mut gaze, mut signals, mut advice) = (Vec::new(), Vec::new(), Vec::new());
+        for stamped in &events {
+            let place = (stamped.seq, stamped.time);
+            match &stamped.event {
+                Event::TrialStarted | Event::TrialResumed => is_running = true,
+                Event::TrialPaused | Event::TrialEnded { .. } | Event::TrialAborted { .. } => is_running = false,
+                Event::Press { agent, .. } if is_running => presses[agent.index()].push(place),
+                Event::Gaze(_) => gaze.push(place),
+                Event::SignalShown { by: Sender::Wizard, .. } => signals.push(place),
+                Event::Advised(_) => advice.push(place),
+                _ => {}
+            }
+        }
+        assert!(presses.iter().all(|presses| !presses.is_empty()), "{name} has presses of both");
+        assert_eq!(steps_of("human/presses"), presses[Agent::Human.index()], "{name}");
+        assert_eq!(steps_of("robot/presses"), presses[Agent::Robot.index()], "{name}");
+        assert_eq!(steps_of("human/gaze"), gaze, "{name}");
+        assert_eq!(steps_of("assistant/benefit/cost_line"), advice, "{name}");
+        let sent = moments.iter().flat_map(|moment| &moment.rows).filter(|row| {
+            row.entity == "wizard/signals"
+                && matches!(&row.shown, EntityData::Words { text, .. } if !text.starts_with("wizard: took"))
+        });
+        assert_eq!(sent.count(), signals.len(), "{name}");
+        assert!(moments.iter().map(|moment| moment.trial).is_sorted(), "{name}: the trial's clock never goes back");
+        let started = events.iter().find(|stamped| stamped.event == Event::TrialStarted).expect("a trial").time;
+        for moment in moments.iter().filter(|moment| moment.time <= started) {
+            assert_eq!(moment.trial, SessionTime::ZERO, "{name}: before the trial its clock stands");
+        }
+        let lines = |entity: &str| -> Vec<String> {
+            let text = |row: &EntityUpdate| match &row.shown {
+                EntityData::Words { text, .. } if row.entity.starts_with(entity) => Some(text.clone()),
+                _ => None,
+            };
+            moments.iter().flat_map(|moment| &moment.rows).filter_map(text).collect()
+        };
+        let happened = lines("happened");
+        assert!(happened.len() > presses[0].len() + presses[1].len(), "{name}: more than presses happened");
+        let [mut ordered, mut told] = [happened.clone(), lines("")];
+        ordered.extend(happened);
+        ordered.sort();
+        told.sort();
+        assert_eq!(ordered, told, "{name}: every line stands in the list of what happened once more");
+    }
+}
+
+#[test]
+fn a_scene_tells_a_belief_before_the_press_as_the_log_does() {
+    let out = simulated("default.toml", ArmKind::Physics, "scene", 1, 3);
+    let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
+    let (moments, events) = shown(&recording);
+    let witnesses = events.iter().filter_map(|stamped| match &stamped.event {
+        Event::BeliefEstimated(witness) => Some((stamped, witness)),
+        _ => None,
+    });
+    let mut count = 0;
+    for (stamped, witness) in witnesses {
+        count += 1;
+        let mut of_step = moments.iter().filter(|moment| moment.step == stamped.seq && moment.time == stamped.time);
+        let moment = of_step.next().expect("a moment");
+        for told in &witness.aspects {
+            let entity = format!("human/belief/estimated/{}", told.aspect.replace(' ', "_"));
+            let mut rows = moment.rows.iter().filter(|row| row.entity == entity);
+            assert_eq!(rows.next().map(|row| &row.shown), Some(&EntityData::Value(told.p_truth)), "{entity}");
+            assert!(rows.next().is_none(), "{entity} once");
+        }
+    }
+    assert!(count > 20, "{count} presses");
+}

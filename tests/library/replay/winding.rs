@@ -1,0 +1,74 @@
+//! Replays that are moved in time: forward, back, and to landmarks.
+
+use std::fs;
+
+use rand::RngExt;
+use tomcom::base::rng::stream;
+use tomcom::history::landmark::ReplayLandmark;
+use tomcom::run::seekable_replay::SeekableReplay;
+use tomcom::session::settings::ArmKind;
+
+use super::{SESSIONS, simulated};
+
+#[test]
+fn a_recording_can_be_wound_forward_and_back() {
+    for name in SESSIONS {
+        let out = simulated(name, ArmKind::Physics, &format!("film-{name}"), 1, 3);
+        let recording = fs::read_dir(&out).expect("the folder").next().expect("a recording").expect("readable").path();
+        let mut film = SeekableReplay::open(&recording).expect("it opens");
+        let (length, events) = film.length();
+        let mut straight = SeekableReplay::open(&recording).expect("it opens");
+        let mut random = stream(5, "places of a film", 0);
+        for _ in 0..20 {
+            let position = random.random_range(0..=events);
+            film.wind(position);
+            straight = match straight.position <= position {
+                true => straight,
+                false => SeekableReplay::open(&recording).expect("it opens"),
+            };
+            while straight.position < position {
+                straight.forward().expect("an event");
+            }
+            assert_eq!(film.position, position);
+            assert_eq!(film.session.state, straight.session.state, "{name}: at {position} of {events}");
+            assert_eq!(film.session.timeline, straight.session.timeline);
+            assert_eq!(film.session.gaze, straight.session.gaze);
+        }
+        film.wind(0);
+        let mut steps = 0;
+        while film.position < events {
+            film.wind(film.next_step());
+            steps += 1;
+        }
+        assert_eq!(film.time(), length);
+        for _ in 0..steps {
+            film.wind(film.last_step());
+        }
+        assert_eq!(film.position, 0, "as many steps back as forward");
+    }
+}
+
+#[test]
+fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
+    let out = simulated("default.toml", ArmKind::Timed, "landmarks", 1, 3);
+    let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
+    let mut film = SeekableReplay::open(&recording).expect("a recording");
+    let mut errors = film.errors.clone();
+    errors.dedup();
+    assert!(errors.len() > 2, "{errors:?}");
+    let mut visited = Vec::new();
+    while let Some(position) = film.landmark(ReplayLandmark::Error, true) {
+        film.wind(position);
+        visited.push(film.time());
+    }
+    assert_eq!(visited, errors);
+    let back = film.landmark(ReplayLandmark::Error, false).expect("the error before");
+    film.wind(back);
+    assert_eq!(film.time(), errors[errors.len() - 2]);
+    assert_eq!(film.landmark(ReplayLandmark::Signal, true), None, "nobody sends signals");
+    film.wind(0);
+    let wrong = film.landmark(ReplayLandmark::FalseBelief, true).expect("something is believed wrong");
+    film.wind(wrong);
+    let moment = film.beliefs.until(film.time()).last().expect("an estimate");
+    assert!(moment.held.iter().any(|held| held.is_false()), "{moment:?}");
+}

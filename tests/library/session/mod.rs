@@ -1,0 +1,56 @@
+//! What a running session does: the trial's clock, pauses, the robot, signals, and the judgement of presses.
+
+mod files;
+mod judgement;
+mod robot;
+mod trial;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use tomcom::base::time::SessionTime;
+use tomcom::edge::files::read_session;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::kitchen::{Agent, Kitchen};
+use tomcom::run::engine::{Engine, InputResult};
+use tomcom::session::Event;
+use tomcom::session::settings::{ArmKind, GazeSource, ParticipantKind, SessionSpec};
+
+fn kitchen() -> Arc<Kitchen> {
+    Arc::new(read_session(Path::new("sessions/default.toml")).expect("the default session").kitchen.kitchen)
+}
+
+/// An engine of the default session with a person at the keyboard and a timed arm, and `change`d settings.
+fn engine(change: impl Fn(&mut SessionSpec)) -> Engine {
+    let mut spec = read_session(Path::new("sessions/default.toml")).expect("the default session").spec;
+    spec.participant.kind = ParticipantKind::Keyboard;
+    spec.participant.gaze = GazeSource::None;
+    spec.robot.arm = ArmKind::Timed;
+    change(&mut spec);
+    let kitchen = kitchen();
+    Engine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen))
+}
+
+fn at(seconds: f64) -> SessionTime {
+    SessionTime::from_secs_f64(seconds)
+}
+
+fn press(button: &str) -> Event {
+    Event::Press { agent: Agent::Human, button: button.to_string(), at_ns: None }
+}
+
+/// Gives the inputs in turn; the kinds of all events with their seconds.
+fn check(engine: &mut Engine, inputs: &[(f64, Event)]) -> Vec<(&'static str, f64)> {
+    let mut kinds = Vec::new();
+    for (seconds, event) in inputs {
+        let InputResult { events, refused } = engine.input(at(*seconds), event.clone());
+        assert_eq!(refused, None, "{event:?}");
+        kinds.extend(events.iter().map(|stamped| (stamped.event.kind(), stamped.time.as_secs_f64())));
+    }
+    kinds
+}
+
+/// Why the input is refused.
+fn refused(engine: &mut Engine, seconds: f64, event: Event) -> String {
+    engine.input(at(seconds), event).refused.expect("a refusal")
+}

@@ -1,0 +1,82 @@
+//! The study: statistics, what concepts would have prevented, tables and report.
+
+mod effect;
+mod prevention;
+mod report;
+mod tables;
+
+use tomcom::base::time::SessionTime;
+use tomcom::session::event::EndReason;
+use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
+use tomcom::study::robot::RobotSummary;
+use tomcom::study::trial::{BeliefBasis, BeliefErrors, Trial, arrange};
+
+fn near(found: f64, wanted: f64) {
+    assert!((found - wanted).abs() < 1e-9 * wanted.abs().max(1.0), "{found} instead of {wanted}");
+}
+
+fn at(seconds: f64) -> SessionTime {
+    SessionTime::from_secs_f64(seconds)
+}
+
+/// A trial of 200 presses of the human with this many errors, three of four of them belief related.
+fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> Trial {
+    let related = errors * 3 / 4;
+    let lengths = if related > 0 { vec![related as u32] } else { Vec::new() };
+    Trial {
+        recording: format!("{participant}-{period}"),
+        participant: participant.to_string(),
+        seed: 1,
+        kind: ParticipantKind::Simulated,
+        started: None,
+        group: Some("AB".to_string()),
+        period: Some(period),
+        is_planned: true,
+        condition,
+        left_out: None,
+        ended: Some(EndReason::Presses),
+        arm: ArmKind::Timed,
+        robot: RobotSummary::default(),
+        human_presses: 200,
+        robot_presses: 100,
+        errors,
+        races: 0,
+        beliefs: Some(BeliefErrors {
+            basis: BeliefBasis::Recorded,
+            errors: related,
+            of_two: 0,
+            lengths_by_aspect: lengths.clone(),
+            lengths,
+            recovery_s: vec![6.0],
+            episodes: Some(1),
+        }),
+        orders: 12,
+        order_s: Some(20.0),
+        presses_per_order: Some(19.0),
+        press_s: Some(1.8),
+        signals: 0,
+        seconds: 400.0,
+        answers: Vec::new(),
+        wizard: None,
+        lanes: None,
+        swept: Vec::new(),
+        raters: None,
+    }
+}
+
+/// Participants with errors in the first and in the second trial; those of the first list are assisted in the second one.
+fn trials(assisted_second: &[[u64; 2]], assisted_first: &[[u64; 2]]) -> Vec<Trial> {
+    let mut trials = Vec::new();
+    for (group, errors) in [assisted_second, assisted_first].into_iter().enumerate() {
+        for (index, errors) in errors.iter().enumerate() {
+            for period in [1, 2] {
+                let assisted = (group == 0) == (period == 2);
+                let condition = if assisted { Condition::Wizard } else { Condition::None };
+                let code = format!("{}{index}", ["A", "B"][group]);
+                trials.push(trial(&code, period, condition, errors[period as usize - 1]));
+            }
+        }
+    }
+    arrange(&mut trials);
+    trials
+}

@@ -1,0 +1,184 @@
+//! The report: participants, robot, methods, raters.
+
+use std::fs;
+use std::path::Path;
+
+use tomcom::communication::Sender;
+use tomcom::communication::concept::ConceptName;
+use tomcom::edge::log::codes;
+use tomcom::measures::coding::{Code, Codes};
+use tomcom::robot::AbortReason;
+use tomcom::robot::safety::SafetyMode;
+use tomcom::run::codes::CodedRecording;
+use tomcom::run::study::reading::{self, AnalysisScope};
+use tomcom::session::Event;
+use tomcom::session::event::EndReason;
+use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
+use tomcom::study::facts::Facts;
+use tomcom::study::figures::StudySummary;
+use tomcom::study::prevention::PreventionCounts;
+use tomcom::study::report;
+use tomcom::study::robot::{ArmSummary, RobotTally};
+use tomcom::study::roc::SweptTrial;
+use tomcom::study::tables::Table;
+use tomcom::study::trial::{BeliefBasis, QuestionnaireAnswer, Trial};
+use tomcom::study::trial_row;
+
+use super::{at, near, trial, trials};
+
+#[test]
+fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
+    let mut trials = trials(&[[24, 12], [30, 16], [18, 16]], &[[20, 18], [16, 16], [28, 20]]);
+    trials[3].left_out = Some("excluded: <b> & \"quoted\"".to_string());
+    for (index, answer) in [Some(1), Some(3), None].into_iter().enumerate() {
+        let assisted = trials.iter_mut().filter(|trial| trial.is_assisted() && trial.counts()).nth(index);
+        assisted.expect("a trial").answers.push(QuestionnaireAnswer {
+            questionnaire: "acceptance".to_string(),
+            item: "annoyed".to_string(),
+            text: "The signals annoyed me.".to_string(),
+            about: Some("acceptance".to_string()),
+            reversed: true,
+            answer,
+            points: 7,
+        });
+    }
+    let figures = StudySummary::from_trials(&trials, &Facts::default(), 0);
+    let accepted = figures.acceptance.clone().expect("answers");
+    assert_eq!((accepted.high, accepted.medium, accepted.undecided, accepted.not_reported), (1, 1, 0, 1));
+    let page = report::page(&figures, &trials, &Facts::default(), &Table::ALL);
+    assert!(page.contains("<title>No kitchen: a study of simulated participants</title>"));
+    assert!(page.contains("excluded: &lt;b&gt; &amp; &quot;quoted&quot;"), "reasons are told, and no markup");
+    for outside in ["<script", "http:", "https:", "url(", "<link", "<img"] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    assert!(!page.contains("NaN") && !page.contains("inf "));
+    let people: Vec<Trial> =
+        trials.into_iter().map(|trial| Trial { kind: ParticipantKind::Display, ..trial }).collect();
+    let page = report::page(
+        &StudySummary::from_trials(&people, &Facts::default(), 0),
+        &people,
+        &Facts::default(),
+        &Table::ALL,
+    );
+    assert!(!page.contains("simulated participants</title>"));
+}
+
+/// Of an arm in the physics: slowed from 2 to 5 s, touched twice, stopped by the second contact, resumed, stopped by hand.
+#[test]
+fn what_the_robot_did_is_counted_while_the_trial_is_on() {
+    let safety = |mode, force_n| Event::RobotSafety { mode, force_n, joint: None };
+    let aborts = |reason| Event::RobotAborts { button: "rice".to_string(), reason };
+    let (wizard, assistant) = (Sender::Wizard, Sender::Assistant);
+    let events = [
+        (0.0, Event::RobotStopped, false),
+        (0.0, Event::RobotTouched { force_n: 90.0 }, false),
+        (2.0, safety(SafetyMode::Reduced, None), true),
+        (4.0, Event::RobotTouched { force_n: 12.0 }, true),
+        (5.0, safety(SafetyMode::Safeguard, None), true),
+        (6.5, safety(SafetyMode::ProtectiveStop, Some(31.0)), true),
+        (6.5, Event::RobotTouched { force_n: 31.0 }, true),
+        (6.5, aborts(AbortReason::Contact), true),
+        (9.0, safety(SafetyMode::Normal, None), true),
+        (9.0, Event::RobotHeld { by: wizard }, true),
+        (9.5, Event::RobotSkipped { by: wizard }, true),
+        (9.5, Event::RobotSkipped { by: assistant }, true),
+        (9.5, aborts(AbortReason::Skipped), true),
+        (10.0, Event::RobotStopped, true),
+        (11.0, Event::TrialEnded { reason: EndReason::Wizard }, true),
+        (11.0, Event::RobotStopped, false),
+    ];
+    let figures_of = |arm| {
+        let mut tally = RobotTally::new(arm);
+        events.iter().for_each(|(clock, event, was_on)| tally.note(event, at(*clock), *was_on));
+        assert_eq!(tally.ended, Some(EndReason::Wizard));
+        tally.into_figures()
+    };
+    let found = figures_of(ArmKind::Physics);
+    let arm = found.arm.clone().expect("an arm that feels");
+    assert_eq!((arm.protective_stops, arm.faults, arm.contacts, arm.peak_force_n), (1, 0, 2, Some(31.0)));
+    near(arm.reduced_s, 3.0);
+    near(arm.safeguard_s, 1.5);
+    assert_eq!((found.emergency_stops, found.held, found.skipped, found.driven, found.corrected), (1, 1, 1, 0, 0));
+    let given_up = [AbortReason::Contact, AbortReason::Skipped, AbortReason::NoClick].map(|why| found.given_up(why));
+    assert_eq!(given_up, [Some(1), Some(1), Some(0)]);
+    // A timed arm feels nothing: that is unknown, and not nought.
+    let row = trial_row::row(&Trial { robot: figures_of(ArmKind::Timed), ..trial("A0", 1, Condition::None, 4) });
+    assert_eq!((row.contacts, row.peak_force_n, row.reduced_s, row.given_up_no_click), (None, None, None, None));
+    assert_eq!((row.ended, row.arm, row.given_up_skipped), (Some("presses"), "timed", Some(1)));
+}
+
+#[test]
+fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
+    let mut trials = trials(&[[24, 12], [30, 16]], &[[20, 18]]);
+    let report = |trials: &[Trial], tables: &[Table]| {
+        report::page(&StudySummary::from_trials(trials, &Facts::default(), 0), trials, &Facts::default(), tables)
+    };
+    let page = report(&trials, &[Table::Trials]);
+    assert!(page.contains("6 with the presses.") && page.contains("arm was timed."));
+    assert!(
+        !page.contains("what each concept would have") && page.contains("Beside this page: <code>trials.csv</code>.")
+    );
+    trials[1].ended = Some(EndReason::Wizard);
+    trials[2].ended = Some(EndReason::Time);
+    trials[2].arm = ArmKind::Physics;
+    trials[2].robot.arm = Some(ArmSummary { contacts: 3, peak_force_n: Some(17.25), ..ArmSummary::default() });
+    let count = PreventionCounts {
+        presses: 100,
+        signals: 4,
+        related: 10,
+        prevented: 5,
+        outside: 50,
+        ..PreventionCounts::default()
+    };
+    trials[0].swept = vec![SweptTrial { concept: ConceptName::TomCom, parameter: 1.0, count }];
+    let page = report(&trials, &Table::ALL);
+    assert!(page.contains("4 with the presses, 1 as the time was over, 1 as the wizard ended it before."));
+    assert!(page.contains("timed in 5 trials and simulated in the physics in 1 trial; the figures pool them."));
+    assert!(page.contains("what each concept would have said were computed anew"));
+    assert!(
+        page.contains("<td>contacts with somebody</td><td>\u{2013}</td><td>3</td>") && page.contains("<td>17.2</td>")
+    );
+}
+
+/// Of people it is estimated what they believed, until two raters have coded every error.
+#[test]
+fn two_raters_say_why_people_erred() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study-raters");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    fs::copy("tests/golden/format-1-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
+    let extent = AnalysisScope { concepts: false, events: true };
+    let read = || match reading::read(&folder, "hand", extent) {
+        Ok(Some((_, reading))) => reading,
+        Ok(None) => panic!("it is no practice"),
+        Err(error) => panic!("{error}"),
+    };
+    let basis = |trial: &Trial| trial.beliefs.as_ref().map(|beliefs| beliefs.basis);
+    let estimated = read();
+    assert_eq!(basis(&estimated.trial), Some(BeliefBasis::Estimate));
+    let errors = CodedRecording::open(&folder).expect("a recording").codable.errors;
+    assert!(errors.len() as u64 == estimated.trial.errors && errors.len() >= 2, "{errors:?}");
+    let belief = |place: &str| Code::Belief(place.to_string());
+    let say = |rater: &str, of: &dyn Fn(usize) -> Code, count: usize| {
+        let said = errors.iter().take(count).enumerate().map(|(index, &press)| (press, of(index)));
+        codes::write(&folder, rater, &Codes(said.collect())).expect("a file");
+    };
+    // One of them is not done yet.
+    say("anna", &|_| belief("assembly_board"), errors.len());
+    say("ben", &|_| belief("plate"), errors.len() - 1);
+    assert_eq!(basis(&read().trial), Some(BeliefBasis::Estimate));
+    // They agree that all but the first come of false beliefs, though not about which.
+    say("ben", &|index| if index == 0 { Code::Slip } else { belief("plate") }, errors.len());
+    let coded = read();
+    assert_eq!(basis(&coded.trial), Some(BeliefBasis::Raters));
+    let related = errors.len() as u64 - 1;
+    assert_eq!(coded.trial.beliefs.as_ref().map(|beliefs| beliefs.errors), Some(related));
+    let figures = StudySummary::from_trials(&[coded.trial], &coded.facts, 0);
+    let agreement = figures.raters.expect("an agreement");
+    assert_eq!((agreement.errors, agreement.same_cause, agreement.same_aspect), (related + 1, related, 0));
+    let actions = String::from_utf8(coded.rows[0].clone()).expect("text");
+    assert_eq!(
+        actions.lines().filter(|line| line.contains("belief assembly_board,belief plate")).count() as u64,
+        related
+    );
+}

@@ -1,0 +1,80 @@
+//! `doctor`, completions and man pages.
+
+use std::fs;
+use std::net::TcpListener;
+use std::path::Path;
+
+use serde_json::Value;
+use serial_test::serial;
+
+use super::{check, complaint, figures, folder};
+
+#[test]
+#[serial]
+fn doctor_looks_at_the_machine_and_says_how_to_mend_it() {
+    let out = folder("doctor");
+    let found = figures(&["doctor", "--out", &out.join("new").display().to_string(), "--format", "json"], 1);
+    let checks = found["checks"].as_array().expect("checks");
+    let verdict = |name: &str| {
+        checks.iter().find(|check| check["name"] == name).map(|check| check["verdict"].as_str().unwrap_or_default())
+    };
+    // Through a pipe there is no terminal, which the console needs.
+    assert_eq!((&found["healthy"], verdict("terminal")), (&Value::Bool(false), Some("failed")));
+    assert_eq!((verdict("recordings"), verdict("wall clock")), (Some("ok"), Some("ok")));
+    assert!(fs::read_dir(&out).expect("the folder").next().is_none(), "it leaves nothing behind");
+    for check in checks {
+        assert_eq!(check["remedy"].is_string(), check["verdict"] != "ok", "{check}");
+    }
+    let told = check(&["doctor", "--out", "/proc/nowhere"], 1);
+    let told = String::from_utf8_lossy(&told.stdout).into_owned();
+    assert!(told.contains("FAILED  recordings        /proc/nowhere is not there yet, and /proc"), "{told}");
+    assert!(!told.contains("free space"), "where there is no disk, none of it is free:\n{told}");
+}
+
+#[test]
+#[serial]
+fn doctor_looks_at_what_a_session_names() {
+    let layout = Path::new(env!("CARGO_MANIFEST_DIR")).join("layouts/sushi.toml");
+    let session = folder("doctor-session").join("session.toml");
+    let taken = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
+    let port = taken.local_addr().expect("an address").port();
+    let session_path = session.to_str().expect("a path in UTF-8");
+    let verdict = |settings: &str, name: &str| {
+        fs::write(&session, format!("layout = \"{}\"\n{settings}", layout.display())).expect("a session file");
+        let found = figures(&["doctor", session_path, "--format", "json"], 1);
+        let check = found["checks"].as_array().and_then(|checks| checks.iter().find(|check| check["name"] == name));
+        let told = |key: &str| check.and_then(|check| check[key].as_str()).unwrap_or_default().to_string();
+        (told("verdict"), told("found"))
+    };
+    for (kind, gaze, expected) in [("simulated", "simulated", "warning"), ("display", "mouse", "failed")] {
+        let page = format!("[participant]\nkind = \"{kind}\"\ngaze = \"{gaze}\"\n[display]\nport = {port}\n");
+        let (found, words) = verdict(&page, "wall display");
+        assert_eq!((found.as_str(), words.contains(&port.to_string())), (expected, true), "{kind}: {words}");
+    }
+    let (found, words) = verdict(&format!("[participant]\ngaze = \"json\"\ngaze_port = {port}\n"), "gaze");
+    assert_eq!((found.as_str(), words.contains(&port.to_string())), ("failed", true), "{words}");
+    let nobody = "[participant]\ngaze = \"pupil\"\n[tracker]\nport = 1\n";
+    let (found, words) = verdict(nobody, "eye tracker");
+    assert_eq!((found.as_str(), words.contains("127.0.0.1:1")), ("failed", true), "{words}");
+    let surface = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pupil/gaze_positions_on_surface_wall.csv");
+    for (file, expected) in [(surface.as_path(), "ok"), (Path::new("nowhere.csv"), "failed")] {
+        let settings = format!("[participant]\ngaze = \"file\"\n[tracker]\nfile = \"{}\"\n", file.display());
+        let (found, words) = verdict(&settings, "gaze");
+        assert_eq!(found, expected, "{words}");
+    }
+    assert!(complaint(&["doctor", "sessions/nowhere.toml"]).contains("sessions/nowhere.toml"));
+}
+
+#[test]
+#[serial]
+fn completions_and_man_pages_know_every_command() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let text = String::from_utf8_lossy(&check(&["completions", shell], 0).stdout).into_owned();
+        assert!(text.contains("simulate") && text.contains("doctor"), "{shell}");
+    }
+    let page = String::from_utf8_lossy(&check(&["man"], 0).stdout).into_owned();
+    assert!(page.contains("tomcom\\-operate") || page.contains("tomcom-operate"), "{page}");
+    let page = String::from_utf8_lossy(&check(&["man", "operate"], 0).stdout).into_owned();
+    assert!(page.contains("RECORDING") && page.contains(".TH tomcom-operate"), "{page}");
+    complaint(&["man", "dance"]);
+}

@@ -1,0 +1,106 @@
+//! Recordings that are closed: excluded, and compared with assistants.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use serial_test::serial;
+
+use super::{check, complaint, figures, folder};
+
+#[test]
+#[serial]
+fn a_closed_recording_is_excluded_and_taken_back_and_the_figures_say_so() {
+    let out = folder("exclude");
+    let session = out.join("session.toml");
+    let text = fs::read_to_string("sessions/default.toml").expect("the default session");
+    let layouts = format!("{}/layouts", env!("CARGO_MANIFEST_DIR"));
+    let text = text.replace("../layouts", &layouts).replace("seconds = 900.0", "seconds = 10.0");
+    fs::write(&session, text).expect("written");
+    let (session, out) = (session.to_str().expect("a path in UTF-8"), out.to_str().expect("a path in UTF-8"));
+    let simulate = ["simulate", session, "--trials", "2", "--seed", "7", "--out", out];
+    let before = figures(&[&simulate[..], &["--format", "json"]].concat(), 0);
+    let recording = format!("{out}/seed7-S001");
+    let log = fs::read(format!("{recording}/events.jsonl")).expect("a log");
+    let standing = || figures(&["replay", &recording, "--format", "json"], 0)["excluded"].clone();
+    assert_eq!(standing(), Value::Null);
+    check(&["exclude", &recording, "--reason", "the tracker slipped"], 0);
+    assert_eq!(standing(), "the tracker slipped");
+    let after = figures(&[&simulate[..], &["--format", "json"]].concat(), 0);
+    assert_eq!((&after["excluded"], &after["trials"], &before["excluded"]), (&1.into(), &1.into(), &0.into()));
+    assert_eq!(fs::read(format!("{recording}/events.jsonl")).expect("a log"), log, "the log stays as it is");
+    let told = check(&["replay", &recording], 0);
+    let told = String::from_utf8_lossy(&told.stdout).into_owned();
+    assert!(told.contains("left out of the analysis: excluded: the tracker slipped"), "{told}");
+    check(&["exclude", &recording, "--back"], 0);
+    assert_eq!(standing(), Value::Null);
+    let rulings = fs::read_to_string(format!("{recording}/exclusion.toml")).expect("what was said");
+    assert_eq!(rulings.matches("[[ruling]]").count(), 2, "nothing is forgotten:\n{rulings}");
+    assert!(complaint(&["exclude", &recording, "--reason", ""]).contains("a reason of 1 to 200 characters"));
+    assert!(complaint(&["exclude", out, "--reason", "x"]).contains("cannot be read"));
+    fs::write(format!("{recording}/exclusion.toml"), "[[ruling]]\nexcluded = 1\n").expect("written");
+    let told = complaint(&["replay", &recording, "--format", "json"]);
+    assert!(told.contains("exclusion.toml:2") && told.contains("[[ruling]]"), "{told}");
+}
+
+#[test]
+#[serial]
+fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
+    let out = folder("compare");
+    let session = out.join("short.toml");
+    let layout = Path::new(env!("CARGO_MANIFEST_DIR")).join("layouts/sushi.toml");
+    let text = format!(
+        "layout = \"{}\"\n[trial]\nseconds = 60.0\n[assistant]\nconcept = \"tom\"\n[human.inference]\nbeliefs = 32\nstates = 8\n",
+        layout.display()
+    );
+    fs::write(&session, text).expect("a session file");
+    let [session, out] = [&session, &out].map(|path| path.to_str().expect("a path in UTF-8"));
+    let arguments =
+        ["simulate", session, "--trials", "2", "--condition", "assistant", "--out", out, "--format", "json"];
+    let recordings = figures(&arguments, 0);
+    let recordings: Vec<&str> =
+        recordings["recordings"].as_array().expect("recordings").iter().filter_map(Value::as_str).collect();
+    let found = figures(&[&["compare"], &recordings[..], &["--with", "dev", "--format", "json"]].concat(), 0);
+    let pairs = found["pairs"].as_array().expect("pairs");
+    let names: Vec<[&str; 2]> =
+        pairs.iter().map(|pair| ["of", "with"].map(|key| pair[key].as_str().unwrap_or_default())).collect();
+    assert_eq!(names, [["assistant", "tom"], ["assistant", "dev"], ["tom", "dev"]]);
+    for key in ["recall", "precision", "f1", "kappa", "median_lead_s", "chance_recall", "window_actions"] {
+        assert!(pairs[0][key].is_number(), "{key} in {}", pairs[0]);
+    }
+    assert!(pairs[0]["recall"].as_f64() > pairs[0]["chance_recall"].as_f64(), "{}", pairs[0]);
+    let one = &found["recordings"][0];
+    let differences = one["differences"].as_array().expect("differences");
+    assert!(!differences.is_empty());
+    let knew = &differences[differences.len() - 1]["knew"];
+    assert_eq!(knew["beliefs"].as_array().map(Vec::len), Some(16), "every aspect");
+    assert!(knew["advice"].is_object(), "{knew}");
+    let only = figures(&["compare", recordings[0], "--only", "dev", "--format", "json"], 0);
+    let only_pairs = only["pairs"].as_array().expect("pairs");
+    assert_eq!(only_pairs.len(), 1, "{only_pairs:?}");
+    assert_eq!((&only_pairs[0]["of"], &only_pairs[0]["with"]), (&pairs[1]["of"], &pairs[1]["with"]));
+    let about_dev = |difference: &&Value| ["by", "not_by"].iter().all(|key| difference[key] != "tom");
+    let expected: Vec<&Value> = differences.iter().filter(about_dev).collect();
+    let found: Vec<&Value> = only["recordings"][0]["differences"].as_array().expect("differences").iter().collect();
+    assert!(!found.is_empty() && found.len() < differences.len(), "{} of {}", found.len(), differences.len());
+    assert_eq!(found, expected, "with the numbers that they have among all");
+    let opened = check(&["compare", recordings[0], "--with", "dev", "--open", "1"], 0);
+    let opened = String::from_utf8_lossy(&opened.stdout).into_owned();
+    for told in ["not said by", "believed wrong, by the estimate", "truly: ", "on the wizard's screen: "] {
+        assert!(opened.contains(told), "{told} in\n{opened}");
+    }
+    assert!(complaint(&["compare", recordings[0], "--open", "999"]).contains("of the list of differences"));
+    assert!(complaint(&["compare", recordings[0], "--seed", "3"]).contains("--seed, with recordings"));
+    assert!(complaint(&["compare", session, "--open", "1"]).contains("--open, with a session"));
+    assert!(complaint(&["compare", session, "--only", "tom"]).contains("--only, with a session"));
+    assert!(complaint(&["compare", "tests/golden"]).contains("events.jsonl"));
+    // What is summed up counts once, whatever path leads to it.
+    let [one, same] = ["tests/golden/format-1-hand.jsonl", "tests/../tests/golden/format-1-hand.jsonl"];
+    for command in [&["compare"][..], &["fit"], &["replay", "--check-beliefs"], &["replay", "--accuracy"]] {
+        assert!(complaint(&[command, &[one, same]].concat()).contains("the same recording twice"), "{command:?}");
+    }
+    let swept = figures(&["compare", recordings[0], "--sweep", "--format", "json"], 0);
+    let swept: Vec<u64> =
+        swept["pairs"].as_array().expect("pairs").iter().filter_map(|pair| pair["window_actions"].as_u64()).collect();
+    assert_eq!(swept, (0..=10).collect::<Vec<u64>>());
+}

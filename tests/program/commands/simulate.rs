@@ -1,0 +1,160 @@
+//! `simulate`, `kitchen`, `fit` and `accuracy`, and `replay --verify`.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use serial_test::serial;
+
+use super::{check, complaint, figures, folder};
+
+#[test]
+#[serial]
+fn kitchen_prints_the_state_space_and_the_plans() {
+    let sushi = figures(&["kitchen", "layouts/sushi.toml", "--format", "json"], 0);
+    assert_eq!(sushi["states"], "83878450387200000");
+    assert_eq!(sushi["aspects"].as_array().map(Vec::len), Some(16));
+    let plans = sushi["plans"].as_array().expect("plans");
+    let mut lengths: Vec<u64> = plans.iter().filter_map(|plan| plan["actions"].as_u64()).collect();
+    lengths.sort_unstable();
+    assert_eq!(lengths, [15, 15, 16, 16, 18, 19]);
+    for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
+        let kitchen = figures(&["kitchen", layout, "--format", "json"], 0);
+        for plan in kitchen["plans"].as_array().expect("plans") {
+            let presses = plan["presses"].as_array().map(|presses| presses.len() as u64);
+            assert_eq!(presses, plan["actions"].as_u64(), "{layout}: {plan}");
+        }
+        check(&["kitchen", layout], 0);
+    }
+}
+
+#[test]
+#[serial]
+fn simulate_records_what_replay_verifies() {
+    let out = folder("simulate");
+    let out = out.to_str().expect("a path in UTF-8");
+    let simulate =
+        ["simulate", "sessions/default.toml", "--trials", "2", "--seed", "7", "--arm", "timed", "--out", out];
+    let found = figures(&[&simulate[..], &["--format", "json"]].concat(), 0);
+    for key in ["trials", "human_actions", "robot_actions", "errors", "signals", "orders_served", "presses_per_order"] {
+        assert!(found[key].is_number(), "{key} in {found}");
+    }
+    for key in ["belief_related_errors", "sequences", "mean_sequence_length"] {
+        assert!(found[key].is_number(), "{key} in {found}");
+    }
+    let recordings = found["recordings"].as_array().expect("recordings");
+    assert_eq!(recordings.len(), 2);
+    let mut related = 0;
+    for recording in recordings {
+        let recording = recording.as_str().expect("a path");
+        let verified = figures(&["replay", recording, "--verify", "--format", "json"], 0);
+        assert_eq!((&verified["verified"], &verified["cut"]), (&Value::Bool(true), &Value::Bool(false)));
+        let replayed = figures(&["replay", recording, "--format", "json"], 0);
+        assert_eq!(replayed["events"], verified["events"]);
+        related += replayed["belief_related_errors"].as_u64().expect("a number of errors");
+        let log = fs::read_to_string(Path::new(recording).join("events.jsonl")).expect("a log");
+        let header: Value = serde_json::from_str(log.lines().next().unwrap_or_default()).expect("a header");
+        assert_eq!((header.get("started"), &header["session"]["trial"]["condition"]), (None, &Value::from("none")));
+    }
+    assert_eq!(found["belief_related_errors"].as_u64(), Some(related), "replays find the causes that simulate found");
+    let paths: Vec<&str> = recordings.iter().filter_map(Value::as_str).collect();
+    let checked = figures(&[&["replay"], &paths[..], &["--check-beliefs", "--format", "json"]].concat(), 0);
+    assert_eq!((&checked["recordings"], &checked["human_actions"]), (&Value::from(2), &found["human_actions"]));
+    for key in ["auc", "auc_locations", "auc_recipes", "auc_baseline"] {
+        assert!(checked[key].as_f64().is_some_and(|area| area > 0.5), "{key} in {checked}");
+    }
+    assert!(checked["log_likelihood"]["informed"].as_f64() > checked["log_likelihood"]["uniform"].as_f64());
+    check(&[&["replay"], &paths[..]].concat(), 2);
+    // What was changed does not verify, which is an answer and no wrong argument.
+    let log = Path::new(recordings[0].as_str().expect("a path")).join("events.jsonl");
+    let text = fs::read_to_string(&log).expect("a log").replacen("take nori", "take rice", 1);
+    fs::write(&log, text).expect("the log can be written");
+    let log = log.to_str().expect("a path in UTF-8");
+    assert_eq!(figures(&["replay", log, "--verify", "--format", "json"], 1)["verified"], Value::Bool(false));
+}
+
+#[test]
+#[serial]
+fn a_simulation_replaces_itself_and_no_other_recording() {
+    let out = folder("replaced");
+    let out = out.to_str().expect("a path in UTF-8");
+    let log = Path::new(out).join("seed7-S001/events.jsonl");
+    let simulate = |session: &'static str| ["simulate", session, "--seed", "7", "--arm", "timed", "--out", out];
+    check(&simulate("sessions/default.toml"), 0);
+    let before = fs::read(&log).expect("a log");
+    check(&simulate("sessions/default.toml"), 0);
+    assert!(fs::read(&log).expect("a log") == before, "the same session is the same recording");
+    let refused = check(&simulate("sessions/burger.toml"), 1);
+    let told = String::from_utf8_lossy(&refused.stderr);
+    assert!(told.contains("seed7-S001") && told.contains("the recording of another session"), "{told}");
+    assert!(fs::read(&log).expect("a log") == before, "what was there is still there");
+}
+
+/// Few presses, thought about little: what the commands print is looked at here, not how good it is.
+const QUICK: &str = "[trial]
+condition = \"none\"
+presses = 30
+[assistant.rollout]
+horizon = 2
+rollouts = 4
+states = 2
+least_rollouts = 2
+";
+
+#[test]
+#[serial]
+fn simulate_tells_what_holds_at_the_console_alone() {
+    let folder = folder("unused");
+    let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
+    let [session, out] = ["session.toml", "out"].map(path);
+    let layout = fs::canonicalize("layouts/sushi.toml").expect("the layout is there");
+    let acting =
+        QUICK.replace("\"none\"", "\"assistant\"").replace("[assistant.", "[assistant]\nshadow = \"on\"\n[assistant.");
+    fs::write(&session, format!("layout = {layout:?}\n{acting}")).expect("the session can be written");
+    let told = |arguments: &[&str]| {
+        let output = check(&[&["simulate", &session, "--out", &out], arguments].concat(), 0);
+        let told = String::from_utf8_lossy(&output.stderr);
+        ["by --condition assistant", "by --shadow"].map(|option| told.contains(option))
+    };
+    assert_eq!(told(&[]), [true, true]);
+    assert_eq!(told(&["--shadow", "--seed", "2"]), [true, false]);
+    assert_eq!(told(&["--condition", "assistant", "--seed", "3"]), [false, true]);
+}
+
+#[test]
+#[serial]
+fn fit_writes_a_parameter_file_and_accuracy_tells_its_figures() {
+    let folder = folder("fit");
+    let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
+    let [session, start, out, fitted] = ["session.toml", "start.toml", "out", "fitted.toml"].map(path);
+    let layout = fs::canonicalize("layouts/sushi.toml").expect("the layout is there");
+    let layout = layout.to_str().expect("a path in UTF-8");
+    fs::write(&session, format!("layout = {layout:?}\n{QUICK}")).expect("the session can be written");
+    let few = "[inference]\nbeliefs = 8\nstates = 4\nmax_beliefs = 8\npredictions = 4\n";
+    fs::write(&start, few).expect("the parameters can be written");
+    let simulated = figures(&["simulate", &session, "--out", &out, "--format", "json"], 0);
+    let recording = simulated["recordings"][0].as_str().expect("a recording");
+    let fit = ["fit", recording, "--start", &start, "--tries", "10", "--out", &fitted, "--format", "json"];
+    let found = figures(&[&fit[..], &["--parameters", "tau,lapse"]].concat(), 0);
+    assert_eq!(found["human_actions"], simulated["human_actions"]);
+    let names: Vec<&str> =
+        found["parameters"].as_array().expect("parameters").iter().filter_map(|one| one["name"].as_str()).collect();
+    assert_eq!(names, ["tau", "lapse"]);
+    // What was fitted is in force where a session names the file.
+    fs::write(&session, format!("layout = {layout:?}\nhuman_model = {fitted:?}\n{QUICK}"))
+        .expect("the session can be written");
+    let again = figures(&["simulate", &session, "--out", &out, "--seed", "5", "--format", "json"], 0);
+    let log = Path::new(again["recordings"][0].as_str().expect("a recording")).join("events.jsonl");
+    let log = fs::read_to_string(log).expect("a log");
+    let header: Value = serde_json::from_str(log.lines().next().unwrap_or_default()).expect("a header");
+    let [in_force, fitted_tau] = [&header["session"]["human"]["decision"]["tau"], &found["parameters"][0]["value"]];
+    assert!((in_force.as_f64().expect("a number") - fitted_tau.as_f64().expect("a number")).abs() < 1e-9);
+    let accuracy = ["replay", recording, "--accuracy", "--steps", "6", "--reference-steps", "2", "--format", "json"];
+    let found = figures(&accuracy, 0);
+    assert_eq!((&found["steps"], &found["reference_steps"]), (&Value::from(6), &Value::from(2)));
+    assert!(found["reference_ratio"].as_f64().is_some_and(|ratio| ratio > 0.0), "{found}");
+    for key in ["same_decision", "benefit_rmse"] {
+        assert!(found.get(key).is_some(), "{key} in {found}");
+    }
+    assert!(complaint(&["fit", &session]).contains("events.jsonl"));
+}

@@ -1,0 +1,138 @@
+//! Wrong files and arguments: each is named with what would be right.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+
+use serde::Deserialize;
+use serial_test::serial;
+
+use super::{complaint, folder};
+use crate::tmux::TOMCOM;
+
+#[test]
+#[serial]
+fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
+    let session = folder("wrong").join("keyboard.toml");
+    let sushi = fs::canonicalize("layouts/sushi.toml").expect("the layout");
+    let keyboard = "[participant]\nkind = \"keyboard\"\ngaze = \"none\"\n";
+    fs::write(&session, format!("layout = \"{}\"\n{keyboard}", sushi.display())).expect("a file");
+    assert!(complaint(&["simulate", &session.display().to_string()]).contains("simulated"));
+    assert!(complaint(&["replay", "nowhere", "--verify"]).contains("nowhere"));
+    assert!(complaint(&["replay", "Cargo.toml", "--verify"]).contains("Cargo.toml:1:"));
+    assert!(complaint(&["replay", "Cargo.toml"]).contains("no log of a session"));
+    assert!(complaint(&["kitchen", "recipes/sushi.toml"]).contains("recipes/sushi.toml:1: found a recipe file"));
+    assert!(complaint(&["kitchen", "sessions/default.toml"]).contains("found a session file"));
+    assert!(complaint(&["simulate", "layouts/sushi.toml"]).contains("found a layout file"));
+    complaint(&["simulate", "sessions/default.toml", "--trials", "0"]);
+    complaint(&["simulate", "sessions/default.toml", "--arm", "both"]);
+    complaint(&["dance"]);
+}
+
+/// An edit of a file that makes it wrong, or a wrong file, and the message that it has to give.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Bad {
+    /// What kind of file it is.
+    file: String,
+    replace: Option<String>,
+    with: Option<String>,
+    text: Option<String>,
+    /// Where the message points: the line with this text, the `nth` one; the whole file without it.
+    at: Option<String>,
+    nth: Option<usize>,
+    found: String,
+    remedy: String,
+}
+
+#[test]
+#[serial]
+fn each_bad_file_has_its_own_message_with_file_line_and_remedy() {
+    let mut paths: Vec<PathBuf> =
+        fs::read_dir("tests/bad").expect("tests/bad").map(|entry| entry.expect("an entry").path()).collect();
+    paths.sort();
+    let mut messages: Vec<String> = Vec::new();
+    for path in &paths {
+        let text = fs::read_to_string(path).expect("a case");
+        let bad: Bad = toml::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let name = path.file_stem().expect("a name").to_string_lossy();
+        assert!(name.starts_with(&format!("{}-", bad.file)), "{name} is not named after its kind");
+        let message = told_about(&name, &bad);
+        assert!(!messages.contains(&message), "{name}: said before: {message}");
+        messages.push(message);
+    }
+    let of_kind = |kind: &str| {
+        let names = paths.iter().filter_map(|path| path.file_name()).map(|name| name.to_string_lossy());
+        names.filter(|name| name.starts_with(kind)).count()
+    };
+    let kinds = ["layout", "recipes", "session", "plan", "keys", "parameters", "questionnaire", "log"];
+    let counts: Vec<String> = kinds.iter().map(|kind| format!("{} {kind}", of_kind(kind))).collect();
+    assert!(kinds.iter().all(|kind| of_kind(kind) >= 5), "{counts:?}");
+    println!("{} bad files, each with its own message: {}", messages.len(), counts.join(", "));
+}
+
+/// The message of the program about such a file among others that are right: what was found, and what would be right.
+fn told_about(name: &str, bad: &Bad) -> String {
+    let folder = folder(&format!("bad/{name}"));
+    let (file, command): (&str, &[&str]) = match bad.file.as_str() {
+        "layout" => ("layouts/sushi.toml", &["kitchen", "layouts/sushi.toml"]),
+        "recipes" => ("recipes/sushi.toml", &["kitchen", "layouts/sushi.toml"]),
+        "session" => ("sessions/default.toml", &["keys", "sessions/default.toml"]),
+        "plan" => ("sessions/study.toml", &["plan", "sessions/study.toml"]),
+        "keys" => ("sessions/keys.toml", &["keys", "sessions/default.toml"]),
+        "parameters" => ("sessions/parameters.toml", &["keys", "sessions/parameterised.toml"]),
+        "questionnaire" => ("sessions/questionnaires/acceptance.toml", &["plan", "sessions/study.toml"]),
+        "log" => ("recording/events.jsonl", &["replay", "recording", "--format", "json"]),
+        other => panic!("{name}: the kind {other}"),
+    };
+    let session = fs::read_to_string("sessions/default.toml").expect("the default session");
+    let with_keys = session.replacen("# keys = ", "keys = ", 1);
+    assert_ne!(session, with_keys, "the default session shows how a key file is named");
+    let read = |path: &str| fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let files = [
+        ("layouts/sushi.toml", read("layouts/sushi.toml")),
+        ("recipes/sushi.toml", read("recipes/sushi.toml")),
+        ("sessions/default.toml", with_keys),
+        ("sessions/keys.toml", String::new()),
+        ("sessions/parameterised.toml", format!("human_model = \"parameters.toml\"\n{}", read("sessions/study.toml"))),
+        ("sessions/parameters.toml", String::new()),
+        ("sessions/study.toml", read("sessions/study.toml")),
+        ("sessions/questionnaires/acceptance.toml", read("sessions/questionnaires/acceptance.toml")),
+        ("recording/events.jsonl", read("tests/golden/format-1-hand.jsonl")),
+    ];
+    let mut edited = String::new();
+    for (path, text) in files {
+        let text = if path == file { edit(name, bad, &text) } else { text };
+        fs::create_dir_all(folder.join(path).parent().expect("a folder")).expect("a folder");
+        fs::write(folder.join(path), &text).expect("a file");
+        edited = if path == file { text } else { edited };
+    }
+    let lines = || edited.lines().enumerate();
+    let line = bad.at.as_ref().map_or(1, |at| {
+        let found = lines().filter(|(_, line)| line.contains(at.as_str())).nth(bad.nth.unwrap_or(1) - 1);
+        found.map_or_else(|| panic!("{name}: no line with {at}"), |(index, _)| index + 1)
+    });
+    let mut program = Command::new(TOMCOM);
+    let output = program.args(command).current_dir(&folder).output().expect("the program starts");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{name}: {told}");
+    assert!(output.stdout.is_empty() && !told.contains("panicked"), "{name}: {told}");
+    let said = |text: &str| told.lines().find_map(|line| Some(line.split_once(text)?.1.to_string()));
+    let found = said(&format!("{file}:{line}: found ")).unwrap_or_else(|| panic!("{name}: not of line {line}: {told}"));
+    let remedy = said("  help: ").unwrap_or_else(|| panic!("{name}: no remedy: {told}"));
+    assert!(!bad.found.is_empty() && found.contains(&bad.found), "{name}: found {found}");
+    assert!(!bad.remedy.is_empty() && remedy.contains(&bad.remedy), "{name}: remedy {remedy}");
+    format!("{found}; {remedy}")
+}
+
+/// The wrong text of a file that was right.
+fn edit(name: &str, bad: &Bad, right: &str) -> String {
+    match (&bad.replace, &bad.with, &bad.text) {
+        (Some(replace), Some(with), None) => {
+            assert!(right.contains(replace.as_str()), "{name}: nothing to replace");
+            right.replacen(replace.as_str(), with, 1)
+        }
+        (None, None, Some(text)) => text.clone(),
+        _ => panic!("{name}: either an edit or a text"),
+    }
+}

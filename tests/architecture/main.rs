@@ -44,11 +44,6 @@ const FILES_IN_CIRCLES: [(&str, usize); 10] = [
     ("wizard", 2),
 ];
 
-/// Test files that are still too long; the list only gets shorter.
-const LONG_TEST_FILES: [&str; 1] = [
-    "tests/program/terminal.rs",
-];
-
 /// Names that stand for the outside, for time or chance that no seed decides, or for an order that is not fixed.
 const BANNED_BELOW_EDGE: [&str; 20] = [
     "std::fs",
@@ -221,8 +216,7 @@ fn test_files_stay_short() {
     ["tests", "benches", "examples"].iter().for_each(|folder| collect(Path::new(folder), &mut paths));
     for path in paths.iter().filter(|path| !path.starts_with("tests/fuzz")) {
         let lines = std::fs::read_to_string(path).expect("a source file").lines().count();
-        let is_known = LONG_TEST_FILES.iter().any(|long| path == Path::new(long));
-        assert!(lines <= MAX_LINES || is_known, "{}: {lines} lines: split it by theme", path.display());
+        assert!(lines <= MAX_LINES, "{}: {lines} lines: split it by theme", path.display());
     }
 }
 

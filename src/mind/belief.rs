@@ -6,7 +6,7 @@ use super::BeliefWitness;
 use crate::base::rng::Stream;
 use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, State, WeightedWorld, WeightedWorlds, World};
 
-/// Where a belief is summed over exactly, less likely values are left out.
+/// Exact sums over a belief leave out values with a smaller probability.
 const NEGLIGIBLE: f64 = 0.002;
 
 /// A belief. Every distribution sums to 1.
@@ -16,7 +16,7 @@ pub struct Belief {
 }
 
 impl Belief {
-    /// Everything as it truly is.
+    /// The belief that gives probability 1 to the truth of every aspect.
     pub fn of_truth(kitchen: &Kitchen, state: State) -> Belief {
         let point = |index: usize| {
             let mut values = vec![0.0; kitchen.aspects[index].values.len()];
@@ -26,8 +26,9 @@ impl Belief {
         Belief { of: (0..kitchen.aspects.len()).map(point).collect() }
     }
 
-    /// The belief that a witness tells of, before which the kitchen was in `state`: the values that it lists as they
-    /// are, what is left evenly over the others. `None` if it does not fit the kitchen or is no distribution.
+    /// The belief recorded in a witness, for the kitchen in `state`: listed values keep their probability, the remaining
+    /// probability is spread evenly over the other values. `None` if the witness names aspects or values that the kitchen
+    /// does not have, or if its probabilities do not form a distribution.
     pub fn of_witness(kitchen: &Kitchen, state: State, witness: &BeliefWitness) -> Option<Belief> {
         let mut belief = Belief { of: Vec::with_capacity(kitchen.aspects.len()) };
         for (index, aspect) in kitchen.aspects.iter().enumerate() {
@@ -51,19 +52,19 @@ impl Belief {
         &self.of[aspect.index()]
     }
 
-    /// Believes in these weights of an aspect's values from now on.
+    /// Replaces the distribution of an aspect by these weights, normalised.
     pub fn set(&mut self, aspect: AspectId, weights: &[f64]) {
         let total: f64 = weights.iter().sum();
         self.of[aspect.index()] = weights.iter().map(|weight| weight / total).collect();
     }
 
-    /// The probability that is given to the truth about an aspect.
+    /// The probability that this belief gives to the true value of an aspect.
     pub fn p_truth(&self, kitchen: &Kitchen, state: State, aspect: AspectId) -> f64 {
         self.distribution(aspect)[kitchen.true_value(state, aspect)]
     }
 
-    /// The worlds of this belief: all of them, weighted, if there are at most `most`, else so many draws. In the draws
-    /// every aspect has each of its values as often as its share says, to a draw (a Latin hypercube; McKay et al. 1979).
+    /// Worlds that represent this belief: all of them with their weights if there are at most `most`, else `most` draws by
+    /// Latin hypercube sampling (McKay et al. 1979), in which each value of an aspect occurs in proportion to its probability.
     pub fn worlds(&self, kitchen: &Kitchen, most: usize, random: &mut Stream) -> WeightedWorlds {
         let all = self.all_worlds(kitchen, most).unwrap_or_else(|| self.drawn_worlds(kitchen, most, random));
         WeightedWorlds { all }
@@ -112,7 +113,8 @@ impl Belief {
         worlds
     }
 
-    /// Whether decisions can depend on the aspect: not on recipes that no order is believed to want.
+    /// Whether decisions can depend on the aspect. They cannot depend on the recipe of a dish that no order is believed to
+    /// want.
     fn matters(&self, kitchen: &Kitchen, aspect: AspectId) -> bool {
         let AspectKind::Recipe(dish) = kitchen.aspects[aspect.index()].kind else { return true };
         let code = OrderContent::Dish(dish).code();
@@ -124,7 +126,7 @@ impl Belief {
     }
 }
 
-/// Fills in what was not told; `None` if that is no distribution.
+/// Spreads the remaining probability over values that are not listed; `None` if the result is not a distribution.
 fn completed(told: &[Option<f64>]) -> Option<Vec<f64>> {
     if told.iter().flatten().any(|p| !(0.0..=1.0).contains(p)) {
         return None;

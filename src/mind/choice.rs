@@ -1,9 +1,10 @@
 //! The choice model: a softmax with lapses over the expected cost to go.
 //!
 //! p(a | b) ~ exp(tau Q(b, a)) with Q(b, a) = -E_b[1 + C(s')] over the worlds of belief b, and -(E_b[C(s)] + 0.5) for
-//! waiting (paper, section "Human model"). A few presses slip: to the neighbouring button, to the look-alike symbol, or
-//! anywhere. The belief filter asks for the likelihood of one press, the planner draws choices, and attribution asks for all
-//! probabilities. The plain references of filter and planner have their own, to be compared with this one.
+//! waiting (paper, section "Human model"). A small share of presses are slips: to the neighbouring button, to the button with
+//! the look-alike symbol, or to any button. The belief filter uses the likelihood of one press, the planner draws choices, and
+//! attribution uses all probabilities. The plain references of filter and planner implement the same model a second time, so
+//! that the tests can compare the two.
 
 use super::decision::DecisionModel;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
@@ -12,7 +13,7 @@ use crate::kitchen::{Agent, ButtonId, Kitchen, WeightedWorlds};
 /// The planner counts softmax weights below e^-20 as 0.
 const NEGLIGIBLE_EXPONENT: f64 = 20.0;
 
-/// What a human chooses at a decision.
+/// A choice of the human: to press a button or to wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HumanChoice {
     Wait,
@@ -22,17 +23,17 @@ pub enum HumanChoice {
 /// The probabilities of all choices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChoiceProbabilities {
-    /// Of waiting.
+    /// Probability of waiting.
     pub wait: f64,
-    /// Of pressing each button, by [`ButtonId`], given that one is pressed.
+    /// Probability of each button, by [`ButtonId`], given that a button is pressed.
     pub press: Vec<f64>,
 }
 
-/// The softmax weights of one decision, before slips, to draw choices from.
+/// The softmax weights of one decision, before slips. The planner draws choices from them.
 #[derive(Clone, Copy, Debug)]
 pub struct ChoiceWeights {
     wait: f64,
-    /// By button.
+    /// Weight of each button, by [`ButtonId`].
     press: [f64; MAX_BUTTONS],
     total: f64,
 }
@@ -41,19 +42,20 @@ pub struct ChoiceWeights {
 #[derive(Clone, Debug)]
 pub struct ChoiceModel {
     parameters: DecisionModel,
-    /// By intended button, where a press of it slips to: the nearest other button, and the one with the look-alike symbol or
-    /// else the nearest one again.
+    /// For each intended button, the two buttons that a slip hits: the nearest other button, and the button with the look-alike
+    /// symbol (the nearest button again where there is none).
     slips_to: Vec<[ButtonId; 2]>,
-    /// By button, which other intended buttons slip to it, and with which probability.
+    /// For each button, the other intended buttons from which a slip hits it, with the probability of that slip.
     slips_from: Vec<Vec<(usize, f64)>>,
-    /// The probability that a press slips to one given button, whatever was intended.
+    /// Probability that a press slips to one given button, independent of the intended one.
     anywhere: f64,
-    /// `[n][k]`: exp(-tau k / n), the weight of a button with k presses more than the best one, summed over n draws.
+    /// `[n][k]`: exp(-tau k / n), the weight of a button whose cost to go, summed over n draws, exceeds that of the best button
+    /// by k presses.
     weights: Vec<Vec<f64>>,
 }
 
 impl ChoiceModel {
-    /// For beliefs that are weighted worlds.
+    /// The model for beliefs represented by weighted worlds.
     pub fn new(kitchen: &Kitchen, parameters: &DecisionModel) -> ChoiceModel {
         let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
         let slips = |button| {
@@ -71,7 +73,7 @@ impl ChoiceModel {
         ChoiceModel { parameters: parameters.clone(), slips_from, slips_to, anywhere, weights: Vec::new() }
     }
 
-    /// For beliefs that exactly `draws` drawn worlds stand for; weights are exact down to the smallest number.
+    /// The model for beliefs represented by exactly `draws` drawn worlds. Weights are not truncated.
     pub fn for_draws(kitchen: &Kitchen, parameters: &DecisionModel, draws: usize) -> ChoiceModel {
         let mut model = ChoiceModel::new(kitchen, parameters);
         let row = (0..=draws * usize::from(u8::MAX)).map(|more| parameters.weight(more, draws));
@@ -80,7 +82,7 @@ impl ChoiceModel {
         model
     }
 
-    /// For beliefs that up to `draws` drawn worlds stand for; weights below e^-20 are 0.
+    /// The model for beliefs represented by at most `draws` drawn worlds. Weights below e^-20 are 0.
     pub fn up_to_draws(kitchen: &Kitchen, parameters: &DecisionModel, draws: usize) -> ChoiceModel {
         let row = |n: usize| {
             let last = (NEGLIGIBLE_EXPONENT * n as f64 / parameters.tau) as usize;
@@ -114,7 +116,7 @@ impl ChoiceModel {
         ChoiceProbabilities { wait: wait / (wait + total), press: self.with_slips(&intended) }
     }
 
-    /// The probability that each button is pressed, from the probability that it is intended.
+    /// Probability that each button is hit, from the probability that each is intended: applies slips.
     fn with_slips(&self, intended: &[f64]) -> Vec<f64> {
         let lapse = self.parameters.lapse;
         let [anywhere, slipping] = self.parameters.slip_probabilities(intended.len());
@@ -127,8 +129,8 @@ impl ChoiceModel {
         pressed
     }
 
-    /// p(a | b), given that a button is pressed: `sums[x]` is the cost to go after button x, summed over the drawn worlds
-    /// that stand for b. For a model that was made [`ChoiceModel::for_draws`].
+    /// p(a | b), given that a button is pressed. `sums[x]` is the cost to go after button x, in presses, summed over the drawn
+    /// worlds that represent b. Needs a model from [`ChoiceModel::for_draws`].
     #[inline]
     pub fn press_likelihood(&self, sums: &[u32], button: ButtonId) -> f64 {
         let weights = self.weights.last().map_or(&[][..], Vec::as_slice);
@@ -142,8 +144,8 @@ impl ChoiceModel {
         pressed / total + self.anywhere
     }
 
-    /// The weights of all choices: `here` is the cost to go now and `sums[x]` that after button x, summed over `draws` drawn
-    /// worlds. For a model that was made for [`ChoiceModel::up_to_draws`].
+    /// The weights of all choices. `here` is the cost to go of the present state and `sums[x]` that after button x, both in presses
+    /// and summed over `draws` drawn worlds. Needs a model from [`ChoiceModel::up_to_draws`].
     #[inline]
     pub fn weights(&self, here: u32, sums: &[u32], draws: u32) -> ChoiceWeights {
         let least = sums.iter().copied().min().unwrap_or(0);
@@ -159,7 +161,7 @@ impl ChoiceModel {
         ChoiceWeights { wait, press, total }
     }
 
-    /// What the human intends, by a random number from 0 to 1.
+    /// The choice that the human intends; `draw` is uniform in [0, 1).
     pub fn intended(&self, weights: &ChoiceWeights, draw: f64) -> HumanChoice {
         let mut left = draw * (weights.wait + weights.total) - weights.wait;
         if left < 0.0 {
@@ -178,7 +180,7 @@ impl ChoiceModel {
         HumanChoice::Press(ButtonId(last as u8))
     }
 
-    /// What the human does when it intends this, by a random number from 0 to 1: a few presses slip.
+    /// The choice that the human executes, slips included; `draw` is uniform in [0, 1).
     pub fn executed(&self, intended: HumanChoice, draw: f64) -> HumanChoice {
         let HumanChoice::Press(button) = intended else { return intended };
         let DecisionModel { lapse, lapse_anywhere: anywhere, .. } = self.parameters;

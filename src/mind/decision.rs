@@ -6,19 +6,19 @@ use super::belief::Belief;
 use crate::base::rng::Stream;
 use crate::kitchen::{Kitchen, WeightedWorlds};
 
-/// The parameters of a decision.
+/// Parameters of the choice model (paper, section "Human model").
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DecisionModel {
-    /// How strictly fewer expected presses are preferred, per press.
+    /// Softmax rationality tau: preference for a lower expected cost to go, per press.
     pub tau: f64,
     /// The share of presses that slip.
     pub lapse: f64,
-    /// The share of the slips that go to any button; the others go to the neighbour and to the look-alike, evenly.
+    /// Share of the slips that hit any button. The other slips hit the neighbour and the look-alike with equal probability.
     pub lapse_anywhere: f64,
-    /// What waiting costs, in presses.
+    /// Cost of waiting, in presses.
     pub wait_cost: f64,
-    /// Number of worlds that stand for a belief.
+    /// Number of worlds that represent a belief.
     pub cases: usize,
 }
 
@@ -29,18 +29,19 @@ impl Default for DecisionModel {
 }
 
 impl DecisionModel {
-    /// The worlds that stand for a belief in this model.
+    /// The worlds that represent a belief in this model.
     pub fn worlds(&self, kitchen: &Kitchen, belief: &Belief, random: &mut Stream) -> WeightedWorlds {
         belief.worlds(kitchen, self.cases.max(1), random)
     }
 
-    /// The probability that a press slips to one given button of so many, whatever was intended, and that it slips to each of
-    /// the two buttons that its own may be taken for.
+    /// For a kitchen with `buttons` buttons: the probability that a press slips to one given button, independent of the intended
+    /// one, and the probability that it slips to the neighbour or, respectively, to the look-alike.
     pub fn slip_probabilities(&self, buttons: usize) -> [f64; 2] {
         [self.lapse * self.lapse_anywhere / buttons as f64, self.lapse * (1.0 - self.lapse_anywhere) / 2.0]
     }
 
-    /// exp(tau Q) relative to the best button, for a button that takes `more` presses more, summed over `draws` draws.
+    /// exp(tau Q) relative to the best button, for a button whose cost to go, summed over `draws` draws, is higher by `more`
+    /// presses.
     pub fn weight(&self, more: usize, draws: usize) -> f64 {
         (-self.tau * more as f64 / draws as f64).exp()
     }

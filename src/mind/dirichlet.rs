@@ -1,14 +1,14 @@
 //! The estimate of a belief: a Dirichlet distribution over the values of every state aspect, the joint is their product.
 //!
-//! Each Dirichlet is kept by its mean and its precision (the sum of the alphas). Moment matching (Minka 2000) goes by the
-//! mean and the pooled second moment S = sum_k E[b_k^2]: the precision is (1 - S) / (S - sum_k m_k^2).
+//! Each Dirichlet is stored as its mean and its precision (the sum of the alphas). Moment matching (Minka 2000) preserves the
+//! mean and the pooled second moment S = sum_k E[b_k^2]; the precision follows as (1 - S) / (S - sum_k m_k^2).
 
 use super::model::PriorModel;
 use crate::kitchen::{AspectId, AspectKind, ContentId, Kitchen, State};
 
-/// The least expected probability of a value: nothing is ever impossible.
+/// Lower bound of a value's expected probability, so that later evidence can still raise it.
 pub const LEAST_MEAN: f64 = 1e-7;
-/// Precisions stay between these.
+/// Lower and upper bound of a precision.
 pub const PRECISIONS: [f64; 2] = [1e-3, 1e4];
 
 /// A Dirichlet distribution over the values of one aspect.
@@ -53,7 +53,7 @@ impl Dirichlet {
         (self.precision * self.square() + 1.0) / (self.precision + 1.0)
     }
 
-    /// The index of the value that is expected most; the first of equals.
+    /// Index of the value with the highest expected probability; the lowest index where several are equal.
     pub fn most_likely(&self) -> usize {
         (1..self.mean.len()).fold(0, |best, value| if self.mean[value] > self.mean[best] { value } else { best })
     }
@@ -63,8 +63,8 @@ impl Dirichlet {
         sum_of(&self.mean, |m| m * m)
     }
 
-    /// With probability `share` the belief becomes one certain value, drawn from `values` (which sum to 1), else it stays:
-    /// m' = (1 - q) m + q c, S' = (1 - q) S + q.
+    /// With probability q = `share` the belief becomes certain of one value, drawn from the distribution c = `values`, else it
+    /// stays unchanged: m' = (1 - q) m + q c, S' = (1 - q) S + q.
     pub fn learn(&mut self, share: f64, values: impl IntoIterator<Item = f64>) {
         let second = (1.0 - share) * self.second() + share;
         for (mean, value) in self.mean.iter_mut().zip(values) {
@@ -82,23 +82,23 @@ impl Dirichlet {
         self.set_second(second);
     }
 
-    /// Everything that was one value is another one now; exact.
+    /// Moves the whole probability of the value `from` to the value `to` (exact).
     pub fn shift(&mut self, from: usize, to: usize) {
         self.mean[to] += std::mem::take(&mut self.mean[from]);
         self.put_right(self.precision);
     }
 
-    /// Takes the precision that fits this second moment and the present mean.
+    /// Sets the precision from a pooled second moment and the present mean.
     fn set_second(&mut self, second: f64) {
         let spread = second - self.square();
         let precision = if spread > 0.0 { (1.0 - second) / spread } else { PRECISIONS[1] };
         self.put_right(precision);
     }
 
-    /// Makes a proper distribution of whatever is there.
+    /// Normalises the mean and enforces the bounds of means and precision.
     fn put_right(&mut self, precision: f64) {
         for mean in &mut self.mean {
-            // What is not a number becomes one, too.
+            // `max` also replaces NaN.
             *mean = mean.max(LEAST_MEAN);
         }
         let total = sum_of(&self.mean, |m| m);
@@ -110,7 +110,7 @@ impl Dirichlet {
     }
 }
 
-/// The sum of something over all values, in four parts, which a processor adds up side by side: every gaze sample takes some.
+/// Sum of `of(value)` over all values in four partial sums, which the compiler vectorises: every gaze sample needs several.
 #[inline]
 fn sum_of(values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
     let mut parts = [0.0; 4];
@@ -167,7 +167,7 @@ impl DirichletBelief {
         &self.aspects[aspect.index()]
     }
 
-    /// The expected probability that the human gives to the truth about an aspect.
+    /// Expected probability that the human's belief gives to the true value of an aspect.
     pub fn p_truth(&self, kitchen: &Kitchen, state: State, aspect: AspectId) -> f64 {
         self.aspect(aspect).mean()[kitchen.true_value(state, aspect)]
     }

@@ -1,4 +1,5 @@
-//! Fitting the human model: which of its parameters can be fitted, on which scale, and how likely presses are under them.
+//! Fitting the human model: the parameters that can be fitted, the scale on which each is fitted, and the likelihood of a
+//! trial's presses.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +10,7 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen, Press};
 use std::sync::Arc;
 
-/// The scale of tau ends where 1 / tau is as small as this, in presses.
+/// Offset of 1 / tau, in presses, at which the scale of tau saturates.
 const STRICT: f64 = 0.1;
 
 /// A parameter that can be fitted.
@@ -18,20 +19,20 @@ const STRICT: f64 = 0.1;
 pub enum Parameter {
     /// How strictly fewer expected presses are preferred, per press.
     Tau,
-    /// The share of presses that slip.
+    /// Share of presses that are slips.
     Lapse,
     /// Radius of the area around the fixation, in degrees.
     RadiusDeg,
     /// Readings a second.
     ReadingRateHz,
-    /// Half-life of what is remembered of recipes, in seconds.
+    /// Half-life of recipe memory, in seconds.
     RecipeHalfLifeS,
-    /// The share of the robot's unseen presses that the human thinks through.
+    /// Share of the robot's unseen presses whose consequences the human infers.
     Foresight,
 }
 
 impl Parameter {
-    /// Those that are fitted unless others are asked for.
+    /// The parameters that are fitted by default.
     pub const USUAL: [Parameter; 5] =
         [Parameter::Tau, Parameter::Lapse, Parameter::RadiusDeg, Parameter::ReadingRateHz, Parameter::RecipeHalfLifeS];
 
@@ -82,8 +83,8 @@ impl Parameter {
         }
     }
 
-    /// The values between which it is looked for. Who is stricter than a tau of 20 presses what it holds for the best practically
-    /// always, and no recording tells how strict it is.
+    /// Bounds of the search. Above tau = 20 per press the best button is chosen practically always, and presses carry no
+    /// information about tau.
     pub fn bounds(self) -> [f64; 2] {
         match self {
             Parameter::Tau => [0.05, 20.0],
@@ -95,8 +96,8 @@ impl Parameter {
         }
     }
 
-    /// On the scale on which it is fitted: the logarithm, of a share that of its odds; of tau that of 1 / (1 / tau + 0.1), since
-    /// the stricter people are, the less difference a further step makes.
+    /// Transforms a value to the scale of the fit: the logarithm for a quantity, the log odds for a share, and
+    /// ln(1 / (1 / tau + 0.1)) for tau, since the likelihood changes less and less as tau grows.
     pub fn to_scale(self, value: f64) -> f64 {
         match self {
             Parameter::Lapse | Parameter::Foresight => {
@@ -117,7 +118,7 @@ impl Parameter {
         }
     }
 
-    /// A standard error of the value, from one on the scale (first order).
+    /// Standard error of a value from its standard error on the scale of the fit (delta method).
     pub fn error_of(self, value: f64, scaled_error: f64) -> f64 {
         let slope = match self {
             Parameter::Lapse | Parameter::Foresight => value * (1.0 - value),
@@ -128,16 +129,16 @@ impl Parameter {
     }
 }
 
-/// The presses of a human in one trial: their number, and how likely they are.
+/// Number of the human's presses in one trial, and their log likelihood.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Likelihood {
     pub presses: u64,
-    /// Sum over the presses of ln p under the estimate before each, in nats.
+    /// Sum over presses of ln p under the estimate before each press, in nats.
     pub log_p: f64,
 }
 
-/// How likely the presses of a trial are under a model. The filter's random numbers follow from `seed`, the same for every
-/// model, so that two models differ by themselves and not by chance.
+/// Log likelihood of a trial's presses under a human model. The filter's random stream depends on `seed` only, so that two
+/// models are compared on common random numbers.
 pub fn likelihood(
     kitchen: &Arc<Kitchen>,
     model: &HumanModel,

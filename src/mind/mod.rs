@@ -16,12 +16,12 @@ use std::collections::BTreeMap;
 pub use choice::ChoiceModel;
 use serde::{Deserialize, Serialize};
 
-/// What a simulated participant believes at a moment, and why it presses what it presses next.
+/// The recorded belief of a simulated participant at one time, with the reason for its next press.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BeliefWitness {
     /// One entry per state aspect, in the order of the kitchen's aspects.
     pub aspects: Vec<AspectBelief>,
-    /// Why it presses what it presses next: "as believed", "slip to the neighbouring button", …
+    /// Reason for its next press: "as believed", "slip to the neighbouring button", …
     pub cause: String,
 }
 
@@ -29,13 +29,13 @@ pub struct BeliefWitness {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AspectBelief {
     pub aspect: String,
-    /// The value that it holds most likely.
+    /// Name of the most probable value.
     pub believes: String,
-    /// The probability that it gives to the truth.
+    /// Probability of the true value.
     pub p_truth: f64,
-    /// The probability of every value that has at least [`WORTH_TELLING`]; what is left is spread over the others.
+    /// Probability of every value with at least [`WORTH_TELLING`]; the remaining probability is spread over the other values.
     pub values: BTreeMap<String, f64>,
 }
 
-/// Less likely values are not told one by one in a [`BeliefWitness`].
+/// Least probability of a value that a [`BeliefWitness`] lists.
 pub const WORTH_TELLING: f64 = 0.01;

@@ -1,13 +1,13 @@
-//! The human model (paper, section "Human model"): a POMDP actor in parts, each with its parameters.
+//! The human model (paper, section "Human model"): the parameters of prior, perception, transition, decision and signals.
 //!
-//! All values have defaults and can be fitted. A session file names a file with them (`human_model = "…"`); the values in
-//! force stand in the header of every recording.
+//! Every parameter has a default. A session file names a file with other values (`human_model = "…"`); the values in use are
+//! recorded in the header of every recording.
 
 use serde::{Deserialize, Serialize};
 
 use super::decision::DecisionModel;
 
-/// All parameters of the human model, and how finely its belief is inferred.
+/// All parameters of the human model, and the sample sizes of its inference.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HumanModel {
@@ -19,19 +19,19 @@ pub struct HumanModel {
     pub inference: InferenceModel,
 }
 
-/// What the human believes when the trial starts.
+/// The human's belief at the start of a trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PriorModel {
-    /// Expected probability of what a location truly holds; the rest is spread evenly.
+    /// Expected probability of a location's true content; the rest is spread evenly over the other contents.
     pub location_truth: f64,
     /// Precision (sum of the alphas) of a location's Dirichlet.
     pub location_precision: f64,
     /// Expected probability of a true recipe.
     pub recipe_truth: f64,
-    /// Share of the rest that is on variants that look like the true recipe, where there are any.
+    /// Share of the remaining probability on variants that look like the true recipe, where there are any.
     pub recipe_look_alike: f64,
-    /// Precision of a recipe's Dirichlet: small, since people hold one version for true.
+    /// Precision of a recipe's Dirichlet: small, since people are certain of one variant.
     pub recipe_precision: f64,
 }
 
@@ -47,27 +47,27 @@ impl Default for PriorModel {
     }
 }
 
-/// Reading: while the gaze is near a location, its content is read at a rate.
+/// Perception as a reading process: a location near the gaze is read at a rate that falls with its distance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PerceptionModel {
-    /// Readings a second at distance 0 and full confidence: lambda.
+    /// Readings per second at distance 0 and full confidence (lambda).
     pub reading_rate_hz: f64,
     /// Radius of the area around the fixation, in degrees of the visual field: r.
     pub radius_deg: f64,
-    /// From the eyes to the display, in metres.
+    /// Distance from the eyes to the display, in metres.
     pub viewing_distance_m: f64,
-    /// One reading gives a look-alike of what is there with this probability, …
+    /// Probability that a reading gives a look-alike of the true content.
     pub look_alike: f64,
-    /// … and anything else with this one; else it is right.
+    /// Probability that a reading gives any other wrong content.
     pub anything: f64,
-    /// Samples of less confidence are dropped.
+    /// Samples with a lower confidence are not used.
     pub min_confidence: f64,
-    /// What the display showed is known for so long, in seconds; older samples are dropped.
+    /// Length of the history of displayed states, in seconds; samples taken earlier are not used.
     pub history_s: f64,
-    /// A sample stands for at most so many seconds.
+    /// Longest time that one sample covers, in seconds.
     pub max_sample_s: f64,
-    /// A look is over when the gaze was elsewhere for so many seconds.
+    /// A look ends once the gaze has been elsewhere for this long, in seconds.
     pub look_ends_s: f64,
 }
 
@@ -93,37 +93,37 @@ impl PerceptionModel {
         self.viewing_distance_m * self.radius_deg.to_radians().tan()
     }
 
-    /// How fast locations are read.
+    /// The rate of reading as a function of distance and confidence.
     pub fn reading_rate(&self) -> ReadingRate {
         ReadingRate { full_hz: self.reading_rate_hz, spread_m2: 2.0 * self.radius_m() * self.radius_m() }
     }
 }
 
-/// How fast locations are read, with what every gaze sample needs of the model.
+/// The rate of reading, with the constants that every gaze sample needs precomputed.
 #[derive(Clone, Copy, Debug)]
 pub struct ReadingRate {
-    /// Where the gaze is, per second.
+    /// Readings per second at distance 0.
     full_hz: f64,
     /// 2 r^2.
     spread_m2: f64,
 }
 
 impl ReadingRate {
-    /// Of a location whose area is `distance_m` from the gaze, per second.
+    /// Readings per second of a location whose area is `distance_m` metres away from the gaze.
     #[inline]
     pub fn at(&self, distance_m: f64, confidence: f64) -> f64 {
         self.full_hz * (-distance_m * distance_m / self.spread_m2).exp() * confidence
     }
 }
 
-/// How beliefs change without being looked after.
+/// Changes of a belief without new evidence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TransitionModel {
-    /// Half-life of what is remembered of recipes beyond the prior, in seconds.
+    /// Half-life with which a recipe belief decays to its prior, in seconds.
     pub recipe_half_life_s: f64,
-    /// The share of the robot's unseen presses that the human thinks through; the others leave its belief as it was.
-    /// Fitted to simulated participants: people keep to what they last saw.
+    /// Share of the robot's unseen presses whose consequences the human infers; the other presses leave the belief unchanged.
+    /// The default is fitted to simulated participants, who mostly keep believing what they last saw.
     pub foresight: f64,
 }
 
@@ -133,11 +133,11 @@ impl Default for TransitionModel {
     }
 }
 
-/// What a signal does.
+/// The effect of a signal on the human.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SignalModel {
-    /// Probability that a signal is noticed; what is noticed is believed.
+    /// Probability that a signal is noticed; a noticed signal is believed.
     pub noticed: f64,
 }
 
@@ -147,19 +147,19 @@ impl Default for SignalModel {
     }
 }
 
-/// How finely a belief is inferred from a press.
+/// Sample sizes of the inference from one press.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InferenceModel {
-    /// Belief samples.
+    /// Number of belief samples.
     pub beliefs: usize,
-    /// States and recipes drawn from each of them.
+    /// Number of worlds (state and recipes) drawn from each belief sample.
     pub states: usize,
-    /// With a smaller effective sample size the number of belief samples is doubled, …
+    /// The number of belief samples is doubled while the effective sample size is below this.
     pub min_effective: f64,
-    /// … up to this number.
+    /// Largest number of belief samples.
     pub max_beliefs: usize,
-    /// Ways the kitchen may be from which a press of the robot is predicted.
+    /// Number of worlds from which a press of the robot is predicted.
     pub predictions: usize,
 }
 
@@ -170,7 +170,7 @@ impl Default for InferenceModel {
 }
 
 impl HumanModel {
-    /// The first parameter that cannot be: its name, what it is, and what would be right.
+    /// The first invalid parameter: its name, the value found, and the valid range; `None` if all are valid.
     pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
         const SHARE: &str = "a number from 0 to 1";
         const ABOVE: &str = "a number above 0";

@@ -1,20 +1,20 @@
-//! What the estimate of a belief is made from. One observation is the unit of work.
+//! Observations: the evidence from which the belief filter updates its estimate, one at a time.
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::{LocationId, Press, State};
 
-/// Something that happened, and when.
+/// One piece of evidence with its session time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
     pub time: SessionTime,
     pub what: Observed,
 }
 
-/// What happened. States are what is true, and what the display shows.
+/// Kinds of evidence. A state here is the true state, which the display shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Observed {
-    /// The trial starts, and the human knows what the kitchen looks like.
+    /// The trial starts; the human knows the state of the kitchen.
     Started {
         state: State,
     },
@@ -25,15 +25,15 @@ pub enum Observed {
     },
     /// An agent pressed a button.
     Pressed(Press),
-    /// The display shows this from now on without anybody having pressed: orders come and go.
+    /// The display changes without a press, for instance because an order appears or disappears.
     Displayed {
         state: State,
     },
-    /// A signal about a location: an order's dish and recipe, or what lies at another location.
+    /// A signal about a location: an order's dish and recipe, or the content of another location.
     Told {
         location: LocationId,
     },
-    /// The trial stands still, and goes on: nothing is read or forgotten between.
+    /// The trial is paused or resumed; nothing is read or forgotten in between.
     Paused,
     Resumed,
 }

@@ -1,4 +1,4 @@
-//! The estimate of a belief as it is written down: short, and in words.
+//! The estimate of a belief as it is recorded: rounded numbers and names of values.
 
 use std::collections::BTreeMap;
 
@@ -9,14 +9,14 @@ use super::dirichlet::DirichletBelief;
 use super::filter::Evidence;
 use crate::kitchen::{Aspect, AspectId, Kitchen, State};
 
-/// What was estimated of the human's belief before a press of the human.
+/// The recorded estimate of the human's belief before one press of the human.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EstimateWitness {
-    /// The number of the press in the log.
+    /// Sequence number of the press in the log.
     pub press: u64,
-    /// ln p of that press under the estimate, in nats.
+    /// ln p(press) under the estimate, in nats.
     pub log_p: f64,
-    /// The effective number of belief samples behind it.
+    /// Effective sample size of the belief samples.
     pub effective: f64,
     /// One entry per state aspect, in the order of the kitchen's aspects.
     pub aspects: Vec<AspectEstimate>,
@@ -26,18 +26,18 @@ pub struct EstimateWitness {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AspectEstimate {
     pub aspect: String,
-    /// The value that is expected to be believed most.
+    /// Name of the value with the highest expected probability.
     pub believes: String,
-    /// The expected probability of the truth.
+    /// Expected probability of the true value.
     pub p_truth: f64,
     /// The precision of the Dirichlet: the sum of its alphas.
     pub precision: f64,
-    /// The expected probability of every value that has at least [`WORTH_TELLING`].
+    /// Expected probability of every value with at least [`WORTH_TELLING`].
     pub values: BTreeMap<String, f64>,
 }
 
 impl EstimateWitness {
-    /// What was estimated before a press that met `state`, and how likely the press was then.
+    /// The record of an estimate before the press with number `press` in `state`, with the evidence of that press.
     pub fn new(
         kitchen: &Kitchen,
         press: u64,
@@ -65,7 +65,7 @@ impl EstimateWitness {
     }
 }
 
-/// Four digits are enough for an estimate.
+/// Rounds to four digits after the point, the precision of recorded estimates.
 pub fn rounded(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }

@@ -1,21 +1,21 @@
-//! The different worlds among all draws of a press, and the costs of the human's decision in each.
+//! The distinct worlds among all draws of a press, each with the costs to go of the human's decision, computed once.
 
 use crate::base::rng::mix;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity, MAX_BUTTONS};
 use crate::kitchen::{Agent, World};
 
-/// At least this share of all draws, or of the weight that they have after the press, has to be of a world for plans to be
-/// made for its costs.
+/// A world's costs to go are computed with [`Fidelity::PlanBound`] if it has at least this share of all draws, or of the
+/// posterior weight; else with [`Fidelity::LowerBound`].
 const COUNTS: f64 = 0.01;
 
-/// So many worlds ahead a decision is prefetched.
+/// Number of worlds by which prefetching is ahead of the computation.
 const AHEAD: usize = 4;
 
-/// Different worlds with their numbers of draws.
+/// Distinct worlds with their numbers of draws.
 #[derive(Clone, Debug, Default)]
 pub struct DistinctWorlds {
     known: Vec<RatedWorld>,
-    /// Open addressing by hash: index + 1, 0 is free.
+    /// Hash table with open addressing: index + 1 of a world, 0 for a free slot.
     slots: Vec<u32>,
 }
 
@@ -23,19 +23,19 @@ pub struct DistinctWorlds {
 struct RatedWorld {
     world: World,
     draws: u32,
-    /// C after each button, once it is known, and its fidelity.
+    /// Cost to go after each button with its fidelity, once computed.
     after: Option<([u8; MAX_BUTTONS], Fidelity)>,
 }
 
 impl DistinctWorlds {
-    /// Forgets all, and makes room for so many draws.
+    /// Removes all worlds and reserves slots for `draws` draws.
     pub fn clear(&mut self, draws: usize) {
         self.known.clear();
         self.slots.clear();
         self.slots.resize((draws * 2).next_power_of_two(), 0);
     }
 
-    /// The index of a world that was drawn so many times more.
+    /// Adds `times` draws of a world and returns the world's index.
     #[inline]
     pub fn count(&mut self, world: World, times: u32) -> u32 {
         let mask = self.slots.len() - 1;
@@ -62,7 +62,7 @@ impl DistinctWorlds {
         }
     }
 
-    /// Finds the costs of all worlds that have none yet, of `draws` draws in all.
+    /// Computes the costs to go of all worlds that have none yet; `draws` is the total number of draws.
     pub fn rate(&mut self, cost: &mut CostToGo, draws: usize) {
         let fidelity = |rated: &RatedWorld| {
             if f64::from(rated.draws) >= COUNTS * draws as f64 { Fidelity::PlanBound } else { Fidelity::LowerBound }
@@ -78,8 +78,9 @@ impl DistinctWorlds {
         }
     }
 
-    /// Plans for the costs of those worlds that hardly counted before the press, and do now: `weights` by world, of this
-    /// sum. A bound that is a press too low is strong evidence, and wrong. Tells whether there were any.
+    /// Computes costs with [`Fidelity::PlanBound`] for worlds that have lower bounds only and whose posterior weight (`weights`
+    /// by world, with total `sum`) is now relevant: a lower bound that is one press too low would be strong but wrong evidence.
+    /// Returns whether there were any.
     pub fn rate_again(&mut self, cost: &mut CostToGo, weights: &[f64], sum: f64) -> bool {
         let mut any = false;
         for (rated, &weight) in self.known.iter_mut().zip(weights) {
@@ -91,12 +92,12 @@ impl DistinctWorlds {
         any
     }
 
-    /// How many different worlds there are.
+    /// Number of distinct worlds.
     pub fn len(&self) -> usize {
         self.known.len()
     }
 
-    /// C after each button of the human in a world that was rated.
+    /// Cost to go after each button of the human in a world whose costs have been computed.
     #[inline]
     pub fn after(&self, index: u32) -> &[u8; MAX_BUTTONS] {
         const UNKNOWN: [u8; MAX_BUTTONS] = [0; MAX_BUTTONS];

@@ -1,10 +1,9 @@
-//! The evidence of a press: beliefs under which it was likely gain weight.
+//! The update of the estimate by the likelihood of a press.
 //!
-//! p(a | b) is a softmax over expected costs to go, and so has no closed form. Belief samples stand for it, each by the
-//! states and recipes that are drawn from it (see [`super::urn`]). The posterior of an aspect is the mixture of
-//! Dir(alpha + n_j) with the weights w_j, collapsed by its mean and second moment. What equal weights would give is
-//! subtracted and the prior's exact moments are added (a control variate), so that a press without information changes
-//! nothing.
+//! p(a | b) is a softmax over expected costs to go, so the posterior has no closed form. Belief samples represent the prior,
+//! each by the worlds drawn from it (see [`super::urn`]). The posterior of an aspect is the mixture of Dir(alpha + n_j) with
+//! the weights w_j, collapsed by its mean and second moment. As a control variate, the moments under equal weights are
+//! subtracted and the prior's exact moments are added, so that an uninformative press leaves the estimate unchanged.
 
 use crate::base::bits::ones;
 use crate::base::rng::Stream;
@@ -17,72 +16,72 @@ use crate::mind::model::InferenceModel;
 use super::distinct::DistinctWorlds;
 use super::urn::Urn;
 
-/// This share of the first draws of a recipe is spread evenly over its variants: false recipes show in presses alone, and
-/// a few samples of them would leave it to chance whether they do.
+/// Share of the first draws of a recipe that are spread evenly over its variants (importance sampling): presses are the only
+/// evidence of a false recipe, so improbable variants need enough samples.
 const SPREAD: f64 = 0.4;
-/// What is not drawn, since nothing depends on it.
+/// Marks an aspect that is not drawn because the decision does not depend on it.
 const UNDRAWN: u8 = u8::MAX;
 
-/// How well a press could be explained.
+/// Likelihood of a press and quality of the samples behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
     /// ln p(a) under the estimate before the press, in nats.
     pub log_p: f64,
-    /// Belief samples that were drawn.
+    /// Number of belief samples drawn.
     pub beliefs: usize,
-    /// 1 / sum of the squared weights.
+    /// Effective sample size: 1 / sum of squared normalised weights.
     pub effective: f64,
 }
 
-/// Room for the samples, kept from press to press.
+/// Draws and weighs belief samples; its buffers are reused from press to press.
 #[derive(Clone, Debug, Default)]
 pub struct Sampler {
     urns: Vec<Urn>,
-    /// `[order][value]`: the recipes that count, one bit each by aspect.
+    /// `[order][value]`: bit set of the recipe aspects on which the decision depends if the order has this value.
     wants: Vec<Vec<u32>>,
-    /// `[aspect * new samples + sample]`: the first draws of the samples that are drawn at once.
+    /// `[aspect * batch size + sample]`: the first draws of the present batch of samples.
     proposed: Vec<u8>,
-    /// `[sample * aspects + aspect]`: the values of the first draws.
+    /// `[sample * aspects + aspect]`: value of the first draw.
     firsts: Vec<u8>,
-    /// All draws of the aspects of which a sample has several values, one row of `states` after another.
+    /// All draws of those aspects of which a sample has several values, in consecutive rows of length `states`.
     rows: Vec<u8>,
     samples: Vec<Sample>,
-    /// By aspect and value, how much a first draw counts; nothing where they come from the mean.
+    /// Importance weight of a first draw by aspect and value; empty where first draws come from the mean.
     counts: Vec<Vec<f64>>,
-    /// How much each belief sample counts, before its likelihood p(a | belief) and with it.
+    /// Weight of each belief sample before and after multiplication with its likelihood p(a | belief).
     priors: Vec<f64>,
     posteriors: Vec<f64>,
     worlds: DistinctWorlds,
-    /// The different worlds among the draws of all belief samples, one sample after another.
+    /// The distinct worlds of each belief sample, in consecutive ranges.
     runs: Vec<Run>,
-    /// The different draws of one belief sample.
+    /// The distinct draws of one belief sample.
     alike: Vec<Alike>,
-    /// By draw, its values of the mixed aspects.
+    /// The values of the mixed aspects, by draw.
     keys: Vec<Key>,
-    /// By world, the weight of its draws after the press.
+    /// Posterior weight of each world.
     world_weights: Vec<f64>,
 }
 
 /// A belief sample.
 #[derive(Clone, Copy, Debug)]
 struct Sample {
-    /// Aspects of which it has several values, one bit each.
+    /// Bit set of the aspects of which the sample has several values (mixed aspects).
     mixed: u32,
-    /// Where their rows begin.
+    /// Start of their rows in [`Sampler::rows`].
     rows: usize,
-    /// Where its runs begin and end.
+    /// Range of its runs in [`Sampler::runs`].
     runs: [usize; 2],
 }
 
 impl Sample {
-    /// Where the row of a mixed aspect begins.
+    /// Start of the row of a mixed aspect.
     #[inline]
     fn row(&self, aspect: usize, states: usize) -> usize {
         self.rows + (self.mixed & ((1 << aspect) - 1)).count_ones() as usize * states
     }
 }
 
-/// Draws of one belief sample that are the same world: the first of them, and how many there are.
+/// The draws of one belief sample that give the same world: index of the first, and their number.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     world: u32,
@@ -92,10 +91,10 @@ struct Run {
 
 /// The values of up to 32 aspects, one byte each.
 type Key = [u64; 4];
-/// So many of them fit into one number.
+/// Number of values in one part of a key.
 const KEY_PART: usize = (u64::BITS / u8::BITS) as usize;
 
-/// Draws of one belief sample that are alike: their values, the first of them, and how many there are.
+/// The equal draws of one belief sample: their values, index of the first, and their number.
 #[derive(Clone, Copy, Debug)]
 struct Alike {
     key: Key,
@@ -103,7 +102,7 @@ struct Alike {
     draws: u32,
 }
 
-/// The models by which a press is weighed.
+/// The models that define the likelihood of a press.
 pub struct EvidenceModel<'a> {
     pub kitchen: &'a Kitchen,
     pub choice: &'a ChoiceModel,
@@ -115,7 +114,7 @@ impl Sampler {
         Sampler { wants: kitchen.orders.iter().map(|&order| wants(kitchen, order)).collect(), ..Sampler::default() }
     }
 
-    /// Updates the belief by the evidence of a press of the human.
+    /// Updates the estimate by the likelihood of a press of the human.
     pub fn weigh(
         &mut self,
         model: &EvidenceModel,
@@ -152,7 +151,7 @@ impl Sampler {
         }
     }
 
-    /// Draws belief samples until there are so many.
+    /// Draws belief samples until there are `wanted`, and weighs them.
     fn draw(
         &mut self,
         model: &EvidenceModel,
@@ -182,12 +181,12 @@ impl Sampler {
         }
     }
 
-    /// Draws the values of one of `new` belief samples, and tells of which aspects it has several, one bit each.
+    /// Draws the values of sample number `sample` in a batch of `new`; returns the bit set of its mixed aspects.
     fn draw_on(&mut self, kitchen: &Kitchen, new: usize, sample: usize, states: usize, random: &mut Stream) -> u32 {
         let (mut mixed, mut counting) = (0, 0);
         let mut prior = 1.0;
         for (aspect, urn) in self.urns.iter().enumerate() {
-            // Recipes count where an order wants the dish.
+            // A decision depends on the recipes of ordered dishes only.
             if aspect >= kitchen.locations.len() && counting & 1 << aspect == 0 {
                 self.firsts.push(UNDRAWN);
                 continue;
@@ -214,7 +213,7 @@ impl Sampler {
         mixed
     }
 
-    /// Counts the worlds among the draws of the newest belief sample, whose rows begin here.
+    /// Counts the distinct worlds of the newest belief sample, whose rows start at `rows`.
     fn count_worlds(&mut self, kitchen: &Kitchen, states: usize, mixed: u32, rows: usize) {
         self.tell_apart(states, mixed, rows);
         let mut world = World::empty(kitchen);
@@ -231,7 +230,7 @@ impl Sampler {
         }
     }
 
-    /// Finds the draws of a belief sample that differ.
+    /// Groups the draws of a belief sample by equality.
     fn tell_apart(&mut self, states: usize, mixed: u32, rows: usize) {
         self.alike.clear();
         if mixed == 0 {
@@ -253,7 +252,7 @@ impl Sampler {
         }
     }
 
-    /// Weighs the belief samples from this one on by p(a | belief).
+    /// Multiplies the weights of the belief samples from index `from` on by p(a | belief).
     fn weigh_samples(&mut self, model: &EvidenceModel, button: ButtonId, from: usize) {
         let buttons = model.kitchen.buttons[Agent::Human.index()].len();
         self.posteriors.truncate(from);
@@ -268,13 +267,13 @@ impl Sampler {
         }
     }
 
-    /// The runs of one belief sample.
+    /// The distinct worlds of one belief sample.
     #[inline]
     fn runs_of(&self, sample: &Sample) -> &[Run] {
         &self.runs[sample.runs[0]..sample.runs[1]]
     }
 
-    /// Plans for the worlds that hardly counted before the press, and do now; whether there were any.
+    /// Computes more exact costs for worlds whose posterior weight has become relevant; returns whether there were any.
     fn rate_again(&mut self, cost: &mut CostToGo, states: usize) -> bool {
         self.world_weights.clear();
         self.world_weights.resize(self.worlds.len(), 0.0);
@@ -293,7 +292,7 @@ impl Sampler {
         Evidence { log_p: (total / before).ln(), beliefs: self.posteriors.len(), effective: total * total / squares }
     }
 
-    /// Maps the weighted samples back to Dirichlets.
+    /// Projects the weighted samples onto a product of Dirichlets.
     fn collapse(&self, belief: &mut DirichletBelief, states: usize) {
         let (before, total): (f64, f64) = (self.priors.iter().sum(), self.posteriors.iter().sum());
         let mut all: Vec<Moments> = belief.aspects.iter().map(Moments::from_prior).collect();
@@ -315,7 +314,7 @@ impl Sampler {
     }
 }
 
-/// By value of an order, the recipes that count if it has it, one bit each by aspect.
+/// For each value of an order, the bit set of recipe aspects on which the decision depends.
 fn wants(kitchen: &Kitchen, order: LocationId) -> Vec<u32> {
     let wanted = |&code: &u8| match OrderContent::from_code(code) {
         OrderContent::Dish(dish) => 1 << kitchen.aspect_of_dish(dish).index(),
@@ -324,17 +323,18 @@ fn wants(kitchen: &Kitchen, order: LocationId) -> Vec<u32> {
     kitchen.aspects[order.index()].values.iter().map(wanted).collect()
 }
 
-/// Mean and second moment of a mixture of Dirichlets, from those of the Dirichlet that all of them come from.
+/// Mean and second moment of a mixture of Dirichlets that share one prior, accumulated as changes to the prior's moments.
 struct Moments<'a> {
     prior: &'a Dirichlet,
     mean: Vec<f64>,
     second: f64,
     square: f64,
-    /// How much of the prior's mean is to be added in the end.
+    /// Weight of the prior's mean, added at the end.
     share: f64,
-    /// By value, the weights of belief samples that have it in all their draws; at last those that were not drawn.
+    /// Total weight of the belief samples all of whose draws have the same value, by value; the last entry is for samples in
+    /// which the aspect was not drawn.
     pure: Vec<f64>,
-    /// The values of one belief sample, and how often each was drawn.
+    /// Distinct values of one belief sample with their counts.
     counts: Vec<(u8, u32)>,
 }
 
@@ -346,7 +346,7 @@ impl Moments<'_> {
         Moments { prior, mean, second: prior.second(), square, share: 0.0, pure, counts: Vec::new() }
     }
 
-    /// Adds Dir(alpha + counts of these values, `draws` in all) with this weight; all weights sum to 0.
+    /// Adds Dir(alpha + counts of the drawn values) with this weight; `draws` is the number of draws. All weights sum to 0.
     fn add(&mut self, drawn: impl Iterator<Item = (u8, u32)>, draws: usize, weight: f64) {
         self.counts.clear();
         for (value, times) in drawn {
@@ -367,7 +367,7 @@ impl Moments<'_> {
         self.add_moments(weight, size, cross, squares);
     }
 
-    /// The same for draws of one value, or none: they are added together in the end.
+    /// Adds a sample whose draws all have one value (or were not drawn): such samples are summed first and added at the end.
     #[inline]
     fn add_later(&mut self, value: u8, weight: f64) {
         let last = self.pure.len() - 1;
@@ -388,14 +388,14 @@ impl Moments<'_> {
 
     fn add_moments(&mut self, weight: f64, size: f64, cross: f64, squares: f64) {
         let precision = self.prior.precision();
-        // What the prior's alphas give alone; where all aspects have as many draws, it cancels out.
+        // The part from the prior's alphas. It cancels where all samples have the same number of draws.
         self.share += weight * precision / size;
         let second = precision * precision * self.square + 2.0 * precision * cross + squares + size;
         self.second += weight * second / (size * (size + 1.0));
     }
 
-    /// What the value that stands for the tail has gained is its own; what it has lost the whole tail loses, since it is
-    /// so improbable only as a part of it.
+    /// The Dirichlet with the accumulated moments. A gain of the value that represents the tail belongs to that value alone; a loss
+    /// is shared by the whole tail in proportion.
     fn collapsed(mut self, draws: usize, stand_in: Option<usize>) -> Dirichlet {
         for value in 0..self.pure.len() {
             if self.pure[value] != 0.0 {

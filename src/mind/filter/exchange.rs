@@ -1,4 +1,4 @@
-//! What the human learns from a press of a location's button: hand and location decide together what happens.
+//! The update by an own press of a location's button, whose effect depends on hand and location jointly.
 
 use crate::base::rng::Stream;
 use crate::kitchen::{Agent, AspectId, ButtonAction, Kitchen, LocationId};
@@ -7,24 +7,24 @@ use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use super::gamma::Gammas;
 use super::own_press::DOUBT;
 
-/// What a press does with the values of hand and location.
+/// Effect of a press for given values of hand and location.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Outcome {
     Nothing,
     PickUp,
     PutDown,
-    /// The location holds this value then.
+    /// The location holds this value afterwards.
     Stack(usize),
 }
 
-/// A location's button: kinds of contents of hand and location that it treats alike, and what becomes of them.
+/// A location's button: classes ("kinds") of contents that it treats alike in hand and location, and the effect for each pair.
 #[derive(Clone, Debug)]
 pub struct Exchange {
     hand: Side,
     location: Side,
-    /// `[hand value * values of the location + location value]`.
+    /// Effect by values: `[hand value * number of location values + location value]`.
     outcomes: Vec<Outcome>,
-    /// The same for kinds; of stacks only that it is one.
+    /// Effect by kinds, in the same layout; the value of a stack is not distinguished.
     by_kind: Vec<Outcome>,
 }
 
@@ -33,15 +33,15 @@ pub struct Exchange {
 struct Side {
     aspect: AspectId,
     empty: usize,
-    /// The kind of each value, and the number of kinds.
+    /// Kind of each value, and number of kinds.
     kind_of: Vec<usize>,
     kinds: usize,
-    /// Each value as one of the other side, where it can be there.
+    /// For each value, the same content's value on the other side, where that side can hold it.
     across: Vec<Option<usize>>,
 }
 
 impl Exchange {
-    /// The human's button of this location.
+    /// The human's button of a location.
     pub fn new(kitchen: &Kitchen, location: LocationId) -> Exchange {
         let hand_at = kitchen.hands[Agent::Human.index()];
         let aspects = [AspectId::of_location(hand_at), AspectId::of_location(location)];
@@ -83,7 +83,7 @@ impl Exchange {
         Exchange { hand, location, outcomes, by_kind }
     }
 
-    /// Learns from a press of this button.
+    /// Updates the belief by an own press of this button.
     pub fn learn(&self, belief: &mut DirichletBelief, effective: bool, draws: usize, random: &mut Stream) {
         let sides = [&self.hand, &self.location].map(|side| Parts::from_prior(belief.aspect(side.aspect), side));
         let shares = self.shares(&sides, effective, draws, random);
@@ -95,7 +95,7 @@ impl Exchange {
         belief.aspects[self.location.aspect.index()] = of_location;
     }
 
-    /// The moments of the shares of all pairs of kinds, given effect or none.
+    /// Moments of the joint probabilities of all pairs of kinds, given that the press was effective or ineffective.
     fn shares(&self, sides: &[Parts; 2], effective: bool, draws: usize, random: &mut Stream) -> Shares {
         let [rows, columns] = [self.hand.kinds, self.location.kinds];
         let mut shares = Shares::new(rows, columns);
@@ -126,7 +126,7 @@ impl Exchange {
         shares
     }
 
-    /// Something was picked up, put down or stacked.
+    /// Beliefs about hand and location after an effective press: an item was picked up, put down or stacked.
     fn exchanged(&self, sides: &[Parts; 2], shares: &Shares) -> [Dirichlet; 2] {
         let [held, there] = sides;
         let [width, columns] = [self.location.kind_of.len(), self.location.kinds];
@@ -156,7 +156,7 @@ impl Exchange {
     }
 }
 
-/// The kind of each of `count` values by what tells them apart, and the first value of each kind.
+/// Classifies `count` values by `trait_of`: the kind of each value, and the first value of each kind.
 fn kinds<T: PartialEq>(count: usize, trait_of: impl Fn(usize) -> T) -> (Vec<usize>, Vec<usize>) {
     let mut known: Vec<T> = Vec::new();
     let (mut kind_of, mut firsts) = (Vec::with_capacity(count), Vec::new());
@@ -172,14 +172,14 @@ fn kinds<T: PartialEq>(count: usize, trait_of: impl Fn(usize) -> T) -> (Vec<usiz
     (kind_of, firsts)
 }
 
-/// A belief about hand or location by kinds: their shares, and how each kind is divided among its values.
+/// A belief about hand or location, decomposed into the probability of each kind and the distribution within each kind.
 struct Parts<'a> {
     side: &'a Side,
     belief: &'a Dirichlet,
-    /// Expected shares and alphas of the kinds.
+    /// Expected probabilities and alphas of the kinds.
     means: Vec<f64>,
     alphas: Vec<f64>,
-    /// Second moments of the division of each kind.
+    /// Pooled second moment of the distribution within each kind.
     seconds: Vec<f64>,
 }
 
@@ -204,12 +204,12 @@ impl<'a> Parts<'a> {
         kinds.filter(move |(_, other)| **other == kind).map(|(value, _)| value)
     }
 
-    /// The expected share of a value in its kind.
+    /// Expected probability of a value given its kind.
     fn inner(&self, value: usize) -> f64 {
         self.belief.mean()[value] / self.means[self.side.kind_of[value]]
     }
 
-    /// The belief where nothing happened: `change` is what that does to the moments of the kinds' shares.
+    /// The belief after an ineffective press; `change` is the change of the moments of the kinds' probabilities.
     fn kept(&self, change: &[[f64; 2]]) -> Dirichlet {
         let mut mixture = Mixture::new(self.side.kind_of.len());
         let precision = self.belief.precision();
@@ -225,15 +225,15 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// First and second moments of shares, over draws.
+/// First and second moments of the kinds' probabilities, averaged over draws.
 struct Shares {
     draws: f64,
     of_pairs: Vec<[f64; 2]>,
-    /// That the hand, that the location is empty then.
+    /// Probability that the hand, and that the location, is empty afterwards.
     emptied: [[f64; 2]; 2],
-    /// By side and kind: what is added to the moments from before the press.
+    /// Change of the prior moments, by side and kind.
     change: [Vec<[f64; 2]>; 2],
-    /// By side and kind, the share in one draw.
+    /// Probability in one draw, by side and kind.
     sums: [Vec<f64>; 2],
 }
 
@@ -285,7 +285,7 @@ fn add(moments: &mut [f64; 2], share: f64) {
     moments[1] += share * share;
 }
 
-/// Moments that are put together from parts.
+/// Moments of a mixture, accumulated part by part.
 struct Mixture {
     mean: Vec<f64>,
     second: f64,
@@ -301,7 +301,7 @@ impl Mixture {
         self.second += share[1];
     }
 
-    /// Adds what was on the other side as one kind.
+    /// Adds the distribution within one kind of the other side.
     fn add_part(&mut self, share: [f64; 2], other: &Parts, kind: usize) {
         self.second += share[1] * other.seconds[kind];
         for value in other.of_kind(kind) {

@@ -1,19 +1,19 @@
-//! Draws of a Dirichlet with few components, down to the smallest alphas.
+//! Draws from a Dirichlet with few components, numerically safe for small alphas.
 
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma};
 
 use crate::base::rng::Stream;
 
-/// A Dirichlet to draw from again and again. The gammas are drawn as logarithms (Gamma(a) = Gamma(a + 1) U^(1/a); Marsaglia
-/// and Tsang 2000), since those of small alphas vanish otherwise.
+/// Sampler of one Dirichlet. Gamma variates are drawn as logarithms (Gamma(a) = Gamma(a + 1) U^(1/a); Marsaglia and Tsang
+/// 2000), since those of small alphas underflow otherwise.
 pub struct Gammas {
-    /// Gamma(a + 1) and a, by component.
+    /// Distribution Gamma(a + 1) and a itself, by component.
     of: Vec<(Option<Gamma<f64>>, f64)>,
 }
 
 impl Gammas {
-    /// With these parameters, all above 0.
+    /// The sampler of the Dirichlet with these alphas, all above 0.
     pub fn new(alphas: &[f64]) -> Gammas {
         Gammas { of: alphas.iter().map(|&alpha| (Gamma::new(alpha + 1.0, 1.0).ok(), alpha)).collect() }
     }

@@ -1,8 +1,8 @@
 //! Inference of the human's belief, event by event: a product of Dirichlets over the state aspects (paper, section
 //! "Inference of the human belief").
 //!
-//! What has a closed form is computed by it: reading, forgetting, signals, own presses that one location decides. Only the
-//! evidence of a press needs samples, and what a press of several locations or of the robot may have done.
+//! Closed forms are used for reading, forgetting, signals, and own presses that involve one location. Samples are used for the
+//! likelihood of a press, for own presses that involve several locations, and for presses of the robot.
 
 mod distinct;
 mod evidence;
@@ -33,7 +33,7 @@ use exchange::Exchange;
 use reading::Reader;
 use serving::Serving;
 
-/// What the human learns from a button that several locations decide about.
+/// Update rule of a button: from one location, or from several that jointly determine the effect of the press.
 #[derive(Clone, Debug)]
 enum Lesson {
     Alone,
@@ -41,25 +41,25 @@ enum Lesson {
     Serving(Serving),
 }
 
-/// The estimate of the human's belief, and all it takes to go on with it.
+/// The recursive estimator of the human's belief.
 #[derive(Clone, Debug)]
 pub struct BeliefFilter {
     kitchen: Arc<Kitchen>,
     model: HumanModel,
     seed: u64,
     belief: DirichletBelief,
-    /// What recipes are forgotten to.
+    /// The prior to which recipe beliefs decay.
     prior: DirichletBelief,
     reader: Reader,
     choice: ChoiceModel,
-    /// By button of the human.
+    /// Update rule of each button of the human, by [`ButtonId`].
     lessons: Vec<Lesson>,
     sampler: Sampler,
     shown: State,
-    /// Presses of both agents so far: chance follows from their number, so that nothing else that is recorded or told
-    /// changes it.
+    /// Number of presses of both agents so far. It seeds the random stream of an update, so that other events in a log do not
+    /// change the estimate.
     presses: u64,
-    /// When it was last forgotten; nothing while the trial stands still.
+    /// Time up to which forgetting has been applied; `None` while the trial is paused.
     forgot: Option<SessionTime>,
     evidence: Option<Evidence>,
 }
@@ -97,12 +97,12 @@ impl BeliefFilter {
         &self.belief
     }
 
-    /// How well the last press of the human could be explained.
+    /// Likelihood and effective sample size of the human's last press.
     pub fn evidence(&self) -> Option<Evidence> {
         self.evidence
     }
 
-    /// Moves the estimate on by one observation. Chance follows from the seed and the number of presses alone.
+    /// Updates the estimate with one observation. The random stream depends on the seed and the number of presses only.
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
         let now = observation.time;
         if let Observed::Gaze { sample, taken } = observation.what {
@@ -151,7 +151,7 @@ impl BeliefFilter {
         self.reader.show(now, state, self.model.perception.history_s);
     }
 
-    /// Recipes decay towards what was believed of them at first.
+    /// Lets recipe beliefs decay towards their prior.
     fn forget(&mut self, now: SessionTime) {
         let Some(last) = self.forgot else { return };
         self.forgot = Some(now.max(last));
@@ -177,7 +177,7 @@ impl BeliefFilter {
         }
     }
 
-    /// Orders that stop showing "served": who knows that they were served expects that.
+    /// Handles orders whose display changes from "served" to "none": a human who believes "served" expects this change.
     fn expect_cleared(&mut self, state: State) {
         for &order in &self.kitchen.orders {
             if self.shown.order(order) != OrderContent::Served || state.order(order) == OrderContent::Served {
@@ -191,7 +191,7 @@ impl BeliefFilter {
         }
     }
 
-    /// A signal makes certain what it is about, if it is noticed.
+    /// Makes the aspects that a signal shows certain, with the probability that the signal is noticed.
     fn told(&mut self, location: LocationId) {
         let kitchen = self.kitchen.clone();
         let mut aspects = vec![AspectId::of_location(location)];

@@ -1,18 +1,19 @@
-//! What the human learns from its own press: it knows what it pressed and whether that had an effect.
+//! The update by an own press: the human knows which button it pressed and whether the press was effective.
 //!
-//! Its belief is conditioned on effect or no effect, and moved on by the rules. Where one location decides, that is exact:
-//! a Dirichlet that is restricted to some of its values is a Dirichlet of their alphas. Where hand and location decide
-//! together (see [`super::exchange`]), or plate, order and recipe (see [`super::serving`]), only the shares of the kinds of contents
-//! that the rules treat alike are drawn; how a kind's share is divided among its contents is independent of that and stays
-//! exactly as it is.
+//! The belief is conditioned on effective or ineffective, then transformed by the rules. Where one location determines the effect,
+//! the update is exact: a Dirichlet restricted to some of its values is a Dirichlet with their alphas. Where hand and location
+//! (see [`super::exchange`]) or plate, order and recipe (see [`super::serving`]) determine it jointly, only the probabilities of
+//! classes of contents that the rules treat alike are sampled; the distribution within a class is independent of them and stays
+//! exact.
 
 use crate::kitchen::{Agent, AspectId, ButtonAction, ContentId, Kitchen};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 
-/// So much of every belief is doubt, spread as expected: what is left when something happens that was held impossible.
+/// Share of the expected distribution that is mixed into every draw, so that an observation that a draw holds for impossible
+/// still leaves a proper distribution.
 pub const DOUBT: f64 = 1e-6;
 
-/// Restricts a Dirichlet to the values that `keep`, and lets each become another: exact.
+/// Restricts a Dirichlet to the values with `keep`, then maps each value by `becomes` (exact).
 fn restrict(dirichlet: &Dirichlet, keep: impl Fn(usize) -> bool, becomes: impl Fn(usize) -> usize) -> Dirichlet {
     let mut mean = vec![0.0; dirichlet.mean().len()];
     let mut kept = 0.0;
@@ -26,7 +27,7 @@ fn restrict(dirichlet: &Dirichlet, keep: impl Fn(usize) -> bool, becomes: impl F
     }
 }
 
-/// Learns from a press that works at one location alone; whether it was one.
+/// Updates the belief by a press whose effect depends on one location; returns whether it was such a press.
 pub fn learn_alone(kitchen: &Kitchen, belief: &mut DirichletBelief, action: ButtonAction, effective: bool) -> bool {
     let hand = AspectId::of_location(kitchen.hands[Agent::Human.index()]);
     let empty = value_of(kitchen, hand, ContentId::EMPTY);
@@ -40,7 +41,7 @@ pub fn learn_alone(kitchen: &Kitchen, belief: &mut DirichletBelief, action: Butt
             };
         }
         ButtonAction::Trash => {
-            // It is empty now, or was so before.
+            // The hand is empty afterwards: emptied by an effective press, empty already before an ineffective one.
             let of_hand = &mut belief.aspects[hand.index()];
             *of_hand = restrict(of_hand, |_| true, |_| empty);
         }

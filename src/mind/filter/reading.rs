@@ -1,11 +1,11 @@
-//! Reading: what a gaze sample tells the human, in closed form.
+//! Perception: the update of the belief by a gaze sample, in closed form.
 //!
 //! A sample that covers dt reads a location with probability 1 - exp(-rate dt), at a rate that falls with the distance of
-//! the gaze from its area (see [`PerceptionModel`]). One look gives one draw from the confusion matrix: who has read the
-//! location in this look does not read it again. Of the belief m0 from when the look began (or from the last event that
-//! changed the belief, when a share `unread` had not read it yet), 1 - unread (1 - survived) is left, where `survived` is the
-//! probability of not having read it since; all else is what was read. So a sample takes a further share of m0 to what is
-//! read, and mean and second moment are exact, without samples.
+//! the gaze from its area (see [`PerceptionModel`]). One look gives one draw from the confusion matrix: a location is read at
+//! most once in a look. Let m0 be the belief at the start of the look, or after the last other event that changed the belief;
+//! `unread` is the probability that the location had not been read in this look by then, and `survived` the probability that
+//! it has not been read since. The weight of m0 in the present belief is 1 - unread (1 - survived); the remaining weight is on
+//! the content that was read. Each sample moves a further share of m0 to that content. Mean and second moment are exact.
 
 use std::collections::VecDeque;
 
@@ -15,27 +15,27 @@ use crate::kitchen::{AspectId, ContentId, DishId, Kitchen, LocationId, LocationK
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::model::{PerceptionModel, ReadingRate};
 
-/// Where reading is slower than this share of the full rate, the gaze is elsewhere.
+/// The gaze counts as elsewhere where the reading rate is below this share of the full rate.
 const ELSEWHERE: f64 = 0.1;
-/// Less likely readings are left out.
+/// Readings with a smaller probability are ignored.
 const NEGLIGIBLE: f64 = 1e-9;
 
 /// A look at a location.
 #[derive(Clone, Copy, Debug)]
 struct Look {
-    /// The share that had not read it at the last event.
+    /// Probability that the location had not been read in this look at the last other event.
     unread: f64,
-    /// The probability of not having read it since then.
+    /// Probability that it has not been read since then.
     survived: f64,
-    /// The code that the display showed when it was last looked at.
+    /// Code of the content that the display showed at the last sample of the look.
     code: u8,
-    /// When the gaze was last there.
+    /// Time of the last sample of the look.
     last: SessionTime,
 }
 
 impl Look {
-    /// The location is read with this probability by who has not read it yet: the share of the present belief that is
-    /// replaced by what is read.
+    /// Applies a probability `chance` of being read, given that the location has not been read in this look. Returns the share of
+    /// the present belief that the reading replaces.
     fn read(&mut self, chance: f64) -> f64 {
         let left = 1.0 - self.unread * (1.0 - self.survived);
         self.survived *= 1.0 - chance;
@@ -43,16 +43,16 @@ impl Look {
     }
 }
 
-/// Reads gaze samples.
+/// Applies gaze samples to the estimate.
 #[derive(Clone, Debug)]
 pub struct Reader {
-    /// By location and value of its aspect, the chance that each value is read.
+    /// Confusion matrix of each location: by true value, the probability of reading each value.
     confusions: Vec<Vec<Vec<f64>>>,
     rate: ReadingRate,
     looks: Vec<Look>,
-    /// What the display showed, and since when.
+    /// Recent states of the display, each with the time since which it was shown.
     shown: VecDeque<(SessionTime, State)>,
-    /// When the last sample was taken, usable or not.
+    /// Time at which the last sample was taken, whether it was usable or not.
     last: Option<SessionTime>,
 }
 
@@ -67,7 +67,7 @@ impl Reader {
         Reader { confusions, rate: model.reading_rate(), looks, shown: VecDeque::new(), last: None }
     }
 
-    /// The display shows this from now on.
+    /// Notes that the display shows `state` from `now` on.
     pub fn show(&mut self, now: SessionTime, state: State, history_s: f64) {
         self.shown.push_back((now, state));
         while self.shown.len() > 1 && now.secs_since(self.shown[1].0) > history_s {
@@ -75,7 +75,7 @@ impl Reader {
         }
     }
 
-    /// The belief was changed by something else than reading: who has read and who has not is no longer told apart by it.
+    /// Notes that an event other than reading is about to change the belief: the present belief becomes the new m0 of every look.
     pub fn settle(&mut self) {
         for look in &mut self.looks {
             look.unread *= look.survived;
@@ -83,17 +83,17 @@ impl Reader {
         }
     }
 
-    /// Time stood still: the next sample begins anew.
+    /// Notes a pause: the next sample does not cover the time since the previous one.
     pub fn rest(&mut self) {
         self.last = None;
     }
 
-    /// What the display showed at a time; nothing if that is too long ago.
+    /// State of the display at `time`; `None` if that lies before the kept history.
     fn shown_at(&self, time: SessionTime) -> Option<State> {
         self.shown.iter().rev().find(|(since, _)| *since <= time).map(|(_, state)| *state)
     }
 
-    /// Updates the belief with a sample that was taken at this time.
+    /// Updates the belief with a sample taken at session time `taken`.
     pub fn read(
         &mut self,
         kitchen: &Kitchen,
@@ -105,7 +105,7 @@ impl Reader {
         let covers_s = self.last.map_or(model.max_sample_s, |last| taken.secs_since(last)).min(model.max_sample_s);
         self.last = Some(self.last.map_or(taken, |last| last.max(taken)));
         let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
-        // What is not a number fails these comparisons.
+        // NaN fails these comparisons.
         let is_usable = on_display && sample.confidence >= model.min_confidence && covers_s > 0.0;
         let Some(state) = self.shown_at(taken).filter(|_| is_usable) else { return };
         let (full_hz, confidence) = (model.reading_rate_hz, sample.confidence.min(1.0));
@@ -131,7 +131,7 @@ impl Reader {
     }
 }
 
-/// The chances of what is read where this value is: its own, each look-alike, and each other one.
+/// Probabilities of reading each value of a location's aspect, given that `value` is displayed.
 fn confusion(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, value: usize) -> Vec<f64> {
     let aspect = &kitchen.aspects[location.index()];
     let alike: Vec<usize> = look_alike_codes(kitchen, location, aspect.values[value])
@@ -151,7 +151,7 @@ fn confusion(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, v
     (0..aspect.values.len()).map(chance).collect()
 }
 
-/// The codes of what a content, or an order's dish, may be taken for.
+/// Codes of the look-alikes of a content or, at an order, of its dish.
 fn look_alike_codes(kitchen: &Kitchen, location: LocationId, code: u8) -> Vec<u8> {
     if kitchen.location(location).kind != LocationKind::Order {
         return kitchen.content(ContentId(code)).look_alikes.iter().map(|alike| alike.0).collect();

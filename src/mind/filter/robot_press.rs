@@ -1,10 +1,9 @@
-//! The prediction of a robot's press: the human notices that the robot pressed something, not what.
+//! The prediction of a robot's press: the human notices that the robot pressed a button, not which one.
 //!
-//! States and recipes are drawn from the estimate; under each of them the robot's task policy says what it may press, and
-//! the rules what comes of it. That gives for every aspect how likely each of its values turns into which other, a kernel
-//! T. The belief b becomes b T, so that its mean is m T, and, since b is Dirichlet,
-//! S' = (A sum_w m'_w^2 + sum_v m_v sum_w T_vw^2) / (A + 1). Values that no press turns into others stay exactly as
-//! they are.
+//! Worlds are drawn from the estimate. For each, the robot's task policy gives the possible presses and the rules give their
+//! results. This defines a transition kernel T over the values of every aspect. The belief b becomes b T; its mean is m T and,
+//! since b is Dirichlet with precision A, S' = (A sum_w m'_w^2 + sum_v m_v sum_w T_vw^2) / (A + 1). Values that no press
+//! changes are not affected.
 
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
@@ -15,10 +14,10 @@ use crate::robot::policy;
 
 use super::urn::Urn;
 
-/// At least this share of all draws has to be of a world for plans to be made in it.
+/// Worlds with a smaller share of the draws use lower bounds instead of plans for their costs to go.
 const COUNTS: f64 = 0.05;
 
-/// One way a value may go, and how often it did.
+/// One transition of a value with its weight.
 #[derive(Clone, Copy, Debug)]
 struct Flow {
     aspect: usize,
@@ -27,7 +26,7 @@ struct Flow {
     weight: f64,
 }
 
-/// Moves the belief on by a press of the robot that the human thinks through with probability `foresight`.
+/// Updates the belief by a press of the robot whose consequences the human infers with probability `foresight`.
 pub fn predict(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -78,11 +77,11 @@ fn note_changes(kitchen: &Kitchen, before: State, after: State, weight: f64, flo
     }
 }
 
-/// The belief after a kernel, given by what flowed and by how often each value was drawn.
+/// The belief after the kernel that is given by the transitions `flows` and by how often each value was drawn.
 fn moved(dirichlet: &Dirichlet, flows: &[Flow], occurred: &[f64]) -> Dirichlet {
     let (old, precision) = (dirichlet.mean(), dirichlet.precision());
     let mut mean = old.to_vec();
-    // By value, what stays, and the sum over targets of T^2.
+    // By value: the probability of staying, and the sum over targets of T^2.
     let mut stays = vec![1.0; old.len()];
     let mut squares = vec![0.0; old.len()];
     for flow in flows {
@@ -98,7 +97,7 @@ fn moved(dirichlet: &Dirichlet, flows: &[Flow], occurred: &[f64]) -> Dirichlet {
     Dirichlet::of_moments(mean, (precision * square + spread) / (precision + 1.0))
 }
 
-/// Worlds drawn from the expected belief, each value as often as its share says; the weight is the number of draws.
+/// Worlds drawn from the expected belief by stratified sampling; a world's weight is its number of draws.
 fn draw(kitchen: &Kitchen, belief: &DirichletBelief, draws: usize, random: &mut Stream) -> WeightedWorlds {
     let mut worlds = vec![World::empty(kitchen); draws];
     let mut values = vec![0; draws];
@@ -127,7 +126,7 @@ fn draw(kitchen: &Kitchen, belief: &DirichletBelief, draws: usize, random: &mut 
     together
 }
 
-/// Whether an order wants this.
+/// Whether an active order shows this content.
 fn is_wanted(kitchen: &Kitchen, state: State, content: OrderContent) -> bool {
     kitchen.orders.iter().any(|&order| state.order(order) == content)
 }

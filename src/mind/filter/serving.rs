@@ -1,8 +1,8 @@
-//! What the human learns from a press of a serve button: plate, order and recipe decide together whether it is served.
+//! The update by an own press of a serve button, whose effect depends on plate, order and recipe jointly.
 //!
-//! An order is served if what is on the plate is what the ordered dish is made of. Who believes that an order wants d with
-//! probability o(d), that the plate holds x with p(x), and that d is x with r_d(x), holds the press for effective with
-//! probability sum_d o(d) sum_x p(x) r_d(x). Drawn are the contents that may be a dish one by one, all others as one.
+//! An order is served if the plate holds the stack of the ordered dish. With the believed probabilities o(d) that the order is
+//! dish d, p(x) that the plate holds x, and r_d(x) that the recipe of d is x, the press is effective with probability
+//! sum_d o(d) sum_x p(x) r_d(x). Contents that can be a dish are sampled one by one, all others as one class.
 
 use crate::base::rng::Stream;
 use crate::kitchen::{AspectId, DishId, Kitchen, LocationId, OrderContent};
@@ -11,7 +11,7 @@ use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use super::gamma::Gammas;
 use super::own_press::DOUBT;
 
-/// A dish that is ordered with a smaller expected probability is left out.
+/// Dishes with a smaller expected probability of being ordered are ignored.
 const NEGLIGIBLE: f64 = 1e-4;
 
 /// A serve button.
@@ -24,24 +24,24 @@ pub struct Serving {
     dishes: Vec<Served>,
 }
 
-/// A dish as the button sees it.
+/// The values of order and plate that belong to one dish.
 #[derive(Clone, Debug)]
 struct Served {
-    /// The value of the order that wants it.
+    /// Value of the order's aspect for this dish.
     ordered: usize,
     recipe: AspectId,
-    /// The plate's value of each variant of its recipe.
+    /// Value of the plate's aspect for each variant of the dish's recipe.
     on_plate: Vec<Option<usize>>,
 }
 
-/// Draws of one aspect before and after the press, and what they add to its moments.
+/// Change of the moments of one aspect, accumulated over draws before and after conditioning.
 struct Tally {
     mean: Vec<f64>,
     second: f64,
 }
 
 impl Serving {
-    /// The human's serve button of this order.
+    /// The human's serve button of an order.
     pub fn new(kitchen: &Kitchen, order: LocationId) -> Serving {
         let (order, plate) = (AspectId::of_location(order), AspectId::of_location(kitchen.plate));
         let [ordered, on_plate] = [order, plate].map(|aspect| &kitchen.aspects[aspect.index()]);
@@ -65,7 +65,7 @@ impl Serving {
         let mut draw_of: Vec<Draw> =
             aspects.map(|aspect| Draw::from_dirichlet(belief.aspect(aspect), aspect)).collect();
         for draw in &mut draw_of[1..2] {
-            // Only what may be a dish is of interest on the plate.
+            // Contents of the plate that cannot be a dish form one class.
             draw.lump(|value| !self.dishes.iter().any(|dish| dish.on_plate.contains(&Some(value))));
         }
         let mut tallies: Vec<Tally> = draw_of.iter().map(Draw::tally).collect();
@@ -91,11 +91,11 @@ impl Serving {
     }
 }
 
-/// The draws of order, plate and recipes after conditioning them on effect or none; `None` if that has no probability.
+/// The draws of order, plate and recipes conditioned on an effective or ineffective press; `None` if its probability is 0.
 fn condition(dishes: &[&Served], draws: &[Draw], effective: bool) -> Option<Vec<Vec<f64>>> {
     let (order, plate) = (&draws[0].now, &draws[1].now);
     let place = |value: Option<usize>| value.map(|value| draws[1].part_of[value]);
-    // For each dish: that it is wanted and on the plate, and that it is wanted and not there.
+    // For each dish: probability that it is ordered and on the plate, and that it is ordered and not on the plate.
     let fits = |index: usize, variant: usize| match place(dishes[index].on_plate[variant]) {
         Some(part) => (plate[part], 1.0 - plate[part]),
         None => (0.0, 1.0),
@@ -124,7 +124,7 @@ fn condition(dishes: &[&Served], draws: &[Draw], effective: bool) -> Option<Vec<
         let is_wanted = order[dish.ordered];
         after[0][dish.ordered] = is_wanted * of(each[index]) / total;
         let recipe = &draws[index + 2].now;
-        // Where another dish is wanted, nothing is learned of this recipe.
+        // Where another dish is ordered, the press carries no information about this recipe.
         let elsewhere = 1.0 - is_wanted * of(each[index]) / total;
         for (variant, r) in recipe.iter().enumerate() {
             after[index + 2][variant] = elsewhere * r + is_wanted * r * of(fits(index, variant)) / total;
@@ -139,10 +139,10 @@ fn condition(dishes: &[&Served], draws: &[Draw], effective: bool) -> Option<Vec<
     Some(after)
 }
 
-/// A categorical distribution that is drawn from a Dirichlet again and again, some values as one.
+/// Repeated draws of a categorical distribution from a Dirichlet, with some values merged into classes.
 struct Draw {
     aspect: AspectId,
-    /// The part that each value belongs to.
+    /// Class of each value.
     part_of: Vec<usize>,
     means: Vec<f64>,
     precision: f64,
@@ -150,7 +150,7 @@ struct Draw {
     now: Vec<f64>,
 }
 
-/// Of a Dirichlet with these means; a part may be empty.
+/// The sampler of a Dirichlet with these means; a class may be empty.
 fn gammas(means: &[f64], precision: f64) -> Gammas {
     let alphas: Vec<f64> = means.iter().map(|mean| (precision * mean).max(f64::MIN_POSITIVE)).collect();
     Gammas::new(&alphas)
@@ -164,7 +164,7 @@ impl Draw {
         Draw { aspect, part_of, now: means.clone(), gammas: gammas(&means, precision), means, precision }
     }
 
-    /// Puts all values together that are of no interest.
+    /// Merges all values with `is_dull` into one class.
     fn lump(&mut self, is_dull: impl Fn(usize) -> bool) {
         let mut means = vec![0.0];
         for value in 0..self.part_of.len() {
@@ -190,7 +190,7 @@ impl Draw {
         Tally { mean: vec![0.0; self.means.len()], second: 0.0 }
     }
 
-    /// The Dirichlet with what the draws changed in its moments.
+    /// The Dirichlet after adding the accumulated change of its moments.
     fn changed(&self, before: &Dirichlet, tally: &Tally) -> Dirichlet {
         let old = before.mean();
         let share = |value: usize| {

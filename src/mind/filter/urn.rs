@@ -1,4 +1,4 @@
-//! Polya urns: draws from a categorical distribution that is itself drawn from a Dirichlet, without drawing it.
+//! Polya urns: draws from a categorical distribution that is itself a draw from a Dirichlet, without drawing that distribution.
 //!
 //! The first draw has the Dirichlet's mean; the n-th repeats one of those before it with probability (n - 1) / (A + n - 1).
 //! Given the draws, the distribution is Dir(alpha + counts) (Blackwell and MacQueen 1973).
@@ -8,26 +8,27 @@ use rand::RngExt;
 use crate::base::rng::Stream;
 use crate::mind::dirichlet::Dirichlet;
 
-/// Values with a smaller expected probability are the tail, where there are so many values: one of them stands for all.
+/// In aspects with at least [`MANY`] values, those with a smaller expected probability form the tail, which one of them
+/// represents.
 const TAIL: f64 = 0.01;
 const MANY: usize = 8;
 
-/// The urn of one aspect. The values of its tail are drawn as one, which is chosen anew for every urn by their shares: so
-/// each of them has its turn, and few strange states have to be thought through at a time.
+/// The urn of one aspect. The tail is represented by one of its values, drawn anew for every urn in proportion to the
+/// probabilities: every value gets its turn over time, while each press evaluates few improbable worlds.
 #[derive(Clone, Debug, Default)]
 pub struct Urn {
-    /// The value that stands for the tail.
+    /// The value that represents the tail.
     stand_in: Option<u8>,
-    /// Values, the likeliest first, and the chance that a draw is one of those up to it.
+    /// Values in decreasing order of probability, with their cumulative probability.
     order: Vec<(u8, f64)>,
-    /// The same for first draws, where they do not come from the mean.
+    /// The same for first draws, where they are not drawn from the mean.
     proposal: Vec<(u8, f64)>,
-    /// `stays[k]`: the chance that none of the draws 1 to k (the first is 0) is a new one.
+    /// `stays[k]`: probability that none of the draws 1 to k is new (draw 0 is the first).
     stays: Vec<f64>,
 }
 
 impl Urn {
-    /// The urn of this Dirichlet, for `draws` draws.
+    /// Prepares the urn for `draws` draws from this Dirichlet.
     pub fn fill(&mut self, dirichlet: &Dirichlet, draws: usize, random: &mut Stream) {
         let mean = dirichlet.mean();
         self.order.clear();
@@ -60,17 +61,17 @@ impl Urn {
         }
     }
 
-    /// Which of the values stands for the tail, if there is one.
+    /// The value that represents the tail, if there is a tail.
     pub fn stand_in(&self) -> Option<usize> {
         self.stand_in.map(usize::from)
     }
 
-    /// Whether a value belongs to the tail of the distribution with these expected probabilities.
+    /// Whether a value belongs to the tail of a distribution with these expected probabilities.
     pub fn is_tail(mean: &[f64], value: usize) -> bool {
         mean.len() > MANY && mean[value] < TAIL
     }
 
-    /// The value at this point of the cumulated mean, 0 to 1.
+    /// The value at a point of the cumulative mean, from 0 to 1.
     #[inline]
     fn value_at(&self, point: f64) -> u8 {
         let reached = self.order.iter().find(|(_, sum)| point < *sum);
@@ -83,8 +84,8 @@ impl Urn {
         self.value_at(random.random::<f64>())
     }
 
-    /// Lets first draws come from the mean and, with probability `share`, evenly from all values: rare ones are drawn more
-    /// often then, and count the less. By value, how much a draw counts.
+    /// Lets first draws come from a mixture: from all values evenly with probability `share`, else from the mean. Returns the
+    /// importance weight of a draw by value.
     pub fn spread(&mut self, share: f64) -> Vec<f64> {
         let values = self.order.iter().map(|(value, _)| usize::from(*value) + 1).max().unwrap_or(0);
         let mut counts = vec![1.0; values];
@@ -100,7 +101,7 @@ impl Urn {
         counts
     }
 
-    /// First draws for many urns, each value as often as its mean (or [`Urn::spread`]) says, to a draw, in random order.
+    /// First draws of many samples by stratified sampling from the mean (or the mixture of [`Urn::spread`]), in random order.
     pub fn first_draws(&self, random: &mut Stream, out: &mut [u8]) {
         let from = if self.proposal.is_empty() { &self.order } else { &self.proposal };
         let step = 1.0 / out.len() as f64;
@@ -118,8 +119,8 @@ impl Urn {
         }
     }
 
-    /// The draws that follow the first one, as many as there is room for with it. True if all are the same; what `drawn`
-    /// holds means nothing then.
+    /// Fills `drawn` with the draws that follow the first one. Returns true if all draws are equal; the content of `drawn` is
+    /// then undefined.
     #[inline]
     pub fn draw_on(&self, random: &mut Stream, first: u8, drawn: &mut [u8]) -> bool {
         let mut next_new = self.next_new(random, 0);
@@ -147,7 +148,7 @@ impl Urn {
         false
     }
 
-    /// The next draw after this one that repeats none before it.
+    /// Index of the next draw after `after` that is new.
     #[inline]
     fn next_new(&self, random: &mut Stream, after: usize) -> usize {
         let limit = random.random::<f64>() * self.stays[after];

@@ -1,11 +1,11 @@
-//! The reference: inference of the human's belief in its plainest form, straight from the equations, for tests and
-//! benchmarks. It shares nothing with [`super::filter`] but the parameters, the kitchen's rules, the robot's policy and the
+//! The reference filter: inference of the human's belief implemented directly from the equations, without optimisation, for
+//! tests and benchmarks. It shares with [`super::filter`] only the parameters, the kitchen's rules, the robot's policy and the
 //! cost to go.
 //!
-//! A set of explicit beliefs is drawn from the Dirichlets, every component by a gamma draw. Each event moves every one of
-//! them on by the human model ([`person`]); a press of the human weighs them by p(a | b). Then they are mapped back to
-//! Dirichlets by moment matching, and drawn anew. Gaze samples move the explicit beliefs, too; those of one look after the
-//! other are mapped back together: they change first and second moments linearly, so it makes no difference.
+//! A set of explicit beliefs is drawn from the Dirichlets, every component by a gamma variate. Each event updates every belief
+//! by the human model ([`person`]); a press of the human weighs them by p(a | b). Then they are projected onto Dirichlets by
+//! moment matching, and drawn anew. Gaze samples update the explicit beliefs as well; several in a row are projected together,
+//! which is equivalent, since they change first and second moments linearly.
 
 pub mod people;
 pub mod person;
@@ -24,7 +24,7 @@ use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen};
 
-/// The estimate in its plainest form.
+/// The unoptimised estimator of the human's belief.
 #[derive(Clone, Debug)]
 pub struct ReferenceFilter {
     kitchen: Arc<Kitchen>,
@@ -32,9 +32,9 @@ pub struct ReferenceFilter {
     beliefs: usize,
     seed: u64,
     people: Particles,
-    /// Observations so far.
+    /// Number of observations so far.
     observed: u64,
-    /// Gaze has moved them on since they were last drawn.
+    /// Whether gaze samples have updated the beliefs since they were last drawn.
     looked: bool,
     log_p: Option<f64>,
 }
@@ -67,7 +67,7 @@ impl ReferenceFilter {
         self.log_p
     }
 
-    /// Moves the estimate on by one observation. Chance follows from the seed and the number of observations alone.
+    /// Updates the estimate with one observation. The random stream depends on the seed and the number of observations only.
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
         self.observed += 1;
         let mut random = stream(self.seed, "reference", self.observed);
@@ -89,7 +89,7 @@ impl ReferenceFilter {
         }
     }
 
-    /// Maps the explicit beliefs back to Dirichlets.
+    /// Projects the explicit beliefs onto Dirichlets.
     fn project(&mut self, weights: &[f64], random: &mut Stream) {
         if !self.people.of.is_empty() {
             let estimate = self.people.projected(weights);
@@ -98,7 +98,7 @@ impl ReferenceFilter {
         }
     }
 
-    /// Draws all explicit beliefs anew. As many as before have read what they look at.
+    /// Draws all explicit beliefs anew; the number of beliefs that have read each location in the present look is preserved.
     fn draw(&mut self, estimate: &DirichletBelief, random: &mut Stream) {
         let count = self.people.of.len() as f64;
         let read = |index: usize| self.people.of.iter().filter(|person| person.read[index]).count() as f64 / count;

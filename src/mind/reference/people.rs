@@ -1,5 +1,5 @@
-//! Explicit beliefs that experience the same events: the samples of the reference filter, particles that are kept, or one
-//! human who is simulated from the model.
+//! A set of explicit beliefs that receive the same events: the samples of the reference filter, the particles of an unprojected
+//! filter, or one human simulated from the model.
 
 use std::sync::Arc;
 
@@ -15,24 +15,24 @@ use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::model::HumanModel;
 use crate::mind::observation::{Observation, Observed};
 
-/// Explicit beliefs, and all that they have in common.
+/// Explicit beliefs with their shared model and state.
 #[derive(Clone, Debug)]
 pub struct Particles {
     kitchen: Arc<Kitchen>,
     model: HumanModel,
-    /// What is believed at the start, and what recipes are forgotten to.
+    /// The prior: belief at the start, to which recipe beliefs decay.
     pub prior: DirichletBelief,
-    /// What is believed in doubt: where something happens that was held impossible.
+    /// Distribution that replaces a belief after an observation with probability 0.
     pub doubt: DirichletBelief,
     pub of: Vec<Particle>,
     sight: GazeFollower,
     shown: State,
-    /// When it was last forgotten; nothing while the trial stands still.
+    /// Time up to which forgetting has been applied; `None` while the trial is paused.
     forgot: Option<SessionTime>,
 }
 
 impl Particles {
-    /// Nobody, before the trial's start.
+    /// An empty set, before the trial's start.
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel) -> Particles {
         let shown = kitchen.empty_state();
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
@@ -40,7 +40,7 @@ impl Particles {
         Particles { kitchen, model, prior, doubt, of: Vec::new(), sight, shown, forgot: None }
     }
 
-    /// The trial starts in this state, with so many beliefs drawn from the prior.
+    /// Starts the trial in `state` with `count` beliefs drawn from the prior.
     pub fn start(&mut self, now: SessionTime, state: State, count: usize, random: &mut Stream) {
         self.prior = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);
         self.doubt.clone_from(&self.prior);
@@ -49,7 +49,7 @@ impl Particles {
         self.show(now, state);
     }
 
-    /// Everybody experiences an event. Gives p(a | b) of each belief before a press of the human, else 1.
+    /// Updates every belief with an event. Returns p(a | b) of each belief for a press of the human, else 1.
     pub fn experience(&mut self, observation: &Observation, cost: &mut CostToGo, random: &mut Stream) -> Vec<f64> {
         let now = observation.time;
         if let Observed::Gaze { sample, taken } = observation.what {
@@ -90,7 +90,7 @@ impl Particles {
         vec![1.0; self.of.len()]
     }
 
-    /// The Dirichlets whose means and pooled second moments are those of the beliefs, with these weights.
+    /// The Dirichlets that match mean and pooled second moment of the weighted beliefs.
     pub fn projected(&self, weights: &[f64]) -> DirichletBelief {
         let total: f64 = weights.iter().sum();
         let of_aspect = |index: usize| {
@@ -146,7 +146,7 @@ impl Particles {
         }
     }
 
-    /// Who knows that an order was served expects that it does not show it for long.
+    /// A human who believes that an order was served expects it to disappear.
     fn expect_cleared(&mut self, state: State) {
         for &order in &self.kitchen.orders {
             let was_served = self.shown.order(order) == OrderContent::Served;

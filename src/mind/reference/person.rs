@@ -1,8 +1,8 @@
-//! One explicit belief of a human, and how the human model moves it on: the equations as they stand, for one categorical
-//! distribution per aspect.
+//! One explicit belief of a human (a categorical distribution per aspect) and its update by the human model, implemented directly
+//! from the equations.
 //!
-//! The same code stands for a belief sample of the reference filter, for a particle that is kept without projection, and
-//! for a human who is simulated from the model itself.
+//! The same code serves as a belief sample of the reference filter, as a particle of an unprojected filter, and as a human
+//! simulated from the model.
 
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma};
@@ -16,20 +16,20 @@ use crate::mind::decision::DecisionModel;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::robot::policy;
 
-/// So much of every belief is doubt: what is left when something happens that was held impossible.
+/// Share of the fallback distribution in every belief, so that an observation with probability 0 still leaves a distribution.
 pub const DOUBT: f64 = 1e-6;
-/// Where all ways the kitchen may be are gone through, values with less probability are left out.
+/// Enumerations of all worlds ignore values with a smaller probability.
 const NEGLIGIBLE: f64 = 1e-4;
 
 /// A belief: for every aspect the probabilities of its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Particle {
     pub of: Vec<Vec<f64>>,
-    /// By location, whether it was read in the present look.
+    /// Whether each location has been read in the present look.
     pub read: Vec<bool>,
 }
 
-/// A way the kitchen may be, and its probability.
+/// A world with its probability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PossibleWorld {
     pub state: State,
@@ -44,7 +44,8 @@ impl Particle {
         Particle { of, read: vec![false; kitchen.locations.len()] }
     }
 
-    /// Looks: what was not read yet in this look is read by chance, and believed as it was read.
+    /// Applies a gaze sample: a location not yet read in this look is read with its probability, and the belief becomes certain of
+    /// the value that was read.
     pub fn look(&mut self, glances: &[LocationReading], random: &mut Stream) {
         for glance in glances {
             let location = glance.location.index();
@@ -59,14 +60,14 @@ impl Particle {
         }
     }
 
-    /// Is certain of a value from now on.
+    /// Makes the belief certain of a value.
     pub fn settle(&mut self, aspect: AspectId, value: usize) {
         let of = &mut self.of[aspect.index()];
         of.fill(0.0);
         of[value] = 1.0;
     }
 
-    /// Time passes: with probability `lost` a recipe is remembered anew, as at the start.
+    /// Applies forgetting: with probability `lost` a recipe belief is drawn anew from the prior.
     pub fn forget(&mut self, kitchen: &Kitchen, prior: &DirichletBelief, lost: f64, random: &mut Stream) {
         for (index, aspect) in kitchen.aspects.iter().enumerate() {
             if matches!(aspect.kind, AspectKind::Recipe(_)) && random.random::<f64>() < lost {
@@ -75,7 +76,7 @@ impl Particle {
         }
     }
 
-    /// An order that was believed to show "served" is believed to show nothing.
+    /// Moves the probability of "served" to "none" for an order.
     pub fn expect_cleared(&mut self, kitchen: &Kitchen, order: LocationId) {
         let aspect = &kitchen.aspects[order.index()];
         let [served, none] = [OrderContent::Served, OrderContent::None].map(|what| aspect.index_of(what.code()));
@@ -85,8 +86,8 @@ impl Particle {
         }
     }
 
-    /// E_b[C(s)], and E_b[C(s')] after every button of the human: over so many states and recipes drawn from the belief, or
-    /// over all of them where they are few.
+    /// E_b[C(s)], and E_b[C(s')] after every button of the human, over worlds drawn from the belief, or over all worlds where there
+    /// are few.
     pub fn prospects(
         &self,
         kitchen: &Kitchen,
@@ -119,8 +120,8 @@ impl Particle {
         press_chances(kitchen, model, &after)
     }
 
-    /// Knows that it pressed a button, and whether that had an effect: Bayes' rule over what the press depends on, and the
-    /// rules of the kitchen. `expected`: what is believed in doubt.
+    /// Conditions the belief on an own press and whether it was effective: Bayes' rule over the aspects that the press depends on,
+    /// then the kitchen's rules. `expected` is the fallback distribution of each aspect.
     pub fn pressed(&mut self, kitchen: &Kitchen, expected: &[Vec<f64>], button: ButtonId, effective: bool) {
         let action = kitchen.button(Agent::Human, button).action;
         let hand = kitchen.hands[Agent::Human.index()];
@@ -130,7 +131,7 @@ impl Particle {
             ButtonAction::Process(process) => vec![kitchen.processes[usize::from(process)].place.unwrap_or(hand)],
             ButtonAction::Serve(order) => vec![order, kitchen.plate],
         };
-        // What a hand holds is empty after "trash" either way, and full of something after "take".
+        // The hand is empty after "trash" in both cases, and full after "take".
         let doubtful = |index: usize| -> Vec<f64> {
             self.of[index].iter().zip(&expected[index]).map(|(p, m)| (1.0 - DOUBT) * p + DOUBT * m).collect()
         };
@@ -159,7 +160,7 @@ impl Particle {
             for recipe in kitchen.locations.len()..kitchen.aspects.len() {
                 match dish.filter(|(aspect, _)| aspect.index() == recipe) {
                     Some((_, variant)) => after[recipe][variant] += way.p,
-                    // Where another dish is wanted, nothing is learned of this recipe.
+                    // Where another dish is ordered, the press carries no information about this recipe.
                     None => after[recipe].iter_mut().zip(&before[recipe]).for_each(|(sum, p)| *sum += way.p * p),
                 }
             }
@@ -176,8 +177,8 @@ impl Particle {
         }
     }
 
-    /// Notices that the robot pressed something: what the robot may have done under each way the kitchen may be turns
-    /// values of each aspect into others.
+    /// Predicts a press of the robot: for each world of the belief, the robot's possible presses move probability between the values
+    /// of each aspect.
     pub fn robot_pressed(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, states: usize, random: &mut Stream) {
         let locations = kitchen.locations.len();
         let square = |index: usize| vec![vec![0.0; self.of[index].len()]; self.of[index].len()];
@@ -211,7 +212,7 @@ impl Particle {
         }
     }
 
-    /// The ways the kitchen may be under this belief: all of them if they are not more than `draws`, else so many draws.
+    /// The worlds of this belief: all of them if there are at most `draws`, else `draws` samples.
     pub fn ways(&self, kitchen: &Kitchen, draws: usize, random: &mut Stream) -> Vec<PossibleWorld> {
         let count = self.of.iter().map(|values| values.iter().filter(|p| **p > NEGLIGIBLE).count());
         let count = count.fold(1usize, |product, values| product.saturating_mul(values));
@@ -243,7 +244,7 @@ impl Particle {
     }
 }
 
-/// Goes through all contents of these places.
+/// Enumerates all contents of hand and location.
 fn each_exchange(
     kitchen: &Kitchen,
     belief: &[Vec<f64>],
@@ -264,7 +265,7 @@ fn each_exchange(
     ways.into_iter().for_each(|way| outcome(way, None));
 }
 
-/// Goes through all that the order may want, the plate may hold, and the wanted dish may be made of.
+/// Enumerates all dishes of the order, contents of the plate, and recipes of the ordered dish.
 fn each_serving(
     kitchen: &Kitchen,
     belief: &[Vec<f64>],
@@ -330,8 +331,8 @@ pub fn pick(weights: &[f64], random: &mut Stream) -> usize {
     reached.unwrap_or(weights.len() - 1)
 }
 
-/// A draw from a Dirichlet by gamma draws; as logarithms (Gamma(a) = Gamma(a + 1) U^(1/a)), since those of small alphas
-/// vanish otherwise.
+/// A draw from a Dirichlet by gamma variates, as logarithms (Gamma(a) = Gamma(a + 1) U^(1/a)), since those of small alphas
+/// underflow otherwise.
 pub fn draw(dirichlet: &Dirichlet, random: &mut Stream) -> Vec<f64> {
     let log = |value: usize, random: &mut Stream| {
         let alpha = dirichlet.alpha(value);

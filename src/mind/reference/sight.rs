@@ -1,47 +1,47 @@
-//! What a gaze sample may tell: for every location, how likely it is read by this sample, and as what.
+//! The effect of a gaze sample at each location: the probability of reading it, and the distribution of the value read.
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::{ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::mind::model::PerceptionModel;
 
-/// Where reading is slower than this share of the full rate, the gaze is elsewhere.
+/// The gaze counts as elsewhere where the reading rate is below this share of the full rate.
 const ELSEWHERE: f64 = 0.1;
 
-/// What a sample does at one location.
+/// The effect of a gaze sample at one location.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocationReading {
     pub location: LocationId,
-    /// A new look begins: it can be read anew.
+    /// Whether a new look begins, in which the location can be read again.
     pub begins: bool,
-    /// Probability that it is read now, if it was not yet in this look.
+    /// Probability that it is read by this sample, given that it was not yet read in this look.
     pub chance: f64,
-    /// As what it is read, by value.
+    /// Distribution of the value read.
     pub reading: Vec<f64>,
 }
 
-/// Follows gaze and display.
+/// Tracks looks and the recent states of the display.
 #[derive(Clone, Debug, Default)]
 pub struct GazeFollower {
-    /// What the display showed, and since when.
+    /// Recent states of the display, each with the time since which it was shown.
     shown: Vec<(SessionTime, State)>,
-    /// By location, what it showed in the present look, and when the gaze was last there.
+    /// By location, the displayed code of the present look, and the time of its last sample.
     looks: Vec<(u8, SessionTime)>,
     last: Option<SessionTime>,
 }
 
 impl GazeFollower {
-    /// The display shows this from now on.
+    /// Notes that the display shows `state` from `now` on.
     pub fn show(&mut self, now: SessionTime, state: State) {
         self.shown.push((now, state));
     }
 
-    /// Time stood still.
+    /// Notes a pause.
     pub fn rest(&mut self) {
         self.last = None;
     }
 
-    /// What a sample does that was taken at this time.
+    /// The effect of a sample taken at session time `taken`, by location.
     pub fn glances(
         &mut self,
         kitchen: &Kitchen,
@@ -82,11 +82,11 @@ impl GazeFollower {
         glances
     }
 
-    /// What the display showed at a time; nothing if that is too long ago.
+    /// State of the display at `time`; `None` if that lies before the kept history.
     fn shown_at(&self, time: SessionTime, history_s: f64) -> Option<State> {
         let newest = self.shown.last().map(|(since, _)| *since)?;
         let (at, (_, state)) = self.shown.iter().enumerate().rev().find(|(_, (since, _))| *since <= time)?;
-        // A state is known for as long as the one after it is not older than the history.
+        // A state is kept until its successor is older than the history.
         let is_known = self.shown.get(at + 1).is_none_or(|(until, _)| newest.secs_since(*until) <= history_s);
         is_known.then_some(*state)
     }

@@ -1,4 +1,4 @@
-//! The assistant beside a session: gets a question after every press and every order change, and answers it.
+//! The assistant of a session: answers a request for advice after every press and every order change.
 
 use super::follower::Follower;
 use crate::base::time::SessionTime;
@@ -11,7 +11,7 @@ use crate::kitchen::{AspectId, State};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::session::{Event, Session};
 
-/// What the assistant is asked: the session as it was after an event and all that followed from it at once.
+/// A request for advice: the session after an event and all its immediate consequences.
 #[derive(Clone, Debug)]
 pub struct AdviceRequest {
     /// The number and the time of the event.
@@ -23,14 +23,14 @@ pub struct AdviceRequest {
     changed: Vec<AspectId>,
     robot: RobotIntent,
     robot_press_s: f64,
-    /// What may be said.
+    /// The signals that can be sent.
     signals: Vec<Signal>,
-    /// The number of the human's last press, if that was an error.
+    /// Sequence number of the human's last press, if that press was an error.
     error: Option<u64>,
 }
 
 impl AdviceRequest {
-    /// The question after an event of this number and time.
+    /// The request after the event with this sequence number and time.
     pub fn from_follower(follower: &Follower, seq: u64, time: SessionTime) -> AdviceRequest {
         let session = &follower.session;
         let robot = match session.robot.intention {
@@ -50,7 +50,7 @@ impl AdviceRequest {
         AdviceRequest { seq, time, presses, state, belief, changed, robot, robot_press_s, signals, error }
     }
 
-    /// What there is to decide about.
+    /// The request as a concept receives it.
     pub fn moment(&self) -> DecisionPoint<'_> {
         let AdviceRequest {
             seq,
@@ -68,13 +68,13 @@ impl AdviceRequest {
         DecisionPoint { seq, time, presses, situation, signals, error }
     }
 
-    /// The same question about another estimate, and with other things that may be said.
+    /// The same request with another estimate and other available signals.
     pub fn about(&self, belief: &DirichletBelief, signals: Vec<Signal>) -> AdviceRequest {
         AdviceRequest { belief: belief.clone(), signals, ..self.clone() }
     }
 }
 
-/// Answers questions about one session.
+/// Answers requests for advice in one session.
 #[derive(Debug)]
 pub struct Advisor {
     concept: Box<dyn Concept>,
@@ -82,24 +82,24 @@ pub struct Advisor {
 }
 
 impl Advisor {
-    /// The assistant of a session, by the concept that its settings name.
+    /// The advisor with the concept that the session's settings name.
     pub fn new(session: &Session, cost: CostToGo) -> Advisor {
         Advisor::by(session.spec.assistant.concept, session, cost)
     }
 
-    /// One that advises by this concept.
+    /// The advisor with a given concept.
     pub fn by(name: ConceptName, session: &Session, cost: CostToGo) -> Advisor {
         let Session { kitchen, spec, .. } = session;
         Advisor { concept: concept(name, kitchen.clone(), &spec.human, &spec.assistant, session.seed()), cost }
     }
 
-    /// What the assistant recommends.
+    /// The recommendation for a request.
     pub fn answer(&mut self, question: &AdviceRequest) -> Recommendation {
         self.concept.advise(&mut self.cost, &question.moment())
     }
 }
 
-/// Whether the assistant is asked after such an event: a press of either agent, and what changes the task without one.
+/// Whether advice is requested after this kind of event: a press of either agent, or a change of the task without a press.
 pub fn changes_task(event: &Event) -> bool {
     matches!(
         event,

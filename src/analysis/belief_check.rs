@@ -1,4 +1,4 @@
-//! Holds what was estimated before each press against what the participant believed, and against what it pressed.
+//! Checks the belief estimate before each press against the participant's recorded beliefs and against the press itself.
 
 use std::sync::Arc;
 
@@ -23,10 +23,10 @@ use crate::session::{Event, Session, Stamped};
 /// The seed of the bootstrap: the same recordings give the same interval.
 const SEED: u64 = 1;
 
-/// The baseline takes what was looked at for so long for seen, in seconds.
+/// The baseline counts a location as seen after a look of this length, in seconds.
 const LOOK_S: f64 = 0.1;
 
-/// What `--check-beliefs` prints.
+/// The output of `tomcom replay --check-beliefs`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BeliefCheck {
     pub recordings: u64,
@@ -34,12 +34,12 @@ pub struct BeliefCheck {
     pub human_actions: u64,
     #[serde(flatten)]
     pub detection: Detection,
-    /// Per press, in nats.
+    /// Log likelihood per press, in nats.
     pub log_likelihood: LogLikelihood,
 }
 
 impl BeliefCheck {
-    /// Checks trials of one kitchen, all together.
+    /// Pools the presses of several trials in one kitchen and checks them.
     pub fn from_trials(kitchen: &Arc<Kitchen>, trials: &[TrialView], thresholds: Option<Thresholds>) -> BeliefCheck {
         let mut cost = CostToGo::new(kitchen.clone());
         BeliefCheck {
@@ -56,13 +56,13 @@ impl BeliefCheck {
 pub struct PressViews {
     /// The views so far.
     pub trial: TrialView,
-    /// What the participant believes before its next press: by aspect the probability of the truth.
+    /// Recorded belief of the participant before its next press: probability of the true value, by aspect.
     held: Option<Vec<f64>>,
     before: Before,
 }
 
 impl PressViews {
-    /// Adds what an event tells that the follower has just applied.
+    /// Adds an event that the follower has just applied.
     pub fn add(&mut self, follower: &Follower, stamped: &Stamped, change: &Change) {
         let kitchen = &follower.session.kitchen;
         if let Event::ParticipantBelieves(witness) = &stamped.event {
@@ -80,17 +80,17 @@ impl PressViews {
     }
 }
 
-/// What is known of a session before its next event.
+/// What the baseline knows of a session before its next event.
 #[derive(Default)]
 struct Before {
-    /// For each location, whether somebody else changed it since the human last looked at it or changed it itself.
+    /// For each location, whether somebody other than the human changed it since the human last looked at it or changed it.
     unseen_change: [bool; MAX_LOCATIONS],
-    /// Since when the gaze is in each location's area, and nothing changed there.
+    /// For each location, the time since which the gaze has been in its area without a change there.
     looks_since: [Option<SessionTime>; MAX_LOCATIONS],
 }
 
 impl Before {
-    /// Takes note of what an event changed that was just applied, and of where the human looks.
+    /// Notes the changes and the gaze of an event that has just been applied.
     fn notice(&mut self, session: &Session, event: &Event, change: &Change) {
         let is_own = change.human_press().is_some();
         let is_look = matches!(event, Event::Gaze(sample) if sample.confidence >= MIN_CONFIDENCE);
@@ -109,7 +109,7 @@ impl Before {
         }
     }
 
-    /// The view of a press that came next.
+    /// The view of the next press.
     fn press(&self, kitchen: &Kitchen, press: &Press, judged: &JudgedPress, held: Option<Vec<f64>>) -> PressView {
         let mut press = PressView {
             state: press.before,
@@ -128,14 +128,14 @@ impl Before {
     }
 }
 
-/// The figures for people.
+/// The check as text.
 pub fn describe(check: &BeliefCheck) -> String {
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.3}"));
     let (found, flags, likely) = (&check.detection, &check.detection.flags, &check.log_likelihood);
     let thresholds = flags.thresholds.map_or(String::new(), |at| {
         format!(" (thresholds {:.3} for locations, {:.3} for recipes)", at.locations, at.recipes)
     });
-    // One recording has no spread.
+    // A single recording has no spread over recordings.
     let interval = likely.gain_interval.filter(|_| check.recordings > 1);
     let interval = interval.map_or(String::new(), |[from, to]| format!(" ({from:.3} to {to:.3})"));
     let informed = match (likely.informed_tau, likely.informed_lapse) {
@@ -176,10 +176,10 @@ pub fn describe(check: &BeliefCheck) -> String {
     text + &legend(check)
 }
 
-/// From so many recordings on the figures of single aspects are worth a look.
+/// Least number of recordings for which statistics of single aspects are printed.
 const TELLING: u64 = 20;
 
-/// How the figures are to be read.
+/// Explains the printed statistics.
 fn legend(check: &BeliefCheck) -> String {
     let few = match check.recordings {
         TELLING.. => String::new(),

@@ -1,4 +1,5 @@
-//! A session with what is derived from it press by press. Live runs and replays go through it alike.
+//! A session with everything that is derived from it press by press: errors, their causes, and the belief estimate. Live sessions
+//! and replays use the same code.
 
 use crate::communication::repeats::Repeats;
 use crate::kitchen::cost_to_go::CostToGo;
@@ -15,68 +16,68 @@ use crate::mind::witness::EstimateWitness;
 use crate::session::apply::ApplyError;
 use crate::session::{Applied, Event, Session, Stamped, apply};
 
-/// A session, the errors in it, and their causes.
+/// A session with its judged presses, false belief episodes and belief estimate.
 #[derive(Clone, Debug)]
 pub struct Follower {
     pub session: Session,
     /// Every press of the human so far.
     pub judged: Vec<JudgedPress>,
-    /// What was believed wrong for how long, as far as that is known.
+    /// False belief episodes, as far as the participant's beliefs are known.
     pub episodes: Episodes,
-    /// The estimate of what the human believes.
+    /// The estimator of the human's belief.
     pub filter: BeliefFilter,
-    /// What was said already.
+    /// Signals that are not to be repeated yet.
     pub repeats: Repeats,
-    /// How long the estimate took, where that is measured.
+    /// Computing times of the estimate, if they are measured.
     pub timing: Option<InferenceTiming>,
     pub(crate) cost: CostToGo,
     judge: PressJudge,
     attributor: Attributor,
-    /// What the participant believes before its next press.
+    /// Recorded belief of the participant before its next press.
     belief: Option<Belief>,
-    /// Whether the causes of errors are looked for.
+    /// Whether errors are attributed to causes.
     finds_causes: bool,
-    /// What was estimated before the last press of the human that counts.
+    /// The estimate before the last counted press of the human.
     pub estimated: Option<PressEstimate>,
 }
 
 /// The estimate before a press of the human.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressEstimate {
-    /// The number of the press.
+    /// Sequence number of the press.
     pub press: u64,
-    /// The state that it met.
+    /// State before the press.
     pub state: State,
     pub belief: DirichletBelief,
     pub evidence: Evidence,
 }
 
 impl PressEstimate {
-    /// What the log tells of it.
+    /// The estimate as it is recorded in the log.
     pub fn witness(&self, kitchen: &Kitchen) -> EstimateWitness {
         EstimateWitness::new(kitchen, self.press, &self.belief, self.state, self.evidence)
     }
 }
 
-/// Nanoseconds that single steps of the inference took.
+/// Computing times of single updates, in nanoseconds.
 #[derive(Clone, Debug)]
 pub struct InferenceTiming {
     /// The caller's monotonic clock, in nanoseconds.
     now_ns: fn() -> u64,
     pub gaze_ns: Vec<u64>,
-    /// Presses of the human and of the robot.
+    /// Updates by presses of the human and of the robot.
     pub action_ns: Vec<u64>,
 }
 
 impl InferenceTiming {
-    /// No steps yet; they are measured with this monotonic clock, in nanoseconds.
+    /// Starts measuring with a monotonic clock, in nanoseconds.
     pub fn with_clock(now_ns: fn() -> u64) -> InferenceTiming {
         InferenceTiming { now_ns, gaze_ns: Vec::new(), action_ns: Vec::new() }
     }
 }
 
 impl Follower {
-    /// From before the first event of this session on.
+    /// The follower of a session from before its first event.
     pub fn new(session: Session, cost: CostToGo) -> Follower {
         let (kitchen, spec, seed) = (session.kitchen.clone(), &session.spec, session.seed());
         let judge = PressJudge::new(kitchen.clone());
@@ -101,7 +102,7 @@ impl Follower {
         }
     }
 
-    /// Moves on by one event.
+    /// Applies the next event.
     ///
     /// # Errors
     /// Those of [`apply()`].
@@ -127,7 +128,7 @@ impl Follower {
         Ok(applied)
     }
 
-    /// Moves the estimate of the belief on by an event that was just applied.
+    /// Updates the estimate by an event that has just been applied.
     fn estimate(&mut self, stamped: &Stamped, change: &Change) {
         let Some(what) = self.observed(stamped, change) else { return };
         let observation = Observation { time: stamped.time, what };
@@ -149,7 +150,7 @@ impl Follower {
         }
     }
 
-    /// Keeps in mind what was said, and what is known of it. Gaze alone ends no silence: nobody is asked after it.
+    /// Updates the memory of sent signals. Gaze samples are skipped, since no advice is requested after them.
     fn remember(&mut self, stamped: &Stamped) {
         let (kitchen, state) = (&self.session.kitchen, self.session.state);
         match &stamped.event {
@@ -161,7 +162,7 @@ impl Follower {
         self.repeats.update(kitchen, state, self.filter.belief());
     }
 
-    /// What an event tells about the human's belief.
+    /// The observation that the belief filter receives for an event, if any.
     pub fn observed(&self, stamped: &Stamped, change: &Change) -> Option<Observed> {
         match *change {
             Change::TrialStarted { after, .. } => return Some(Observed::Started { state: after }),
@@ -174,7 +175,7 @@ impl Follower {
         match &stamped.event {
             Event::TrialPaused => Some(Observed::Paused),
             Event::TrialResumed => Some(Observed::Resumed),
-            // What has a fault of its own is recorded, and not read.
+            // A faulty sample is recorded and not used.
             Event::Gaze(_) if self.session.gaze.fault.is_some() => None,
             Event::Gaze(sample) => {
                 let taken = sample.taken_ns.map_or(stamped.time, |taken| taken.min(stamped.time));
@@ -185,17 +186,17 @@ impl Follower {
         }
     }
 
-    /// The same without looking for the causes of errors, which takes longer than a running session can wait.
+    /// The same without attribution of errors, which takes too long for a running session.
     pub fn without_causes(self) -> Follower {
         Follower { finds_causes: false, ..self }
     }
 
-    /// Judges a press of the human that has just been applied, and finds out why it was an error.
+    /// Judges a press of the human that has just been applied, and attributes an error to its cause.
     fn human_pressed(&mut self, stamped: &Stamped, press: &Press) {
         let kitchen = self.session.kitchen.clone();
         let number = self.session.all_presses();
         let verdict = self.judge.human_pressed(&mut self.cost, stamped.time, press);
-        // A belief is told before every press, and is that of this press alone.
+        // The participant's belief is recorded before every press and belongs to this press only.
         let belief = self.belief.take();
         let cause = belief
             .as_ref()

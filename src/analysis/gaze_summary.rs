@@ -1,4 +1,4 @@
-//! How the gaze of a recording was, in figures.
+//! Gaze quality of a recording: numbers of samples, faults, losses, and the accuracy check.
 
 use serde::Serialize;
 
@@ -7,24 +7,24 @@ use crate::gaze::quality::{DropCounts, FaultCounts};
 use crate::session::Session;
 use crate::session::tracker::faults;
 
-/// The gaze of a recording.
+/// Gaze quality of a recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GazeSummary {
     /// Recorded samples.
     pub samples: u64,
-    /// Of those, the ones beside the display or with too low a confidence.
+    /// Recorded samples outside the display or below the least confidence.
     pub unusable: u64,
-    /// Recorded and not read, by kind.
+    /// Recorded samples that the filter does not use, by fault.
     #[serde(flatten)]
     pub faults: FaultCounts,
-    /// Not recorded, by kind.
+    /// Input that was not recorded, by kind.
     #[serde(flatten)]
     pub dropped: DropCounts,
     pub fixations: u64,
     pub blinks: u64,
-    /// How often the tracker's program was lost.
+    /// Number of times that the connection to the tracker was lost.
     pub losses: u64,
-    /// The calibration that was accepted last, in degrees as the gaze is used; null: none was.
+    /// Accuracy in the last accepted gaze check, in degrees, after correction if the correction is in use; null without a check.
     pub accuracy_deg: Option<f64>,
     pub precision_deg: Option<f64>,
 }
@@ -47,7 +47,7 @@ impl GazeSummary {
     }
 }
 
-/// What was wrong with the gaze, in a line; none if nothing was.
+/// One line about faults of the gaze; `None` if there were none.
 pub fn describe(session: &Session) -> Option<String> {
     let kinds: Vec<String> = faults(session).iter().map(|(number, kind)| format!("{number} {kind}")).collect();
     let samples = count(session.gaze.samples, "sample", "samples");

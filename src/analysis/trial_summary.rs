@@ -1,4 +1,4 @@
-//! What the commands print as figures. A figure that cannot be computed yet is null.
+//! Summaries that the commands print. A number that cannot be computed is null.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::measures::sequences::{Sequence, sequences, sequences_by_target};
 use crate::session::TimelineEvent;
 use crate::session::settings::{Condition, ParticipantKind};
 
-/// The figures of one trial.
+/// Summary of one trial.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialSummary {
     pub human_actions: u64,
@@ -20,16 +20,16 @@ pub struct TrialSummary {
     pub errors: u64,
     pub races: u64,
     pub signals: u64,
-    /// None where it is not known what the human believed.
+    /// Belief related errors; `None` where the participant's beliefs are not known.
     pub beliefs: Option<TrialBeliefErrors>,
-    /// For each served order, its dish and the presses of both agents since the one before it.
+    /// For each served order, its dish and the number of presses of both agents since the previously served order.
     pub served: Vec<(DishId, u32)>,
-    /// The trial's length by its own clock, in seconds.
+    /// Length of the trial on its own clock, in seconds.
     pub seconds: f64,
 }
 
 impl TrialSummary {
-    /// The figures of a session so far.
+    /// Summary of a session so far.
     pub fn from_follower(follower: &Follower) -> TrialSummary {
         let session = &follower.session;
         let mut before = 0;
@@ -53,21 +53,21 @@ impl TrialSummary {
     }
 }
 
-/// What false beliefs did in one trial.
+/// Belief related errors of one trial.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialBeliefErrors {
-    /// Errors that are belief related.
+    /// Number of belief related errors.
     pub related: u64,
-    /// Of those, the ones that no single target explains.
+    /// Belief related errors that no single target explains.
     pub related_to_pairs: u64,
     pub sequences: Vec<Sequence>,
     pub by_target: Vec<Sequence>,
-    /// False belief episodes that caused at least one error.
+    /// Number of false belief episodes that caused at least one error.
     pub episodes: u64,
 }
 
 impl TrialBeliefErrors {
-    /// Those of a session so far; none if it is not known for every press what the human believed.
+    /// Belief related errors of a session so far; `None` unless the beliefs are known before every press.
     fn from_follower(follower: &Follower) -> Option<TrialBeliefErrors> {
         let judged = &follower.judged;
         let is_simulated = follower.session.spec.participant.kind == ParticipantKind::Simulated;
@@ -85,32 +85,32 @@ impl TrialBeliefErrors {
     }
 }
 
-/// What false beliefs did, in one trial or several. Null where it is not known what the human believed.
+/// Belief related errors of one or several trials. Null where the participants' beliefs are not known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BeliefErrorSummary {
     pub belief_related_errors: Option<u64>,
-    /// Of those, the ones that it takes two false beliefs to explain.
+    /// Belief related errors that only a pair of false beliefs explains.
     pub errors_of_two_beliefs: Option<u64>,
     pub sequences: Option<u64>,
     pub mean_sequence_length: Option<f64>,
     /// Seconds from the first error of a sequence to the first correct press after its last.
     pub mean_recovery_s: Option<f64>,
-    /// Sequences of errors about the same aspect alone.
+    /// Number of sequences if errors about other aspects are left out.
     pub sequences_by_aspect: Option<u64>,
     pub mean_sequence_length_by_aspect: Option<f64>,
-    /// Times that an aspect was believed wrong and caused at least one error.
+    /// Number of false belief episodes that caused at least one error.
     pub false_belief_episodes: Option<u64>,
 }
 
 impl BeliefErrorSummary {
-    /// Sums up trials.
+    /// Summary of several trials.
     pub fn from_trials<'a>(trials: impl IntoIterator<Item = &'a TrialSummary>) -> BeliefErrorSummary {
         let mut sums = BeliefSums::default();
         trials.into_iter().for_each(|trial| sums.add(trial.beliefs.as_ref()));
         sums.figures()
     }
 
-    /// The figures for people; `errors` is the number of all errors.
+    /// The summary as text; `errors` is the number of all errors.
     pub fn describe(&self, errors: u64) -> String {
         let (Some(related), Some(sequences)) = (self.belief_related_errors, self.sequences) else {
             return "belief related errors: not known, since nobody knows what the participant believed".to_string();
@@ -128,7 +128,7 @@ impl BeliefErrorSummary {
     }
 }
 
-/// The trials of one condition.
+/// Totals of the trials in one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConditionSummary {
     pub condition: Condition,
@@ -144,38 +144,38 @@ impl Default for ConditionSummary {
     }
 }
 
-/// The figures of `tomcom simulate`.
+/// The output of `tomcom simulate`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SimulationSummary {
     pub trials: u64,
     pub human_actions: u64,
     pub robot_actions: u64,
     pub errors: u64,
-    /// Presses of the human that the robot may have overtaken; they are not counted as errors.
+    /// Presses of the human shortly after a change by the robot at the same place (races); they do not count as errors.
     pub races: u64,
     #[serde(flatten)]
     pub beliefs: BeliefErrorSummary,
     pub signals: u64,
     pub orders_served: u64,
-    /// Median over the served orders of the presses of both agents since the order before.
+    /// Median over served orders of the number of presses of both agents since the previously served order.
     pub presses_per_order: Option<f64>,
-    /// The same median of the least presses that each served dish takes from an empty kitchen.
+    /// Median over served orders of the least number of presses for the dish from an empty kitchen.
     pub optimal_presses_per_order: Option<f64>,
     pub simulated_s: f64,
     pub wall_s: f64,
-    /// Recordings that are excluded: they are left out of the figures.
+    /// Number of excluded recordings, which the summary leaves out.
     pub excluded: u64,
-    /// Recordings that were there already, whole; they were read and not made again.
+    /// Number of complete recordings that existed already and were read instead of simulated.
     pub found: u64,
-    /// By who sends signals.
+    /// Totals by condition.
     pub conditions: Vec<ConditionSummary>,
     pub recordings: Vec<String>,
 }
 
-/// What false beliefs did in several trials, summed up trial by trial.
+/// Running sums of belief related errors over trials.
 #[derive(Clone, Debug, Default)]
 struct BeliefSums {
-    /// Of some trial it is not known what the human believed.
+    /// Whether the beliefs are unknown in at least one trial.
     unknown: bool,
     related: u64,
     related_to_pairs: u64,
@@ -220,7 +220,7 @@ impl BeliefSums {
     }
 }
 
-/// A mean that grows value by value; none of nothing.
+/// Running mean; `None` without values.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mean {
     count: u64,
@@ -238,18 +238,18 @@ impl Mean {
     }
 }
 
-/// Simulated trials, summed up one by one: how many there are takes no memory.
+/// Running sums over simulated trials; memory does not grow with their number.
 #[derive(Clone, Debug, Default)]
 pub struct SimulationSums {
     figures: SimulationSummary,
     beliefs: BeliefSums,
-    /// How many served orders took so many presses, and would have taken so many at best.
+    /// Histograms of the presses per served order, and of the least presses for its dish.
     presses_per_order: BTreeMap<u32, u64>,
     optimal_presses_per_order: BTreeMap<u32, u64>,
 }
 
 impl SimulationSums {
-    /// Adds a trial. `plan_lengths`: the least presses for each dish from an empty kitchen.
+    /// Adds a trial. `plan_lengths` is the least number of presses for each dish from an empty kitchen.
     pub fn add(&mut self, condition: Condition, trial: &TrialSummary, plan_lengths: &[u32]) {
         let sums = &mut self.figures;
         sums.trials += 1;
@@ -277,7 +277,7 @@ impl SimulationSums {
         }
     }
 
-    /// The figures of all of them.
+    /// The summary of all added trials.
     pub fn figures(&self) -> SimulationSummary {
         SimulationSummary {
             beliefs: self.beliefs.figures(),
@@ -288,7 +288,7 @@ impl SimulationSums {
     }
 }
 
-/// The median of numbers that occur so often; of an even number of them the mean of the middle two; none of nothing.
+/// Median of a histogram; the mean of the middle two for an even count; `None` if it is empty.
 fn median_of(counts: &BTreeMap<u32, u64>) -> Option<f64> {
     let all: u64 = counts.values().sum();
     let nth = |wanted: u64| {

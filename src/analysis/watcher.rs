@@ -1,10 +1,11 @@
-//! Sets assistants beside what was sent: asks them after every press and order change of a session, as the engine does, and
-//! keeps what they would have said.
+//! Compares assistants with the signals that were sent: asks each concept after every press and order change of a session, as
+//! the engine does, and collects its hypothetical signals.
 //!
-//! An assistant is asked about an estimate that leaves out every signal that was sent within the window; else a wizard who is
-//! quick and right would silence it, and count as unmatched. What a concept has said it does not say again within the window, as
-//! if it had been shown; later it may, for it was not, and the participant goes on in the same false belief. What was sent
-//! before the window is not said again before it may have been forgotten, as in a session.
+//! A concept is asked with a counterfactual estimate that leaves out every signal sent within the window. Otherwise a wizard who
+//! sends the right signal early would remove the concept's reason to send it, and would count as unmatched. A concept does not
+//! repeat a hypothetical signal within the window, as if it had been shown. After the window it may repeat the signal, because
+//! the participant has not seen it and still holds the false belief. Signals that were sent before the window are subject to the
+//! repeat rule of a session.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -32,16 +33,16 @@ use crate::session::screen::VisibleScreen;
 use crate::session::settings::Condition;
 use crate::session::{Applied, Event, Session, SessionSpec, Stamped};
 
-/// What is compared.
+/// Which concepts to compare, and the window.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CompareRequest {
-    /// Beside the session's own concept.
+    /// Concepts in addition to the session's own.
     pub with: Vec<ConceptName>,
     pub window: u32,
 }
 
 impl CompareRequest {
-    /// The concepts that are asked: the session's own, or ToM-Com where it has none, and those that were asked for.
+    /// All concepts of the comparison: the session's own (ToM-Com where it has none) and those in `with`.
     pub fn concepts(&self, spec: &SessionSpec) -> Vec<ConceptName> {
         let own = match spec.assistant.concept {
             ConceptName::None => ConceptName::TomCom,
@@ -57,51 +58,51 @@ impl CompareRequest {
     }
 }
 
-/// A concept and its lane.
+/// A concept with its lane of hypothetical signals.
 #[derive(Debug)]
 struct Voice {
     name: ConceptName,
     advisor: Advisor,
-    /// What it has said within the window: the presses of the human before it, and where.
+    /// Its signals within the window: the number of human presses before each, and the location.
     said: Vec<(u32, LocationId)>,
     repeats: Repeats,
-    /// The error that it has proposed presses for.
+    /// Sequence number of the error for which it has proposed presses.
     proposed: Option<u64>,
     spoken: Vec<Communication>,
 }
 
-/// The estimate that leaves out one signal and all later ones.
+/// The estimate without one signal and without all later signals.
 #[derive(Debug)]
 struct CounterfactualFilter {
-    /// Presses of the human before the signal.
+    /// Number of human presses before the signal.
     press: u32,
     signal: Signal,
-    /// What lay where.
+    /// State of the kitchen at the signal.
     state: State,
     filter: BeliefFilter,
 }
 
-/// Follows a session, event by event, and asks.
+/// Follows a session event by event and asks the concepts.
 #[derive(Debug)]
 pub struct ComparisonFollower {
     pub follower: Follower,
     window: u32,
     voices: Vec<Voice>,
-    /// One for each signal that was sent within the window, the oldest first.
+    /// One counterfactual filter for each signal within the window, the oldest first.
     counterfactuals: VecDeque<CounterfactualFilter>,
-    /// Those before.
+    /// Signals sent before the window.
     shown: Repeats,
     sent: Vec<Communication>,
-    /// The newest event after which is asked, when all that follows at once has happened.
+    /// The newest event after which the concepts are asked, once all events that follow from it have been applied.
     to_ask: Option<(u64, SessionTime)>,
     known: Option<Arc<CommunicationContext>>,
     screen: Option<VisibleScreen>,
-    /// How often was asked.
+    /// Number of times that the concepts were asked.
     asked: u64,
 }
 
 impl ComparisonFollower {
-    /// A watcher of a session from before its first event on.
+    /// A comparison from before the first event of a session.
     pub fn new(session: Session, request: &CompareRequest) -> ComparisonFollower {
         let cost = CostToGo::new(session.kitchen.clone());
         let voice = |name: ConceptName| Voice {
@@ -127,12 +128,12 @@ impl ComparisonFollower {
         }
     }
 
-    /// The same without looking for the causes of errors, which takes longer than a running session can wait.
+    /// The same without attribution of errors, which takes too long for a running session.
     pub fn without_causes(self) -> ComparisonFollower {
         ComparisonFollower { follower: self.follower.without_causes(), ..self }
     }
 
-    /// Moves on by one event.
+    /// Applies the next event.
     ///
     /// # Errors
     /// Those of [`Follower::apply`].
@@ -166,18 +167,17 @@ impl ComparisonFollower {
         Ok(change)
     }
 
-    /// Asks what is still to be asked: there will be no more events.
+    /// Asks the concepts about the last event, after the end of the session.
     pub fn finish(&mut self) {
         self.ask();
     }
 
-    /// What was known when the concepts were asked last.
+    /// The context of the last question.
     pub fn known(&self) -> Option<&Arc<CommunicationContext>> {
         self.known.as_ref()
     }
 
-    /// How often the concepts were asked, and how many signals were sent: one of them grows whenever the comparison
-    /// changes in a running trial.
+    /// Number of questions and number of signals sent: the comparison of a running trial changes only when one of them grows.
     pub fn progress(&self) -> (u64, usize) {
         (self.asked, self.sent.len())
     }
@@ -212,7 +212,7 @@ impl ComparisonFollower {
         let belief = estimate(&self.follower, &self.counterfactuals);
         self.shown.update(&session.kitchen, session.state, belief);
         for voice in &mut self.voices {
-            // What was sent as well is not asked for once more.
+            // A signal that was also sent needs no second entry.
             let is_sent = |location: &LocationId| {
                 let is_it =
                     |one: &CounterfactualFilter| session.kitchen.location_named(one.signal.target()) == Some(*location);
@@ -236,7 +236,7 @@ impl ComparisonFollower {
         Communication { said, time, what, known: self.known.clone() }
     }
 
-    /// Asks every concept what it would say now.
+    /// Asks every concept for its recommendation.
     fn ask(&mut self) {
         let Some((seq, time)) = self.to_ask.take().filter(|_| self.follower.session.is_running()) else { return };
         self.asked += 1;
@@ -263,7 +263,7 @@ impl ComparisonFollower {
         }
     }
 
-    /// What a concept says by its advice; it is remembered that it was said.
+    /// The hypothetical signal of a recommendation, added to the concept's memory.
     fn says(&mut self, index: usize, advice: &Recommendation) -> Option<CommunicationContent> {
         let session = &self.follower.session;
         let voice = &mut self.voices[index];
@@ -273,13 +273,13 @@ impl ComparisonFollower {
             voice.said.extend(location.map(|location| (session.presses[Agent::Human.index()], location)));
             return Some(CommunicationContent::Signal(signal.clone()));
         }
-        // One proposal for an error, however long it stands.
+        // An error gets one proposal, even while the error remains the last one.
         let proposal = advice.proposal.as_ref().filter(|proposal| voice.proposed != Some(proposal.error))?;
         voice.proposed = Some(proposal.error);
         Some(CommunicationContent::Proposal(proposal.presses.clone()))
     }
 
-    /// What was said so far, and how alike it is; `over`: nothing more will come.
+    /// The lanes so far and their similarity; `over` says that the session has ended.
     pub fn comparison(&self, over: bool) -> LaneComparison {
         let sender = match self.follower.session.spec.trial.condition {
             Condition::Assistant => "assistant",
@@ -296,12 +296,12 @@ impl ComparisonFollower {
     }
 }
 
-/// The estimate that leaves out what was sent within the window.
+/// The estimate without the signals sent within the window.
 fn estimate<'a>(follower: &'a Follower, counterfactuals: &'a VecDeque<CounterfactualFilter>) -> &'a DirichletBelief {
     counterfactuals.front().map_or(follower.filter.belief(), |oldest| oldest.filter.belief())
 }
 
-/// Whether an event belongs to what the event at `time` led to at once.
+/// Whether an event is an immediate consequence of the event at `time`.
 pub fn follows_at_once(stamped: &Stamped, time: SessionTime) -> bool {
     let is_new = matches!(
         stamped.event,

@@ -1,4 +1,4 @@
-//! What a wizard did in a session, gathered event by event, for the measures of [`crate::measures::wizard`].
+//! Collects a wizard's signals event by event, for the measures of [`crate::measures::wizard`].
 
 use serde::Serialize;
 
@@ -13,7 +13,7 @@ use crate::session::screen::VisibleScreen;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Event, Session, Stamped};
 
-/// The wizard's signals, and what was on the screen when they were sent.
+/// The wizard's signals, each with what was on the wizard's screen.
 #[derive(Clone, Debug, Default)]
 pub struct WizardLog {
     sent: Vec<(u64, SessionTime, WizardSignal)>,
@@ -21,7 +21,7 @@ pub struct WizardLog {
     seen: Vec<SignalsPerScreen>,
 }
 
-/// How many signals were sent while this was on the wizard's screen.
+/// Number of signals sent while the wizard's screen showed a given amount of information.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SignalsPerScreen {
     /// Null before the first frame, and without a console.
@@ -29,19 +29,19 @@ pub struct SignalsPerScreen {
     pub signals: u64,
 }
 
-/// The wizard's figures.
+/// Performance of a wizard in one session.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WizardSummary {
     #[serde(flatten)]
     pub measures: WizardMeasures,
-    /// What was seen.
+    /// Signals by what the screen showed.
     pub screens: Vec<SignalsPerScreen>,
-    /// The wizard saw what assistants would say.
+    /// Whether the wizard saw the assistants' recommendations.
     pub unblinded: bool,
 }
 
 impl WizardLog {
-    /// Takes note of an event that was just applied.
+    /// Adds an event that has just been applied.
     pub fn note(&mut self, stamped: &Stamped, session: &Session) {
         match &stamped.event {
             Event::Screen(screen) => self.screen = Some(screen.clone()),
@@ -73,7 +73,7 @@ impl WizardLog {
         }
     }
 
-    /// The figures of a session that was followed to its end.
+    /// Summary of a session that has been followed to its end.
     pub fn figures(&self, follower: &Follower) -> WizardSummary {
         let sent: Vec<WizardSignal> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
         let measures = WizardMeasures::from_signals(&sent, spells(follower).as_deref());
@@ -81,7 +81,7 @@ impl WizardLog {
     }
 }
 
-/// What was believed wrong when, on the trial's clock; none where nobody knows what was believed.
+/// Periods of false belief on the trial's clock; `None` where the participant's beliefs are not known.
 pub fn spells(follower: &Follower) -> Option<Vec<FalseBeliefPeriod>> {
     let session = &follower.session;
     let known = session.spec.participant.kind == ParticipantKind::Simulated
@@ -104,7 +104,7 @@ pub fn clock_at(session: &Session, time: SessionTime) -> SessionTime {
     paused.fold(time - session.trial_start, |clock, pause| clock - pause)
 }
 
-/// The figures for people, in lines.
+/// The summary as lines of text.
 pub fn describe(figures: &WizardSummary) -> String {
     let measures = &figures.measures;
     let number = |value: Option<u64>| value.map_or("-".to_string(), |value| value.to_string());

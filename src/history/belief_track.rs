@@ -1,52 +1,52 @@
-//! The estimated belief over time, as far as a screen shows it.
+//! History of the belief estimate, at the resolution that screens need.
 
 use crate::base::time::SessionTime;
 use crate::kitchen::{AspectId, Kitchen, State};
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::dirichlet::DirichletBelief;
 
-/// Between two moments that are kept, gaze samples that change little are left out for so long, in seconds.
+/// Least time between snapshots that differ little, in seconds.
 const STEP_S: f64 = 0.2;
-/// By so much the probability of a truth changes that is worth a moment of its own.
+/// Change of a P(truth) for which a snapshot is kept at once.
 const JUMP: f64 = 0.1;
-/// A change by the gaze is shown for so long, in seconds, if it is at least so large.
+/// A change of a P(truth) by gaze of at least [`NEWS`] is shown for this long, in seconds.
 const NEWS_S: f64 = 2.0;
 const NEWS: f64 = 0.2;
 
-/// No panel shows more of the past than the chart of one aspect, in seconds.
+/// Longest period that a panel shows (the chart of one aspect), in seconds.
 pub const SHOWN_S: f64 = 60.0;
 
-/// What is estimated of one aspect at a moment.
+/// Estimate of one aspect at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AspectSnapshot {
-    /// The value that is expected to be believed most, by index, and how much.
+    /// Index of the value with the highest expected probability.
     pub believes: u8,
     pub p: f32,
-    /// The expected probability of the truth.
+    /// Expected probability of the true value.
     pub p_truth: f32,
 }
 
 impl AspectSnapshot {
-    /// Whether it is believed wrong.
+    /// Whether the most probable value is false.
     pub fn is_false(self) -> bool {
         f64::from(self.p_truth) < FALSE_BELOW
     }
 }
 
-/// The estimate at a moment.
+/// Estimate of all aspects at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeliefSnapshot {
     pub time: SessionTime,
-    /// Nothing but gaze came since the moment before.
+    /// Whether only gaze samples came since the previous snapshot.
     by_gaze: bool,
-    /// By aspect.
+    /// One entry per aspect.
     pub held: Vec<AspectSnapshot>,
-    /// By aspect, since when it is believed wrong, if it is.
+    /// By aspect, the start of the present false belief, if there is one.
     wrong_since: Vec<Option<SessionTime>>,
 }
 
 impl BeliefSnapshot {
-    /// The estimate as it is at this time, while the kitchen is in `state`.
+    /// Snapshot of the estimate at a time, for the kitchen in `state`.
     pub fn new(
         kitchen: &Kitchen,
         state: State,
@@ -69,20 +69,20 @@ impl BeliefSnapshot {
     }
 }
 
-/// The estimate from moment to moment.
+/// Snapshots of the estimate in order of time.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefHistory {
     moments: Vec<BeliefSnapshot>,
 }
 
 impl BeliefHistory {
-    /// The moments from which on something is believed wrong that was not before.
+    /// Times at which a false belief begins.
     pub fn newly_false(&self) -> impl Iterator<Item = SessionTime> {
         let begins = |moment: &&BeliefSnapshot| moment.wrong_since.contains(&Some(moment.time));
         self.moments.iter().filter(begins).map(|moment| moment.time)
     }
 
-    /// Keeps a moment, unless it is one of many gaze samples that change little.
+    /// Adds a snapshot, unless only gaze samples with little effect came since the previous one.
     pub fn note(&mut self, mut moment: BeliefSnapshot) {
         if let Some(last) = self.moments.last().filter(|_| moment.by_gaze) {
             let pairs = || last.held.iter().zip(&moment.held);
@@ -99,29 +99,27 @@ impl BeliefHistory {
         self.moments.push(moment);
     }
 
-    /// Forgets what no panel shows any more `kept_s` seconds later, so that a long session needs no more memory than a short
-    /// one.
+    /// Removes snapshots older than `kept_s` seconds, so that memory does not grow with the length of a session.
     pub fn forget(&mut self, now: SessionTime, kept_s: f64) {
         let old = self.moments.partition_point(|moment| now.secs_since(moment.time) > kept_s);
-        // Now and then, and not the last one: it is what holds now.
+        // Removed in batches; the last snapshot before the limit stays, since it holds at the limit.
         if old > 2 * (self.moments.len() - old) {
             self.moments.drain(..old.min(self.moments.len() - 1));
         }
     }
 
-    /// Takes over what another track of the same session has beyond this one.
+    /// Appends the later snapshots of another history of the same session.
     pub fn catch_up(&mut self, other: &BeliefHistory) {
         let known = self.moments.len().min(other.moments.len());
         self.moments.extend_from_slice(&other.moments[known..]);
     }
-    /// The moments until and with this time.
+    /// Snapshots up to and including a time.
     pub fn until(&self, time: SessionTime) -> &[BeliefSnapshot] {
         &self.moments[..self.moments.partition_point(|moment| moment.time <= time)]
     }
 }
 
-/// The aspects in the order in which they matter at the last of these moments: those believed wrong, the longest first,
-/// then the others as they come.
+/// Aspects ordered by relevance at the last snapshot: false beliefs first, the longest first, then the others in their order.
 pub fn ranked(moments: &[BeliefSnapshot]) -> Vec<usize> {
     let Some(last) = moments.last() else { return Vec::new() };
     let mut wrong: Vec<(SessionTime, usize)> =
@@ -131,12 +129,12 @@ pub fn ranked(moments: &[BeliefSnapshot]) -> Vec<usize> {
     wrong.iter().map(|&(_, aspect)| aspect).chain(right).collect()
 }
 
-/// Since when an aspect is believed wrong; `None` if it is not.
+/// Start of the present false belief about an aspect; `None` if the belief is right.
 pub fn wrong_since(moments: &[BeliefSnapshot], aspect: usize) -> Option<SessionTime> {
     moments.last()?.wrong_since[aspect]
 }
 
-/// When the gaze last changed what is believed of an aspect, if that was a moment ago.
+/// Time of the last change of an aspect's estimate by gaze, if it was recent.
 pub fn read_at(moments: &[BeliefSnapshot], aspect: usize, now: SessionTime) -> Option<SessionTime> {
     let recent = moments.windows(2).rev().take_while(|pair| now.secs_since(pair[1].time) <= NEWS_S);
     let is_news = |pair: &&[BeliefSnapshot]| {
@@ -146,7 +144,7 @@ pub fn read_at(moments: &[BeliefSnapshot], aspect: usize, now: SessionTime) -> O
     recent.into_iter().find(is_news).map(|pair| pair[1].time)
 }
 
-/// P(truth) of an aspect at so many times, evenly spread over the last `seconds`; nothing before the first moment.
+/// P(truth) of an aspect at evenly spaced times over the last `seconds`; `None` before the first snapshot.
 pub fn course(
     moments: &[BeliefSnapshot],
     aspect: usize,

@@ -1,4 +1,4 @@
-//! Wizard and assistants side by side: what each said, what of it matches, and where they differ with what was known then.
+//! Comparison of wizard and assistants: their communications in lanes, matches, and differences with their context.
 
 use std::sync::Arc;
 
@@ -16,33 +16,33 @@ use crate::measures::matching::{
 use crate::measures::sequences::FALSE_BELOW;
 use crate::session::screen::VisibleScreen;
 
-/// What is known at least so well is no doubt.
+/// A P(truth) of at least this counts as sure.
 const SURE: f64 = 0.9;
 
-/// What was known when something could be said.
+/// Context of a possible communication: state, estimate, recommendations, and what the wizard saw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommunicationContext {
-    /// The number of the event that brought it about.
+    /// Sequence number of the event that led to the question.
     pub seq: u64,
     pub state: State,
-    /// By aspect; the estimate leaves out what was sent within the window.
+    /// Estimate by aspect, without the signals sent within the window.
     pub held: Vec<AspectSnapshot>,
-    /// Of each assistant, in the order of their lanes.
+    /// Recommendation of each assistant, in the order of the lanes.
     pub advice: Vec<Recommendation>,
-    /// What was on the wizard's screen; none before the first frame, and without a wizard.
+    /// Content of the wizard's screen; `None` before the first frame and without a wizard.
     pub screen: Option<VisibleScreen>,
 }
 
-/// What was said.
+/// Content of a communication.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CommunicationContent {
     Signal(Signal),
-    /// Presses by the names of their buttons.
+    /// Proposed presses, by the names of their buttons.
     Proposal(Vec<String>),
 }
 
 impl CommunicationContent {
-    /// For the matching.
+    /// The content as the matching compares it.
     pub fn content(&self, kitchen: &Kitchen) -> CommunicationTarget {
         let kind = match self {
             CommunicationContent::Signal(Signal::ShowRecipe(_)) => CommunicationKind::Recipe,
@@ -59,7 +59,7 @@ impl CommunicationContent {
         }
     }
 
-    /// In words.
+    /// The content in words.
     pub fn words(&self) -> String {
         match self {
             CommunicationContent::Signal(signal) => wording::signal(signal),
@@ -71,23 +71,23 @@ impl CommunicationContent {
     }
 }
 
-/// A communication in its lane.
+/// A communication of one lane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Communication {
     pub said: CommunicationEvent,
-    /// In the session's time.
+    /// Session time.
     pub time: SessionTime,
     pub what: CommunicationContent,
-    /// The last moment until then at which the assistants were asked.
+    /// Context at the last question to the assistants before it.
     pub known: Option<Arc<CommunicationContext>>,
 }
 
-/// Everything that one side said in a trial.
+/// All communications of one side in a trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommunicationLane {
     /// "wizard", "tom-com".
     pub name: String,
-    /// What decides; none: who sent the signals that the participant saw.
+    /// Concept of an assistant's lane; `None` for the lane of the signals that the participant saw.
     pub concept: Option<ConceptName>,
     pub spoken: Vec<Communication>,
 }
@@ -98,39 +98,39 @@ impl CommunicationLane {
     }
 }
 
-/// A communication that has no match in another lane.
+/// A communication without a match in another lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnmatchedCommunication {
-    /// The lane and its communication.
+    /// Index of the lane.
     pub lane: usize,
     pub index: usize,
-    /// The lane that did not say it.
+    /// Index of the lane without a match.
     pub not: usize,
 }
 
-/// The first lane against another one.
+/// Comparison of the first lane with another lane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LanePair {
-    /// Strict pairs, as indices into both lanes.
+    /// Strict matches, as indices into both lanes.
     pub matched: Vec<(usize, usize)>,
     pub similarity: Similarity,
 }
 
-/// A comparison, as far as it has come.
+/// Comparison of all lanes so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaneComparison {
-    /// Presses of the human within which communications match.
+    /// Window of a match, in presses of the human.
     pub window: u32,
-    /// The first is what the participant was shown.
+    /// The lanes; the first holds the signals that the participant saw.
     pub lanes: Vec<CommunicationLane>,
-    /// The first lane with each of the others.
+    /// The first lane compared with each other lane.
     pub pairs: Vec<LanePair>,
-    /// In the order of time. What may still be matched is none.
+    /// Unmatched communications in order of time, without those that can still be matched.
     pub differences: Vec<UnmatchedCommunication>,
 }
 
 impl LaneComparison {
-    /// Compares lanes of a trial that has had so many presses of the human; `over`: there will be no more.
+    /// Compares the lanes of a trial after `presses` presses of the human; `over` says that the trial has ended.
     pub fn new(lanes: Vec<CommunicationLane>, window: u32, presses: u32, over: bool) -> LaneComparison {
         let said: Vec<Vec<CommunicationEvent>> = lanes.iter().map(CommunicationLane::said).collect();
         let pair = |with: &Vec<CommunicationEvent>| {
@@ -157,17 +157,17 @@ impl LaneComparison {
         LaneComparison { window, lanes, pairs, differences }
     }
 
-    /// What was said in a difference.
+    /// The communication of a difference.
     pub fn spoken(&self, difference: &UnmatchedCommunication) -> &Communication {
         &self.lanes[difference.lane].spoken[difference.index]
     }
 
-    /// The assistant's lane that a difference is about.
+    /// Index of the assistant's lane in a difference.
     fn assistant(&self, difference: &UnmatchedCommunication) -> usize {
         difference.lane.max(difference.not)
     }
 
-    /// What that assistant thought then.
+    /// Recommendation of that assistant at the time.
     pub fn advice(&self, difference: &UnmatchedCommunication) -> Option<&Recommendation> {
         self.spoken(difference).known.as_ref()?.advice.get(self.assistant(difference) - 1)
     }
@@ -183,7 +183,7 @@ impl LaneComparison {
         format!("{}  {only}{by}{not}: {}", spoken.said.clock, spoken.what.words())
     }
 
-    /// What each knew then, in lines.
+    /// The context of a difference, as lines of text.
     pub fn opened(&self, kitchen: &Kitchen, difference: &UnmatchedCommunication) -> Vec<String> {
         let spoken = self.spoken(difference);
         let other = &self.lanes[difference.not];
@@ -214,7 +214,7 @@ impl LaneComparison {
     }
 }
 
-/// What an assistant thought, in words; ToM thinks of deviations.
+/// A recommendation in words; ToM's options are expected belief deviations.
 fn thought(advice: &Recommendation, is_tom: bool) -> String {
     if let Some(proposal) = &advice.proposal {
         return CommunicationContent::Proposal(proposal.presses.clone()).words();
@@ -236,7 +236,7 @@ fn thought(advice: &Recommendation, is_tom: bool) -> String {
     }
 }
 
-/// What is believed wrong, the wrongest first, and what is right but not sure.
+/// Lists of the false beliefs (lowest P(truth) first) and of the right but uncertain beliefs.
 fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
     let mut doubtful: Vec<(usize, &AspectSnapshot)> =
         known.held.iter().enumerate().filter(|(_, held)| f64::from(held.p_truth) < SURE).collect();
@@ -266,7 +266,7 @@ fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
     ]
 }
 
-/// What lay where, without what is empty.
+/// Contents of all locations that are not empty.
 fn truly(kitchen: &Kitchen, state: State) -> String {
     let location = |index: usize| {
         let (id, location) = (LocationId(index as u8), &kitchen.locations[index]);

@@ -1,12 +1,12 @@
-//! The kinds of moments in a recording that a viewer can jump to.
+//! Landmarks: kinds of events in a recording to which a replay can jump.
 
-/// What is looked for in a recording.
+/// Kind of a landmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReplayLandmark {
     /// A press that was an error.
     Error,
     Signal,
     Marker,
-    /// Something is believed wrong from here on, as it is estimated.
+    /// Start of a false belief in the estimate.
     FalseBelief,
 }

@@ -1,6 +1,5 @@
-//! What a session's events add up to over time, for every reader of a session: the course of the estimated belief, the
-//! comparison of what wizard and assistants communicated, and words for what happened. Nothing is drawn here, and no
-//! file is read.
+//! History of a session for console, replay, study and Rerun: the belief estimate over time, the comparison of wizard and
+//! assistants, and the words for events. Nothing is drawn here, and no file is read.
 
 pub mod belief_track;
 pub mod comparison;

@@ -1,4 +1,4 @@
-//! What happened, in words.
+//! Words for buttons, locations, signals, phases and events.
 
 use crate::base::time::SessionTime;
 use crate::base::words::count;
@@ -24,7 +24,7 @@ pub fn location(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// The place that a button is about: its location, or the hand.
+/// Location of a button: its own location, or the agent's hand.
 pub fn place(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> LocationId {
     let hand = kitchen.hands[agent.index()];
     match kitchen.button(agent, id).action {
@@ -50,7 +50,7 @@ pub fn sender(by: Sender) -> &'static str {
     }
 }
 
-/// The items of the recipe of the dish that an order wants: "rice cooked + nori + tuna cut".
+/// Recipe of an order's dish: "rice cooked + nori + tuna cut".
 pub fn recipe(session: &Session, order: LocationId) -> Option<String> {
     let OrderContent::Dish(dish) = session.state.order(order) else { return None };
     let kitchen = &session.kitchen;
@@ -59,7 +59,7 @@ pub fn recipe(session: &Session, order: LocationId) -> Option<String> {
     Some(names.join(" + "))
 }
 
-/// Where the session is, in a word: the phase of the study around the trial, and that of the trial in it.
+/// Phase of the study and of the trial, in a word.
 pub fn stage(session: &Session) -> String {
     match session.study_phase().map(PhaseSpec::phase) {
         Some(around) if !around.has_trial() && session.phase != Phase::Closed => around.name().to_uppercase(),
@@ -79,7 +79,7 @@ pub fn phase(phase: Phase) -> &'static str {
     }
 }
 
-/// What happened around the trial.
+/// An event of the study protocol in words.
 pub fn protocol(event: &ProtocolEvent) -> String {
     match event {
         ProtocolEvent::ConsentGiven => "the participant agrees to be recorded".to_string(),
@@ -101,7 +101,7 @@ pub fn protocol(event: &ProtocolEvent) -> String {
     }
 }
 
-/// An entry of the timeline in words, with who did it.
+/// An entry of the timeline in words, with its agent.
 pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, String) {
     match what {
         TimelineEvent::Press { agent, button: id, effective } => {
@@ -135,7 +135,7 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
     }
 }
 
-/// How the arm stopped by itself.
+/// A protective stop of the arm in words.
 pub fn arm_stopped(mode: SafetyMode, force_n: Option<f64>, joint: Option<u8>) -> String {
     let mode = mode.name().to_lowercase();
     match (force_n, joint) {
@@ -145,7 +145,7 @@ pub fn arm_stopped(mode: SafetyMode, force_n: Option<f64>, joint: Option<u8>) ->
     }
 }
 
-/// What the arm does, in a few words.
+/// Phase of the arm's motion in words.
 pub fn arm_phase(phase: ArmPhase) -> &'static str {
     match phase {
         ArmPhase::Rests => "at rest",
@@ -170,7 +170,7 @@ fn trial(phase: Phase) -> &'static str {
     }
 }
 
-/// Who changed a location at this time, from the timeline.
+/// Agent that changed a location at a time, from the timeline.
 pub fn changed_by(session: &Session, at: SessionTime) -> Option<Agent> {
     let since = session.timeline.iter().rev().take_while(|entry| entry.time >= at);
     since.filter(|entry| entry.time == at).find_map(|entry| match entry.what {
@@ -179,7 +179,7 @@ pub fn changed_by(session: &Session, at: SessionTime) -> Option<Agent> {
     })
 }
 
-/// Whether a location changed by no press of the human and was not looked at since: a fact, no estimate.
+/// Whether a location changed without a press of the human and has not been looked at since (a fact, not an estimate).
 pub fn is_unseen(session: &Session, location: LocationId) -> bool {
     let at = session.changed_at[location.index()];
     let seen = session.gaze.looked_at[location.index()].is_some_and(|seen| seen >= at);
@@ -187,7 +187,7 @@ pub fn is_unseen(session: &Session, location: LocationId) -> bool {
     !knows && changed_by(session, at) != Some(Agent::Human)
 }
 
-/// What the eye tracker tells; nothing for fixations and blinks, which are too many.
+/// A tracker event in words; `None` for fixations and blinks, which are too frequent.
 pub fn tracker(event: &TrackerEvent) -> Option<String> {
     Some(match event {
         TrackerEvent::Connected { device } => format!("eye tracker connected: {device}"),
@@ -199,13 +199,13 @@ pub fn tracker(event: &TrackerEvent) -> Option<String> {
     })
 }
 
-/// What could not be recorded, by kind.
+/// Input that could not be recorded, by kind.
 pub fn drops(counts: &DropCounts) -> String {
     let kinds = [(counts.malformed, "malformed"), (counts.too_frequent, "too frequent"), (counts.overrun, "overrun")];
     kinds.iter().filter(|(n, _)| *n > 0).map(|(n, kind)| format!("{n} {kind}")).collect::<Vec<_>>().join(", ")
 }
 
-/// A step in a check of the calibration.
+/// A step of the gaze accuracy check in words.
 pub fn calibration(event: &CalibrationEvent) -> String {
     match event {
         CalibrationEvent::Begun { targets } => format!("check of the gaze begins: {} targets", targets.len()),

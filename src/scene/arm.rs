@@ -1,4 +1,4 @@
-//! Arm, table and buttons in space.
+//! Arm, table, buttons and hand in 3D.
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -18,23 +18,23 @@ use crate::robot::safety::SafetyMode;
 use crate::session::settings::ArmKind;
 use crate::session::{Event, Session, Stamped};
 
-/// So often the arm is shown while it moves.
+/// Period of updates of the moving arm, in nanoseconds.
 const EVERY_NS: u64 = 50_000_000;
-/// The table reaches so far beyond the buttons, in metres, and is so thick.
+/// Margin of the table around the buttons and its thickness, in metres.
 const EDGE_M: f64 = 0.1;
 const THICK_M: f64 = 0.03;
-/// Radius of a button, and of the marks of what is pressed, in metres.
+/// Radius of a button, and of the mark of a pressed button, in metres.
 const BUTTON_RADIUS_M: f64 = 0.02;
 const MARK_M: f64 = 0.022;
 
-/// A hand that presses is so high above the table, in metres.
+/// Height of a pressing hand above the table, in metres.
 const ABOVE_TABLE_M: f64 = 0.05;
-/// Below this force nothing is shown at the tip, in newtons, and its mark is so large, in metres.
+/// Least force that is shown at the tip, in newtons, and radius of its mark, in metres.
 const SHOWN_N: f64 = 0.5;
 const FELT_M: f64 = 0.015;
-/// Of the mark where the arm was touched.
+/// Radius of the mark of a contact, in metres.
 const CONTACT_M: f64 = 0.05;
-/// What the arm in the physics feels, how far the hand is, and how safe it is.
+/// Entities of the simulated arm: force, distance of the hand, safety mode, contact, hand.
 const FORCE: &str = "robot/force";
 const AWAY: &str = "robot/hand_away";
 const SAFETY: &str = "robot/safety/mode";
@@ -42,16 +42,16 @@ const FELT: &str = "robot/felt";
 const CONTACT: &str = "robot/contact";
 const HAND: &str = "human/hand/shape";
 
-/// The arm as it is shown.
+/// State of the arm's entities.
 #[derive(Clone, Debug)]
 pub struct ArmScene {
     arm: Arm,
-    /// How the timed arm moves; none: the session says how the arm in the physics stands.
+    /// Motion of the timed arm; `None` for the simulated arm, whose samples are in the session.
     motion: Option<JointMotion>,
-    /// Until when it is shown, and how it stood then.
+    /// Time and joint angles of the last update.
     until: SessionTime,
     joints: JointAngles,
-    /// A force is shown at the tip.
+    /// Whether a force is shown at the tip.
     feels: bool,
 }
 
@@ -86,7 +86,7 @@ impl ArmScene {
         rows
     }
 
-    /// How it stands, and where the hand is.
+    /// Pose of the arm and of the hand.
     pub fn opening(&self, session: &Session) -> Vec<EntityUpdate> {
         let mut rows = places(&self.arm, &self.joints);
         if self.motion.is_none() {
@@ -97,11 +97,11 @@ impl ArmScene {
         rows
     }
 
-    /// How it moved since it was shown last, until this time.
+    /// Updates of the arm's motion up to a time.
     pub fn until(&mut self, time: SessionTime) -> Vec<(SessionTime, Vec<EntityUpdate>)> {
         let mut moments = Vec::new();
         let Some(motion) = &self.motion else { return moments };
-        // Where it rests it is not shown again: time goes by at once.
+        // A resting arm needs no update.
         let end = time.min(motion.rests_at() + SessionTime(EVERY_NS));
         let mut at = SessionTime((self.until.0 / EVERY_NS + 1) * EVERY_NS);
         while at <= end {
@@ -116,7 +116,7 @@ impl ArmScene {
         moments
     }
 
-    /// What an event that was just applied changes.
+    /// Updates by an event that has just been applied.
     pub fn follow(&mut self, session: &Session, stamped: &Stamped, change: &Change) -> Vec<EntityUpdate> {
         let now = stamped.time;
         let kitchen = &session.kitchen;
@@ -160,7 +160,7 @@ impl ArmScene {
         }
     }
 
-    /// How the arm in the physics stands, what it feels, and where the hand is.
+    /// Updates by a sample of the simulated arm: pose, force, hand.
     fn moves(&mut self, moment: &ArmSample) -> Vec<EntityUpdate> {
         self.joints = moment.joints;
         let mut rows = places(&self.arm, &self.joints);
@@ -189,13 +189,13 @@ impl ArmScene {
     }
 }
 
-/// Where the links are.
+/// Poses of the links.
 fn places(arm: &Arm, joints: &JointAngles) -> Vec<EntityUpdate> {
     let links = arm.links.iter().zip(arm.forward(joints)).skip(1);
     links.map(|(link, place)| EntityUpdate::new(entity(&link.name), EntityData::Place(place))).collect()
 }
 
-/// Hand and forearm as they are in the physics: the forearm leads away from the robot, and up a little.
+/// Shapes of hand and forearm as in the physics: the forearm points away from the robot and slightly up.
 fn hand_shapes() -> Vec<EntityUpdate> {
     let place = HandPose::reaching(Point3::origin(), -ABOVE_TABLE_M);
     let [hand, forearm] = place.capsules();
@@ -256,7 +256,7 @@ fn table(kitchen: &Kitchen) -> EntityData {
     )
 }
 
-/// The buttons by who has them: both agents, or one alone.
+/// Buttons of one agent alone, or shared buttons for `None`.
 fn buttons(kitchen: &Kitchen, alone: Option<Agent>) -> EntityData {
     let of = |agent: Agent| &kitchen.buttons[agent.index()];
     let is_shared = |agent: Agent, button: &Button| of(agent.other()).iter().any(|other| other.at_m == button.at_m);

@@ -1,4 +1,4 @@
-//! What the participant believes: as it is estimated, and of simulated participants as it is.
+//! The participant's belief: the estimate, and for simulated participants the recorded belief.
 
 use super::colours;
 use super::shown::{EntityData, EntityUpdate, SceneSeries, slug};
@@ -11,24 +11,24 @@ use crate::mind::witness::EstimateWitness;
 use crate::mind::{AspectBelief, BeliefWitness};
 use crate::session::{Event, Session, Stamped};
 
-/// Between two presses the estimate is shown five times a second.
+/// Period of updates of the estimate between presses, in nanoseconds.
 const EVERY_NS: u64 = 200_000_000;
-/// What is known at least so well is no news.
+/// Aspects with at least this P(truth) are not listed on the page.
 const KNOWN: f64 = 0.95;
 
-/// What is held of an aspect.
+/// Believed value of an aspect with its probability.
 struct Held<'a> {
     believes: &'a str,
     p_truth: f64,
 }
 
-/// The beliefs as they are shown.
+/// State of the belief entities.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefScene {
-    /// When the estimate was shown last, in steps of [`EVERY_NS`].
+    /// Time of the last update of the estimate, in units of [`EVERY_NS`].
     tick: Option<u64>,
     page: String,
-    /// By aspect, what it is taken for wrongly.
+    /// By aspect, the falsely believed value, if any.
     taken_for: Vec<String>,
 }
 
@@ -44,7 +44,7 @@ fn wrong(aspect: &str) -> String {
     format!("human/belief/wrong/{}", slug(aspect))
 }
 
-/// How the series are drawn.
+/// Styles of the series.
 pub fn fixed(kitchen: &Kitchen) -> Vec<EntityUpdate> {
     let mut rows = Vec::new();
     for (nth, aspect) in kitchen.aspects.iter().enumerate() {
@@ -57,12 +57,12 @@ pub fn fixed(kitchen: &Kitchen) -> Vec<EntityUpdate> {
 }
 
 impl BeliefScene {
-    /// Whether the estimate is shown at this time.
+    /// Whether an update of the estimate is due.
     pub fn is_due(&self, now: SessionTime) -> bool {
         self.tick.is_none_or(|last| last < now.0 / EVERY_NS)
     }
 
-    /// What an event that was just applied tells of beliefs; `belief` is the estimate after it.
+    /// Updates by an event that has just been applied; `belief` is the estimate after it.
     pub fn follow(
         &mut self,
         session: &Session,
@@ -108,7 +108,7 @@ impl BeliefScene {
         rows
     }
 
-    /// The page and the lanes, where they say something else than before.
+    /// The page and the lanes, where their text has changed.
     fn in_words(&mut self, session: &Session, held: &[Held]) -> Vec<EntityUpdate> {
         let kitchen = &session.kitchen;
         let mut rows = Vec::new();
@@ -130,13 +130,13 @@ impl BeliefScene {
     }
 }
 
-/// What a simulated participant believes.
+/// The recorded belief of a simulated participant.
 fn truly(witness: &BeliefWitness) -> Vec<EntityUpdate> {
     let value = |told: &AspectBelief| EntityUpdate::new(held_truly(&told.aspect), EntityData::Value(told.p_truth));
     witness.aspects.iter().map(value).collect()
 }
 
-/// What is believed wrong, the wrongest first, and what is not known surely.
+/// Page with the false beliefs (lowest P(truth) first) and the uncertain beliefs.
 fn page(session: &Session, held: &[Held]) -> String {
     let kitchen = &session.kitchen;
     let mut doubtful: Vec<usize> = (0..held.len()).filter(|&index| held[index].p_truth < KNOWN).collect();
@@ -163,7 +163,7 @@ fn page(session: &Session, held: &[Held]) -> String {
     text
 }
 
-/// What an aspect that is believed wrong is taken for.
+/// The falsely believed value of an aspect, as shown in its lane.
 fn taken_for_what<'a>(session: &Session, aspect: usize, held: &Held<'a>) -> &'a str {
     if held.believes == truth(&session.kitchen, session.state, aspect) { "not sure" } else { held.believes }
 }

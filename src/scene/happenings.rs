@@ -1,4 +1,4 @@
-//! What happened, in words, and what signals would be worth.
+//! Text log of events, and the net benefit of signals, as Rerun shows them.
 
 use super::EntityUpdate;
 use super::colours::{self, Colour};
@@ -13,19 +13,19 @@ use crate::session::event::SignalEnd;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::{Session, Stamped, TimelineEntry, TimelineEvent};
 
-/// The marks of errors, along the bottom of the beliefs.
+/// Entity of the error marks below the belief curves.
 const ERROR_MARKS: &str = "human/errors/marks";
-/// Above this line a signal is worth more than it costs.
+/// Entity of the line at the cost of communication.
 const COST_LINE: &str = "assistant/benefit/cost_line";
 
-/// Where all lines of the log stand.
+/// Entity with all lines of the text log.
 const HAPPENED: &str = "happened";
 
 fn benefit(target: &str) -> String {
     format!("assistant/benefit/{}", slug(target))
 }
 
-/// How the series are drawn.
+/// Styles of the series.
 pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
     let (kitchen, assistant) = (&session.kitchen, &session.spec.assistant);
     let line = |entity: String, name: String, colour: Colour| {
@@ -50,13 +50,13 @@ fn say(entity: &str, level: LogLevel, text: String, colour: Colour) -> EntityUpd
     EntityUpdate::new(entity, EntityData::Words { level, text, colour })
 }
 
-/// All lines of the log in the order in which they happened.
+/// All lines of the text log in order of time.
 pub fn in_order(rows: &[EntityUpdate]) -> Vec<EntityUpdate> {
     let lines = rows.iter().filter(|row| matches!(row.shown, EntityData::Words { .. }));
     lines.map(|row| EntityUpdate::new(HAPPENED, row.shown.clone())).collect()
 }
 
-/// A new entry of the timeline. A press that was just judged an error says so.
+/// A new entry of the timeline; a press that was judged an error is marked.
 pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<&JudgedPress>) -> EntityUpdate {
     let (who, text) = wording::happening(&session.kitchen, &entry.what);
     let text = if who.is_empty() { text } else { format!("{who}: {text}") };
@@ -88,23 +88,23 @@ pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<&JudgedPres
     }
 }
 
-/// What happened around the trial.
+/// An event of the study protocol.
 pub fn protocol(event: &ProtocolEvent) -> EntityUpdate {
     say("trial/events", LogLevel::Info, wording::protocol(event), colours::QUIET)
 }
 
-/// The press that was just judged, if it was an error.
+/// The press that this event made, if it was judged an error.
 pub fn error<'a>(stamped: &Stamped, judged: &'a [JudgedPress]) -> Option<&'a JudgedPress> {
     let press = judged.binary_search_by_key(&stamped.seq, |press| press.seq).ok().map(|index| &judged[index]);
     press.filter(|press| press.verdict.error)
 }
 
-/// Its mark below the beliefs.
+/// Mark of an error below the belief curves.
 pub fn mark() -> EntityUpdate {
     EntityUpdate::new(ERROR_MARKS, EntityData::Value(0.0))
 }
 
-/// What signals are worth without their cost, and what the assistant would say.
+/// Expected saving of each signal before its cost, and the recommendation.
 pub fn advice(advice: &Recommendation) -> Vec<EntityUpdate> {
     let mut rows: Vec<EntityUpdate> = advice
         .options

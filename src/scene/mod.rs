@@ -1,7 +1,7 @@
-//! A session as a viewer shows it, as plain data: which entity shows what from when on. Kitchen and arm, beliefs, what
-//! signals are worth, and what happened, in words.
+//! A session as Rerun shows it, as plain data: updates of entities with their times. Entities are the kitchen, the arm, beliefs,
+//! net benefits of signals, and a text log.
 //!
-//! A [`SessionScene`] follows a session event by event, live and from a recording alike. It knows nothing of the viewer.
+//! A [`SessionScene`] follows a session event by event, live and from a recording. It does not depend on the viewer.
 
 mod arm;
 mod belief;
@@ -19,43 +19,43 @@ use arm::ArmScene;
 use belief::BeliefScene;
 pub use shown::{EntityData, EntityUpdate};
 
-/// What is shown, and where, changes with this number: a stream of another one is made anew from the log.
+/// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
 pub const VERSION: u32 = 3;
 
-/// What entities show from a time on.
+/// Updates of entities at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneUpdate {
     pub time: SessionTime,
-    /// The same by the trial's clock, as the console shows it: without what was before the trial, and without pauses.
+    /// Time on the trial's clock, which starts with the trial and stops in pauses, as on the console.
     pub trial: SessionTime,
-    /// The number of the newest event.
+    /// Sequence number of the newest event.
     pub step: u64,
     pub rows: Vec<EntityUpdate>,
 }
 
-/// What is derived from a session and shown with it.
+/// Data derived from a session that the scene shows.
 #[derive(Clone, Copy, Debug)]
 pub struct DerivedData<'a> {
     /// Every press of the human so far.
     pub judged: &'a [JudgedPress],
-    /// The estimate after everything that has happened until now; none while more is to come at the same time.
+    /// The estimate after all events so far; `None` while further events have the same time.
     pub belief: Option<&'a DirichletBelief>,
 }
 
-/// A session that is shown.
+/// The scene of a session.
 #[derive(Clone, Debug)]
 pub struct SessionScene {
     session: Session,
     arm: ArmScene,
     belief: BeliefScene,
-    /// The number of the first event that it has not been told.
+    /// Sequence number of the first event that it has not seen.
     next: u64,
-    /// Entries of the timeline that were told.
+    /// Number of timeline entries that it has shown.
     told: usize,
 }
 
 impl SessionScene {
-    /// The scene of a session that goes on from here; its next event has the number `next`.
+    /// The scene of a session whose next event has the sequence number `next`.
     pub fn new(session: &Session, next: u64) -> SessionScene {
         SessionScene {
             session: session.clone(),
@@ -66,7 +66,7 @@ impl SessionScene {
         }
     }
 
-    /// What stays as it is, whatever happens.
+    /// Static entities.
     pub fn fixed(&self) -> Vec<EntityUpdate> {
         let kitchen = &self.session.kitchen;
         let mut rows = places::fixed(kitchen);
@@ -76,7 +76,7 @@ impl SessionScene {
         rows
     }
 
-    /// How everything is at the beginning.
+    /// Entities at the beginning of the session.
     pub fn opening(&mut self) -> SceneUpdate {
         let (kitchen, state) = (self.session.kitchen.clone(), self.session.state);
         let mut rows: Vec<EntityUpdate> = places::contents(&kitchen, None, state).collect();
@@ -86,18 +86,18 @@ impl SessionScene {
         SceneUpdate { time, trial: self.session.trial_clock(time), step: self.step(), rows }
     }
 
-    /// The number of the newest event.
+    /// Sequence number of the newest event.
     fn step(&self) -> u64 {
         self.next.saturating_sub(1)
     }
 
-    /// Whether the estimate would be shown at this time.
+    /// Whether an update of the estimate is due.
     pub fn wants_belief(&self, time: SessionTime) -> bool {
         self.belief.is_due(time)
     }
 
-    /// The session's next event, and what it changes to see: moments in the order of their times. An event that cannot be
-    /// at this point, or was there before, shows nothing.
+    /// Applies the next event and returns the updates in order of time. An event that is not valid here, or was seen before,
+    /// returns none.
     pub fn see(&mut self, stamped: &Stamped, derived: DerivedData<'_>) -> Vec<SceneUpdate> {
         if stamped.seq < self.next {
             return Vec::new();
@@ -113,7 +113,7 @@ impl SessionScene {
         moments
     }
 
-    /// What moves between events, until this time.
+    /// Updates between events, up to a time (the arm's motion).
     pub fn until(&mut self, time: SessionTime) -> Vec<SceneUpdate> {
         let step = self.step();
         let session = &self.session;

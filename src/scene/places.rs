@@ -1,5 +1,4 @@
-//! The kitchen from above, as on the wall display: places and what lies there, what the participant is shown, and where
-//! it looks.
+//! The kitchen as on the wall display: places with their contents, the present signal, and the gaze.
 
 use super::colours::{self, Colour};
 use super::shown::{EntityData, EntityUpdate, SceneArea, SceneDisc, slug};
@@ -12,10 +11,10 @@ use crate::kitchen::{
 };
 use crate::session::Session;
 
-/// Half the widths of lines, in millimetres.
+/// Half widths of lines, in millimetres.
 const THIN: f64 = 2.0;
 const THICK: f64 = 6.0;
-/// Words begin below their point: those above a place so far above its edge, in millimetres.
+/// Distance of a label's anchor above the edge of its place, in millimetres: text is drawn below its anchor.
 const ABOVE_MM: f64 = 52.0;
 
 const MM: f64 = 1000.0;
@@ -40,7 +39,7 @@ fn words_at(at: [f64; 2], words: &str, colour: Colour) -> SceneDisc {
 pub fn fixed(kitchen: &Kitchen) -> Vec<EntityUpdate> {
     let whole = kitchen::DisplayArea { x: 0.0, y: 0.0, w: 1.0, h: 1.0 };
     let name = |(index, location): (usize, &Location)| {
-        // In the colour of its curves, which have no room for a legend.
+        // In the colour of the place's curves, since the plots have no legend.
         let colour = colours::of_aspect(AspectId::of_location(LocationId(index as u8)));
         let SceneArea { left, top, width, .. } = area(kitchen, location.display, colour);
         words_at([left + width / 2.0, top - ABOVE_MM], &location.label(), colour)
@@ -66,7 +65,7 @@ fn dimmed([red, green, blue, opacity]: Colour) -> Colour {
     [red / 2, green / 2, blue / 2, opacity]
 }
 
-/// What lies where, for the places where it is something else than `before`; for all of them without a before.
+/// Contents of the places that differ from `before`, or of all places without `before`.
 pub fn contents(kitchen: &Kitchen, before: Option<State>, state: State) -> impl Iterator<Item = EntityUpdate> {
     let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
     let changed = locations.filter(move |&id| before.is_none_or(|before| before.code(id) != state.code(id)));
@@ -89,7 +88,7 @@ pub fn contents(kitchen: &Kitchen, before: Option<State>, state: State) -> impl 
     })
 }
 
-/// The ingredient items that lie at a location; those of the dish that an order wants.
+/// Ingredient items at a location; at an order, those of its dish.
 fn items(kitchen: &Kitchen, state: State, id: LocationId) -> Vec<ContentId> {
     let content = match kitchen.location(id).kind {
         LocationKind::Order => match state.order(id) {
@@ -101,7 +100,7 @@ fn items(kitchen: &Kitchen, state: State, id: LocationId) -> Vec<ContentId> {
     if content.is_empty() { Vec::new() } else { kitchen.content(content).items.clone() }
 }
 
-/// A disc for each item, side by side in an area, and words below it.
+/// A disc for each item, side by side in an area, with words below.
 fn content(
     kitchen: &Kitchen,
     on: kitchen::DisplayArea,
@@ -122,7 +121,7 @@ fn content(
     items.iter().enumerate().map(disc).chain((!words.is_empty()).then_some(below)).collect()
 }
 
-/// A storage's item above its name: both in its own area, for the next one follows at once.
+/// A storage's item above its name, both inside its area, since storages are adjacent.
 fn stored(kitchen: &Kitchen, storage: &Storage) -> [SceneDisc; 2] {
     let SceneArea { left, top, width, height, .. } = area(kitchen, storage.display, colours::QUIET);
     let middle = left + width / 2.0;
@@ -135,7 +134,7 @@ fn stored(kitchen: &Kitchen, storage: &Storage) -> [SceneDisc; 2] {
     [disc, words_at([middle, top + height * 0.42], &storage.label, colours::QUIET)]
 }
 
-/// What the participant is shown now: a place, or a recipe at its order.
+/// The present signal: a highlighted place, or a recipe at its order.
 pub fn shown_signal(session: &Session) -> Vec<EntityUpdate> {
     let outline = |areas| EntityUpdate::new("kitchen/shown", EntityData::Areas(areas));
     let label = |words| EntityUpdate::new("kitchen/shown/words", EntityData::Discs(words));
@@ -164,7 +163,7 @@ pub fn shown_signal(session: &Session) -> Vec<EntityUpdate> {
     vec![outline(vec![outer]), label(vec![words_at(below, &words, colours::SIGNAL)])]
 }
 
-/// Where the participant looks, with the area around it that it can read.
+/// The gaze, with the area around it that can be read.
 pub fn gaze(session: &Session, sample: GazeSample) -> EntityUpdate {
     let [width_m, height_m] = session.kitchen.display_m;
     let at = [sample.x * width_m * MM, sample.y * height_m * MM];

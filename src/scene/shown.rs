@@ -1,12 +1,12 @@
-//! What an entity shows: shapes, values, words. Lengths of the kitchen are in millimetres of the wall display from its top
-//! left, those of the arm in metres in the frame of the robot's base.
+//! Content of an entity: shapes, values, text. Lengths in the kitchen are in millimetres on the wall display from its top left
+//! corner, lengths of the arm in metres in the frame of the robot's base.
 
 use nalgebra::Isometry3;
 
 use super::colours::Colour;
 use crate::arm::link::CollisionSolid;
 
-/// Something that an entity shows from a moment on.
+/// New content of one entity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EntityUpdate {
     /// The path of the entity, such as `kitchen/plate`.
@@ -20,10 +20,10 @@ impl EntityUpdate {
     }
 }
 
-/// What is shown.
+/// Content of an entity.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EntityData {
-    /// Outlines in the kitchen; none: nothing is there.
+    /// Outlines in the kitchen; an empty list clears the entity.
     Areas(Vec<SceneArea>),
     /// Discs and words in the kitchen.
     Discs(Vec<SceneDisc>),
@@ -37,11 +37,11 @@ pub enum EntityData {
     Points(Vec<ScenePoint>),
     /// Shapes in the entity's own frame.
     Solids(Vec<CollisionSolid>, Colour),
-    /// Where the entity's frame is, in that of the robot's base.
+    /// Pose of the entity's frame in the frame of the robot's base.
     Place(Isometry3<f64>),
     /// A value of a series.
     Value(f64),
-    /// How the values of a series are drawn: as a line, or as marks.
+    /// Style of a series: line or marks.
     Line(SceneSeries),
     Marks(SceneSeries),
     /// A line of the log.
@@ -50,9 +50,9 @@ pub enum EntityData {
         text: String,
         colour: Colour,
     },
-    /// A page in Markdown, instead of the one before.
+    /// A page in Markdown, which replaces the previous one.
     Page(String),
-    /// What a lane of states says from now on; an empty text: nothing.
+    /// Text of a lane of states; an empty text clears it.
     State(String),
 }
 
@@ -69,7 +69,7 @@ pub struct SceneArea {
     pub line: f64,
 }
 
-/// A disc in the kitchen with words below its centre, in millimetres; of radius 0: words alone.
+/// A disc in the kitchen with words below its centre, in millimetres; radius 0 for words only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneDisc {
     pub at: [f64; 2],
@@ -87,24 +87,24 @@ pub struct ScenePoint {
     pub colour: Colour,
 }
 
-/// How a series is drawn.
+/// Name and colour of a series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneSeries {
     pub name: String,
     pub colour: Colour,
 }
 
-/// How much a line of the log matters.
+/// Level of a line of the text log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LogLevel {
     Info,
-    /// It had no effect, or was taken back.
+    /// A press without effect, or a signal that was taken back.
     Warning,
     /// An error of the human.
     Error,
 }
 
-/// A name as part of a path.
+/// A name as a part of an entity path.
 pub fn slug(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect()
 }

@@ -1,68 +1,67 @@
-//! Maximum likelihood where the likelihood is noisy: from response surface to response surface (Box and Wilson 1951) to the
-//! maximum, within bounds. Noise makes single comparisons worthless, but every surface averages it over its points, and tells
-//! how much of it there is.
+//! Maximises a noisy log likelihood within bounds by a sequence of response surfaces (Box and Wilson 1951). Single comparisons
+//! are unreliable under noise; a surface averages the noise over its points and estimates its size.
 //!
-//! A variable that is best at one of its bounds, or whose bound is not rejected beside the best, is held there, and gets the
-//! end of a profile likelihood interval instead of a standard error (Venzon and Moolgavkar 1988).
+//! A variable whose maximum lies at a bound, or whose bound is not significantly worse than the maximum, is held at that bound.
+//! It gets one end of a profile likelihood interval instead of a standard error (Venzon and Moolgavkar 1988).
 
 use super::surface::{QuadraticSurface, REACH, points, surface};
 
-/// The first steps.
+/// Step size of the first surface.
 const FIRST_STEP: f64 = 0.4;
-/// Steps are so wide that they cost about as much: in nats, and more where there is noise, in standard deviations.
+/// Steps are chosen so that one step lowers the log likelihood by this much: least and most in nats, and in standard
+/// deviations of the noise.
 const STEP_NATS: [f64; 2] = [2.0, 12.0];
 const STEP_NOISE: f64 = 0.5;
-/// Steps stay between these, and change by at most this factor at a time.
+/// Bounds of a step, and the largest factor between successive steps.
 const STEPS: [f64; 2] = [0.02, 1.6];
 const STEP_CHANGE: f64 = 2.5;
-/// Half the quantile of chi squared with one degree of freedom, for 95 %.
+/// Difference of log likelihoods that is significant at 5 %: half the 95 % quantile of chi squared with one degree of freedom.
 const REJECTED_NATS: f64 = 1.92;
-/// The end of a profile is looked for in steps of this size at first, and told to within a fourth of it.
+/// First step of the search for the end of a profile interval; the end is found to within a quarter of it.
 const PROFILE_STEP: f64 = 0.3;
-/// Who loses more than so much at a bound, the others as they are at the best, and beyond the noise, would not make up for it
-/// by changing them.
+/// A bound that lowers the log likelihood by more than this (plus the noise), with the other variables at the maximum, is rejected
+/// without optimising the other variables.
 const HOPELESS_NATS: f64 = 30.0;
-/// That close to a bound is at it.
+/// Distance to a bound below which a variable is at the bound.
 const CLOSE: f64 = 1e-9;
 
-/// A bound at which a variable is best.
+/// The bound at which a variable has its maximum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoundReached {
     Low,
     High,
 }
 
-/// What is known of a variable.
+/// Estimate of one variable with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedVariable {
     pub at: f64,
-    /// None at a bound, and where the likelihood is not curved in every direction.
+    /// `None` at a bound, and where the log likelihood is not concave.
     pub standard_error: Option<f64>,
-    /// The bound at which it is best, if it is at one, …
+    /// The bound at which the variable has its maximum, if any.
     pub end: Option<BoundReached>,
-    /// … and how far from there it may be (95 %); nothing if that was not found.
+    /// Other end of the 95 % profile interval of a variable at a bound; `None` if it was not found.
     pub limit: Option<f64>,
 }
 
-/// A maximum.
+/// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Maximum {
     pub variables: Vec<FittedVariable>,
-    /// How often the likelihood was asked for.
+    /// Number of evaluations of the log likelihood.
     pub evaluations: usize,
-    /// It came to rest before the evaluations were used up.
+    /// Whether the search converged before the evaluations were used up.
     pub converged: bool,
 }
 
-/// Looks for the maximum of a log likelihood, given by its negative in nats, between bounds. It is asked for at most about
-/// `most` times.
+/// Maximises a log likelihood within bounds; `loss` is its negative in nats. Uses about `most` evaluations at most.
 pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]], most: usize) -> Maximum {
     let inside = |(at, [low, high]): (&f64, &[f64; 2])| at.clamp(*low, *high);
     let at: Vec<f64> = start.iter().zip(bounds).map(inside).collect();
     let count = at.len();
     let mut search = Search { loss, bounds, at, steps: vec![FIRST_STEP; count], evaluations: 0, most };
     let mut held = vec![None; count];
-    // What comes to rest at a bound is held there, and the others are looked for again.
+    // A variable that converges at a bound is held there, and the others are optimised again.
     let last = loop {
         let free: Vec<usize> = (0..count).filter(|&index| held[index].is_none()).collect();
         let Some(last) = search.climb(&free) else { break None };
@@ -102,7 +101,7 @@ pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]
 struct Search<'a, F> {
     loss: F,
     bounds: &'a [[f64; 2]],
-    /// The best so far.
+    /// Best point so far.
     at: Vec<f64>,
     steps: Vec<f64>,
     evaluations: usize,
@@ -110,8 +109,8 @@ struct Search<'a, F> {
 }
 
 impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
-    /// Goes to the maximum over some of the variables. Gives the surface around it (none of no variables); nothing if it did not
-    /// come to rest.
+    /// Maximises over the free variables. Returns the surface around the maximum (`Some(None)` without free variables), or `None` if
+    /// the search did not converge.
     fn climb(&mut self, free: &[usize]) -> Option<Option<QuadraticSurface>> {
         if free.is_empty() {
             return Some(None);
@@ -122,7 +121,7 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
             for ((&index, centre), by) in free.iter().zip(&centre).zip(&by) {
                 self.at[index] = (centre + by * self.steps[index]).clamp(self.bounds[index][0], self.bounds[index][1]);
             }
-            // What is little known moves with the noise, for nothing.
+            // Poorly determined variables move with the noise; further steps gain nothing.
             let gain = surface.value - surface.at(&by);
             let is_noise =
                 surface.covariance().is_some() && gain <= REJECTED_NATS + surface.noise * share_of_noise(free.len());
@@ -139,8 +138,8 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         }
     }
 
-    /// A surface over some of the variables around the best so far, all of it between the bounds, and its centre; nothing if
-    /// there are no evaluations left for it.
+    /// A surface over the free variables around the best point, inside the bounds, with its centre; `None` if too few evaluations
+    /// are left.
     fn survey(&mut self, free: &[usize]) -> Option<(Vec<f64>, QuadraticSurface)> {
         if self.evaluations + points(free.len()) > self.most {
             return None;
@@ -177,7 +176,7 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         surface.least(&in_steps(0, -REACH), &in_steps(1, REACH))
     }
 
-    /// Steps that cost enough to stand out from chance, and no more.
+    /// Step sizes whose effect just exceeds the noise.
     fn wanted_steps(&self, free: &[usize], surface: &QuadraticSurface) -> Vec<f64> {
         let [least, most] = STEP_NATS.map(|nats| nats + STEP_NOISE * surface.noise);
         let wanted = |(place, &index): (usize, &usize)| {
@@ -194,7 +193,7 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         free.iter().enumerate().map(wanted).collect()
     }
 
-    /// The bound that a variable is at.
+    /// The bound at which a variable is, if any.
     fn end(&self, index: usize) -> Option<BoundReached> {
         let [low, high] = self.bounds[index];
         match self.at[index] {
@@ -208,7 +207,7 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         self.bounds[index][end as usize]
     }
 
-    /// A bound that is not rejected beside the best.
+    /// A variable with a bound that is not significantly worse than the maximum.
     fn open_end(&mut self, free: &[usize], last: &QuadraticSurface) -> Option<(usize, BoundReached)> {
         let best = self.at.clone();
         let value = last.at(&last.least(&vec![-REACH; free.len()], &vec![REACH; free.len()]));
@@ -228,8 +227,8 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         None
     }
 
-    /// How far from its bound a variable may be: where the likelihood, the others at their best, is rejected beside that at the
-    /// bound, and beyond its noise.
+    /// End of the profile interval of a variable at a bound: where the profile log likelihood is significantly below that at the
+    /// bound, beyond the noise.
     fn limit(&mut self, index: usize, end: BoundReached, held: &[Option<BoundReached>]) -> Option<f64> {
         let others: Vec<usize> = (0..held.len()).filter(|&other| other != index && held[other].is_none()).collect();
         let best = self.at.clone();
@@ -256,7 +255,7 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         found
     }
 
-    /// The least loss over these variables near the best so far, and the standard deviation of a difference of two such.
+    /// Least loss over these variables near the best point, and the standard deviation of a difference of two such values.
     fn profile(&mut self, others: &[usize]) -> Option<(f64, f64)> {
         if others.is_empty() {
             self.evaluations += 1;
@@ -268,7 +267,7 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
     }
 }
 
-/// The standard deviation of a difference of two surfaces over so many variables, by that of the values.
+/// Standard deviation of a difference between the minima of two surfaces, as a share of that of single values.
 fn share_of_noise(variables: usize) -> f64 {
     let count = variables as f64;
     let terms = 1.0 + count + count * (count + 1.0) / 2.0;

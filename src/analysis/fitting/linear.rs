@@ -1,6 +1,6 @@
 //! Linear algebra of small symmetric matrices.
 
-/// The inverse of a symmetric positive definite matrix, by Cholesky's decomposition; `None` if it is none.
+/// Inverse of a symmetric positive definite matrix by Cholesky decomposition; `None` if the matrix is not positive definite.
 pub fn inverse(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let n = matrix.len();
     let mut lower = vec![vec![0.0; n]; n];

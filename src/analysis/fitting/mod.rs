@@ -1,10 +1,9 @@
-//! The human model's parameters under which recorded presses are likeliest.
+//! Maximum likelihood fits of the human model to recorded presses.
 //!
-//! Maximum likelihood: the sum over all presses of ln p(press | estimate before it), on a scale without bounds, looked for
-//! between bounds. The filter's chance makes the likelihood rough by some nats, so the search goes from one quadratic surface
-//! through tries all around to the next ([`ascent`]). The last one's curvature, the observed information, and what
-//! chance leaves unknown of its maximum give the standard errors. A parameter that is best at its bound is not identified:
-//! what is told of it is from where on it is not rejected.
+//! The log likelihood is the sum over all presses of ln p(press | estimate before the press). Parameters are transformed to an
+//! unbounded scale and searched within bounds. The filter's random numbers make the log likelihood noisy by some nats, so the
+//! search uses a sequence of quadratic surfaces ([`ascent`]). Standard errors follow from the curvature of the last surface (the
+//! observed information) and from the noise. A parameter whose maximum lies at a bound is not identified; its interval is one-sided.
 
 pub mod ascent;
 pub mod linear;
@@ -17,68 +16,68 @@ use crate::base::words::count;
 use crate::mind::fitting::{Likelihood, Parameter};
 use crate::mind::model::HumanModel;
 
-/// Half the width of an interval of 95 %, in standard errors.
+/// Half width of a 95 % interval, in standard errors.
 const HALF_WIDTH: f64 = 1.96;
 
-/// The recordings that a model is fitted to, apart from what was observed in them.
+/// Facts about the recordings of a fit, apart from their observations.
 #[derive(Clone, Copy, Debug)]
 pub struct FittedRecordings<'a> {
-    /// How many there are.
+    /// Number of recordings.
     pub number: u64,
-    /// The parameters of the human model that stand in the first recording.
+    /// Human model in the header of the first recording.
     pub model: &'a HumanModel,
-    /// Whether another recording has other parameters.
+    /// Whether another recording has different parameters.
     pub differ: bool,
 }
 
-/// What to fit.
+/// Which parameters to fit, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitPlan {
     pub parameters: Vec<Parameter>,
-    /// Where to begin; what is not fitted stays as it is here. None: with what stands in the recordings.
+    /// Start of the search, and value of parameters that are not fitted. `None` for the parameters in the recordings.
     pub start: Option<HumanModel>,
-    /// The search ends after so many tries.
+    /// Largest number of evaluations.
     pub most_tries: usize,
 }
 
-/// What `tomcom fit` prints.
+/// The output of `tomcom fit`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FitSummary {
     pub recordings: u64,
     /// Presses of the human.
     pub human_actions: u64,
-    /// Log likelihood per press, in nats, with the parameters from before, and with those that were found.
+    /// Log likelihood per press, in nats, before and after the fit.
     pub log_likelihood_before: f64,
     pub log_likelihood: f64,
     pub tries: u64,
-    /// The search was to end after so many tries.
+    /// Largest number of evaluations that was allowed.
     pub most_tries: u64,
-    /// It began with the parameters that stand in the recordings, and not with those of a file.
+    /// Whether the search began with the parameters in the recordings rather than those of a file.
     pub begins_with_recordings: bool,
-    /// The recordings were made with different parameters, of which those of the first are meant.
+    /// Whether the recordings have different parameters, in which case the search began with those of the first.
     pub recordings_differ: bool,
-    /// Whether the search came to its end before the tries were used up.
+    /// Whether the search converged within the allowed evaluations.
     pub converged: bool,
     pub parameters: Vec<FittedParameter>,
-    /// All parameters, with those that were found.
+    /// The human model with the fitted values.
     #[serde(skip)]
     pub model: HumanModel,
 }
 
-/// A parameter that was fitted.
+/// Result for one fitted parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FittedParameter {
     pub name: &'static str,
     pub unit: &'static str,
     pub before: f64,
     pub value: f64,
-    /// Whether the recordings tell it from both sides, within the bounds of the search.
+    /// Whether the interval is finite on both sides within the bounds of the search.
     pub identified: bool,
-    /// Null where it is not identified, where the likelihood is not curved in every direction (the recordings do not tell
-    /// parameters apart), and where the search did not come to its end.
+    /// Null where the parameter is not identified, where the log likelihood is not concave (parameters cannot be distinguished), and
+    /// where the search did not converge.
     pub standard_error: Option<f64>,
-    /// 95 %: symmetric on the scale on which it was fitted; of a parameter that is best at a bound, the end of its profile
-    /// likelihood interval. An end beyond the bounds of the search is null.
+    /// 95 % interval, symmetric on the scale of the fit; for a parameter at a bound, its profile likelihood interval. An end beyond
+    /// the bounds of the search is null.
     pub interval: Option<[Option<f64>; 2]>,
 }
 
@@ -120,7 +119,7 @@ impl FittedParameter {
     }
 }
 
-/// Fits the parameters of a plan. `likelihood` is that of all trials under a model; `tried` is called after each try.
+/// Fits parameters. `likelihood` returns the likelihood of all trials under a model; `tried` is called after each evaluation.
 pub fn fit(
     trials: FittedRecordings<'_>,
     plan: &FitPlan,
@@ -137,7 +136,7 @@ pub fn fit(
     };
     let loss = |at: &[f64]| {
         let model = with(at);
-        // Where the model cannot be, it cannot be best.
+        // Invalid models get an infinite loss.
         let loss = if model.fault().is_some() { f64::INFINITY } else { -likelihood(&model).log_p };
         tried();
         loss
@@ -149,7 +148,7 @@ pub fn fit(
     let Maximum { mut variables, evaluations, converged } = ascend(loss, &start, &bounds, plan.most_tries);
     let mut model = with(&variables.iter().map(|variable| variable.at).collect::<Vec<f64>>());
     let mut log_p = likelihood(&model).log_p;
-    // An unfinished search may have been on its way through worse places.
+    // A search that did not converge may end at a point worse than its start.
     if !converged && log_p < before.log_p {
         variables.iter_mut().zip(&start).for_each(|(variable, &start)| variable.at = start);
         (model, log_p) = (begin.clone(), before.log_p);
@@ -171,7 +170,7 @@ pub fn fit(
     }
 }
 
-/// What stands above the parameters in a file.
+/// Comment at the top of a file with fitted parameters.
 pub fn comment(fit: &FitSummary) -> String {
     let values = fit.parameters.iter().map(|one| match (one.standard_error, one.interval) {
         (Some(error), _) => format!("{} = {:.4}, standard error {error:.4}", one.name, one.value),
@@ -197,7 +196,7 @@ pub fn comment(fit: &FitSummary) -> String {
     )
 }
 
-/// The figures for people.
+/// The fit as text.
 pub fn describe(fit: &FitSummary) -> String {
     let lost = fit.log_likelihood_before - fit.log_likelihood;
     let end = match fit.converged {
@@ -240,7 +239,7 @@ pub fn describe(fit: &FitSummary) -> String {
     text + &untold(fit)
 }
 
-/// Which parameters the recordings do not tell, and what their values are then.
+/// Sentences about parameters that are not identified.
 fn untold(fit: &FitSummary) -> String {
     let untold: Vec<&str> = fit.parameters.iter().filter(|one| !one.identified).map(|one| one.name).collect();
     if untold.is_empty() {

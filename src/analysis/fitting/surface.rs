@@ -1,34 +1,34 @@
-//! A quadratic surface through values of a function, by least squares over a central composite design (Box and Wilson 1951):
-//! where it is least and how it is curved, even if the values are noisy.
+//! Quadratic response surfaces: least squares fits to the values of a noisy function over a central composite design (Box and
+//! Wilson 1951), with their minimum and curvature.
 
 use super::linear::inverse;
 
-/// The surface is trusted for so many steps around its centre.
+/// Range in which a surface is trusted, in steps from its centre.
 pub const REACH: f64 = 1.5;
-/// Sweeps over the variables on the way to the least value.
+/// Number of coordinate descent sweeps to the minimum.
 const SWEEPS: usize = 60;
 
-/// What a surface says of the function that it goes through; in steps from its centre.
+/// A quadratic surface; variables are in steps from its centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QuadraticSurface {
-    /// Its value at the centre.
+    /// Value at the centre.
     pub value: f64,
     pub slope: Vec<f64>,
     /// Second derivatives.
     pub curvature: Vec<Vec<f64>>,
-    /// Standard deviation of the values around it.
+    /// Standard deviation of the residuals.
     pub noise: f64,
-    /// What that leaves unknown of the slope: covariance.
+    /// Covariance of the slope that follows from the residuals.
     slope_covariance: Vec<Vec<f64>>,
 }
 
-/// How many values [`surface`] asks for, of a function of so many variables.
+/// Number of function values that [`surface`] needs for this number of variables.
 pub fn points(variables: usize) -> usize {
     design(variables).len()
 }
 
-/// The surface through values around `centre`, up to a step of these sizes along each variable and each pair of them.
-/// Values that are not finite are left out; `None` if too few are left.
+/// Fits a surface around `centre`, with steps of the given sizes along each variable and each pair of variables. Values that
+/// are not finite are ignored; `None` if too few remain.
 pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &[f64]) -> Option<QuadraticSurface> {
     let n = centre.len();
     let count = 1 + n + n * (n + 1) / 2;
@@ -67,14 +67,14 @@ pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &
 }
 
 impl QuadraticSurface {
-    /// Its value so many steps from the centre.
+    /// Value at a distance from the centre, in steps.
     pub fn at(&self, by: &[f64]) -> f64 {
         let bend: f64 = self.curvature.iter().zip(by).map(|(row, one)| one * product(row, by)).sum();
         self.value + product(&self.slope, by) + bend / 2.0
     }
 
-    /// Where it is least between these bounds, in steps from the centre: the best of what coordinate descents find from the
-    /// centre and from the ends of each axis.
+    /// Minimum within bounds, in steps from the centre: the best result of coordinate descents from the centre and from the ends of
+    /// each axis.
     pub fn least(&self, low: &[f64], high: &[f64]) -> Vec<f64> {
         let n = self.slope.len();
         let mut starts = vec![vec![0.0; n]];
@@ -106,8 +106,8 @@ impl QuadraticSurface {
         by
     }
 
-    /// The covariance of where the least value is: the inverse of the curvature (the observed information, where values are
-    /// negative log likelihoods), and what noise adds. `None` if it is not curved upwards in every direction.
+    /// Covariance of the minimum: the inverse of the curvature (the observed information, if values are negative log likelihoods)
+    /// plus the part due to noise. `None` if the surface is not convex.
     pub fn covariance(&self) -> Option<Vec<Vec<f64>>> {
         let inverse = inverse(&self.curvature)?;
         let n = inverse.len();
@@ -123,7 +123,7 @@ fn product(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
-/// The points of the design, in steps from its centre.
+/// Points of the design, in steps from its centre.
 fn design(n: usize) -> Vec<Vec<f64>> {
     let at = |moves: &[(usize, f64)]| {
         let mut by = vec![0.0; n];
@@ -134,7 +134,7 @@ fn design(n: usize) -> Vec<Vec<f64>> {
     for index in 0..n {
         points.extend([-1.0, -0.5, 0.5, 1.0].map(|step| at(&[(index, step)])));
         for other in 0..index {
-            // Half of the corners, so that the diagonals take turns.
+            // Half of the corners; the diagonals alternate.
             let turned = if (index + other) % 2 == 0 { 1.0 } else { -1.0 };
             points.extend([-1.0, 1.0].map(|step| at(&[(index, step), (other, turned * step)])));
         }
@@ -146,7 +146,7 @@ fn pairs(n: usize) -> Vec<(usize, usize)> {
     (0..n).flat_map(|one| (0..=one).map(move |other| (one, other))).collect()
 }
 
-/// 1, every variable, every product of two.
+/// Terms of the quadratic model: 1, every variable, every product of two variables.
 fn terms(by: &[f64]) -> Vec<f64> {
     let products = pairs(by.len()).into_iter().map(|(one, other)| by[one] * by[other]);
     std::iter::once(1.0).chain(by.iter().copied()).chain(products).collect()

@@ -31,7 +31,7 @@ const EDGE: usize = 12;
 const MAX_LINES: usize = 420;
 
 /// Rooms in which circles of files still stand, with the number of files in them. The numbers only go down, to none.
-const FILES_IN_CIRCLES: [(&str, usize); 9] = [
+const FILES_IN_CIRCLES: [(&str, usize); 8] = [
     ("cli", 9),
     ("communication", 6),
     ("edge", 5),
@@ -40,7 +40,6 @@ const FILES_IN_CIRCLES: [(&str, usize); 9] = [
     ("run", 12),
     ("session", 17),
     ("study", 8),
-    ("wizard", 2),
 ];
 
 /// Names that stand for the outside, for time or chance that no seed decides, or for an order that is not fixed.

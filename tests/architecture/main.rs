@@ -31,11 +31,10 @@ const EDGE: usize = 12;
 const MAX_LINES: usize = 420;
 
 /// Rooms in which circles of files still stand, with the number of files in them. The numbers only go down, to none.
-const FILES_IN_CIRCLES: [(&str, usize); 7] = [
+const FILES_IN_CIRCLES: [(&str, usize); 6] = [
     ("cli", 9),
     ("communication", 6),
     ("edge", 5),
-    ("participant", 2),
     ("run", 12),
     ("session", 17),
     ("study", 8),

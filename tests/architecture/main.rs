@@ -31,9 +31,8 @@ const EDGE: usize = 12;
 const MAX_LINES: usize = 420;
 
 /// Rooms in which circles of files still stand, with the number of files in them. The numbers only go down, to none.
-const FILES_IN_CIRCLES: [(&str, usize); 6] = [
+const FILES_IN_CIRCLES: [(&str, usize); 5] = [
     ("cli", 9),
-    ("communication", 6),
     ("edge", 5),
     ("run", 12),
     ("session", 17),

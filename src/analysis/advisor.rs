@@ -3,7 +3,8 @@
 use super::follower::Follower;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
-use crate::communication::concept::{Concept, ConceptName, DecisionPoint, concept};
+use crate::communication::concept::{Concept, ConceptName, DecisionPoint};
+use crate::communication::concepts::concept;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::situation::{RobotIntent, Situation};
 use crate::kitchen::cost_to_go::CostToGo;

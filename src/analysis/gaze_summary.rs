@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::base::words::count;
 use crate::gaze::quality::{DropCounts, FaultCounts};
 use crate::session::Session;
-use crate::session::tracker::faults;
+use crate::session::gaze_samples::faults;
 
 /// Gaze quality of a recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]

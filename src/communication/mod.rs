@@ -1,77 +1,23 @@
 //! Communication: the signals that wizard and assistant can send to the participant, and which of them to send when.
+//!
+//! The files from the ground up:
+//!
+//! - `signal`, [`recommendation`] (what a concept answers), [`repeats`] (what was said already), [`situation`].
+//! - `concept_name`, [`settings`], [`concept`] (the interface).
+//! - What implements it: [`planner`] (ToM-Com), [`tom`], [`dev`]; [`concepts`] builds one by its name. `reference` is the
+//!   planner in its plainest form.
 
 pub mod concept;
+mod concept_name;
+pub mod concepts;
 pub mod dev;
 pub mod planner;
 pub mod recommendation;
 pub mod reference;
 pub mod repeats;
 pub mod settings;
+mod signal;
 pub mod situation;
 pub mod tom;
 
-use serde::{Deserialize, Serialize};
-
-use crate::kitchen::{Agent, Kitchen, LocationId, LocationKind, OrderContent, State};
-
-/// A communication signal, by the names of the layout's locations.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Signal {
-    /// The recipe of the dish that this order location wants, picture and words.
-    ShowRecipe(String),
-    /// Directs attention to a location and its content.
-    Highlight(String),
-}
-
-impl Signal {
-    /// The location that the signal is about.
-    pub fn target(&self) -> &str {
-        match self {
-            Signal::ShowRecipe(name) | Signal::Highlight(name) => name,
-        }
-    }
-}
-
-/// Who sends a signal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Sender {
-    Wizard,
-    Assistant,
-}
-
-/// The signal about each location, in the order of the locations: recipes for orders, highlights for the others but the
-/// human's own hand, unless `own_hand` allows it (it is what one sees best).
-pub fn signals(kitchen: &Kitchen, own_hand: bool) -> Vec<(LocationId, Signal)> {
-    let signal = |index: usize| {
-        let location = &kitchen.locations[index];
-        let signal = match location.kind {
-            LocationKind::Order => Signal::ShowRecipe(location.name.clone()),
-            LocationKind::Hand(Agent::Human) if !own_hand => return None,
-            _ => Signal::Highlight(location.name.clone()),
-        };
-        Some((LocationId(index as u8), signal))
-    };
-    (0..kitchen.locations.len()).filter_map(signal).collect()
-}
-
-/// The signals that can be sent in a state.
-pub fn available(kitchen: &Kitchen, state: State, own_hand: bool) -> Vec<Signal> {
-    let all = signals(kitchen, own_hand).into_iter().map(|(_, signal)| signal);
-    all.filter(|signal| unavailable(kitchen, state, signal).is_none()).collect()
-}
-
-/// Why a signal cannot be sent now; `None` if it can. Only an order that wants a dish has a recipe to show.
-pub fn unavailable(kitchen: &Kitchen, state: State, signal: &Signal) -> Option<&'static str> {
-    let Some(location) = kitchen.location_named(signal.target()) else { return Some("no such location") };
-    match (signal, kitchen.location(location).kind) {
-        (Signal::ShowRecipe(_), LocationKind::Order) => match state.order(location) {
-            OrderContent::Dish(_) => None,
-            _ => Some("there is no order whose recipe could be shown"),
-        },
-        (Signal::ShowRecipe(_), _) => Some("only an order has a recipe"),
-        (Signal::Highlight(_), LocationKind::Order) => Some("an order cannot be highlighted"),
-        (Signal::Highlight(_), _) => None,
-    }
-}
+pub use signal::{Sender, Signal, available, signals, unavailable};

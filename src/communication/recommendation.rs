@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Signal;
+use super::signal::Signal;
 use crate::base::time::SessionTime;
 use crate::kitchen::{AspectId, Kitchen, LocationKind, OrderContent, State};
 use crate::mind::dirichlet::DirichletBelief;

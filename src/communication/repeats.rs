@@ -1,7 +1,7 @@
 //! What was said already: nothing is said twice before it could have been forgotten again.
 
 use super::recommendation::aspects_told;
-use super::{Signal, signals};
+use super::signal::{Signal, signals};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{AspectId, Kitchen, LocationId, State};
 use crate::mind::dirichlet::DirichletBelief;

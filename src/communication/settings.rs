@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::concept::ConceptName;
+use super::concept_name::ConceptName;
 
 /// The assistant: what it advises by, how carefully, and whether it does so beside a wizard.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use super::concept::{Concept, DecisionPoint};
 use super::recommendation::{Reason, Recommendation, SignalOption, aspects_told};
-use super::{Signal, unavailable};
+use super::signal::{Signal, unavailable};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::mind::witness::rounded;

@@ -6,8 +6,7 @@
 
 use ratatui::layout::Rect;
 
-use crate::kitchen::layout::DisplayArea;
-use crate::kitchen::{Agent, Kitchen, LocationId, LocationKind};
+use crate::kitchen::{Agent, DisplayArea, Kitchen, LocationId, LocationKind};
 
 /// What stands at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -209,7 +208,7 @@ fn items(kitchen: &Kitchen, with_keys: bool) -> Vec<Item> {
         let min_columns = (location.label().chars().count() as u16 + beside).max(MIN_CARD);
         Item { thing, area: location.display, owner, min_columns }
     };
-    let storage = |(index, storage): (usize, &crate::kitchen::layout::Storage)| Item {
+    let storage = |(index, storage): (usize, &crate::kitchen::Storage)| Item {
         thing: MapElement::Storage(index),
         area: storage.display,
         owner: Some(storage.agent),

@@ -100,7 +100,7 @@ pub fn scene(session: &Session) -> DisplayScene {
         area: rect(location.display),
         look: location.look.clone(),
     };
-    let shelf = |storage: &crate::kitchen::layout::Storage| DisplayStorage {
+    let shelf = |storage: &crate::kitchen::Storage| DisplayStorage {
         agent: storage.agent,
         item: kitchen.content(storage.item).name.clone(),
         label: words.of_name(&storage.label),
@@ -154,7 +154,7 @@ fn marks(kitchen: &Kitchen) -> Vec<TagPicture> {
 fn knobs(kitchen: &Kitchen, words: &DisplayWords) -> Vec<DisplayButton> {
     let hand = kitchen.hands[Agent::Human.index()].index();
     let shelf = |item| {
-        let is_it = |storage: &crate::kitchen::layout::Storage| storage.agent == Agent::Human && storage.item == item;
+        let is_it = |storage: &crate::kitchen::Storage| storage.agent == Agent::Human && storage.item == item;
         kitchen.storages.iter().position(is_it).unwrap_or_default()
     };
     let knob = |button: &crate::kitchen::Button| {

@@ -53,7 +53,7 @@ impl DisplayTags {
     /// Something lies where the smallest tags would be.
     pub fn place(kitchen: &Kitchen) -> Result<DisplayTags, TagError> {
         let locations = kitchen.locations.iter().map(|location| (location.label(), location.display));
-        let storage = |storage: &crate::kitchen::layout::Storage| {
+        let storage = |storage: &crate::kitchen::Storage| {
             (format!("{} of the {}", storage.label, storage.agent.name()), storage.display)
         };
         let taken: Vec<(String, DisplayArea)> = locations.chain(kitchen.storages.iter().map(storage)).collect();

@@ -1,10 +1,7 @@
 //! State aspects: what the human may be wrong about. One per location (its content), one per dish (its recipe).
 
-use super::Kitchen;
-use super::content::ContentId;
-use super::layout::LocationId;
-use super::recipe::DishId;
-use super::state::{Recipes, State};
+use super::dish::DishId;
+use super::location::LocationId;
 
 /// An index into [`super::Kitchen::aspects`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -47,31 +44,5 @@ impl Aspect {
     /// The index of a value by its code.
     pub fn index_of(&self, code: u8) -> Option<usize> {
         self.values.iter().position(|&value| value == code)
-    }
-}
-
-impl Kitchen {
-    /// The index of the true value of an aspect; a place that shows what it cannot hold counts as its first value.
-    pub fn true_value(&self, state: State, aspect: AspectId) -> usize {
-        let aspect = &self.aspects[aspect.index()];
-        match aspect.kind {
-            AspectKind::Location(location) => aspect.index_of(state.code(location)).unwrap_or(0),
-            AspectKind::Recipe(_) => 0,
-        }
-    }
-
-    /// Gives an aspect one of its values, by index, in a state or in recipes.
-    #[inline]
-    pub fn set_value(&self, state: &mut State, recipes: &mut Recipes, aspect: AspectId, value: usize) {
-        let aspect = &self.aspects[aspect.index()];
-        match aspect.kind {
-            AspectKind::Location(location) => state.set_code(location, aspect.values[value]),
-            AspectKind::Recipe(dish) => recipes.set(dish, ContentId(aspect.values[value])),
-        }
-    }
-
-    /// The aspect of a dish's recipe: recipes follow the locations.
-    pub fn aspect_of_dish(&self, dish: DishId) -> AspectId {
-        AspectId((self.locations.len() + dish.index()) as u8)
     }
 }

@@ -1,6 +1,10 @@
 //! What an event changed in the kitchen, with every name resolved.
 
-use super::{Agent, ButtonId, Kitchen, LocationId, State};
+use super::action::ButtonId;
+use super::agent::Agent;
+use super::compiled::Kitchen;
+use super::location::LocationId;
+use super::state::State;
 
 /// A press of either agent, and what it did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

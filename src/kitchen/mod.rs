@@ -1,149 +1,45 @@
 //! The kitchen: what can be where, which buttons there are, what a press does, and how far it is to the goal.
 //!
 //! Everything is computed from two files ([`layout::LayoutSpec`] and [`recipe::RecipesSpec`]); nothing here knows sushi.
+//!
+//! The files from the ground up; each imports only from those before it:
+//!
+//! - The parts: `agent`, `look`, [`content`], `location`, `dish`, `process`, [`action`], [`state`], [`aspect`],
+//!   `transition_tables`.
+//! - The whole: `compiled` ([`Kitchen`] and what can be looked up in it), `rules` (what a press does), [`change`], [`world`].
+//! - How far it is: [`cost_to_go`].
+//! - Where it comes from: [`layout`] and [`recipe`] (the files as written), [`compile`] (from them to a [`Kitchen`], no larger
+//!   than the cost to go can number).
 
 pub mod action;
+mod agent;
 pub mod aspect;
 pub mod change;
 pub mod compile;
+mod compiled;
 pub mod content;
 pub mod cost_to_go;
+mod dish;
 pub mod layout;
+mod location;
 pub mod look;
+mod process;
 pub mod recipe;
-pub mod rules;
+mod rules;
 pub mod state;
+mod transition_tables;
 pub mod world;
 
-use crate::base::rng::mix;
-pub use action::{Agent, Button, ButtonAction, ButtonId};
+pub use action::{Button, ButtonAction, ButtonId};
+pub use agent::Agent;
 pub use aspect::{Aspect, AspectId, AspectKind};
 pub use change::{Change, Press};
+pub use compiled::Kitchen;
 pub use content::{Content, ContentId};
 pub use cost_to_go::Fidelity;
-pub use layout::{DisplayArea, Location, LocationId, LocationKind};
+pub use dish::{Dish, DishId};
+pub use location::{DisplayArea, Location, LocationId, LocationKind, Storage};
 pub use look::Appearance;
-pub use recipe::{Dish, DishId};
+pub use process::Process;
 pub use state::{OrderContent, Recipes, State};
 pub use world::{WeightedWorld, WeightedWorlds, World};
-
-/// A compiled kitchen: tables over contents, locations, buttons and dishes. It never changes after loading.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Kitchen {
-    /// Identifier, from the layout file.
-    pub name: String,
-    /// What the screen calls it.
-    pub title: String,
-    /// Size of the wall display in metres, width and height.
-    pub display_m: [f64; 2],
-    /// Height of the table in the frame of the robot's base, in metres.
-    pub table_height_m: f64,
-    /// How long an order shows `served`, in seconds.
-    pub served_shown_s: f64,
-    /// From serving to the next order, in seconds.
-    pub new_order_after_s: f64,
-    /// Every content; index 0 is "empty", then the ingredient items, then the stacks by size.
-    pub contents: Vec<Content>,
-    /// The locations that a person can be wrong about; orders first, in the order of the file.
-    pub locations: Vec<Location>,
-    /// The buttons of the human and of the robot, indexed by [`Agent::index`] and [`ButtonId`].
-    pub buttons: [Vec<Button>; 2],
-    /// Where the endless ingredients stand on the display.
-    pub storages: Vec<layout::Storage>,
-    /// The menu.
-    pub dishes: Vec<Dish>,
-    /// What the human may believe: one aspect per location, one per recipe.
-    pub aspects: Vec<Aspect>,
-    /// The processing steps: cutting, cooking and their like.
-    pub processes: Vec<recipe::Process>,
-    /// The order locations.
-    pub orders: Vec<LocationId>,
-    /// The hand of each agent, indexed by [`Agent::index`].
-    pub hands: [LocationId; 2],
-    /// The location where items are stacked.
-    pub board: LocationId,
-    /// The location from which orders are served.
-    pub plate: LocationId,
-    tables: rules::TransitionTables,
-}
-
-impl Kitchen {
-    /// The state of a kitchen where everything is empty and no order is present.
-    pub fn empty_state(&self) -> State {
-        State::default()
-    }
-
-    /// The recipes as they truly are.
-    pub fn true_recipes(&self) -> Recipes {
-        let mut recipes = Recipes::default();
-        for (index, dish) in self.dishes.iter().enumerate() {
-            recipes.set(DishId(index as u8), dish.variants[0]);
-        }
-        recipes
-    }
-
-    /// The number of joint values of all aspects, |S| of the paper.
-    pub fn state_count(&self) -> u128 {
-        self.aspects.iter().map(|aspect| aspect.values.len() as u128).product()
-    }
-
-    /// The locations that hold something else in one state than in the other.
-    pub fn changed(&self, before: State, after: State) -> impl Iterator<Item = LocationId> + use<> {
-        let locations = (0..self.locations.len()).map(|index| LocationId(index as u8));
-        locations.filter(move |&location| before.code(location) != after.code(location))
-    }
-
-    pub fn location(&self, id: LocationId) -> &Location {
-        &self.locations[id.index()]
-    }
-
-    pub fn content(&self, id: ContentId) -> &Content {
-        &self.contents[id.index()]
-    }
-
-    pub fn button(&self, agent: Agent, id: ButtonId) -> &Button {
-        &self.buttons[agent.index()][id.index()]
-    }
-
-    pub fn dish(&self, id: DishId) -> &Dish {
-        &self.dishes[id.index()]
-    }
-
-    /// The location with this name.
-    pub fn location_named(&self, name: &str) -> Option<LocationId> {
-        self.locations.iter().position(|location| location.name == name).map(|index| LocationId(index as u8))
-    }
-
-    /// The dish of this name.
-    pub fn dish_named(&self, name: &str) -> Option<DishId> {
-        self.dishes.iter().position(|dish| dish.name == name).map(|index| DishId(index as u8))
-    }
-
-    /// The content with this name.
-    pub fn content_named(&self, name: &str) -> Option<ContentId> {
-        self.contents.iter().position(|content| content.name == name).map(|index| ContentId(index as u8))
-    }
-
-    /// The agent's button with this name.
-    pub fn button_named(&self, agent: Agent, name: &str) -> Option<ButtonId> {
-        self.buttons[agent.index()].iter().position(|button| button.name == name).map(|index| ButtonId(index as u8))
-    }
-
-    /// What a location shows, in words: the content's name, or the order's dish, `none` or `served`.
-    pub fn content_label(&self, state: State, location: LocationId) -> &str {
-        match self.location(location).kind {
-            LocationKind::Order => match state.order(location) {
-                OrderContent::None => "none",
-                OrderContent::Served => "served",
-                OrderContent::Dish(dish) => &self.dish(dish).name,
-            },
-            _ => &self.content(state.content(location)).name,
-        }
-    }
-
-    /// A number that tells states apart in logs: equal states have equal marks.
-    pub fn state_mark(&self, state: State) -> u64 {
-        let bytes = state.bits();
-        mix(bytes as u64 ^ mix((bytes >> 64) as u64))
-    }
-}

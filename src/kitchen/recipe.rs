@@ -1,53 +1,10 @@
 //! The recipe file: ingredients with states and look-alikes, processing steps, the stacking rule, the menu, and how a
 //! memory of a recipe can deviate.
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use toml::Spanned;
 
-use super::content::ContentId;
-use super::layout::LocationId;
-use super::look::Appearance;
-
-/// An index into [`super::Kitchen::dishes`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct DishId(pub u8);
-
-impl DishId {
-    #[inline]
-    pub fn index(self) -> usize {
-        usize::from(self.0)
-    }
-}
-
-/// A dish of the menu.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Dish {
-    pub name: String,
-    /// What may be taken for its recipe: full stacks, the true one first.
-    pub variants: Vec<ContentId>,
-    /// How the display draws the final product, if its file says so.
-    pub look: Option<Appearance>,
-}
-
-impl Dish {
-    /// The recipe as it truly is.
-    pub fn stack(&self) -> ContentId {
-        self.variants[0]
-    }
-}
-
-/// A compiled processing step.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Process {
-    pub name: String,
-    /// Where it happens; `None`: in the hand of the agent who presses.
-    pub place: Option<LocationId>,
-    /// Which agents can do it, indexed by [`super::Agent::index`].
-    pub agents: [bool; 2],
-    /// From which item to which.
-    pub steps: Vec<(ContentId, ContentId)>,
-}
+use super::agent::Agent;
 
 /// The recipe file as written.
 #[derive(Clone, Debug, Deserialize)]
@@ -85,7 +42,7 @@ pub struct ProcessSpec {
     pub name: Spanned<String>,
     /// A place of the layout, or "hand".
     pub at: Spanned<String>,
-    pub agents: Vec<super::Agent>,
+    pub agents: Vec<Agent>,
     pub steps: Vec<ProcessStepSpec>,
 }
 

@@ -1,24 +1,12 @@
 //! What a press does: the transition of the task, as table look-ups.
 
-use super::action::{Agent, ButtonAction, ButtonId};
+use super::action::{ButtonAction, ButtonId};
+use super::agent::Agent;
+use super::compiled::Kitchen;
 use super::content::ContentId;
-use super::layout::LocationId;
-use super::recipe::DishId;
+use super::dish::DishId;
+use super::location::{LocationId, LocationKind};
 use super::state::{OrderContent, Recipes, State};
-use super::{Kitchen, LocationKind};
-
-/// Transition tables over contents, computed once.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct TransitionTables {
-    /// Number of contents.
-    pub(super) width: usize,
-    /// `accepts[location * width + content]`: whether the location takes the content when it is empty.
-    pub(super) accepts: Vec<bool>,
-    /// `stacks[a * width + b]`: what a and b stacked are; 0 where they do not stack.
-    pub(super) stacks: Vec<ContentId>,
-    /// `becomes[process * width + content]`: what the content becomes; 0 where the process does nothing to it.
-    pub(super) becomes: Vec<ContentId>,
-}
 
 impl Kitchen {
     /// Whether an empty `location` takes `content`.
@@ -39,6 +27,17 @@ impl Kitchen {
     pub fn processed(&self, process: u8, content: ContentId) -> Option<ContentId> {
         let result = self.tables.becomes[usize::from(process) * self.tables.width + content.index()];
         (!result.is_empty()).then_some(result)
+    }
+
+    /// The places whose contents decide what a press does; where items are moved, the place comes before the hand.
+    pub fn involved(&self, agent: Agent, button: ButtonId) -> Vec<LocationId> {
+        let hand = self.hands[agent.index()];
+        match self.button(agent, button).action {
+            ButtonAction::Take(_) | ButtonAction::Trash => vec![hand],
+            ButtonAction::Use(location) => vec![location, hand],
+            ButtonAction::Process(process) => vec![self.processes[usize::from(process)].place.unwrap_or(hand)],
+            ButtonAction::Serve(order) => vec![self.plate, order],
+        }
     }
 
     /// The state after `agent` presses `button`; `None` if the action is not available, when the press has no effect.

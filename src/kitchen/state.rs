@@ -1,8 +1,8 @@
 //! The task state and the recipes that someone takes for true, packed small: states are copied and hashed by the million.
 
 use super::content::ContentId;
-use super::layout::LocationId;
-use super::recipe::DishId;
+use super::dish::DishId;
+use super::location::LocationId;
 
 /// At most so many locations in a kitchen.
 pub const MAX_LOCATIONS: usize = 16;

@@ -1,6 +1,8 @@
 //! Complete hypotheses of what is so, and weighted sets of them.
 
-use super::{AspectId, Kitchen, Recipes, State};
+use super::aspect::AspectId;
+use super::compiled::Kitchen;
+use super::state::{Recipes, State};
 
 /// One complete hypothesis of kitchen state and recipes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

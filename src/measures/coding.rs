@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::JudgedPress;
 use super::attribution::{Cause, Target};
+use super::judged_press::JudgedPress;
 use super::matching::kappa;
 use crate::kitchen::{Kitchen, LocationKind, OrderContent, State};
 

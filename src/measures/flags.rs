@@ -9,7 +9,7 @@
 
 use serde::Serialize;
 
-use super::beliefs::{PressView, TrialView};
+use super::press_view::{PressView, TrialView};
 
 /// The share of (press, aspect) pairs believed right that may be flagged.
 pub const MOST_WRONGLY_FLAGGED: f64 = 0.05;

@@ -5,7 +5,7 @@
 use rand::RngExt;
 use serde::Serialize;
 
-use super::beliefs::{PressView, TrialView};
+use super::press_view::{PressView, TrialView};
 use crate::base::minimise::minimise;
 use crate::base::rng::stream;
 use crate::kitchen::cost_to_go::CostToGo;

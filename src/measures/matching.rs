@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::median;
+use super::median::median;
 use crate::base::time::SessionTime;
 use crate::kitchen::LocationId;
 

@@ -7,8 +7,8 @@
 
 use std::collections::BTreeMap;
 
-use super::JudgedPress;
 use super::attribution::{Cause, Target};
+use super::judged_press::JudgedPress;
 use crate::base::time::SessionTime;
 use crate::kitchen::{AspectId, Kitchen, State};
 use crate::mind::belief::Belief;

@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::median;
+use super::median::median;
 use crate::base::time::SessionTime;
 use crate::kitchen::AspectId;
 

@@ -4,7 +4,8 @@ use rand::RngExt;
 
 use super::beliefs::wanted_dish;
 use super::population::{chance, normal};
-use super::{ParticipantAction, SimulatedParticipant, decision, witness};
+use super::simulated::{ParticipantAction, SimulatedParticipant};
+use super::{decision, witness};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, DishId, LocationId, State};

@@ -1,6 +1,6 @@
 //! What a simulated participant does while its tracker's calibration is checked: it looks at the targets.
 
-use super::SimulatedParticipant;
+use super::simulated::SimulatedParticipant;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 

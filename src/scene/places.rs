@@ -5,9 +5,8 @@ use super::shown::{EntityData, EntityUpdate, SceneArea, SceneDisc, slug};
 use crate::communication::Signal;
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 use crate::history::wording;
-use crate::kitchen::layout::Storage;
 use crate::kitchen::{
-    self, Agent, AspectId, ContentId, Kitchen, Location, LocationId, LocationKind, OrderContent, State,
+    self, Agent, AspectId, ContentId, Kitchen, Location, LocationId, LocationKind, OrderContent, State, Storage,
 };
 use crate::session::Session;
 

@@ -2,9 +2,11 @@
 //! event that is applied.
 
 use super::event::{EndReason, Event, SignalEnd};
+use super::phase::Phase;
 use super::protocol::{self, ProtocolEvent};
+use super::session_state::Session;
 use super::settings::{ArmKind, Condition, ParticipantKind};
-use super::{Phase, Session, calibration, hands, tracker};
+use super::{calibration, hands, tracker};
 use crate::base::time::SessionTime;
 use crate::communication::{self, Sender, Signal};
 use crate::kitchen::{Agent, LocationKind};

@@ -2,8 +2,10 @@
 
 use super::admit::admit;
 use super::event::{EndReason, Event, SignalEnd, Stamped};
-use super::gaze_status::take_sample;
-use super::{Phase, Served, Session, ShownSignal, TimelineEntry, TimelineEvent};
+use super::gaze_samples::take_sample;
+use super::phase::Phase;
+use super::session_state::{Served, Session, ShownSignal};
+use super::timeline_entry::TimelineEvent;
 use super::{calibration, protocol, robot};
 use crate::base::time::SessionTime;
 use crate::communication::recommendation::Recommendation;
@@ -82,14 +84,14 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
         }
         Event::TrialExcluded { reason } => {
             session.excluded = Some(reason.clone());
-            note(session, now, TimelineEvent::Excluded(reason.clone()));
+            session.note(now, TimelineEvent::Excluded(reason.clone()));
         }
         Event::TrialIncluded => {
             session.excluded = None;
-            note(session, now, TimelineEvent::Included);
+            session.note(now, TimelineEvent::Included);
         }
-        Event::FocusLost => note(session, now, TimelineEvent::Focus(false)),
-        Event::FocusRegained => note(session, now, TimelineEvent::Focus(true)),
+        Event::FocusLost => session.note(now, TimelineEvent::Focus(false)),
+        Event::FocusRegained => session.note(now, TimelineEvent::Focus(true)),
         Event::Gaze(sample) => take_sample(session, now, *sample),
         Event::Tracker(event) => session.tracker.apply(now, event),
         Event::Calibration(event) => calibration::apply(session, now, event),
@@ -100,7 +102,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
         Event::OrderShown { order, dish } => {
             let (order, dish) = (named.order(order)?, named.dish(dish)?);
             change = set_order(session, now, order, OrderContent::Dish(dish));
-            note(session, now, TimelineEvent::OrderShown { order });
+            session.note(now, TimelineEvent::OrderShown { order });
         }
         Event::OrderCleared { order } => {
             let order = named.order(order)?;
@@ -124,19 +126,19 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
         Event::RobotReleased { .. } => robot::hold(session, now, false),
         Event::RobotSkipped { .. } => {
             if let Some((button, ..)) = session.robot.intention {
-                note(session, now, TimelineEvent::RobotSkipped(button));
+                session.note(now, TimelineEvent::RobotSkipped(button));
             }
         }
         Event::RobotDriven { button, .. } => {
             let button = named.button(Agent::Robot, button)?;
             session.robot.driven_to = Some(button);
-            note(session, now, TimelineEvent::RobotDriven(button));
+            session.note(now, TimelineEvent::RobotDriven(button));
         }
         Event::KitchenCorrected { location, content } => {
             let (location, content) = (named.location(location)?, named.content(content)?);
             let (before, after) = update(session, now, |state| state.set_content(location, content));
             change = Change::Correction { location, before, after };
-            note(session, now, TimelineEvent::Corrected { location });
+            session.note(now, TimelineEvent::Corrected { location });
         }
         Event::Advised(advice) => advise(session, advice.clone()),
         Event::SignalShown { by, signal, .. } => {
@@ -145,7 +147,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
             show(session, now, *by, (signal, location), &mut effects);
         }
         Event::SignalEnded { reason } => end_signal(session, now, *reason, &mut effects),
-        Event::Marker { note: text } => note(session, now, TimelineEvent::Marker(text.clone())),
+        Event::Marker { note: text } => session.note(now, TimelineEvent::Marker(text.clone())),
         Event::Protocol(event) => protocol::apply(session, event),
         Event::Unblinded { .. } => session.unblinded = true,
         Event::Preflight { .. } | Event::Screen(_) | Event::Display(_) | Event::SignalDrawn { .. } => {}
@@ -214,10 +216,6 @@ impl Named<'_> {
     }
 }
 
-pub(super) fn note(session: &mut Session, time: SessionTime, what: TimelineEvent) {
-    session.timeline.push(TimelineEntry { time, what });
-}
-
 /// Changes the task state, remembers which locations changed, and returns the state before and after.
 fn update(session: &mut Session, now: SessionTime, how: impl FnOnce(&mut State)) -> (State, State) {
     let before = session.state;
@@ -241,7 +239,7 @@ fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) -> 
     session.served.clear();
     let empty = session.kitchen.empty_state();
     let (before, after) = update(session, now, |state| *state = empty);
-    note(session, now, TimelineEvent::Trial(Phase::Running));
+    session.note(now, TimelineEvent::Trial(Phase::Running));
     let end = now + SessionTime::from_secs_f64(session.spec.trial.seconds);
     effects.push(Effect::At { time: end, timer: Timer::EndTrial });
     for &order in &session.kitchen.orders {
@@ -254,7 +252,7 @@ fn pause(session: &mut Session, now: SessionTime) {
     stop_clock(session, now);
     session.phase = Phase::Paused;
     session.gaze.steady_since = None;
-    note(session, now, TimelineEvent::Trial(Phase::Paused));
+    session.note(now, TimelineEvent::Trial(Phase::Paused));
 }
 
 fn stop_clock(session: &mut Session, now: SessionTime) {
@@ -282,7 +280,7 @@ fn resume(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
         shown.until = shown.until + by;
     }
     effects.push(Effect::Postpone(by));
-    note(session, now, TimelineEvent::Trial(Phase::Running));
+    session.note(now, TimelineEvent::Trial(Phase::Running));
 }
 
 fn end_trial(session: &mut Session, now: SessionTime, reason: EndReason, effects: &mut Vec<Effect>) {
@@ -292,7 +290,7 @@ fn end_trial(session: &mut Session, now: SessionTime, reason: EndReason, effects
     session.shown = None;
     session.advice = None;
     effects.push(Effect::CancelAll);
-    note(session, now, TimelineEvent::Trial(session.phase));
+    session.note(now, TimelineEvent::Trial(session.phase));
 }
 
 fn close(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
@@ -322,7 +320,7 @@ fn show(
     }
     effects.push(Effect::Cancel(Timer::EndSignal));
     effects.push(Effect::At { time: until, timer: Timer::EndSignal });
-    note(session, now, TimelineEvent::Signal { by, signal: signal.clone() });
+    session.note(now, TimelineEvent::Signal { by, signal: signal.clone() });
 }
 
 /// An answer to what was asked before the wizard sent a signal does not know of it.
@@ -338,7 +336,7 @@ fn end_signal(session: &mut Session, now: SessionTime, reason: SignalEnd, effect
     session.shown = None;
     if reason == SignalEnd::TakenBack {
         effects.push(Effect::Cancel(Timer::EndSignal));
-        note(session, now, TimelineEvent::SignalEnded(reason));
+        session.note(now, TimelineEvent::SignalEnded(reason));
     }
 }
 
@@ -353,7 +351,7 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
     let kitchen = session.kitchen.clone();
     let press = kitchen.try_press(session.state, agent, button);
     session.presses[agent.index()] += 1;
-    note(session, now, TimelineEvent::Press { agent, button, effective: press.effective });
+    session.note(now, TimelineEvent::Press { agent, button, effective: press.effective });
     if press.effective {
         update(session, now, |state| *state = press.after);
         if let (ButtonAction::Serve(order), OrderContent::Dish(dish)) =
@@ -361,7 +359,7 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
         {
             let presses = session.all_presses();
             session.served.push(Served { time: now, dish, presses });
-            note(session, now, TimelineEvent::Served { order });
+            session.note(now, TimelineEvent::Served { order });
             let after_s = |seconds| now + SessionTime::from_secs_f64(seconds);
             effects.push(Effect::At { time: after_s(kitchen.served_shown_s), timer: Timer::ClearOrder(order) });
             effects.push(Effect::At { time: after_s(kitchen.new_order_after_s), timer: Timer::NewOrder(order) });

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::settings::SettingError;
+use super::setting_checks::SettingError;
 use crate::base::time::SessionTime;
 
 /// The `[display]` of a session file.

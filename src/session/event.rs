@@ -5,10 +5,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::calibration::CalibrationEvent;
 use super::display::DisplayEvent;
-use super::preflight::PreflightCheck;
-use super::protocol::ProtocolEvent;
+use super::gaze_check::CalibrationEvent;
+use super::preflight_check::PreflightCheck;
+use super::protocol_event::ProtocolEvent;
 use super::screen::VisibleScreen;
 use super::tracker::TrackerEvent;
 use crate::base::time::SessionTime;

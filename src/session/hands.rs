@@ -2,7 +2,8 @@
 //! can be when, and what it changes.
 
 use super::event::Event;
-use super::{Phase, Session};
+use super::phase::Phase;
+use super::session_state::Session;
 use crate::communication::Sender;
 use crate::kitchen::{ContentId, LocationKind};
 

@@ -1,270 +1,59 @@
 //! A session: its settings, its state, and [`apply()`], the one function through which a live run, a replay and an analysis
 //! move it on. It knows no clock, no file and no chance.
+//!
+//! The files from the ground up:
+//!
+//! - Settings: `setting_checks`, `condition`, `participant_settings`, `console_settings`, `robot_settings`, [`display`],
+//!   [`stream`], [`tracker`] (with its events and state), and the specifications in [`plan`]; [`settings`], all of them
+//!   together. On these stand `reading`, `requirements`, [`header`], [`orders`], and the studies in [`plan`].
+//! - What happens: `gaze_check`, `protocol_event` (with the phases of a plan), `preflight_check`, [`screen`]; [`event`], all of
+//!   them together.
+//! - The state: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `protocol_state`; `session_state`, all of them
+//!   together.
+//! - What can happen when, and what it changes: `robot`, [`calibration`], [`gaze_samples`], [`protocol`], `hands`; [`admit`]
+//!   and [`mod@apply`], all of them together. Beside them [`preflight`], and the [`timers`] that [`apply()`] sets.
 
 pub mod admit;
 pub mod apply;
 pub mod calibration;
+mod condition;
+mod console_settings;
 pub mod display;
 pub mod event;
+mod gaze_check;
+pub mod gaze_samples;
 mod gaze_status;
 mod hands;
 pub mod header;
 pub mod orders;
+mod participant_settings;
+mod phase;
 pub mod plan;
 pub mod preflight;
+mod preflight_check;
 pub mod protocol;
+mod protocol_event;
+mod protocol_state;
 mod reading;
 mod requirements;
-pub mod robot;
+mod robot;
+mod robot_settings;
+mod robot_status;
 pub mod screen;
+mod session_state;
+mod setting_checks;
 pub mod settings;
 pub mod stream;
+mod timeline_entry;
 pub mod timers;
 pub mod tracker;
 
-use std::sync::Arc;
-
-use crate::base::rng::of_trial;
-use crate::base::time::SessionTime;
-use crate::communication::recommendation::Recommendation;
-use crate::communication::{Sender, Signal};
-use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
-use crate::robot::safety::SafetyMode;
 pub use apply::{Applied, Effect, Timer, apply};
 pub use event::{Event, Stamped};
 pub use gaze_status::GazeStatus;
 pub use header::Header;
-pub use robot::RobotStatus;
+pub use phase::Phase;
+pub use robot_status::{ArmStatus, RobotStatus};
+pub use session_state::{Served, Session, ShownSignal};
 pub use settings::SessionSpec;
-
-/// After so many seconds without a sample there is no gaze.
-const SILENT_S: f64 = 1.0;
-
-/// Where the trial is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Phase {
-    /// Before the trial's start.
-    Ready,
-    Running,
-    Paused,
-    /// The trial is over.
-    Over(event::EndReason),
-    /// The session is over.
-    Closed,
-}
-
-/// Everything that follows from the events so far.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Session {
-    pub kitchen: Arc<Kitchen>,
-    pub spec: SessionSpec,
-    /// Which trial of its seed it is.
-    pub trial: u64,
-    /// The time of the last event.
-    pub time: SessionTime,
-    pub phase: Phase,
-    /// When the trial's clock started, and how long it stood still since.
-    pub trial_start: SessionTime,
-    pub paused_total: SessionTime,
-    pub paused_at: SessionTime,
-    /// The pauses that are over: from, until.
-    pub pauses: Vec<(SessionTime, SessionTime)>,
-    /// The task state, as it truly is.
-    pub state: State,
-    /// When each location last changed, indexed by location.
-    pub changed_at: [SessionTime; MAX_LOCATIONS],
-    /// Presses during the trial, indexed by [`Agent::index`].
-    pub presses: [u32; 2],
-    /// Served orders: when, and the number of presses of both agents until then.
-    pub served: Vec<Served>,
-    pub robot: RobotStatus,
-    /// The signal that the participant sees now.
-    pub shown: Option<ShownSignal>,
-    /// The newest advice of the assistant in the running trial.
-    pub advice: Option<Recommendation>,
-    /// The number of the newest event that the display marks with a flash: a start, a signal.
-    pub cue: Option<u64>,
-    /// When the wizard last sent a signal.
-    pub signalled_at: Option<SessionTime>,
-    /// The wizard saw what assistants would say, beside what was sent.
-    pub unblinded: bool,
-    /// Why the trial was aborted, if it was.
-    pub aborted: Option<String>,
-    /// Why the trial is to be left out of the analysis, if it is.
-    pub excluded: Option<String>,
-    pub gaze: GazeStatus,
-    /// What is known of the eye tracker.
-    pub tracker: tracker::TrackerStatus,
-    /// The check of the calibration that goes on, or waits for the wizard's verdict.
-    pub calibration: Option<calibration::RunningGazeCheck>,
-    /// The check that was accepted last.
-    pub calibrated: Option<calibration::AcceptedGazeCheck>,
-    /// What happened, without the gaze: the timeline of the console.
-    pub timeline: Vec<TimelineEntry>,
-    /// Where it is in its plan, if it belongs to one.
-    pub protocol: Option<protocol::Protocol>,
-}
-
-/// A served order.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Served {
-    pub time: SessionTime,
-    pub dish: crate::kitchen::DishId,
-    /// Presses of both agents in the trial when it was served, its own included.
-    pub presses: u32,
-}
-
-/// A signal on the display.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ShownSignal {
-    pub signal: Signal,
-    /// The location that the signal is about.
-    pub location: LocationId,
-    pub by: Sender,
-    pub since: SessionTime,
-    pub until: SessionTime,
-}
-
-/// An entry of the timeline.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TimelineEntry {
-    pub time: SessionTime,
-    pub what: TimelineEvent,
-}
-
-/// What an entry of the timeline is about.
-#[derive(Clone, Debug, PartialEq)]
-pub enum TimelineEvent {
-    Press {
-        agent: Agent,
-        button: ButtonId,
-        effective: bool,
-    },
-    Signal {
-        by: Sender,
-        signal: Signal,
-    },
-    SignalEnded(event::SignalEnd),
-    Served {
-        order: LocationId,
-    },
-    OrderShown {
-        order: LocationId,
-    },
-    Marker(String),
-    RobotStopped,
-    /// It stopped by itself; with the force that it felt, in newtons, or the joint at fault.
-    ArmStopped {
-        mode: SafetyMode,
-        force_n: Option<f64>,
-        joint: Option<u8>,
-    },
-    ArmTouched {
-        force_n: f64,
-    },
-    RobotResumed,
-    RobotHeld,
-    RobotReleased,
-    RobotSkipped(ButtonId),
-    RobotDriven(ButtonId),
-    Corrected {
-        location: LocationId,
-    },
-    Trial(Phase),
-    Excluded(String),
-    Included,
-    /// The terminal has the keyboard, or not.
-    Focus(bool),
-}
-
-impl Session {
-    /// The locations that changed last at this time.
-    pub fn changed_at(&self, time: SessionTime) -> impl Iterator<Item = LocationId> + '_ {
-        let times = self.changed_at[..self.kitchen.locations.len()].iter().enumerate();
-        times.filter(move |(_, at)| **at == time).map(|(index, _)| LocationId(index as u8))
-    }
-
-    /// A session before its first event.
-    pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64) -> Session {
-        let state = kitchen.empty_state();
-        let protocol = spec.step.as_ref().map(|_| protocol::Protocol::default());
-        Session {
-            kitchen,
-            spec,
-            trial,
-            time: SessionTime::ZERO,
-            phase: Phase::Ready,
-            trial_start: SessionTime::ZERO,
-            paused_total: SessionTime::ZERO,
-            paused_at: SessionTime::ZERO,
-            pauses: Vec::new(),
-            state,
-            changed_at: [SessionTime::ZERO; MAX_LOCATIONS],
-            presses: [0; 2],
-            served: Vec::new(),
-            robot: RobotStatus::default(),
-            shown: None,
-            advice: None,
-            cue: None,
-            signalled_at: None,
-            unblinded: false,
-            aborted: None,
-            excluded: None,
-            gaze: GazeStatus::default(),
-            tracker: tracker::TrackerStatus::default(),
-            calibration: None,
-            calibrated: None,
-            timeline: Vec::new(),
-            protocol,
-        }
-    }
-
-    /// The trial's clock at `now`: time since its start without the pauses; zero before the start.
-    pub fn trial_clock(&self, now: SessionTime) -> SessionTime {
-        match self.phase {
-            Phase::Ready => SessionTime::ZERO,
-            Phase::Running => now - self.trial_start - self.paused_total,
-            Phase::Paused => self.paused_at - self.trial_start - self.paused_total,
-            Phase::Over(_) | Phase::Closed => self.paused_at - self.trial_start - self.paused_total,
-        }
-    }
-
-    /// How long ago `at` is in the trial's time at `now`: pauses do not count, and after the end it stands still.
-    pub fn age(&self, at: SessionTime, now: SessionTime) -> SessionTime {
-        let end = match self.phase {
-            Phase::Ready | Phase::Running => now,
-            Phase::Paused | Phase::Over(_) | Phase::Closed => self.paused_at,
-        };
-        let paused = self.pauses.iter().map(|&(from, until)| until.min(end) - from.max(at));
-        paused.fold(end - at, |age, pause| age - pause)
-    }
-
-    /// The location that the gaze is on, by a sample that came at `now`.
-    pub fn looked_at(&self, now: SessionTime) -> Option<LocationId> {
-        let places = self.kitchen.locations.len();
-        let at = self.gaze.looked_at[..places].iter().position(|at| *at == Some(now));
-        at.map(|index| LocationId(index as u8))
-    }
-
-    /// Gaze samples a second at `now`; nothing if none came for a second.
-    pub fn gaze_hz(&self, now: SessionTime) -> Option<f64> {
-        let arrived = self.gaze.arrived.filter(|&arrived| now.secs_since(arrived) <= SILENT_S);
-        arrived.map(|_| self.gaze.rate_hz)
-    }
-
-    /// The seed of estimates and advice, which no two trials share.
-    pub fn seed(&self) -> u64 {
-        of_trial(self.spec.seed, self.trial)
-    }
-
-    /// Presses of both agents during the trial.
-    pub fn all_presses(&self) -> u32 {
-        self.presses.iter().sum()
-    }
-
-    /// Whether presses count now.
-    pub fn is_running(&self) -> bool {
-        self.phase == Phase::Running
-    }
-}
+pub use timeline_entry::{TimelineEntry, TimelineEvent};

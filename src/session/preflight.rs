@@ -1,10 +1,10 @@
 //! What is looked at before a trial starts, and before a session: each with a verdict, and how to mend it.
 
-use serde::{Deserialize, Serialize};
-
-use super::Session;
-use super::settings::{GazeSource, ParticipantKind};
-use super::tracker::{TrackerConnection, faults};
+use super::gaze_samples::faults;
+use super::participant_settings::{GazeSource, ParticipantKind};
+pub use super::preflight_check::{PreflightCheck, PreflightVerdict};
+use super::session_state::Session;
+use super::tracker::TrackerConnection;
 use crate::base::time::SessionTime;
 use crate::gaze::calibration::{GOOD_DEG, USABLE_DEG};
 
@@ -15,46 +15,6 @@ const UNUSABLE_S: f64 = 1.0;
 /// A session of a quarter of an hour takes about 10 MB: with less than the first there is room for some, with less than
 /// the second there may not be for one. In bytes.
 const FREE_BYTES: (u64, u64) = (1 << 30, 50 << 20);
-
-/// How something was found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum PreflightVerdict {
-    Ok,
-    /// It works, but less well.
-    Warning,
-    /// It does not work so.
-    Failed,
-}
-
-/// One thing that was looked at.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PreflightCheck {
-    pub name: String,
-    pub verdict: PreflightVerdict,
-    pub found: String,
-    /// How to mend it, unless it is ok.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub remedy: Option<String>,
-}
-
-impl PreflightCheck {
-    pub fn new(
-        name: &str,
-        verdict: PreflightVerdict,
-        found: impl Into<String>,
-        remedy: impl Into<String>,
-    ) -> PreflightCheck {
-        let remedy = (verdict != PreflightVerdict::Ok).then(|| remedy.into());
-        PreflightCheck { name: name.to_string(), verdict, found: found.into(), remedy }
-    }
-
-    /// Something that is as it should be.
-    pub fn ok(name: &str, found: impl Into<String>) -> PreflightCheck {
-        PreflightCheck::new(name, PreflightVerdict::Ok, found, "")
-    }
-}
 
 /// Whether there is room for a recording, with so many bytes free; `None`: the system does not say.
 pub fn space(free_bytes: Option<u64>) -> PreflightCheck {

@@ -1,118 +1,10 @@
 //! What is around a trial: the phases that a recording of a plan goes through, one after another.
 
-use serde::{Deserialize, Serialize};
-
+use super::phase::Phase;
 use super::plan::{PhaseSpec, Questionnaire, StepSpec};
-use super::{Phase, Session};
-
-/// A phase of a study.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum StudyPhase {
-    Instruction,
-    /// A trial for practice.
-    Familiarisation,
-    Trial,
-    Questionnaire,
-    /// Of the wizard.
-    Debriefing,
-}
-
-impl StudyPhase {
-    pub fn name(self) -> &'static str {
-        match self {
-            StudyPhase::Instruction => "instruction",
-            StudyPhase::Familiarisation => "familiarisation",
-            StudyPhase::Trial => "trial",
-            StudyPhase::Questionnaire => "questionnaire",
-            StudyPhase::Debriefing => "debriefing",
-        }
-    }
-
-    /// Whether the kitchen is worked in.
-    pub fn has_trial(self) -> bool {
-        matches!(self, StudyPhase::Trial | StudyPhase::Familiarisation)
-    }
-}
-
-/// Something that happens around a trial.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "what", rename_all = "snake_case")]
-pub enum ProtocolEvent {
-    /// The participant agreed to what the plan asks; without it, there is no recording.
-    ConsentGiven,
-    /// The next phase of the recording begins; `number` counts from 1.
-    PhaseStarted {
-        phase: StudyPhase,
-        number: usize,
-    },
-    /// A step of an instruction or debriefing, counted from 1, was done, or was not after all.
-    Ticked {
-        step: usize,
-        done: bool,
-    },
-    /// An item is in front of the participant.
-    ItemShown {
-        item: String,
-    },
-    /// All answers are, to be confirmed.
-    AnswersShown,
-    /// The shown item, from 1 to the points of the scale; a later answer replaces it. The next item is shown then.
-    ItemAnswered {
-        item: String,
-        answer: u8,
-    },
-    /// The participant gives no answer to the shown item. The next item is shown then.
-    ItemSkipped {
-        item: String,
-    },
-    AnswersConfirmed,
-    /// The practice is over: how it went, and whether that meets the criterion.
-    CriterionChecked {
-        met: bool,
-        orders: u32,
-        presses: u32,
-        errors: u32,
-    },
-    /// The wizard lets the participant go on all the same.
-    CriterionWaived {
-        reason: String,
-    },
-}
-
-/// An answer to an item.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ItemAnswer {
-    Rated(u8),
-    Skipped,
-}
-
-/// How the practice went.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Practice {
-    pub met: bool,
-    pub orders: u32,
-    pub presses: u32,
-    pub errors: u32,
-    /// Why the participant goes on all the same.
-    pub waived: Option<String>,
-}
-
-/// Where a recording of a plan is.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Protocol {
-    pub consent: bool,
-    /// The number of the phase, from 1; 0: before the first.
-    pub number: usize,
-    /// The steps of the phase that are done.
-    pub ticks: Vec<bool>,
-    /// The answers to the items of the phase.
-    pub answers: Vec<Option<ItemAnswer>>,
-    /// The item in front of the participant; the number of items: all of them, to be confirmed.
-    pub item: usize,
-    pub confirmed: bool,
-    pub practice: Option<Practice>,
-}
+pub use super::protocol_event::{ProtocolEvent, StudyPhase};
+pub use super::protocol_state::{ItemAnswer, Practice, Protocol};
+use super::session_state::Session;
 
 impl Session {
     /// Where it is in its plan, if it belongs to one.
@@ -293,24 +185,4 @@ fn sizes(step: Option<&StepSpec>, number: usize) -> (usize, usize) {
         _ => 0,
     };
     (phase.map_or(0, |phase| phase.steps().len()), items)
-}
-
-impl Protocol {
-    /// Answers the shown item, and shows the next one; after the last, the first that was left out, or all answers.
-    fn answer(&mut self, answer: ItemAnswer) {
-        if let Some(place) = self.answers.get_mut(self.item) {
-            *place = Some(answer);
-        }
-        let next = self.item + 1;
-        self.item = match self.open_item() {
-            None => self.answers.len(),
-            Some(open) if next == self.answers.len() => open,
-            Some(_) => next,
-        };
-    }
-
-    /// The first item without an answer.
-    pub fn open_item(&self) -> Option<usize> {
-        self.answers.iter().position(Option::is_none)
-    }
 }

@@ -1,7 +1,6 @@
 //! Reads the settings of a session from the text of a session file.
 
-use super::SessionSpec;
-use super::settings::SettingError;
+use super::settings::{SessionSpec, SettingError};
 
 impl SessionSpec {
     /// Reads a session file's text; settings that it does not name have their defaults. The files that it names are not

@@ -1,7 +1,6 @@
 //! Which parts of the crate a session needs, and whether this build has them.
 
-use super::SessionSpec;
-use super::settings::{ArmKind, ParticipantKind};
+use super::settings::{ArmKind, ParticipantKind, SessionSpec};
 use crate::base::features::{Feature, NotBuilt};
 
 impl SessionSpec {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::settings::Visibility;
+use super::console_settings::Visibility;
 
 /// What is on the screen.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -2,9 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
+pub use super::condition::Condition;
+pub use super::console_settings::{ConsoleSpec, MAX_NOTES, ThemeChoice, Visibility};
 use super::display::DisplaySpec;
+pub use super::participant_settings::{GazeSource, ParticipantKind, ParticipantSpec};
 use super::plan::{PlanSpec, StepSpec};
-pub use super::robot::{ArmKind, RobotSpec};
+pub use super::robot_settings::{ArmKind, RobotSpec};
+pub use super::setting_checks::{SettingError, is_code};
 use super::stream::RerunSpec;
 use super::tracker::TrackerSpec;
 use crate::communication::settings::{AssistantSpec, Shadow};
@@ -62,32 +66,6 @@ fn default_seed() -> u64 {
 
 /// No trial is longer, in seconds.
 const MAX_TRIAL_S: f64 = 86_400.0;
-
-/// A setting that cannot be.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("found {found}, wanted {remedy}")]
-pub struct SettingError {
-    /// The setting with the tables around it, from outside; tables in between may be left out: "rerun.address".
-    pub path: String,
-    /// What was found.
-    pub found: String,
-    /// What would be right.
-    pub remedy: &'static str,
-    /// Which of the settings of that path it is; 0 is the first.
-    pub nth: usize,
-}
-
-impl SettingError {
-    /// An error about the first setting of that path.
-    pub fn new(path: impl Into<String>, found: String, remedy: &'static str) -> SettingError {
-        SettingError { path: path.into(), found, remedy, nth: 0 }
-    }
-
-    /// The setting without the tables around it.
-    pub fn key(&self) -> &str {
-        self.path.rsplit('.').next().unwrap_or(&self.path)
-    }
-}
 
 impl SessionSpec {
     /// Checks what the types do not: ranges, the participant's code, and settings that exclude each other.
@@ -160,12 +138,6 @@ impl SessionSpec {
     }
 }
 
-/// Whether a text is short and simple enough to name a participant, a plan, an item: in folders, keys and tables.
-pub fn is_code(text: &str) -> bool {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    !text.is_empty() && text.len() <= 32 && text.chars().all(is_plain)
-}
-
 impl SessionSpec {
     /// Whether the assistant is asked: where it acts, and as a shadow beside whoever does.
     pub fn asks_assistant(&self) -> bool {
@@ -205,92 +177,6 @@ impl Default for TrialSpec {
     }
 }
 
-/// Who sends signals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Condition {
-    /// Nobody: the unassisted condition.
-    None,
-    /// The person at the console.
-    Wizard,
-    /// The assistant by itself.
-    Assistant,
-}
-
-impl Condition {
-    /// As it stands in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Condition::None => "none",
-            Condition::Wizard => "wizard",
-            Condition::Assistant => "assistant",
-        }
-    }
-}
-
-/// The participant.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ParticipantSpec {
-    /// A code, never a name.
-    pub code: String,
-    pub kind: ParticipantKind,
-    pub gaze: GazeSource,
-    /// Where the JSON gaze input listens, on localhost.
-    pub gaze_port: u16,
-    /// From what population simulated participants are drawn; none: the program's own.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub population: Option<Population>,
-}
-
-impl Default for ParticipantSpec {
-    fn default() -> Self {
-        let code = "P01".to_string();
-        ParticipantSpec {
-            code,
-            kind: ParticipantKind::Simulated,
-            gaze: GazeSource::Simulated,
-            gaze_port: 50021,
-            population: None,
-        }
-    }
-}
-
-impl ParticipantSpec {
-    /// Whether the gaze samples come from the simulated participant.
-    pub fn simulates_gaze(&self) -> bool {
-        self.kind == ParticipantKind::Simulated && self.gaze == GazeSource::Simulated
-    }
-}
-
-/// Who plays the human's part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ParticipantKind {
-    Simulated,
-    /// Somebody at the keyboard of the console.
-    Keyboard,
-    /// Somebody at the wall display, a page in a browser.
-    Display,
-}
-
-/// Where gaze samples come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum GazeSource {
-    Simulated,
-    /// The mouse pointer over the kitchen: the console's, or the display's if the participant is there.
-    Mouse,
-    /// Pupil Core, through Pupil Capture's network API.
-    Pupil,
-    /// A recorded file: Pupil Player's export, or a recording of this program.
-    File,
-    /// Newline separated JSON over TCP and UDP on localhost.
-    Json,
-    /// No gaze at all.
-    None,
-}
-
 /// The communication signals.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -307,88 +193,4 @@ impl Default for SignalSpec {
     fn default() -> Self {
         SignalSpec { shown_s: 4.0, own_hand: false, cool_down_s: 0.5 }
     }
-}
-
-/// The console.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ConsoleSpec {
-    pub visibility: Visibility,
-    /// Draw with ASCII signs only, for terminals and fonts without the others.
-    pub ascii: bool,
-    /// For which background the colours are.
-    pub theme: ThemeChoice,
-    /// The key file, relative to the session file; without one the keys are those of program and layout.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub keys: Option<String>,
-    /// The notes of the markers, so that no text has to be typed while the trial runs: key 1 is the first.
-    pub notes: Vec<String>,
-    /// Why a trial is aborted or excluded: what the console offers.
-    pub reasons: Vec<String>,
-}
-
-/// The console has so many keys for notes.
-pub const MAX_NOTES: usize = 5;
-/// No list of reasons is longer.
-const MAX_REASONS: usize = 20;
-/// No preset text is longer, in characters.
-const MAX_PRESET: usize = 40;
-
-impl Default for ConsoleSpec {
-    fn default() -> Self {
-        let texts = |texts: [&str; 5]| texts.map(str::to_string).to_vec();
-        ConsoleSpec {
-            visibility: Visibility::Recommendation,
-            ascii: false,
-            theme: ThemeChoice::Auto,
-            keys: None,
-            notes: texts(["wrong recipe", "overlooked a change", "slip", "waits for the robot", "look at this later"]),
-            reasons: texts([
-                "participant stopped",
-                "technical failure",
-                "wizard's mistake",
-                "instructions not understood",
-                "interrupted",
-            ]),
-        }
-    }
-}
-
-impl ConsoleSpec {
-    fn check(&self) -> Result<(), SettingError> {
-        let wrong = |key: &str, texts: &[String], most: usize, remedy| {
-            let is_text = |text: &String| {
-                let length = text.chars().count();
-                (1..=MAX_PRESET).contains(&length) && text.trim() == text && !text.chars().any(char::is_control)
-            };
-            let is_wrong = texts.is_empty() || texts.len() > most || !texts.iter().all(is_text);
-            is_wrong.then(|| SettingError::new(format!("console.{key}"), format!("{key} = {texts:?}"), remedy))
-        };
-        let notes = "1 to 5 texts of 1 to 40 characters, each on one line";
-        let reasons = "1 to 20 texts of 1 to 40 characters, each on one line";
-        let found = wrong("notes", &self.notes, MAX_NOTES, notes);
-        found.or_else(|| wrong("reasons", &self.reasons, MAX_REASONS, reasons)).map_or(Ok(()), Err)
-    }
-}
-
-/// For which background of the terminal the colours are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ThemeChoice {
-    /// The one that the terminal says it has; dark, if it does not say.
-    Auto,
-    Dark,
-    Light,
-}
-
-/// How much the wizard sees.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Visibility {
-    /// Kitchen and gaze, as the paper's wizard had.
-    State,
-    /// The estimated belief too.
-    Belief,
-    /// Everything.
-    Recommendation,
 }

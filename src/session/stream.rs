@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::settings::SettingError;
+use super::setting_checks::SettingError;
 
 /// Whether a live session is streamed, and where viewers connect.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -3,8 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Session;
-use super::settings::{GazeSource, SettingError};
+use super::participant_settings::GazeSource;
+use super::setting_checks::SettingError;
 use crate::base::time::SessionTime;
 use crate::gaze::quality::DropCounts;
 use crate::gaze::surface::SurfaceMap;
@@ -166,18 +166,4 @@ pub(super) fn admit(event: &TrackerEvent) -> Result<(), &'static str> {
         true => Ok(()),
         false => Err("what the tracker tells is not a number"),
     }
-}
-
-/// What is wrong with the stream of gaze so far: counts that are not 0, and what they count.
-pub fn faults(session: &Session) -> Vec<(u64, &'static str)> {
-    let (dropped, read) = (session.tracker.dropped, session.gaze.judge.counts);
-    let all = [
-        (dropped.malformed, "malformed"),
-        (dropped.too_frequent, "too frequent"),
-        (dropped.overrun, "overrun"),
-        (read.duplicate, "twice"),
-        (read.too_old, "too old"),
-        (read.out_of_order, "out of order"),
-    ];
-    all.into_iter().filter(|(count, _)| *count > 0).collect()
 }

@@ -1,10 +1,10 @@
 //! What the participant has seen, as far as somebody can tell who sees kitchen and gaze; and which false belief would
 //! explain a press.
 
-use super::{Kitchen, Thought};
+use super::thought::Thought;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, ButtonId, LocationId, Recipes, State};
+use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, Recipes, State};
 
 /// The kitchen as the participant last saw it, place by place.
 #[derive(Clone, Debug)]

@@ -8,7 +8,8 @@ use std::sync::Arc;
 
 use serde::Deserialize;
 use tomcom::base::time::SessionTime;
-use tomcom::communication::concept::{Concept, ConceptName, DecisionPoint, SilentConcept, concept};
+use tomcom::communication::concept::{Concept, ConceptName, DecisionPoint};
+use tomcom::communication::concepts::{SilentConcept, concept};
 use tomcom::communication::dev::DevConcept;
 use tomcom::communication::planner::Planner;
 use tomcom::communication::recommendation::Recommendation;

@@ -19,11 +19,11 @@ use self::robot::RobotPolicy;
 use self::rollout::{BaselineRollout, Rollout, RolloutContext, RolloutDraws, RolloutState};
 use self::sample::BeliefSamples;
 use self::tally::PairedDifferences;
-use super::concept::{self, Concept};
+use super::concept::{Concept, DecisionPoint};
 use super::recommendation::{Reason, Recommendation, SignalOption, aspects_told};
 use super::settings::AssistantSpec;
+use super::signal::{Signal, unavailable};
 use super::situation::Situation;
-use super::{Signal, unavailable};
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, WeightedWorlds};
@@ -206,7 +206,7 @@ impl Planner {
 
 impl Concept for Planner {
     /// What the signals are worth now; those that cannot be sent are left out.
-    fn advise(&mut self, cost: &mut CostToGo, moment: &concept::DecisionPoint) -> Recommendation {
+    fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
         let situation = &moment.situation;
         let mut random = stream(self.seed, "communication", u64::from(moment.presses));
         let mut candidates = self.candidates(situation, moment.signals);

@@ -9,7 +9,7 @@ use crate::console::model::ConsoleModel;
 use crate::gaze::nearest_location;
 use crate::kitchen::LocationId;
 use crate::session::Session;
-use crate::session::tracker::faults;
+use crate::session::gaze_samples::faults;
 
 /// How long the trail of the gaze map is, in seconds.
 const TRAIL_S: f64 = 2.0;

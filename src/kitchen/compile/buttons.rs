@@ -4,10 +4,13 @@ use toml::Spanned;
 
 use super::contents::IngredientItems;
 use super::places::stored;
-use super::{Result, SpecFile, wrong, wrong_file};
-use crate::kitchen::action::{Agent, Button, ButtonAction};
-use crate::kitchen::layout::{ButtonSpec, LayoutSpec, Location, LocationId, is_same_key};
-use crate::kitchen::recipe::{Process, RecipesSpec};
+use super::spec_error::{Result, SpecFile, wrong, wrong_file};
+use crate::kitchen::action::{Button, ButtonAction};
+use crate::kitchen::agent::Agent;
+use crate::kitchen::layout::{ButtonSpec, LayoutSpec, is_same_key};
+use crate::kitchen::location::{Location, LocationId};
+use crate::kitchen::process::Process;
+use crate::kitchen::recipe::RecipesSpec;
 
 /// No gamepad or button box has a button of a higher number.
 const MAX_GAMEPAD: u8 = 63;

@@ -2,7 +2,7 @@
 
 use toml::Spanned;
 
-use super::{Result, SpecFile, look, wrong, wrong_file};
+use super::spec_error::{Result, SpecFile, look, wrong, wrong_file};
 use crate::kitchen::content::{Content, ContentId};
 use crate::kitchen::look::Appearance;
 use crate::kitchen::recipe::{DishSpec, RecipesSpec};

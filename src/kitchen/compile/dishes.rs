@@ -2,11 +2,14 @@
 
 use super::contents::IngredientItems;
 use super::places::stored;
-use super::{Result, SpecFile, look, wrong, wrong_file};
-use crate::kitchen::action::Agent;
+use super::spec_error::{Result, SpecFile, look, wrong, wrong_file};
+use crate::kitchen::agent::Agent;
 use crate::kitchen::content::{Content, ContentId};
-use crate::kitchen::layout::{LayoutSpec, Location, LocationId, LocationKind};
-use crate::kitchen::recipe::{DeviationCombination, DeviationSpec, Dish, Process, ProcessSpec, RecipesSpec};
+use crate::kitchen::dish::Dish;
+use crate::kitchen::layout::LayoutSpec;
+use crate::kitchen::location::{Location, LocationId, LocationKind};
+use crate::kitchen::process::Process;
+use crate::kitchen::recipe::{DeviationCombination, DeviationSpec, ProcessSpec, RecipesSpec};
 use crate::kitchen::state::MAX_DISHES;
 
 pub(super) fn processes(spec: &RecipesSpec, items: &IngredientItems, locations: &[Location]) -> Result<Vec<Process>> {

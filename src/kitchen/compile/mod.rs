@@ -1,70 +1,38 @@
 //! From the two files to a [`Kitchen`]: contents, buttons, recipe variants and state aspects are computed here.
+//!
+//! Errors (`spec_error`) are shared by all steps. The steps in their order: `contents` (items and stacks), `places`
+//! (locations and storages), `dishes` (processes, dishes, variants), `buttons`; transition tables and aspects follow from
+//! them here.
 
 mod buttons;
 mod contents;
 mod dishes;
 mod places;
-
-use std::ops::Range;
+mod spec_error;
 
 use toml::Spanned;
 
-use super::Kitchen;
+use self::contents::IngredientItems;
+pub use self::places::{MAX_ORDERS, MIN_GAP_M};
+use self::spec_error::{Result, wrong, wrong_file};
+pub use self::spec_error::{SpecError, SpecFile};
 use super::action::Button;
 use super::aspect::{Aspect, AspectKind};
+use super::compiled::Kitchen;
 use super::content::{Content, ContentId};
 use super::cost_to_go::MAX_BUTTONS;
-use super::layout::{LayoutSpec, Location, LocationId, LocationKind};
-use super::look::Appearance;
-use super::recipe::{Dish, DishId, Process, RecipesSpec};
-use super::rules::TransitionTables;
+use super::dish::{Dish, DishId};
+use super::layout::LayoutSpec;
+use super::location::{Location, LocationId, LocationKind};
+use super::process::Process;
+use super::recipe::RecipesSpec;
 use super::state::OrderContent;
-use contents::IngredientItems;
+use super::transition_tables::TransitionTables;
 
-/// At most so many orders at a time; the cost to go is exact for one and for two.
-pub const MAX_ORDERS: usize = 2;
 /// At most so many ways to fill the locations other than orders: the keys of the cost to go have so many numbers.
 const MAX_STATES: u128 = 1 << 39;
 /// At most so many places where something is processed.
 const MAX_STATIONS: usize = 8;
-/// Locations on the display keep at least this distance, so that gaze can tell them apart.
-pub const MIN_GAP_M: f64 = 0.15;
-
-/// Which of the two files an error is in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SpecFile {
-    Layout,
-    Recipes,
-}
-
-/// Something in a layout or recipe file that cannot be.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{found}")]
-pub struct SpecError {
-    pub file: SpecFile,
-    /// Where in the file's text, in bytes.
-    pub span: Option<Range<usize>>,
-    /// What was found.
-    pub found: String,
-    /// What would be right.
-    pub remedy: String,
-}
-
-type Result<T> = std::result::Result<T, SpecError>;
-
-fn wrong(file: SpecFile, span: Range<usize>, found: impl Into<String>, remedy: impl Into<String>) -> SpecError {
-    SpecError { file, span: Some(span), found: found.into(), remedy: remedy.into() }
-}
-
-/// Reads how something looks.
-fn look(file: SpecFile, text: &Spanned<String>) -> Result<Appearance> {
-    Appearance::read(text.get_ref())
-        .map_err(|remedy| wrong(file, text.span(), format!("look = \"{}\"", text.get_ref()), remedy))
-}
-
-fn wrong_file(file: SpecFile, found: impl Into<String>, remedy: impl Into<String>) -> SpecError {
-    SpecError { file, span: None, found: found.into(), remedy: remedy.into() }
-}
 
 impl Kitchen {
     /// Reads a kitchen from the texts of a layout file and of the recipe file that belongs to it.

@@ -3,14 +3,18 @@
 use toml::Spanned;
 
 use super::contents::IngredientItems;
-use super::{MAX_ORDERS, MIN_GAP_M, Result, SpecFile, look, wrong, wrong_file};
-use crate::kitchen::action::Agent;
+use super::spec_error::{Result, SpecFile, look, wrong, wrong_file};
+use crate::kitchen::agent::Agent;
 use crate::kitchen::content::ContentId;
-use crate::kitchen::layout::{
-    DisplayArea, LayoutSpec, Location, LocationId, LocationKind, PlaceSpec, Storage, StorageSpec, is_same_key,
-};
+use crate::kitchen::layout::{LayoutSpec, PlaceSpec, StorageSpec, is_same_key};
+use crate::kitchen::location::{DisplayArea, Location, LocationId, LocationKind, Storage};
 use crate::kitchen::recipe::RecipesSpec;
 use crate::kitchen::state::MAX_LOCATIONS;
+
+/// At most so many orders at a time; the cost to go is exact for one and for two.
+pub const MAX_ORDERS: usize = 2;
+/// Locations on the display keep at least this distance, so that gaze can tell them apart.
+pub const MIN_GAP_M: f64 = 0.15;
 
 pub(super) fn locations(layout: &LayoutSpec) -> Result<Vec<Location>> {
     let location =

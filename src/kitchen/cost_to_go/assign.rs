@@ -1,24 +1,14 @@
 //! Which item in the kitchen becomes which part of which target.
 
+use super::classes::{ContentClasses, MAX_TARGETS, USELESS};
 use super::demand::PressDemand;
-use super::goal::{ContentClasses, ItemValue, MAX_TARGETS, ServingGoal, USELESS};
+use super::goal::{ItemValue, ServingGoal};
 use super::ground::KitchenTables;
+use super::task::{AssemblyTask, STORAGE};
 use crate::base::bits::ones;
 
 /// At most so many parts of all targets together.
 pub const MAX_TASKS: usize = 16;
-/// The place of a part that is still in a storage.
-pub const STORAGE: u8 = u8::MAX;
-
-/// One part to bring to the board, or a complete stack to serve.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct AssemblyTask {
-    pub target: u8,
-    /// Which items of the target it is; all of them: a complete stack.
-    pub bits: u8,
-    /// Where it is now, or [`STORAGE`].
-    pub at: u8,
-}
 
 /// A choice of items for all targets, in the order in which the targets will be served.
 #[derive(Clone, Copy, Debug)]

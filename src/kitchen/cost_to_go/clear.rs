@@ -1,28 +1,8 @@
-//! The part of a plan that makes room: throws away, picks up, puts aside.
+//! Making room in the way that mostly is best: throws away, picks up, puts aside.
 
-use super::journeys::FreeMask;
 use super::moves::ClearingMove;
+use super::needs::TargetNeeds;
 use super::plan::PressPlan;
-
-/// What the work on a target needs.
-#[derive(Clone, Copy, Debug)]
-pub struct TargetNeeds {
-    target: usize,
-    /// Whether parts have to come onto the board.
-    assembling: bool,
-    /// What the target's parts cannot do without.
-    pub needs: FreeMask,
-    /// The same for all that is to come.
-    later: FreeMask,
-    hands_full: bool,
-}
-
-impl TargetNeeds {
-    /// Whether the hand of this agent should be empty.
-    pub fn hand(&self, agent: usize) -> bool {
-        self.hands_full || self.needs & (1 << agent) != 0
-    }
-}
 
 impl PressPlan<'_> {
     /// Makes room for the work on a target in the way that mostly is best: one press or two. Whether there is a way.
@@ -37,29 +17,6 @@ impl PressPlan<'_> {
             self.make(best);
         }
         best.is_some()
-    }
-
-    /// What the work on a target needs now.
-    pub(super) fn wants(&self, target: usize) -> TargetNeeds {
-        let of_target = || self.tasks().filter(move |(_, task)| usize::from(task.target) == target);
-        let complete = self.goal.complete[target];
-        let assembling = of_target().any(|(_, task)| task.bits != complete && !self.is_ready(&task));
-        let needs = of_target().filter(|(_, task)| !self.is_ready(task));
-        let needs = needs.fold(0, |needs, (_, task)| needs | self.needs(&task));
-        let later = self.tasks().fold(needs, |needs, (_, task)| needs | self.needs(&task));
-        let hands_full = self.ground.hands.iter().all(|&hand| self.state[hand] != 0);
-        TargetNeeds { target, assembling, needs, later, hands_full }
-    }
-
-    /// Whether what lies at a location is where the target's parts have to go.
-    pub(super) fn blocks(&self, wants: &TargetNeeds, location: usize) -> bool {
-        let ground = self.ground;
-        match location {
-            _ if self.state[location] == 0 => false,
-            _ if location == ground.board => wants.assembling && !self.board_is_open(wants.target),
-            _ if location == ground.plate => !wants.assembling,
-            _ => !ground.is_hand(location) && wants.needs & ground.journeys.bit[location] != 0,
-        }
     }
 
     /// Puts down what a wanted hand holds where it has to go anyway.
@@ -165,56 +122,5 @@ impl PressPlan<'_> {
             }
         }
         best.map(|(_, best)| best)
-    }
-
-    /// Where to put a part down so that its way becomes longer by as little as possible: (presses that it costs extra, place).
-    pub(super) fn best_place(&self, index: usize, needs: FreeMask, through: bool) -> Option<(u32, usize)> {
-        let ground = self.ground;
-        let task = self.choice.tasks[index];
-        let from = usize::from(task.at);
-        let class = self.state[from];
-        let accepts = |place: usize| ground.accepts(place, self.goal.content[usize::from(class)]);
-        let mut best: Option<(u32, u32, usize)> = None;
-        for place in ground.places() {
-            let taken = self.state[place] != 0 || ground.is_hand(place) || place == ground.board || !accepts(place);
-            if taken {
-                continue;
-            }
-            let in_use = needs & ground.journeys.bit[place] != 0;
-            let detour = match task.bits.count_ones() {
-                1 => {
-                    let at = |location: usize| u32::from(self.goal.presses_from(task.target, location, class));
-                    let moved = if ground.is_hand(from) { 1 } else { 2 };
-                    (at(place) + moved).saturating_sub(at(from))
-                }
-                _ => 2,
-            };
-            if in_use && !(through && detour == 0) {
-                continue;
-            }
-            let rank = u32::from(place == ground.plate) + 2 * u32::from(in_use);
-            if best.is_none_or(|(least, least_rank, _)| (detour, rank) < (least, least_rank)) {
-                best = Some((detour, rank, place));
-            }
-        }
-        best.map(|(detour, _, place)| (detour, place))
-    }
-
-    /// The occupied place where a single item has to be put next.
-    pub(super) fn blocked_by(&self, task: usize) -> Option<usize> {
-        let ground = self.ground;
-        let from = usize::from(self.choice.tasks[task].at);
-        let content = self.goal.content[usize::from(self.state[from])];
-        let places = ground.places().filter(|&place| !ground.is_hand(place) && place != ground.board);
-        let mut blocked = places.filter(|&place| self.state[place] != 0 && ground.accepts(place, content));
-        blocked.find(|&place| self.leads(task, from, place))
-    }
-
-    /// Whether one press from one location to another brings a single item nearer.
-    pub(super) fn leads(&self, task: usize, from: usize, to: usize) -> bool {
-        let of = self.choice.tasks[task];
-        let class = self.state[usize::from(of.at)];
-        let at = |location: usize| self.goal.presses_from(of.target, location, class);
-        of.bits.count_ones() == 1 && at(to) + 1 == at(from)
     }
 }

@@ -4,44 +4,10 @@
 //! Together with the bound that settles most buttons without a plan.
 
 use super::cache::{DecisionCosts, MAX_BUTTONS};
-use super::goal::MAX_TARGETS;
-use super::plan::BLOCKED;
-use super::rating::AssignmentRating;
-use super::search::{self, BestFirstSearch};
-use super::{CostToGo, SLOT_BITS, UNREACHABLE};
+use super::classes::MAX_TARGETS;
+use super::fidelity::Fidelity;
+use super::store::{CacheSlot, CostToGo, SLOT_BITS, SuccessorState, UNREACHABLE};
 use crate::kitchen::{Agent, ButtonAction, ContentId, LocationId, Recipes, State};
-
-/// How exactly a cost to go is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fidelity {
-    /// By a search where the lower bound and the best plan do not agree.
-    Exact,
-    /// By bounds and plans, without a search: for human decisions. A single value is the length of the best plan, an upper
-    /// bound (searched for where no plan comes to an end). In a decision a few values are a press or two off, mostly those
-    /// of presses that lead away from the goal.
-    PlanBound,
-    /// By the lower bound: mostly exact, else a press or two too low. For worlds of little weight.
-    LowerBound,
-}
-
-/// Where the value of a state is kept.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum CacheSlot {
-    /// Under its goal's slot and its key.
-    At(usize, u64),
-    /// Nowhere: without orders, or with one that cannot be made, it is always the same.
-    Always(u32),
-}
-
-/// A state that a button leads to.
-#[derive(Clone, Copy, Debug)]
-pub struct SuccessorState {
-    button: usize,
-    state: State,
-    kept: CacheSlot,
-    /// Its bound and, where that was wanted, what its best plan takes.
-    bracket: (u32, Option<u32>),
-}
 
 impl CostToGo {
     /// C of the state and of every state that a button of `agent` leads to, in one look-up where it was asked before: what
@@ -217,74 +183,6 @@ impl CostToGo {
         moved
     }
 
-    #[inline]
-    fn kept(&mut self, state: State, recipes: &Recipes) -> CacheSlot {
-        let (mut targets, count) = self.targets(state, recipes);
-        self.kept_for(state, &mut targets[..count])
-    }
-
-    #[inline]
-    pub(super) fn kept_for(&mut self, state: State, targets: &mut [ContentId]) -> CacheSlot {
-        if targets.is_empty() {
-            return CacheSlot::Always(0);
-        }
-        match self.key_of_state(state, targets) {
-            Some((slot, key)) => CacheSlot::At(slot, key),
-            None => CacheSlot::Always(UNREACHABLE),
-        }
-    }
-
-    /// The bound of a state and, if that is not above `most`, what its best plan takes.
-    fn bracket(&mut self, state: State, kept: CacheSlot, most: u32) -> (u32, Option<u32>) {
-        let (slot, key) = match kept {
-            CacheSlot::At(slot, key) => (slot, key),
-            CacheSlot::Always(value) => return (value, Some(value)),
-        };
-        let known = self.known(Fidelity::LowerBound, key);
-        if let Some(lower) = known {
-            if lower > most {
-                return (lower, None);
-            }
-            if let Some(upper) = self.known(Fidelity::PlanBound, key) {
-                return (lower, Some(upper));
-            }
-        }
-        let Some(goal) = self.goals[slot].clone() else { return (UNREACHABLE, None) };
-        let classes = self.classes(&goal, state);
-        let rating = AssignmentRating::new(&self.ground, &goal, &classes);
-        let lower = known.unwrap_or_else(|| self.keep(Fidelity::LowerBound, key, rating.lower));
-        if lower > most {
-            return (lower, None);
-        }
-        let upper = match rating.close_upper(&self.ground, &goal, &classes) {
-            BLOCKED => self.solve(Fidelity::PlanBound, slot, &goal, &classes),
-            upper => upper,
-        };
-        (lower, Some(self.keep(Fidelity::PlanBound, key, upper)))
-    }
-
-    /// Whether the value of a state is below `limit`, which is at most one press above it.
-    pub(super) fn is_below(&mut self, limit: u32, state: State, kept: CacheSlot) -> bool {
-        if limit == 0 {
-            return false;
-        }
-        match (kept, self.bracket(state, kept, limit - 1)) {
-            (_, (_, None)) => false,
-            (CacheSlot::At(slot, _), (lower, Some(upper))) if upper >= limit => self.has_way(slot, state, lower, limit),
-            (_, (_, Some(upper))) => upper < limit,
-        }
-    }
-
-    /// Whether a search finds a way of less than `limit` presses.
-    fn has_way(&mut self, slot: usize, state: State, lower: u32, limit: u32) -> bool {
-        let Some(goal) = self.goals[slot].clone() else { return false };
-        let classes = self.classes(&goal, state);
-        self.counts.searches += 1;
-        let mut finds = |reach| BestFirstSearch::finds(self, slot, &goal, &classes, limit, reach);
-        let far = limit >= lower + goal.targets.len() as u32;
-        finds(search::NEAR) || far && finds(search::FAR)
-    }
-
     /// Whether one press of the agent leads back from where an action of it leads.
     fn can_be_undone(&self, state: State, agent: Agent, action: ButtonAction) -> bool {
         let held = state.content(self.kitchen.hands[agent.index()]);
@@ -297,15 +195,6 @@ impl CostToGo {
                 there.is_empty() || held.is_empty() && self.kitchen.accepts(location, there)
             }
             ButtonAction::Process(_) | ButtonAction::Serve(_) => false,
-        }
-    }
-
-    fn value_kept(&mut self, fidelity: Fidelity, state: State, kept: CacheSlot) -> u32 {
-        match kept {
-            CacheSlot::At(slot, key) => {
-                self.known(fidelity, key).unwrap_or_else(|| self.compute_for(fidelity, key, slot, state))
-            }
-            CacheSlot::Always(value) => value,
         }
     }
 }

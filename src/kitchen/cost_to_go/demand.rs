@@ -1,9 +1,10 @@
 //! What tasks take at least: the presses of their journeys, and those that clear what is in their way.
 
-use super::assign::{AssemblyTask, STORAGE};
-use super::goal::{ContentClasses, ServingGoal};
+use super::classes::ContentClasses;
+use super::goal::ServingGoal;
 use super::ground::KitchenTables;
 use super::journeys::JourneyNeeds;
+use super::task::{AssemblyTask, STORAGE};
 
 /// What tasks take at least.
 #[derive(Clone, Copy, Debug, Default)]

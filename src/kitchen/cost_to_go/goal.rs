@@ -4,17 +4,10 @@
 
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, State};
 
-use super::assign::{AssemblyTask, STORAGE};
+use super::classes::{ContentClasses, MAX_TARGETS, USELESS};
 use super::ground::KitchenTables;
 use super::journeys::{JourneyNeeds, JourneyTables, NEVER};
-
-/// At most so many targets, see [`crate::kitchen::compile::MAX_ORDERS`].
-pub const MAX_TARGETS: usize = 2;
-/// Class 0 is empty, class 1 is of no use.
-pub const USELESS: u8 = 1;
-
-/// Classes of the physical locations, by location index.
-pub type ContentClasses = [u8; 16];
+use super::task::{AssemblyTask, STORAGE};
 
 /// What an item is worth where it is, for one target. Of two offers the greater one is better: it gains more, or as much
 /// and its location comes first. One number, so that the best of many is found without branches.

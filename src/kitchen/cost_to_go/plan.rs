@@ -1,15 +1,14 @@
-//! Plans: the presses that carry out an assignment, one target after another, and clear what is in the way.
+//! A plan in the making: where the items of its tasks lie, and the presses that bring, process and serve them.
 
-use super::assign::{AssemblyTask, Assignment, STORAGE};
-use super::demand::PressDemand;
-use super::goal::{ContentClasses, ServingGoal};
+use super::assign::Assignment;
+use super::classes::ContentClasses;
+use super::goal::ServingGoal;
 use super::ground::KitchenTables;
 use super::journeys::{FreeMask, NEVER};
+use super::task::{AssemblyTask, STORAGE};
 
 /// No plan found.
 pub const BLOCKED: u32 = 1000;
-/// Steps of a plan, at most: a guard against moving things in circles.
-const MAX_STEPS: usize = 40;
 
 /// A plan in the making.
 pub struct PressPlan<'a> {
@@ -21,8 +20,8 @@ pub struct PressPlan<'a> {
     pub(super) open: u32,
     pub(super) presses: u32,
     /// How many targets are served, and how many steps were taken.
-    served: usize,
-    steps: usize,
+    pub(super) served: usize,
+    pub(super) steps: usize,
 }
 
 impl<'a> PressPlan<'a> {
@@ -35,84 +34,8 @@ impl<'a> PressPlan<'a> {
         PressPlan { ground, goal, state: *state, choice: *choice, open: choice.all(), presses: 0, served: 0, steps: 0 }
     }
 
-    /// The presses of the whole plan, [`BLOCKED`] if it comes to a standstill or takes more than `limit`. Room is made in the
-    /// way that mostly is best; with a second thought, once in any other way that there is: a search of one discrepancy
-    /// (Harvey and Ginsberg 1995, Limited Discrepancy Search).
-    pub fn carry_out(mut self, limit: u32, second_thought: bool) -> u32 {
-        if limit < BLOCKED && self.choice.demand.bound(self.ground, &self.state) > limit {
-            return BLOCKED;
-        }
-        self.process_all();
-        self.go_on(limit, second_thought)
-    }
-
-    fn go_on(mut self, mut limit: u32, second_thought: bool) -> u32 {
-        let mut best = BLOCKED;
-        while self.served < self.goal.targets.len() {
-            let target = self.choice.order[self.served];
-            if self.serve(target) {
-                self.served += 1;
-                continue;
-            }
-            self.steps += 1;
-            if self.steps == MAX_STEPS {
-                return best;
-            }
-            // A part that is brought takes what was reckoned with; only what makes room takes more.
-            if self.bring_part(target) {
-                continue;
-            }
-            let wants = self.wants(target);
-            if second_thought {
-                for &made in self.moves(&wants).all() {
-                    let mut other = PressPlan { ..self };
-                    other.make(made);
-                    if other.is_over(limit) {
-                        continue;
-                    }
-                    let presses = other.go_on(limit, false);
-                    if presses <= limit {
-                        (best, limit) = (presses, presses - 1);
-                    }
-                }
-            }
-            let lifts = self.goal.targets.len() > 1;
-            let advanced = lifts && self.lift(target, 1 - target) || self.clear(&wants);
-            if !advanced || self.is_over(limit) {
-                return best;
-            }
-        }
-        if self.presses <= limit { self.presses } else { best }
-    }
-
-    /// Whether the whole plan is certain to take more than `limit`.
-    fn is_over(&self, limit: u32) -> bool {
-        let rest = || {
-            let tasks = self.tasks().map(|(_, task)| task);
-            PressDemand::from_tasks(self.ground, self.goal, &self.state, tasks).bound(self.ground, &self.state)
-        };
-        limit < BLOCKED && self.presses + rest() > limit
-    }
-
-    /// Does what is certain to be right: serves a complete stack if the way is free, processes parts where they are, and
-    /// brings what the stack on the board needs as long as nothing is in the way. Gives the presses, the state after them, and the target if one was served.
-    pub fn settle(mut self) -> (u32, ContentClasses, Option<usize>) {
-        let order = self.choice.order;
-        loop {
-            for &target in &order[..self.goal.targets.len()] {
-                if self.serve(target) {
-                    return (self.presses, self.state, Some(target));
-                }
-            }
-            self.process_all();
-            if !self.begun().is_some_and(|target| self.bring_part(target)) {
-                return (self.presses, self.state, None);
-            }
-        }
-    }
-
     /// Does to all parts what can be done to them where they are.
-    fn process_all(&mut self) {
+    pub(super) fn process_all(&mut self) {
         for index in 0..self.choice.count {
             let at = self.choice.tasks[index].at;
             if at != STORAGE && self.open & (1 << index) != 0 {
@@ -122,7 +45,7 @@ impl<'a> PressPlan<'a> {
     }
 
     /// The target that the board is certain to be for: the only one, or the only one that can use what is on it.
-    fn begun(&self) -> Option<usize> {
+    pub(super) fn begun(&self) -> Option<usize> {
         let class = usize::from(self.state[self.ground.board]);
         let mut can_be = (0..self.goal.targets.len()).filter(|&target| self.goal.ready[target][class] != 0);
         match (self.goal.targets.len(), can_be.next(), can_be.next()) {
@@ -133,12 +56,6 @@ impl<'a> PressPlan<'a> {
             }
             _ => None,
         }
-    }
-
-    /// Decides for a target where the board could be for more than one: the presses and the state after bringing a part.
-    pub fn begin(mut self, target: usize) -> Option<(u32, ContentClasses)> {
-        let begins = self.begun().is_none() && self.bring_part(target);
-        begins.then_some((self.presses, self.state))
     }
 
     #[inline]
@@ -161,7 +78,7 @@ impl<'a> PressPlan<'a> {
     }
 
     /// Serves the target if its stack is complete and the way is free.
-    fn serve(&mut self, target: usize) -> bool {
+    pub(super) fn serve(&mut self, target: usize) -> bool {
         let ground = self.ground;
         let complete = self.goal.complete[target];
         let Some((index, task)) = self.first_of(target) else { return false };
@@ -197,7 +114,7 @@ impl<'a> PressPlan<'a> {
 
     /// When the plate is not free: lifts the complete stack off the board, so that the next target's parts, one of which may
     /// be what lies on the plate, can come onto it meanwhile.
-    fn lift(&mut self, target: usize, next: usize) -> bool {
+    pub(super) fn lift(&mut self, target: usize, next: usize) -> bool {
         let ground = self.ground;
         let Some((index, task)) = self.first_of(target) else { return false };
         if task.bits != self.goal.complete[target] || next >= self.goal.targets.len() {
@@ -312,5 +229,30 @@ impl<'a> PressPlan<'a> {
     /// The task whose item lies at a location.
     pub(super) fn task_at(&self, location: usize) -> Option<(usize, AssemblyTask)> {
         self.tasks().find(|(_, task)| usize::from(task.at) == location)
+    }
+
+    /// The item of a task lies at another place from now on, and is processed there; a press to get there is not counted.
+    pub(super) fn relocate(&mut self, index: usize, place: usize) {
+        let from = usize::from(self.choice.tasks[index].at);
+        self.state[place] = std::mem::take(&mut self.state[from]);
+        self.choice.tasks[index].at = place as u8;
+        self.process(index, place);
+    }
+
+    /// Does to a part what can be done to it where it is.
+    pub(super) fn process(&mut self, index: usize, place: usize) {
+        let task = self.choice.tasks[index];
+        if task.bits.count_ones() != 1 || self.ground.is_hand(place) {
+            return;
+        }
+        let at = |class: u8| self.goal.presses_from(task.target, place, class);
+        for (process, at_place) in self.ground.process_place.iter().enumerate() {
+            let class = self.state[place];
+            let result = self.goal.becomes[process][usize::from(class)];
+            if *at_place == Some(place) && result != 0 && at(result) + 1 == at(class) {
+                self.state[place] = result;
+                self.presses += 1;
+            }
+        }
     }
 }

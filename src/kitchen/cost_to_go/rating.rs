@@ -1,7 +1,8 @@
 //! What a state is at least and at most worth, without a search.
 
 use super::assign::Assignment;
-use super::goal::{ContentClasses, MAX_TARGETS, ServingGoal};
+use super::classes::{ContentClasses, MAX_TARGETS};
+use super::goal::ServingGoal;
 use super::ground::KitchenTables;
 use super::plan::{BLOCKED, PressPlan};
 

@@ -6,11 +6,14 @@ use std::collections::BinaryHeap;
 
 use rustc_hash::FxHashMap;
 
-use super::goal::{ContentClasses, ServingGoal};
-use super::ground::successors;
+use super::classes::ContentClasses;
+use super::fidelity::Fidelity;
+use super::goal::ServingGoal;
 use super::plan::{BLOCKED, PressPlan};
 use super::rating::AssignmentRating;
-use super::{CostToGo, Fidelity};
+use super::store::{CostToGo, UNREACHABLE};
+use super::successors::successors;
+use crate::kitchen::{ContentId, State};
 
 /// How far a search goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -242,5 +245,61 @@ impl<'a> BestFirstSearch<'a> {
             let bound = bound.max(presses + rating.lower);
             self.keep(bound, upper - rating.lower, presses, &settled);
         }
+    }
+}
+
+impl CostToGo {
+    pub(super) fn compute_for(&mut self, fidelity: Fidelity, key: u64, slot: usize, state: State) -> u32 {
+        let Some(goal) = self.goals[slot].clone() else { return UNREACHABLE };
+        let classes = self.classes(&goal, state);
+        self.compute(fidelity, key, slot, &goal, &classes)
+    }
+
+    fn compute(
+        &mut self,
+        fidelity: Fidelity,
+        key: u64,
+        slot: usize,
+        goal: &ServingGoal,
+        state: &ContentClasses,
+    ) -> u32 {
+        let value = self.solve(fidelity, slot, goal, state);
+        self.keep(fidelity, key, value)
+    }
+
+    pub(super) fn solve(&mut self, fidelity: Fidelity, slot: usize, goal: &ServingGoal, state: &ContentClasses) -> u32 {
+        if fidelity == Fidelity::LowerBound {
+            return AssignmentRating::bound(&self.ground, goal, state);
+        }
+        let rating = AssignmentRating::new(&self.ground, goal, state);
+        let upper = rating.close_upper(&self.ground, goal, state);
+        if upper <= rating.lower || fidelity == Fidelity::PlanBound && upper < BLOCKED {
+            return upper;
+        }
+        self.counts.searches += 1;
+        let best = BestFirstSearch::run(self, slot, goal, state, rating.lower, upper, NEAR);
+        // One press above the bound is common with two targets, and then mostly exact.
+        match best < rating.lower + goal.targets.len() as u32 {
+            true => best,
+            false => BestFirstSearch::run(self, slot, goal, state, rating.lower, best, FAR),
+        }
+    }
+
+    /// The value of a state of classes without one of its targets, which has just been served.
+    fn without(&mut self, goal: &ServingGoal, state: &ContentClasses, served: usize) -> u32 {
+        let rest = goal.targets.iter().enumerate().filter(|(index, _)| *index != served);
+        let rest: Vec<ContentId> = rest.map(|(_, &target)| target).collect();
+        if rest.is_empty() {
+            return 0;
+        }
+        let slot = self.slot(&rest);
+        self.make_goal(slot, &rest);
+        let Some(rest) = self.goals[slot].clone() else { return UNREACHABLE };
+        let mut classes: ContentClasses = [0; 16];
+        for location in self.ground.places() {
+            classes[location] = rest.class_of[goal.content[usize::from(state[location])].index()];
+        }
+        let key = self.key(slot, &rest, &classes);
+        self.cache.get(key).unwrap_or_else(|| self.compute(Fidelity::Exact, key, slot, &rest, &classes))
     }
 }

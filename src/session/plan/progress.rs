@@ -3,7 +3,8 @@
 
 use serde::Serialize;
 
-use super::{Slot, StepSpec, Study, WantedRecording};
+use super::planned_study::{Slot, Study, WantedRecording};
+use super::step::StepSpec;
 
 /// How a recording ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

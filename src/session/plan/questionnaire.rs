@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::settings::{Condition, SettingError, is_code};
+use crate::session::condition::Condition;
+use crate::session::setting_checks::{SettingError, is_code};
 
 /// A questionnaire, as its file says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

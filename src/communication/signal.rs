@@ -1,0 +1,67 @@
+//! The signals that can be sent to the participant, and when each can be.
+
+use serde::{Deserialize, Serialize};
+
+use crate::kitchen::{Agent, Kitchen, LocationId, LocationKind, OrderContent, State};
+
+/// A communication signal, by the names of the layout's locations.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Signal {
+    /// The recipe of the dish that this order location wants, picture and words.
+    ShowRecipe(String),
+    /// Directs attention to a location and its content.
+    Highlight(String),
+}
+
+impl Signal {
+    /// The location that the signal is about.
+    pub fn target(&self) -> &str {
+        match self {
+            Signal::ShowRecipe(name) | Signal::Highlight(name) => name,
+        }
+    }
+}
+
+/// Who sends a signal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sender {
+    Wizard,
+    Assistant,
+}
+
+/// The signal about each location, in the order of the locations: recipes for orders, highlights for the others but the
+/// human's own hand, unless `own_hand` allows it (it is what one sees best).
+pub fn signals(kitchen: &Kitchen, own_hand: bool) -> Vec<(LocationId, Signal)> {
+    let signal = |index: usize| {
+        let location = &kitchen.locations[index];
+        let signal = match location.kind {
+            LocationKind::Order => Signal::ShowRecipe(location.name.clone()),
+            LocationKind::Hand(Agent::Human) if !own_hand => return None,
+            _ => Signal::Highlight(location.name.clone()),
+        };
+        Some((LocationId(index as u8), signal))
+    };
+    (0..kitchen.locations.len()).filter_map(signal).collect()
+}
+
+/// The signals that can be sent in a state.
+pub fn available(kitchen: &Kitchen, state: State, own_hand: bool) -> Vec<Signal> {
+    let all = signals(kitchen, own_hand).into_iter().map(|(_, signal)| signal);
+    all.filter(|signal| unavailable(kitchen, state, signal).is_none()).collect()
+}
+
+/// Why a signal cannot be sent now; `None` if it can. Only an order that wants a dish has a recipe to show.
+pub fn unavailable(kitchen: &Kitchen, state: State, signal: &Signal) -> Option<&'static str> {
+    let Some(location) = kitchen.location_named(signal.target()) else { return Some("no such location") };
+    match (signal, kitchen.location(location).kind) {
+        (Signal::ShowRecipe(_), LocationKind::Order) => match state.order(location) {
+            OrderContent::Dish(_) => None,
+            _ => Some("there is no order whose recipe could be shown"),
+        },
+        (Signal::ShowRecipe(_), _) => Some("only an order has a recipe"),
+        (Signal::Highlight(_), LocationKind::Order) => Some("an order cannot be highlighted"),
+        (Signal::Highlight(_), _) => None,
+    }
+}

@@ -1,0 +1,175 @@
+//! The compiled kitchen, and what can be looked up in it.
+
+use super::action::{Button, ButtonAction, ButtonId};
+use super::agent::Agent;
+use super::aspect::{Aspect, AspectId, AspectKind};
+use super::content::{Content, ContentId};
+use super::dish::{Dish, DishId};
+use super::location::{Location, LocationId, LocationKind, Storage};
+use super::process::Process;
+use super::state::{OrderContent, Recipes, State};
+use super::transition_tables::TransitionTables;
+use crate::base::rng::mix;
+
+/// A compiled kitchen: tables over contents, locations, buttons and dishes. It never changes after loading.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kitchen {
+    /// Identifier, from the layout file.
+    pub name: String,
+    /// What the screen calls it.
+    pub title: String,
+    /// Size of the wall display in metres, width and height.
+    pub display_m: [f64; 2],
+    /// Height of the table in the frame of the robot's base, in metres.
+    pub table_height_m: f64,
+    /// How long an order shows `served`, in seconds.
+    pub served_shown_s: f64,
+    /// From serving to the next order, in seconds.
+    pub new_order_after_s: f64,
+    /// Every content; index 0 is "empty", then the ingredient items, then the stacks by size.
+    pub contents: Vec<Content>,
+    /// The locations that a person can be wrong about; orders first, in the order of the file.
+    pub locations: Vec<Location>,
+    /// The buttons of the human and of the robot, indexed by [`Agent::index`] and [`ButtonId`].
+    pub buttons: [Vec<Button>; 2],
+    /// Where the endless ingredients stand on the display.
+    pub storages: Vec<Storage>,
+    /// The menu.
+    pub dishes: Vec<Dish>,
+    /// What the human may believe: one aspect per location, one per recipe.
+    pub aspects: Vec<Aspect>,
+    /// The processing steps: cutting, cooking and their like.
+    pub processes: Vec<Process>,
+    /// The order locations.
+    pub orders: Vec<LocationId>,
+    /// The hand of each agent, indexed by [`Agent::index`].
+    pub hands: [LocationId; 2],
+    /// The location where items are stacked.
+    pub board: LocationId,
+    /// The location from which orders are served.
+    pub plate: LocationId,
+    pub(super) tables: TransitionTables,
+}
+
+impl Kitchen {
+    /// The state of a kitchen where everything is empty and no order is present.
+    pub fn empty_state(&self) -> State {
+        State::default()
+    }
+
+    /// The recipes as they truly are.
+    pub fn true_recipes(&self) -> Recipes {
+        let mut recipes = Recipes::default();
+        for (index, dish) in self.dishes.iter().enumerate() {
+            recipes.set(DishId(index as u8), dish.variants[0]);
+        }
+        recipes
+    }
+
+    /// The number of joint values of all aspects, |S| of the paper.
+    pub fn state_count(&self) -> u128 {
+        self.aspects.iter().map(|aspect| aspect.values.len() as u128).product()
+    }
+
+    /// The locations that hold something else in one state than in the other.
+    pub fn changed(&self, before: State, after: State) -> impl Iterator<Item = LocationId> + use<> {
+        let locations = (0..self.locations.len()).map(|index| LocationId(index as u8));
+        locations.filter(move |&location| before.code(location) != after.code(location))
+    }
+
+    pub fn location(&self, id: LocationId) -> &Location {
+        &self.locations[id.index()]
+    }
+
+    pub fn content(&self, id: ContentId) -> &Content {
+        &self.contents[id.index()]
+    }
+
+    pub fn button(&self, agent: Agent, id: ButtonId) -> &Button {
+        &self.buttons[agent.index()][id.index()]
+    }
+
+    pub fn dish(&self, id: DishId) -> &Dish {
+        &self.dishes[id.index()]
+    }
+
+    /// The location with this name.
+    pub fn location_named(&self, name: &str) -> Option<LocationId> {
+        self.locations.iter().position(|location| location.name == name).map(|index| LocationId(index as u8))
+    }
+
+    /// The dish of this name.
+    pub fn dish_named(&self, name: &str) -> Option<DishId> {
+        self.dishes.iter().position(|dish| dish.name == name).map(|index| DishId(index as u8))
+    }
+
+    /// The content with this name.
+    pub fn content_named(&self, name: &str) -> Option<ContentId> {
+        self.contents.iter().position(|content| content.name == name).map(|index| ContentId(index as u8))
+    }
+
+    /// The agent's button with this name.
+    pub fn button_named(&self, agent: Agent, name: &str) -> Option<ButtonId> {
+        self.buttons[agent.index()].iter().position(|button| button.name == name).map(|index| ButtonId(index as u8))
+    }
+
+    /// What a location shows, in words: the content's name, or the order's dish, `none` or `served`.
+    pub fn content_label(&self, state: State, location: LocationId) -> &str {
+        match self.location(location).kind {
+            LocationKind::Order => match state.order(location) {
+                OrderContent::None => "none",
+                OrderContent::Served => "served",
+                OrderContent::Dish(dish) => &self.dish(dish).name,
+            },
+            _ => &self.content(state.content(location)).name,
+        }
+    }
+
+    /// A number that tells states apart in logs: equal states have equal marks.
+    pub fn state_mark(&self, state: State) -> u64 {
+        let bytes = state.bits();
+        mix(bytes as u64 ^ mix((bytes >> 64) as u64))
+    }
+
+    /// The agent's button nearest to another one of its buttons on the table.
+    pub fn nearest_button(&self, agent: Agent, button: ButtonId) -> Option<ButtonId> {
+        let buttons = &self.buttons[agent.index()];
+        let own = buttons[button.index()].at_m;
+        let distance = |index: usize| (buttons[index].at_m[0] - own[0]).hypot(buttons[index].at_m[1] - own[1]);
+        let others = (0..buttons.len()).filter(|&index| index != button.index());
+        others.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).map(|index| ButtonId(index as u8))
+    }
+
+    /// The agent's storage button whose symbol looks like that of another one.
+    pub fn look_alike_button(&self, agent: Agent, button: ButtonId) -> Option<ButtonId> {
+        let ButtonAction::Take(item) = self.button(agent, button).action else { return None };
+        let alike = &self.content(item).look_alikes;
+        let is_alike = |action| matches!(action, ButtonAction::Take(other) if alike.contains(&other));
+        let buttons = &self.buttons[agent.index()];
+        buttons.iter().position(|other| is_alike(other.action)).map(|index| ButtonId(index as u8))
+    }
+
+    /// The index of the true value of an aspect; a place that shows what it cannot hold counts as its first value.
+    pub fn true_value(&self, state: State, aspect: AspectId) -> usize {
+        let aspect = &self.aspects[aspect.index()];
+        match aspect.kind {
+            AspectKind::Location(location) => aspect.index_of(state.code(location)).unwrap_or(0),
+            AspectKind::Recipe(_) => 0,
+        }
+    }
+
+    /// Gives an aspect one of its values, by index, in a state or in recipes.
+    #[inline]
+    pub fn set_value(&self, state: &mut State, recipes: &mut Recipes, aspect: AspectId, value: usize) {
+        let aspect = &self.aspects[aspect.index()];
+        match aspect.kind {
+            AspectKind::Location(location) => state.set_code(location, aspect.values[value]),
+            AspectKind::Recipe(dish) => recipes.set(dish, ContentId(aspect.values[value])),
+        }
+    }
+
+    /// The aspect of a dish's recipe: recipes follow the locations.
+    pub fn aspect_of_dish(&self, dish: DishId) -> AspectId {
+        AspectId((self.locations.len() + dish.index()) as u8)
+    }
+}

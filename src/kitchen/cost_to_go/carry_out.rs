@@ -1,0 +1,92 @@
+//! Carrying a plan out: one target after another, and what is in the way is cleared.
+
+use super::classes::ContentClasses;
+use super::demand::PressDemand;
+use super::plan::{BLOCKED, PressPlan};
+
+/// Steps of a plan, at most: a guard against moving things in circles.
+const MAX_STEPS: usize = 40;
+
+impl PressPlan<'_> {
+    /// The presses of the whole plan, [`BLOCKED`] if it comes to a standstill or takes more than `limit`. Room is made in the
+    /// way that mostly is best; with a second thought, once in any other way that there is: a search of one discrepancy
+    /// (Harvey and Ginsberg 1995, Limited Discrepancy Search).
+    pub fn carry_out(mut self, limit: u32, second_thought: bool) -> u32 {
+        if limit < BLOCKED && self.choice.demand.bound(self.ground, &self.state) > limit {
+            return BLOCKED;
+        }
+        self.process_all();
+        self.go_on(limit, second_thought)
+    }
+
+    fn go_on(mut self, mut limit: u32, second_thought: bool) -> u32 {
+        let mut best = BLOCKED;
+        while self.served < self.goal.targets.len() {
+            let target = self.choice.order[self.served];
+            if self.serve(target) {
+                self.served += 1;
+                continue;
+            }
+            self.steps += 1;
+            if self.steps == MAX_STEPS {
+                return best;
+            }
+            // A part that is brought takes what was reckoned with; only what makes room takes more.
+            if self.bring_part(target) {
+                continue;
+            }
+            let wants = self.wants(target);
+            if second_thought {
+                for &made in self.moves(&wants).all() {
+                    let mut other = PressPlan { ..self };
+                    other.make(made);
+                    if other.is_over(limit) {
+                        continue;
+                    }
+                    let presses = other.go_on(limit, false);
+                    if presses <= limit {
+                        (best, limit) = (presses, presses - 1);
+                    }
+                }
+            }
+            let lifts = self.goal.targets.len() > 1;
+            let advanced = lifts && self.lift(target, 1 - target) || self.clear(&wants);
+            if !advanced || self.is_over(limit) {
+                return best;
+            }
+        }
+        if self.presses <= limit { self.presses } else { best }
+    }
+
+    /// Whether the whole plan is certain to take more than `limit`.
+    fn is_over(&self, limit: u32) -> bool {
+        let rest = || {
+            let tasks = self.tasks().map(|(_, task)| task);
+            PressDemand::from_tasks(self.ground, self.goal, &self.state, tasks).bound(self.ground, &self.state)
+        };
+        limit < BLOCKED && self.presses + rest() > limit
+    }
+
+    /// Does what is certain to be right: serves a complete stack if the way is free, processes parts where they are, and
+    /// brings what the stack on the board needs as long as nothing is in the way. Gives the presses, the state after them, and the target if one was served.
+    pub fn settle(mut self) -> (u32, ContentClasses, Option<usize>) {
+        let order = self.choice.order;
+        loop {
+            for &target in &order[..self.goal.targets.len()] {
+                if self.serve(target) {
+                    return (self.presses, self.state, Some(target));
+                }
+            }
+            self.process_all();
+            if !self.begun().is_some_and(|target| self.bring_part(target)) {
+                return (self.presses, self.state, None);
+            }
+        }
+    }
+
+    /// Decides for a target where the board could be for more than one: the presses and the state after bringing a part.
+    pub fn begin(mut self, target: usize) -> Option<(u32, ContentClasses)> {
+        let begins = self.begun().is_none() && self.bring_part(target);
+        begins.then_some((self.presses, self.state))
+    }
+}

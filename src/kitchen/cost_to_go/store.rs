@@ -1,0 +1,177 @@
+//! What a [`CostToGo`] holds: tables of the kitchen, goals, and what was found, by the keys of states.
+
+use std::sync::Arc;
+
+use super::cache::{DecisionCache, KIND_BITS, ValueCache};
+use super::classes::{ContentClasses, MAX_TARGETS};
+use super::fidelity::Fidelity;
+use super::goal::ServingGoal;
+use super::ground::KitchenTables;
+use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, OrderContent, Recipes, State};
+
+/// The value of states from which the goal cannot be reached.
+pub const UNREACHABLE: u32 = 255;
+/// 2^18 values and 2^15 decisions, 2 MiB each: larger ones would be asked as rarely twice, and answer more slowly.
+const CACHE_BITS: u32 = 18;
+const DECISION_BITS: u32 = 15;
+/// Keys leave so many bits for the goal and the kind of value.
+pub(super) const SLOT_BITS: u32 = 16 + KIND_BITS;
+
+/// Computes costs to go and remembers them.
+#[derive(Clone, Debug)]
+pub struct CostToGo {
+    pub(super) kitchen: Arc<Kitchen>,
+    pub(super) ground: KitchenTables,
+    /// `[first target * contents + second target]`, made when first wanted; no second target: 0.
+    pub(super) goals: Vec<Option<Arc<ServingGoal>>>,
+    pub(super) cache: ValueCache,
+    pub(super) decisions: DecisionCache,
+    /// Room for the states around a decision.
+    pub(super) nexts: Vec<SuccessorState>,
+    pub(super) counts: EvaluationCounts,
+    /// `[agent][content]`: what an agent that has thrown it away can take again.
+    pub(super) takes: [Vec<bool>; 2],
+    /// By agent, whether it can throw away what it has taken.
+    pub(super) trashes: [bool; 2],
+}
+
+/// How often what was done since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EvaluationCounts {
+    /// Decisions that had to be put together, button by button.
+    pub decisions_missed: u64,
+    /// Single values asked for, and those that had to be computed.
+    pub values: u64,
+    pub values_missed: u64,
+    /// Those for which bound and plans did not agree.
+    pub searches: u64,
+}
+
+/// Where the value of a state is kept.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum CacheSlot {
+    /// Under its goal's slot and its key.
+    At(usize, u64),
+    /// Nowhere: without orders, or with one that cannot be made, it is always the same.
+    Always(u32),
+}
+
+/// A state that a button leads to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SuccessorState {
+    pub(super) button: usize,
+    pub(super) state: State,
+    pub(super) kept: CacheSlot,
+    /// Its bound and, where that was wanted, what its best plan takes.
+    pub(super) bracket: (u32, Option<u32>),
+}
+
+impl CostToGo {
+    pub fn new(kitchen: Arc<Kitchen>) -> CostToGo {
+        let ground = KitchenTables::new(&kitchen);
+        let goals = vec![None; kitchen.contents.len() * kitchen.contents.len()];
+        let (cache, decisions) = (ValueCache::new(CACHE_BITS), DecisionCache::new(DECISION_BITS));
+        let has = |agent: Agent, action| kitchen.buttons[agent.index()].iter().any(|button| button.action == action);
+        let takes = |agent| {
+            let has = |item| has(agent, ButtonAction::Take(ContentId(item as u8)));
+            (0..kitchen.contents.len()).map(has).collect()
+        };
+        CostToGo {
+            takes: Agent::BOTH.map(takes),
+            trashes: Agent::BOTH.map(|agent| has(agent, ButtonAction::Trash)),
+            counts: EvaluationCounts::default(),
+            kitchen,
+            ground,
+            goals,
+            cache,
+            decisions,
+            nexts: Vec::new(),
+        }
+    }
+
+    /// How much was looked up and how much computed since the start.
+    pub fn counts(&self) -> EvaluationCounts {
+        self.counts
+    }
+
+    /// The stacks that the present orders want, in the order of the orders, and their number.
+    #[inline]
+    pub(super) fn targets(&self, state: State, recipes: &Recipes) -> ([ContentId; MAX_TARGETS], usize) {
+        let mut targets = [ContentId::EMPTY; MAX_TARGETS];
+        let mut count = 0;
+        for order in 0..self.ground.first {
+            if let OrderContent::Dish(dish) = state.order(LocationId(order as u8)) {
+                targets[count] = recipes.get(dish);
+                count += 1;
+            }
+        }
+        (targets, count)
+    }
+
+    /// A state's key together with these targets (at least one), and their slot.
+    #[inline]
+    pub(super) fn key_of_state(&mut self, state: State, targets: &mut [ContentId]) -> Option<(usize, u64)> {
+        targets.sort_unstable();
+        let slot = self.slot(targets);
+        self.make_goal(slot, targets);
+        let goal = self.goals[slot].as_ref()?;
+        Some((slot, goal.key_of_state(state) << SLOT_BITS | (slot << KIND_BITS) as u64))
+    }
+
+    /// The key of its exact value.
+    pub(super) fn key(&self, slot: usize, goal: &ServingGoal, state: &ContentClasses) -> u64 {
+        goal.key_of_classes(state) << SLOT_BITS | (slot << KIND_BITS) as u64
+    }
+
+    pub(super) fn slot(&self, targets: &[ContentId]) -> usize {
+        let second = targets.get(1).map_or(0, |target| target.index());
+        targets[0].index() * self.kitchen.contents.len() + second
+    }
+
+    #[inline]
+    pub(super) fn make_goal(&mut self, slot: usize, targets: &[ContentId]) {
+        if self.goals[slot].is_none() {
+            let goal = ServingGoal::new(&self.kitchen, &self.ground, targets.to_vec());
+            self.goals[slot] = Some(Arc::new(goal));
+        }
+    }
+
+    pub(super) fn classes(&self, goal: &ServingGoal, state: State) -> ContentClasses {
+        let mut classes: ContentClasses = [0; 16];
+        for location in self.ground.places() {
+            classes[location] = goal.class_of[state.content(LocationId(location as u8)).index()];
+        }
+        classes
+    }
+
+    #[inline]
+    pub(super) fn known(&mut self, fidelity: Fidelity, key: u64) -> Option<u32> {
+        self.counts.values += 1;
+        self.cache.get(key | fidelity as u64)
+    }
+
+    #[inline]
+    pub(super) fn keep(&mut self, fidelity: Fidelity, key: u64, value: u32) -> u32 {
+        self.counts.values_missed += 1;
+        let value = value.min(UNREACHABLE);
+        self.cache.insert(key | fidelity as u64, value);
+        value
+    }
+
+    #[inline]
+    pub(super) fn kept(&mut self, state: State, recipes: &Recipes) -> CacheSlot {
+        let (mut targets, count) = self.targets(state, recipes);
+        self.kept_for(state, &mut targets[..count])
+    }
+
+    #[inline]
+    pub(super) fn kept_for(&mut self, state: State, targets: &mut [ContentId]) -> CacheSlot {
+        if targets.is_empty() {
+            return CacheSlot::Always(0);
+        }
+        match self.key_of_state(state, targets) {
+            Some((slot, key)) => CacheSlot::At(slot, key),
+            None => CacheSlot::Always(UNREACHABLE),
+        }
+    }
+}

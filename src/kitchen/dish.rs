@@ -1,0 +1,35 @@
+//! The dishes of the menu.
+
+use serde::{Deserialize, Serialize};
+
+use super::content::ContentId;
+use super::look::Appearance;
+
+/// An index into [`super::Kitchen::dishes`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct DishId(pub u8);
+
+impl DishId {
+    #[inline]
+    pub fn index(self) -> usize {
+        usize::from(self.0)
+    }
+}
+
+/// A dish of the menu.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dish {
+    pub name: String,
+    /// What may be taken for its recipe: full stacks, the true one first.
+    pub variants: Vec<ContentId>,
+    /// How the display draws the final product, if its file says so.
+    pub look: Option<Appearance>,
+}
+
+impl Dish {
+    /// The recipe as it truly is.
+    pub fn stack(&self) -> ContentId {
+        self.variants[0]
+    }
+}

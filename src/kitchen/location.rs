@@ -1,0 +1,92 @@
+//! Locations and storages: where something can lie, and where it is on the wall display.
+
+use serde::Deserialize;
+
+use super::agent::Agent;
+use super::content::ContentId;
+use super::look::Appearance;
+
+/// An index into [`super::Kitchen::locations`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LocationId(pub u8);
+
+impl LocationId {
+    #[inline]
+    pub fn index(self) -> usize {
+        usize::from(self.0)
+    }
+}
+
+/// An area of the wall display, as fractions of its width and height; the origin is at the top left, y points down.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DisplayArea {
+    pub x: f64,
+    pub y: f64,
+    pub w: f64,
+    pub h: f64,
+}
+
+impl DisplayArea {
+    /// The centre, in the same fractions.
+    pub fn centre(self) -> [f64; 2] {
+        [self.x + self.w / 2.0, self.y + self.h / 2.0]
+    }
+
+    /// The distance in metres from a display point (fractions) to this area, 0 inside, on a display of `display_m`.
+    pub fn distance_m(self, point: [f64; 2], display_m: [f64; 2]) -> f64 {
+        let outside = |low: f64, length: f64, value: f64| (low - value).max(value - low - length).max(0.0);
+        let dx = outside(self.x, self.w, point[0]) * display_m[0];
+        let dy = outside(self.y, self.h, point[1]) * display_m[1];
+        dx.hypot(dy)
+    }
+
+    /// The least distance in metres between two areas, 0 if they touch.
+    pub fn gap_m(self, other: DisplayArea, display_m: [f64; 2]) -> f64 {
+        let gap = |a: f64, a_len: f64, b: f64, b_len: f64| (b - a - a_len).max(a - b - b_len).max(0.0);
+        let dx = gap(self.x, self.w, other.x, other.w) * display_m[0];
+        let dy = gap(self.y, self.h, other.y, other.h) * display_m[1];
+        dx.hypot(dy)
+    }
+}
+
+/// What kind of place a location is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LocationKind {
+    /// Shows the wanted dish.
+    Order,
+    /// The hand of an agent.
+    Hand(Agent),
+    /// Holds one item; items are stacked there if it is the board.
+    Place,
+}
+
+/// A location whose content a person can be wrong about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Location {
+    pub name: String,
+    pub kind: LocationKind,
+    /// Its area on the wall display.
+    pub display: DisplayArea,
+    /// The wizard's key for the signal about it.
+    pub signal_key: Option<char>,
+    /// How the display draws it, if its file says so.
+    pub look: Option<Appearance>,
+}
+
+impl Location {
+    /// The name as it is written on screens: "assembly board".
+    pub fn label(&self) -> String {
+        self.name.replace('_', " ")
+    }
+}
+
+/// An endless array of one ingredient, within reach of one agent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Storage {
+    pub agent: Agent,
+    pub item: ContentId,
+    /// The ingredient's name.
+    pub label: String,
+    pub display: DisplayArea,
+}

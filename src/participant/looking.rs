@@ -1,0 +1,267 @@
+//! Where the participant looks, what it reads there, and what draws its eye.
+
+use rand::RngExt;
+
+use super::beliefs::wanted_dish;
+use super::eyes::FixationProgress;
+use super::population::chance;
+use super::simulated::SimulatedParticipant;
+use crate::base::time::SessionTime;
+use crate::communication::Signal;
+use crate::kitchen::{Agent, AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
+
+/// Belief in what was just read.
+const READ: f64 = 0.97;
+/// Expecting the look-alike makes it so much more likely to be seen, expecting the right thing so much less.
+const EXPECTATION: f64 = 4.0;
+/// A change draws the eye the less, the farther away it is: half as often at this distance, in metres.
+const CAPTURE_REACH_M: f64 = 0.6;
+/// A place of the next press has so many chances to draw the eye.
+const WATCHED: i32 = 3;
+/// So many presses ahead one looks at the places that will be used.
+const LOOKS_AHEAD: usize = 2;
+/// After this many seconds a place is as worth looking at as it gets.
+const STALE_S: f64 = 6.0;
+/// What is left of the belief in a recipe when the robot's doings speak against it.
+const HINT_LEAVES: f64 = 0.2;
+
+impl SimulatedParticipant {
+    /// The eyes move on: changes draw them, what was looked at long enough is read, and then it is the next one's turn.
+    pub(super) fn look(&mut self, now: SessionTime, state: State) {
+        self.notice_changes(now, state);
+        match self.eyes.advance(now) {
+            FixationProgress::Nothing => {}
+            FixationProgress::Read => {
+                if let Some(location) = self.attention.looking_at {
+                    self.read(now, location, state);
+                }
+            }
+            FixationProgress::Done => {
+                let target = self.choose_target(now);
+                self.attention.looking_at = target;
+                let point = match target {
+                    Some(location) => self.kitchen.location(location).display.centre(),
+                    None => self.elsewhere(),
+                };
+                self.eyes.look_at(now, point);
+            }
+        }
+    }
+
+    /// What changes on the display may draw the eye, and is read anew where one is looking anyway.
+    fn notice_changes(&mut self, now: SessionTime, state: State) {
+        if state == self.display {
+            return;
+        }
+        let kitchen = self.kitchen.clone();
+        let eye = self.eyes.position(now);
+        let needed = self.needed();
+        for (index, location) in kitchen.locations.iter().enumerate() {
+            let id = LocationId(index as u8);
+            if state.code(id) == self.display.code(id) {
+                continue;
+            }
+            if self.attention.looking_at == Some(id) && self.eyes.has_landed(now) {
+                self.eyes.look_again(now);
+                continue;
+            }
+            let strength = match location.kind {
+                LocationKind::Order => self.person.order_capture,
+                _ => self.person.capture,
+            };
+            let distance_m = location.display.distance_m(eye, kitchen.display_m);
+            let seen = strength * 0.5_f64.powf(distance_m / CAPTURE_REACH_M);
+            // What one is about to use one has half an eye on.
+            let seen = if needed.contains(&id) { 1.0 - (1.0 - seen).powi(WATCHED) } else { seen };
+            if chance(&mut self.mind, seen) {
+                self.attention.first(id);
+            }
+        }
+        self.display = state;
+    }
+
+    /// The next place to look at; `None`: somewhere else.
+    fn choose_target(&mut self, now: SessionTime) -> Option<LocationId> {
+        if let Some(location) = self.attention.glances.pop_front() {
+            return Some(location);
+        }
+        if chance(&mut self.mind, self.person.wanders) {
+            return None;
+        }
+        let kitchen = self.kitchen.clone();
+        let needed = self.needed();
+        let weight = |index: usize| {
+            let id = LocationId(index as u8);
+            let worth = match kitchen.locations[index].kind {
+                _ if needed.contains(&id) => 1.0,
+                LocationKind::Hand(Agent::Robot) => self.person.watches_robot,
+                LocationKind::Hand(Agent::Human) => 0.15,
+                LocationKind::Order if wanted_dish(&kitchen, &self.beliefs, id).is_none() => 0.8,
+                LocationKind::Order => 0.2,
+                LocationKind::Place if id == kitchen.board => 0.5,
+                LocationKind::Place => 0.25,
+            };
+            let stale = 1.0 - (-now.secs_since(self.attention.read_at[index]) / STALE_S).exp();
+            let open = 1.0 - self.beliefs.certainty(AspectId::of_location(id));
+            worth * (stale + open)
+        };
+        let weights: Vec<f64> = (0..kitchen.locations.len()).map(weight).collect();
+        let mut draw = self.mind.random::<f64>() * weights.iter().sum::<f64>();
+        weights
+            .iter()
+            .position(|weight| {
+                draw -= weight;
+                draw < 0.0
+            })
+            .map(|index| LocationId(index as u8))
+    }
+
+    /// The places of the next press and of the one after it, but not the own hand, which one feels.
+    pub(super) fn needed(&self) -> Vec<LocationId> {
+        let next = self.intent.plan.iter().take(LOOKS_AHEAD);
+        let mut places: Vec<LocationId> =
+            next.flat_map(|&button| self.kitchen.involved(Agent::Human, button)).collect();
+        places.retain(|&place| place != self.kitchen.hands[Agent::Human.index()]);
+        places
+    }
+
+    /// A point that is no place of the task: a storage, or anywhere.
+    fn elsewhere(&mut self) -> [f64; 2] {
+        let storages: Vec<[f64; 2]> = self.kitchen.storages.iter().map(|storage| storage.display.centre()).collect();
+        match storages.is_empty() || chance(&mut self.mind, 0.4) {
+            true => [self.mind.random::<f64>(), self.mind.random::<f64>()],
+            false => storages[self.mind.random_range(0..storages.len())],
+        }
+    }
+
+    /// Reads what a place shows, sometimes as something that looks like it.
+    pub(super) fn read(&mut self, now: SessionTime, location: LocationId, state: State) {
+        let kitchen = self.kitchen.clone();
+        let aspect = AspectId::of_location(location);
+        let believed = self.beliefs.most_likely(aspect);
+        let values = &kitchen.aspects[aspect.index()];
+        let Some(shown) = values.index_of(state.code(location)) else { return };
+        let alike = look_alike_codes(&kitchen, location, state);
+        let alike: Vec<usize> = alike.into_iter().filter_map(|code| values.index_of(code)).collect();
+        let mut seen = shown;
+        for other in alike {
+            let bias = match believed {
+                expected if expected == other => EXPECTATION,
+                expected if expected == shown => 1.0 / EXPECTATION,
+                _ => 1.0,
+            };
+            if chance(&mut self.mind, (self.person.misreads * bias).min(0.5)) {
+                seen = other;
+            }
+        }
+        self.attention.read_at[location.index()] = now;
+        self.beliefs.settle(aspect, seen, READ);
+        if seen != believed {
+            self.rethink = true;
+            self.on_news(location, values.values[believed], values.values[seen]);
+        }
+    }
+
+    pub(super) fn read_signal(&mut self, now: SessionTime, state: State) {
+        let is_due = self.signal.as_ref().is_some_and(|(time, _, _)| now >= *time);
+        let Some((_, location, signal)) = self.signal.take_if(|_| is_due) else { return };
+        let kitchen = self.kitchen.clone();
+        self.rethink = true;
+        let point = kitchen.location(location).display.centre();
+        self.eyes.look_at(now, point);
+        self.attention.looking_at = Some(location);
+        match signal {
+            Signal::Highlight(_) => self.read(now, location, state),
+            Signal::ShowRecipe(_) => {
+                let OrderContent::Dish(dish) = state.order(location) else { return };
+                self.read(now, location, state);
+                let variants = kitchen.dish(dish).variants.len();
+                let is_wrong = variants > 1 && chance(&mut self.mind, self.population.misreads_signal);
+                let seen = if is_wrong { self.mind.random_range(1..variants) } else { 0 };
+                self.memory.confirm(&kitchen, &mut self.beliefs, dish, seen);
+            }
+        }
+    }
+
+    /// Something is otherwise than it was believed to be.
+    fn on_news(&mut self, location: LocationId, believed: u8, code: u8) {
+        let kitchen = self.kitchen.clone();
+        let wanted: Vec<_> = kitchen
+            .orders
+            .iter()
+            .filter(|&&order| order != location)
+            .filter_map(|&order| wanted_dish(&kitchen, &self.beliefs, order))
+            .collect();
+        if kitchen.location(location).kind == LocationKind::Order {
+            if let OrderContent::Dish(dish) = OrderContent::from_code(code)
+                && !wanted.contains(&dish)
+            {
+                self.memory.recall(&kitchen, &mut self.beliefs, dish);
+            }
+            return;
+        }
+        // The robot knows the recipes: what it carries, stacks or throws away is a hint.
+        let (_, recipes) = self.beliefs.point(&kitchen);
+        let (before, now) = (ContentId(believed), ContentId(code));
+        let has_place =
+            |content: ContentId| wanted.iter().any(|&dish| could_become(&kitchen, content, recipes.get(dish)));
+        let is_robots_hand = location == kitchen.hands[Agent::Robot.index()];
+        let is_strange = (is_robots_hand || location == kitchen.board) && !now.is_empty() && !has_place(now);
+        let is_lost =
+            is_robots_hand && now.is_empty() && !before.is_empty() && has_place(before) && !self.is_about(before);
+        if is_strange {
+            self.take_hint(&wanted, |variant| could_become(&kitchen, now, variant));
+        } else if is_lost {
+            self.take_hint(&wanted, |variant| !could_become(&kitchen, before, variant));
+        }
+    }
+
+    /// Whether everything in `content` seems to be somewhere in the kitchen.
+    fn is_about(&self, content: ContentId) -> bool {
+        let kitchen = &self.kitchen;
+        let (state, _) = self.beliefs.point(kitchen);
+        let places = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
+        let places = places.filter(|&place| kitchen.location(place).kind != LocationKind::Order);
+        let lying: Vec<ContentId> =
+            places.flat_map(|place| kitchen.content(state.content(place)).items.clone()).collect();
+        kitchen.content(content).items.iter().all(|item| lying.contains(item))
+    }
+
+    /// What the robot does fits none of the recipes that are held: perhaps one of them is another one, as `fits` says.
+    fn take_hint(&mut self, wanted: &[DishId], fits: impl Fn(ContentId) -> bool) {
+        if !chance(&mut self.mind, self.person.takes_hints) {
+            return;
+        }
+        let kitchen = self.kitchen.clone();
+        let candidates = wanted.iter().filter(|&&dish| kitchen.dish(dish).variants.iter().any(|&v| fits(v)));
+        if let Some(dish) = self.least_sure(candidates.copied()) {
+            self.memory.doubt(&kitchen, &mut self.beliefs, dish, HINT_LEAVES, fits);
+        }
+    }
+
+    /// The dish whose recipe is held least surely.
+    pub(super) fn least_sure(&self, dishes: impl Iterator<Item = DishId>) -> Option<DishId> {
+        let sure = |dish| self.beliefs.certainty(self.kitchen.aspect_of_dish(dish));
+        dishes.min_by(|&a, &b| sure(a).total_cmp(&sure(b)))
+    }
+}
+
+/// The codes of what could be taken for what a location shows.
+fn look_alike_codes(kitchen: &Kitchen, location: LocationId, state: State) -> Vec<u8> {
+    if kitchen.location(location).kind != LocationKind::Order {
+        return kitchen.content(state.content(location)).look_alikes.iter().map(|alike| alike.0).collect();
+    }
+    let OrderContent::Dish(dish) = state.order(location) else { return Vec::new() };
+    let alike = &kitchen.content(kitchen.dish(dish).stack()).look_alikes;
+    let dishes = kitchen.dishes.iter().enumerate().filter(|(_, other)| alike.contains(&other.stack()));
+    dishes.map(|(index, _)| OrderContent::Dish(DishId(index as u8)).code()).collect()
+}
+
+/// Whether everything in `content` has its place in `stack`: a stack's items as they are, a single item by its ingredient.
+fn could_become(kitchen: &Kitchen, content: ContentId, stack: ContentId) -> bool {
+    let (content, stack) = (kitchen.content(content), kitchen.content(stack));
+    match content.is_stack() {
+        true => content.items.iter().all(|item| stack.items.contains(item)),
+        false => stack.items.iter().any(|&item| kitchen.content(item).ingredient == content.ingredient),
+    }
+}

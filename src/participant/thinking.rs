@@ -1,0 +1,143 @@
+//! What the participant makes of what happens: of its own presses and the robot's, of the time that passes; and what it
+//! decides to do next.
+
+use super::beliefs::wanted_dish;
+use super::population::chance;
+use super::simulated::SimulatedParticipant;
+use super::{decision, learning};
+use crate::base::time::SessionTime;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{
+    Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, LocationId, LocationKind, OrderContent, State,
+};
+
+/// Chance to glance at what the last press changed.
+const LOOKS_AT_RESULT: f64 = 0.5;
+/// What was read so many seconds ago one takes for granted.
+const SEEN_JUST_NOW_S: f64 = 5.0;
+/// Belief that an order which was served is gone after the usual time.
+const EXPECTED: f64 = 0.8;
+
+impl SimulatedParticipant {
+    /// The robot pressed something: what is out of sight may be otherwise now.
+    pub(super) fn wonder(&mut self) {
+        let kitchen = self.kitchen.clone();
+        let hand = kitchen.hands[Agent::Robot.index()];
+        let own = kitchen.hands[Agent::Human.index()];
+        let (state, _) = self.beliefs.point(&kitchen);
+        let held = state.content(hand);
+        for (index, location) in kitchen.locations.iter().enumerate() {
+            let id = LocationId(index as u8);
+            if location.kind == LocationKind::Order || id == own || self.attention.looking_at == Some(id) {
+                continue;
+            }
+            let aspect = AspectId::of_location(id);
+            let values = &kitchen.aspects[aspect.index()].values;
+            let mut towards = vec![0.0; values.len()];
+            let mut think_of = |content: ContentId, weight: f64| {
+                if let Some(value) = values.iter().position(|&code| code == content.0) {
+                    towards[value] += weight;
+                }
+            };
+            think_of(ContentId::EMPTY, 1.0);
+            if id == hand {
+                for storage in kitchen.storages.iter().filter(|storage| storage.agent == Agent::Robot) {
+                    think_of(storage.item, 0.5);
+                }
+            } else if !held.is_empty() {
+                think_of(held, 1.0);
+            }
+            let weight = if id == hand { self.person.doubts_robot_hand } else { self.person.doubts_places };
+            self.beliefs.mix(aspect, &towards, weight);
+        }
+    }
+
+    /// The own press did something, or not.
+    pub(super) fn take_in(&mut self, now: SessionTime, button: ButtonId, effective: bool) {
+        let kitchen = self.kitchen.clone();
+        let action = kitchen.button(Agent::Human, button).action;
+        let (state, recipes) = self.beliefs.point(&kitchen);
+        let has_failed = !effective && kitchen.press(state, &recipes, Agent::Human, button).is_some();
+        if has_failed && self.population.insists > 0.0 && chance(&mut self.mind, self.population.insists) {
+            self.intent.plan.push_front(button);
+            return;
+        }
+        let is_surprised = learning::learn(&kitchen, &mut self.beliefs, button, effective);
+        for place in kitchen.involved(Agent::Human, button) {
+            if is_surprised {
+                self.attention.first(place);
+            } else if chance(&mut self.mind, LOOKS_AT_RESULT) {
+                self.attention.later(place);
+            }
+        }
+        if let (ButtonAction::Serve(order), OrderContent::Dish(dish)) = (action, serve_of(action, state)) {
+            match effective {
+                true => {
+                    let variant = kitchen.dish(dish).variants.iter().position(|&v| v == recipes.get(dish));
+                    self.memory.confirm(&kitchen, &mut self.beliefs, dish, variant.unwrap_or(0));
+                    let gone = now + SessionTime::from_secs_f64(kitchen.served_shown_s);
+                    self.clearing.push((gone, order));
+                }
+                // Was it on the plate at all? Only who has just seen it there asks himself about the recipe.
+                false if now.secs_since(self.attention.read_at[kitchen.plate.index()]) < SEEN_JUST_NOW_S => {
+                    self.memory.fail(&kitchen, &mut self.beliefs, dish);
+                }
+                false => {}
+            }
+        }
+        self.rethink = true;
+    }
+
+    /// Thinks about what to do next, and looks where that will happen.
+    pub(super) fn think(&mut self, now: SessionTime, cost: &mut CostToGo) {
+        self.rethink = false;
+        let kitchen = self.kitchen.clone();
+        self.pass_time(now);
+        let commitment = SessionTime::from_secs_f64(self.person.commitment_s);
+        let before = self.intent.plan.front().copied();
+        decision::think(&kitchen, cost, &self.beliefs, &mut self.intent, now + commitment, now, &mut self.mind);
+        let next = self.intent.plan.front().copied();
+        if next != before {
+            for place in self.needed() {
+                if chance(&mut self.mind, self.person.checks) {
+                    self.attention.later(place);
+                }
+            }
+        }
+    }
+
+    /// Memories fade, threads are lost, served orders are expected to be gone.
+    fn pass_time(&mut self, now: SessionTime) {
+        let kitchen = self.kitchen.clone();
+        let orders = kitchen.orders.iter();
+        let in_use: Vec<DishId> = orders.filter_map(|&order| wanted_dish(&kitchen, &self.beliefs, order)).collect();
+        let passed_s = self.memory.since_s(now);
+        self.memory.fade(&kitchen, &mut self.beliefs, now, &in_use);
+        for &dish in &in_use {
+            if chance(&mut self.mind, 1.0 - (-self.person.loses_thread_per_s * passed_s).exp()) {
+                self.memory.lose_thread(&kitchen, &mut self.beliefs, dish);
+            }
+        }
+        let (beliefs, served) = (&mut self.beliefs, OrderContent::Served.code());
+        self.clearing.retain(|&(gone, order)| {
+            let aspect = AspectId::of_location(order);
+            let values = &kitchen.aspects[aspect.index()];
+            let is_due = now >= gone;
+            if is_due
+                && values.values[beliefs.most_likely(aspect)] == served
+                && let Some(none) = values.index_of(OrderContent::None.code())
+            {
+                beliefs.settle(aspect, none, EXPECTED);
+            }
+            !is_due
+        });
+    }
+}
+
+/// What a serve button would serve.
+fn serve_of(action: ButtonAction, state: State) -> OrderContent {
+    match action {
+        ButtonAction::Serve(order) => state.order(order),
+        _ => OrderContent::None,
+    }
+}

@@ -1,0 +1,61 @@
+//! The stream of gaze samples: what one of them changes, and what is wrong with the stream so far.
+
+use super::calibration;
+use super::session_state::Session;
+use crate::base::time::SessionTime;
+use crate::gaze::{GazeSample, MIN_CONFIDENCE};
+
+/// After a gap of this length in the samples, in seconds, the rate is measured anew.
+const GAP_S: f64 = 0.5;
+
+/// Takes a gaze sample: counts it, measures the rate, and remembers which locations are looked at.
+pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeSample) {
+    let status = &mut session.gaze;
+    status.samples += 1;
+    let interval_s = status.arrived.map_or(GAP_S, |last| now.secs_since(last));
+    status.arrived = Some(now);
+    match status.steady_since.filter(|_| interval_s < GAP_S) {
+        Some(since) => {
+            // The mean since the last gap; after a second of it, of about the last second. A few milliseconds at least,
+            // so that samples of one packet are no rate.
+            let window_s = now.secs_since(since).clamp(0.005, 1.0);
+            status.rate_hz += ((1.0 - interval_s * status.rate_hz) / window_s).max(-status.rate_hz);
+        }
+        None => {
+            status.rate_hz = 0.0;
+            status.steady_since = Some(now);
+        }
+    }
+    status.fault = status.judge.judge(&sample, now);
+    if status.fault.is_some() {
+        return;
+    }
+    calibration::gaze(session, sample.taken_ns.unwrap_or(now).min(now), sample);
+    let sample = session.corrected(sample);
+    let status = &mut session.gaze;
+    let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
+    if !on_display || sample.confidence < MIN_CONFIDENCE {
+        status.unusable += 1;
+        return;
+    }
+    status.last = Some((now, sample));
+    for (index, location) in session.kitchen.locations.iter().enumerate() {
+        if location.display.distance_m([sample.x, sample.y], session.kitchen.display_m) == 0.0 {
+            status.looked_at[index] = Some(now);
+        }
+    }
+}
+
+/// What is wrong with the stream of gaze so far: counts that are not 0, and what they count.
+pub fn faults(session: &Session) -> Vec<(u64, &'static str)> {
+    let (dropped, read) = (session.tracker.dropped, session.gaze.judge.counts);
+    let all = [
+        (dropped.malformed, "malformed"),
+        (dropped.too_frequent, "too frequent"),
+        (dropped.overrun, "overrun"),
+        (read.duplicate, "twice"),
+        (read.too_old, "too old"),
+        (read.out_of_order, "out of order"),
+    ];
+    all.into_iter().filter(|(count, _)| *count > 0).collect()
+}

@@ -1,0 +1,190 @@
+//! The `[plan]` of a session file.
+
+use serde::{Deserialize, Serialize};
+
+use super::groups::groups;
+use crate::session::condition::Condition;
+use crate::session::setting_checks::{SettingError, is_code};
+
+/// More conditions give more orders than a study has participants.
+const MAX_CONDITIONS: usize = 4;
+/// No plan has more participants.
+const MAX_PARTICIPANTS: u32 = 9999;
+
+/// The `[plan]` of a session file: participants, conditions, and what is around the trials.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlanSpec {
+    /// Tells recordings of different plans apart.
+    pub name: String,
+    pub participants: Participants,
+    /// Each participant has one trial in each; the order is counterbalanced.
+    pub conditions: Vec<Condition>,
+    /// Among so many participants in a row every order of the conditions comes equally often; by default twice.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub block: Option<u32>,
+    /// What a participant is asked to agree to, before anything is recorded.
+    #[serde(default = "default_consent")]
+    pub consent: String,
+    /// What the participant is told first, step by step.
+    #[serde(default)]
+    pub instruction: Vec<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub familiarisation: Option<FamiliarisationSpec>,
+    #[serde(default)]
+    pub questionnaire: Vec<QuestionnaireSpec>,
+    /// What the wizard goes through after the last trial.
+    #[serde(default)]
+    pub debriefing: Vec<String>,
+}
+
+fn default_consent() -> String {
+    "The participant was told what is recorded and for what it is used, and agrees to it.".to_string()
+}
+
+/// The participants of a plan: how many (P01, P02, …), or their codes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged, expecting = "a number of participants, or a list of their codes")]
+pub enum Participants {
+    Count(u32),
+    Codes(Vec<String>),
+}
+
+/// Practice before the first trial, repeated until the criterion is met.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FamiliarisationSpec {
+    #[serde(default = "unassisted")]
+    pub condition: Condition,
+    /// It ends after so many presses of both agents, or after so many seconds, or when the orders are served.
+    pub presses: u32,
+    pub seconds: f64,
+    /// The criterion: so many orders served,
+    pub orders: u32,
+    /// and at most this share of the human's presses errors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error_rate: Option<f64>,
+}
+
+fn unassisted() -> Condition {
+    Condition::None
+}
+
+/// A questionnaire and when it is asked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct QuestionnaireSpec {
+    /// The file, relative to the session file.
+    pub file: String,
+    /// After which trials, 1 the first; by default after each.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub after: Option<Vec<u32>>,
+}
+
+impl PlanSpec {
+    /// The codes of the participants, in the order of the plan.
+    pub fn codes(&self) -> Vec<String> {
+        match &self.participants {
+            Participants::Count(count) => (1..=*count).map(|number| numbered(number, *count)).collect(),
+            Participants::Codes(codes) => codes.clone(),
+        }
+    }
+
+    /// The code of the participant at this place, from 0; empty beyond the last.
+    pub fn code(&self, participant: usize) -> String {
+        match &self.participants {
+            Participants::Count(count) if participant < *count as usize => numbered(participant as u32 + 1, *count),
+            Participants::Count(_) => String::new(),
+            Participants::Codes(codes) => codes.get(participant).cloned().unwrap_or_default(),
+        }
+    }
+
+    /// Checks what the types do not.
+    ///
+    /// # Errors
+    /// The first setting that cannot be.
+    pub fn check(&self) -> Result<(), SettingError> {
+        let wrong = |key: &'static str, found: String, remedy: &'static str| Err(SettingError::new(key, found, remedy));
+        if !is_code(&self.name) {
+            let remedy = "a short name of letters, digits, - and _, such as \"main-study\"";
+            return wrong("plan.name", format!("name = \"{}\"", self.name), remedy);
+        }
+        self.check_participants()?;
+        let twice = |index: usize| self.conditions[..index].contains(&self.conditions[index]);
+        if self.conditions.is_empty() || self.conditions.len() > MAX_CONDITIONS {
+            let found = format!("{} conditions", self.conditions.len());
+            return wrong("plan.conditions", found, "one to four conditions, such as [\"none\", \"wizard\"]");
+        }
+        if let Some(index) = (0..self.conditions.len()).find(|&index| twice(index)) {
+            let found = format!("the condition \"{}\" twice", self.conditions[index].name());
+            return wrong("plan.conditions", found, "different conditions: each participant has one trial in each");
+        }
+        let orders = groups(self.conditions.len()).len() as u32;
+        if let Some(block) = self.block.filter(|&block| block > MAX_PARTICIPANTS) {
+            return wrong("plan.block", format!("block = {block}"), "at most 9999 participants in a block");
+        }
+        if let Some(block) = self.block.filter(|&block| block == 0 || block % orders != 0) {
+            let found = format!("block = {block}, with {orders} orders of the conditions");
+            return wrong("plan.block", found, "a multiple of the number of orders, so that each comes equally often");
+        }
+        if let Some(familiarisation) = &self.familiarisation {
+            familiarisation.check()?;
+        }
+        for asked in self.questionnaire.iter().flat_map(|questionnaire| questionnaire.after.iter().flatten()) {
+            if *asked == 0 || *asked as usize > self.conditions.len() {
+                let found = format!("after = [{asked}], with {} trials", self.conditions.len());
+                return wrong("questionnaire.after", found, "the numbers of trials, 1 the first");
+            }
+        }
+        Ok(())
+    }
+
+    fn check_participants(&self) -> Result<(), SettingError> {
+        let wrong = |found: String, remedy| Err(SettingError::new("plan.participants", found, remedy));
+        match &self.participants {
+            Participants::Count(count) if *count == 0 || *count > MAX_PARTICIPANTS => {
+                wrong(format!("participants = {count}"), "1 to 9999 participants, or a list of their codes")
+            }
+            Participants::Count(_) => Ok(()),
+            Participants::Codes(codes) if codes.is_empty() => {
+                wrong("no participants".to_string(), "how many there are, or a list of their codes")
+            }
+            Participants::Codes(codes) => {
+                if let Some(code) = codes.iter().find(|code| !is_code(code)) {
+                    let remedy = "codes of 1 to 32 letters, digits, - and _, such as \"P07\"; never names";
+                    return wrong(format!("the code \"{code}\""), remedy);
+                }
+                match (1..codes.len()).find(|&index| codes[..index].contains(&codes[index])) {
+                    Some(index) => wrong(format!("the code \"{}\" twice", codes[index]), "each code once"),
+                    None => Ok(()),
+                }
+            }
+        }
+    }
+}
+
+/// "P07", of up to 99 participants.
+fn numbered(number: u32, count: u32) -> String {
+    let digits = count.to_string().len().max(2);
+    format!("P{number:0digits$}")
+}
+
+impl FamiliarisationSpec {
+    fn check(&self) -> Result<(), SettingError> {
+        let wrong = |key, found, remedy| Err(SettingError::new(key, found, remedy));
+        let above_0 = "a number above 0";
+        if self.orders == 0 {
+            return wrong("familiarisation.orders", "orders = 0".to_string(), above_0);
+        }
+        if self.presses == 0 {
+            return wrong("familiarisation.presses", "presses = 0".to_string(), above_0);
+        }
+        if !(self.seconds.is_finite() && self.seconds > 0.0) {
+            return wrong("familiarisation.seconds", format!("seconds = {}", self.seconds), above_0);
+        }
+        match self.error_rate.filter(|rate| !(0.0..=1.0).contains(rate)) {
+            Some(rate) => wrong("familiarisation.error_rate", format!("error_rate = {rate}"), "a share of 0 to 1"),
+            None => Ok(()),
+        }
+    }
+}

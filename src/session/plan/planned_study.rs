@@ -1,0 +1,140 @@
+//! A plan with everything that is needed to run it, and the settings of each of its recordings.
+
+use serde::Serialize;
+
+use super::groups::StartingGroup;
+use super::plan_spec::PlanSpec;
+use super::questionnaire::Questionnaire;
+use super::step::{Criterion, PhaseSpec, StepSpec};
+use crate::base::rng::mix;
+use crate::session::condition::Condition;
+use crate::session::settings::SessionSpec;
+
+/// A place in a participant's series, to be filled by one recording that is complete.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Slot {
+    /// The number of the trial; none: the familiarisation.
+    pub period: Option<u32>,
+    pub condition: Condition,
+}
+
+/// A plan with everything that is needed to run it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    pub plan: PlanSpec,
+    /// In the order of the plan.
+    pub questionnaires: Vec<Questionnaire>,
+    /// The settings of every trial.
+    pub session: SessionSpec,
+    pub digest: String,
+}
+
+/// Which recording of a study is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WantedRecording {
+    /// The participant's place in the plan, from 0.
+    pub participant: usize,
+    /// The place in its series, from 0.
+    pub slot: usize,
+    /// 1 the first.
+    pub attempt: u32,
+    /// The participant was instructed already.
+    pub instructed: bool,
+}
+
+impl Study {
+    /// The study of a session file; `questionnaires` are the files that its plan names, in order. None without a plan.
+    pub fn new(session: &SessionSpec, questionnaires: Vec<Questionnaire>) -> Option<Study> {
+        let plan = session.plan.clone()?;
+        let session = SessionSpec { plan: None, ..session.clone() };
+        // What is serialised has no maps with other keys than strings.
+        let text = serde_json::to_string(&(&plan, &questionnaires, &session.trial, session.seed)).unwrap_or_default();
+        let digest = digest(&text);
+        Some(Study { plan, questionnaires, session, digest })
+    }
+
+    pub fn group(&self, participant: usize) -> StartingGroup {
+        self.plan.group(self.session.seed, participant)
+    }
+
+    /// The series of a participant.
+    pub fn slots(&self, participant: usize) -> Vec<Slot> {
+        let practice = self.plan.familiarisation.as_ref().map(|practice| (None, practice.condition));
+        let trials = self.group(participant).conditions.into_iter().enumerate();
+        let trials = trials.map(|(index, condition)| (Some(index as u32 + 1), condition));
+        practice.into_iter().chain(trials).map(|(period, condition)| Slot { period, condition }).collect()
+    }
+
+    /// The settings of a recording with people, and the number of its trial.
+    pub fn settings(&self, wanted: WantedRecording) -> (SessionSpec, u64) {
+        let slots = self.slots(wanted.participant);
+        let slot = slots[wanted.slot];
+        let mut spec = self.session.clone();
+        spec.participant.code = self.plan.code(wanted.participant);
+        spec.trial.condition = slot.condition;
+        let practice = self.plan.familiarisation.as_ref().filter(|_| slot.period.is_none());
+        if let Some(practice) = practice {
+            spec.trial.presses = practice.presses;
+            spec.trial.seconds = practice.seconds;
+            spec.trial.orders = Some(practice.orders);
+        }
+        spec.step = Some(StepSpec {
+            plan: self.plan.name.clone(),
+            digest: self.digest.clone(),
+            participant: wanted.participant as u32,
+            group: self.group(wanted.participant).name,
+            period: slot.period,
+            periods: self.plan.conditions.len() as u32,
+            attempt: wanted.attempt,
+            criterion: practice.map(|it| Criterion { orders: it.orders, error_rate: it.error_rate }),
+            phases: self.phases(slot, wanted),
+        });
+        (spec, trial_number(wanted))
+    }
+
+    /// The settings of a simulated trial, and its number. Nothing is explained, and nothing asked; and where the wizard is
+    /// a person, nobody is there to signal: it is an unassisted one.
+    pub fn simulated(&self, participant: usize, period: u32) -> (SessionSpec, u64) {
+        let slots = self.slots(participant);
+        let slot = slots.iter().position(|slot| slot.period == Some(period)).unwrap_or(0);
+        let (mut spec, trial) = self.settings(WantedRecording { participant, slot, attempt: 1, instructed: true });
+        spec.trial.condition = spec.unattended(spec.trial.condition);
+        if let Some(step) = &mut spec.step {
+            step.phases = vec![PhaseSpec::Trial];
+        }
+        (spec, trial)
+    }
+
+    fn phases(&self, slot: Slot, wanted: WantedRecording) -> Vec<PhaseSpec> {
+        let mut phases = Vec::new();
+        if !wanted.instructed && !self.plan.instruction.is_empty() {
+            phases.push(PhaseSpec::Instruction { steps: self.plan.instruction.clone() });
+        }
+        let Some(period) = slot.period else {
+            phases.push(PhaseSpec::Familiarisation);
+            return phases;
+        };
+        phases.push(PhaseSpec::Trial);
+        for (when, questionnaire) in self.plan.questionnaire.iter().zip(&self.questionnaires) {
+            let is_asked = when.after.as_ref().is_none_or(|after| after.contains(&period));
+            if let Some(questionnaire) = questionnaire.after(slot.condition).filter(|_| is_asked) {
+                phases.push(PhaseSpec::Questionnaire { questionnaire });
+            }
+        }
+        if period as usize == self.plan.conditions.len() && !self.plan.debriefing.is_empty() {
+            phases.push(PhaseSpec::Debriefing { steps: self.plan.debriefing.clone() });
+        }
+        phases
+    }
+}
+
+/// A number of its own for every recording of a plan, which says in decimals which one it is: participant, slot, attempt.
+fn trial_number(wanted: WantedRecording) -> u64 {
+    (wanted.participant as u64 + 1) * 1_000_000 + wanted.slot as u64 * 10_000 + u64::from(wanted.attempt)
+}
+
+/// A fingerprint of a text: sixteen hexadecimal digits.
+fn digest(text: &str) -> String {
+    let sum = text.bytes().fold(text.len() as u64, |sum, byte| mix(sum ^ u64::from(byte)));
+    format!("{sum:016x}")
+}

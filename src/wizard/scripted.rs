@@ -1,0 +1,186 @@
+//! The scripted wizard in one trial: what it keeps in mind, and when it sends what.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use rand::RngExt;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::seen::{ObservedPress, SeenKitchen, explain, misleads};
+use super::settings::WizardSpec;
+use super::thought::Thought;
+use crate::base::rng::{Stream, stream};
+use crate::base::time::SessionTime;
+use crate::communication::{self, Signal};
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Kitchen, LocationId, OrderContent, Press, State};
+
+/// So many presses are kept in mind.
+const KEPT: usize = 6;
+
+/// A scripted wizard in one trial.
+#[derive(Clone, Debug)]
+pub struct ScriptedWizard {
+    kitchen: Arc<Kitchen>,
+    spec: WizardSpec,
+    own_hand: bool,
+    random: Stream,
+    seen: SeenKitchen,
+    /// The participant's last presses, the newest last.
+    presses: VecDeque<ObservedPress>,
+    /// What it is about to say, and when its finger is on the key.
+    about_to: Option<(SessionTime, Thought)>,
+    /// Changes by others that it will look after, and when.
+    watched: Vec<(SessionTime, LocationId)>,
+    signalled_at: Option<SessionTime>,
+}
+
+impl ScriptedWizard {
+    /// The wizard of a trial; what it happens to see and miss follows from seed and trial.
+    pub fn new(kitchen: Arc<Kitchen>, spec: WizardSpec, own_hand: bool, seed: u64, trial: u64) -> ScriptedWizard {
+        let seen = SeenKitchen::new(kitchen.empty_state());
+        let random = stream(seed, "wizard", trial);
+        let (about_to, watched, signalled_at) = (None, Vec::new(), None);
+        let presses = VecDeque::with_capacity(KEPT);
+        ScriptedWizard { kitchen, spec, own_hand, random, seen, presses, about_to, watched, signalled_at }
+    }
+
+    /// When it does something next, or looks after something.
+    pub fn next_due(&self) -> Option<SessionTime> {
+        let watched = self.watched.iter().map(|(time, _)| *time);
+        watched.chain(self.about_to.map(|(time, _)| time)).min()
+    }
+
+    /// The trial starts: everybody sees the empty kitchen.
+    pub fn on_trial_start(&mut self, state: State) {
+        self.seen = SeenKitchen::new(state);
+        (self.about_to, self.signalled_at) = (None, None);
+        self.watched.clear();
+        self.presses.clear();
+    }
+
+    /// The participant's gaze is on this place, or on none.
+    pub fn on_gaze(&mut self, now: SessionTime, location: Option<LocationId>, state: State) {
+        self.seen.gaze(now, location, state, self.spec.look_s);
+    }
+
+    /// The participant pressed something; `is_error`: it cost more than the best press would have.
+    pub fn on_human_press(&mut self, now: SessionTime, press: &Press, is_error: bool, cost: &mut CostToGo) {
+        let &Press { button, before, after, .. } = press;
+        if self.presses.len() == KEPT {
+            self.presses.pop_front();
+        }
+        self.presses.push_back(ObservedPress { truth: before, seen: self.seen.state, button });
+        if is_error && self.about_to.is_none() && self.chance(self.spec.sees_errors) {
+            let causes = explain(&self.kitchen, cost, self.presses.make_contiguous());
+            if !causes.is_empty() {
+                let cause = causes[self.random.random_range(0..causes.len())];
+                self.think_of(now, cause, after);
+            }
+        }
+        // What somebody has done itself it knows.
+        for location in self.kitchen.changed(before, after) {
+            self.seen.told(location, after);
+        }
+    }
+
+    /// Something changed, and not by the participant's hand.
+    pub fn on_change(&mut self, now: SessionTime, before: State, after: State) {
+        let due = now + SessionTime::from_secs_f64(self.spec.overlooked_after_s);
+        for location in self.kitchen.changed(before, after) {
+            self.watched.retain(|(_, other)| *other != location);
+            self.watched.push((due, location));
+        }
+    }
+
+    /// A signal about this place is on the display.
+    pub fn on_signal(&mut self, now: SessionTime, location: LocationId, state: State) {
+        self.seen.told(location, state);
+        self.signalled_at = Some(now);
+    }
+
+    /// A pause: what was to come comes later by `by`.
+    pub fn postpone(&mut self, by: SessionTime) {
+        self.seen.postpone(by);
+        self.about_to = self.about_to.map(|(time, thought)| (time + by, thought));
+        self.watched.iter_mut().for_each(|(time, _)| *time = *time + by);
+        self.signalled_at = self.signalled_at.map(|time| time + by);
+    }
+
+    /// Does what is due now: sends a signal, or looks after a change.
+    pub fn act(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<Signal> {
+        if let Some((_, thought)) = self.about_to.take_if(|(time, _)| *time <= now) {
+            return self.say(now, thought, state, cost);
+        }
+        let index = self.watched.iter().position(|(time, _)| *time <= now)?;
+        let (_, location) = self.watched.swap_remove(index);
+        let is_overlooked = !self.seen.knows(location, state);
+        if is_overlooked
+            && self.about_to.is_none()
+            && misleads(&self.kitchen, cost, &self.seen, state, Thought::Place(location))
+            && self.chance(self.spec.sees_overlooked)
+        {
+            self.think_of(now, Thought::Place(location), state);
+        }
+        None
+    }
+
+    /// Has found a cause, the right one or another, and sets out to tell.
+    fn think_of(&mut self, now: SessionTime, cause: Thought, state: State) {
+        let thought = match self.chance(self.spec.guesses_wrong) {
+            true => self.another(cause, state).unwrap_or(cause),
+            false => cause,
+        };
+        let normal: f64 = StandardNormal.sample(&mut self.random);
+        let reaction_s = self.spec.reaction_s * (self.spec.reaction_spread * normal).exp();
+        self.about_to = Some((now + SessionTime::from_secs_f64(reaction_s), thought));
+    }
+
+    /// Something else that the participant could be wrong about: another recipe that is wanted, or a place that was not looked
+    /// at since it changed.
+    fn another(&mut self, cause: Thought, state: State) -> Option<Thought> {
+        let told = cause.location();
+        let could_be = |at: LocationId| match state.order(at) {
+            OrderContent::Dish(_) if self.kitchen.orders.contains(&at) => true,
+            _ => !self.seen.knows(at, state),
+        };
+        let others: Vec<LocationId> = communication::signals(&self.kitchen, self.own_hand)
+            .into_iter()
+            .filter(|(at, signal)| *at != told && communication::unavailable(&self.kitchen, state, signal).is_none())
+            .map(|(location, _)| location)
+            .filter(|&location| could_be(location))
+            .collect();
+        match others.is_empty() {
+            true => None,
+            false => Some(Thought::Guess(others[self.random.random_range(0..others.len())])),
+        }
+    }
+
+    /// Presses the key, unless what was to be told is known or gone by now, or misleads nobody any more.
+    fn say(&mut self, now: SessionTime, thought: Thought, state: State, cost: &mut CostToGo) -> Option<Signal> {
+        let holds = match thought {
+            Thought::Place(location) => !self.seen.knows(location, state),
+            Thought::Recipe(order, dish, _) => state.order(order) == OrderContent::Dish(dish),
+            Thought::Guess(_) => true,
+        };
+        let matters = |cost: &mut CostToGo| match thought {
+            Thought::Place(_) | Thought::Recipe(..) => misleads(&self.kitchen, cost, &self.seen, state, thought),
+            Thought::Guess(_) => true,
+        };
+        if !holds || !matters(cost) {
+            return None;
+        }
+        let rested = self.signalled_at.map(|last| last + SessionTime::from_secs_f64(self.spec.rest_s));
+        if let Some(rested) = rested.filter(|&rested| rested > now) {
+            self.about_to = Some((rested, thought));
+            return None;
+        }
+        let mut signals = communication::signals(&self.kitchen, self.own_hand).into_iter();
+        let (_, signal) = signals.find(|(location, _)| *location == thought.location())?;
+        communication::unavailable(&self.kitchen, state, &signal).is_none().then_some(signal)
+    }
+
+    fn chance(&mut self, p: f64) -> bool {
+        self.random.random::<f64>() < p
+    }
+}

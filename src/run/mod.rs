@@ -14,6 +14,8 @@ pub mod engine;
 #[cfg(feature = "cli")]
 pub mod error;
 #[cfg(feature = "cli")]
+mod event_loop;
+#[cfg(feature = "cli")]
 pub mod fit;
 pub mod headless;
 #[cfg(feature = "cli")]
@@ -30,6 +32,8 @@ pub mod options;
 pub mod parallel;
 #[cfg(feature = "cli")]
 pub mod plan;
+#[cfg(feature = "cli")]
+mod question;
 #[cfg(feature = "cli")]
 pub mod replay;
 #[cfg(all(feature = "cli", feature = "rerun"))]

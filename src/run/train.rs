@@ -2,14 +2,14 @@
 //! session, and is told at once what each was; at the end there is a score, held against a criterion. Nothing reaches the
 //! participant in the recording.
 
-use std::io;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::Instant;
 
-use tokio::time::{Instant, sleep_until};
-
+use super::desk::OperatorDesk;
+use super::error::{ReviewError, TerminalError};
+use super::event_loop::{self, ConsoleShell, LoopEvent, ShellView};
+use super::leaving::LeavingReason;
 use super::lesson_report;
-use super::review::ReviewError;
 use super::seekable_replay::SeekableReplay;
 use crate::analysis::wizard_log::spells;
 use crate::base::time::SessionTime;
@@ -23,7 +23,7 @@ use crate::console::{self, ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBind
 use crate::edge::clock::WallTime;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::key_file::key_map;
-use crate::edge::terminal::{TerminalInput, TerminalScreen, asked_to_end, theme};
+use crate::edge::terminal::{TerminalScreen, theme};
 use crate::edge::training::{self, JudgedBelief, JudgedRecording, JudgedSignal, TrainingRecord};
 use crate::history::wording;
 use crate::kitchen::{Agent, AspectId, Kitchen};
@@ -34,9 +34,6 @@ use crate::mind::BeliefWitness;
 use crate::session::event::SignalEnd;
 use crate::session::settings::{Condition, Visibility};
 use crate::session::{Event, Stamped, apply};
-
-/// At most 30 frames a second.
-const FRAME: Duration = Duration::from_millis(33);
 
 /// What is trained.
 #[derive(Clone, Debug)]
@@ -62,7 +59,7 @@ pub fn train(lesson: &TrainingRequest) -> Result<(TrainingRecord, PathBuf), Revi
         lesson.recordings.iter().map(|one| open(one)).collect::<FileResult<_>>()?;
     let at = WallTime::now().rfc3339();
     let began = Instant::now();
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(ReviewError::Terminal)?;
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
     let recordings = runtime.block_on(watch(lesson, films, &before))?;
     let minutes = (began.elapsed().as_secs_f64() / 0.6).round() / 100.0;
     let is_complete = recordings.len() == lesson.recordings.len() && recordings.iter().all(|one| one.complete);
@@ -98,30 +95,17 @@ async fn watch(
     films: Vec<(SeekableReplay, Vec<FalseBeliefPeriod>)>,
     before: &[TrainingRecord],
 ) -> Result<Vec<JudgedRecording>, ReviewError> {
-    let mut screen = TerminalScreen::take().map_err(ReviewError::Terminal)?;
-    let mut hands = TerminalInput::default();
-    let end = asked_to_end();
-    tokio::pin!(end);
     let mut judged = Vec::new();
+    let mut desk = None;
     for ((film, spells), recording) in films.into_iter().zip(&lesson.recordings) {
-        let mut class = Class::new(film, spells, name_of(recording, lesson), lesson, &screen)?;
-        let mut next_frame = Instant::now();
-        let mut goes_on = true;
-        while goes_on && !class.is_done() && !screen.is_lost() {
-            tokio::select! {
-                biased;
-                _ = &mut end => goes_on = false,
-                message = hands.next() => goes_on = message.is_some_and(|message| class.take(message)),
-                () = sleep_until(next_frame) => {
-                    next_frame = Instant::now() + FRAME;
-                    class.play();
-                    class.conclude();
-                    class.draw(&mut screen).map_err(ReviewError::Terminal)?;
-                }
-            }
-        }
+        let desk = match &mut desk {
+            Some(desk) => desk,
+            none => none.insert(OperatorDesk::without_devices(&film.session.spec.console)?),
+        };
+        let mut class = Class::new(film, spells, name_of(recording, lesson), lesson, desk)?;
+        let left = event_loop::run(&mut class, desk).await?;
         judged.push(class.judged(before));
-        if !goes_on || screen.is_lost() {
+        if left != Some(LeavingReason::Next) {
             break;
         }
     }
@@ -161,13 +145,13 @@ impl Class {
         spells: Vec<FalseBeliefPeriod>,
         name: String,
         lesson: &TrainingRequest,
-        screen: &TerminalScreen,
+        desk: &OperatorDesk,
     ) -> Result<Class, ReviewError> {
         let spec = &film.session.spec;
         let keys =
             KeyBindings::training(&film.session.kitchen, spec, &key_map(film.replay.log().header.keys.as_ref())?)?;
-        let size = TerminalScreen::size().map_err(ReviewError::Terminal)?;
-        let mut model = ConsoleModel::new(keys, theme(&spec.console, screen.ground), size);
+        let size = TerminalScreen::size().map_err(TerminalError)?;
+        let mut model = ConsoleModel::new(keys, theme(&spec.console, desk.screen.ground), size);
         model.playback = Some(Playback { speed: lesson.speed, ..Playback::new(name.clone()) });
         model.lesson =
             Some(console::lesson::TrainingPanel { task: lesson_report::task(&lesson.criterion), ..Default::default() });
@@ -212,19 +196,19 @@ impl Class {
         }
     }
 
-    /// Takes a message of the terminal; whether it goes on.
-    fn take(&mut self, message: ConsoleMessage) -> bool {
+    /// Takes a message of the terminal; how the recording is left, if that follows from it.
+    fn take_message(&mut self, message: ConsoleMessage) -> Option<LeavingReason> {
         self.tick();
         self.model.now = self.now;
         match update(&mut self.model, &self.film.session, message) {
-            Some(ConsoleCommand::Quit) => return false,
+            Some(ConsoleCommand::Quit) => return Some(LeavingReason::Quit),
             Some(ConsoleCommand::Input(shown @ Event::SignalShown { .. })) => self.signal(shown),
             Some(ConsoleCommand::Start(_) | ConsoleCommand::Input(Event::TrialPaused | Event::TrialResumed)) => {
                 self.pause()
             }
             _ => {}
         }
-        true
+        self.is_done().then_some(LeavingReason::Next)
     }
 
     fn pause(&mut self) {
@@ -362,26 +346,6 @@ impl Class {
         WizardMeasures::from_signals(&self.sent, Some(&begun))
     }
 
-    fn draw(&mut self, screen: &mut TerminalScreen) -> io::Result<()> {
-        if !screen.is_ready() {
-            return Ok(());
-        }
-        self.tick();
-        let measures = self.measures();
-        let wrong = measures.wrong_targets.unwrap_or(0) + measures.needless.unwrap_or(0);
-        let missed = self.told_missed.iter().filter(|&&told| told).count();
-        if let Some(lesson) = &mut self.model.lesson {
-            lesson.score = format!("{} hit, {missed} missed, {wrong} wrong", measures.hits.unwrap_or(0));
-        }
-        self.model.now = self.now;
-        let (length, events) = self.film.length();
-        let event = self.film.position;
-        if let Some(playback) = &mut self.model.playback {
-            *playback = Playback { length, event, events, ..playback.clone() };
-        }
-        screen.draw(&self.film.session, &self.model)
-    }
-
     /// The false beliefs that led to errors, as far as they have begun.
     fn judged_beliefs(&self) -> Vec<JudgedBelief> {
         let clock = self.film.session.trial_clock(self.now);
@@ -409,6 +373,44 @@ impl Class {
         let kitchen = &self.film.session.kitchen;
         judged.kappa_with_oneself = earlier.take(1).find_map(|one| lesson_report::with_oneself(kitchen, one, &judged));
         judged
+    }
+}
+
+impl ConsoleShell for Class {
+    type Outcome = LeavingReason;
+    type Error = ReviewError;
+
+    fn take(&mut self, event: LoopEvent) -> Result<Option<LeavingReason>, ReviewError> {
+        Ok(match event {
+            LoopEvent::Terminal(message) => self.take_message(message),
+            _ => None,
+        })
+    }
+
+    fn advance(&mut self) -> bool {
+        self.play();
+        self.conclude();
+        true
+    }
+
+    fn prepare(&mut self) {
+        self.tick();
+        let measures = self.measures();
+        let wrong = measures.wrong_targets.unwrap_or(0) + measures.needless.unwrap_or(0);
+        let missed = self.told_missed.iter().filter(|&&told| told).count();
+        if let Some(lesson) = &mut self.model.lesson {
+            lesson.score = format!("{} hit, {missed} missed, {wrong} wrong", measures.hits.unwrap_or(0));
+        }
+        self.model.now = self.now;
+        let (length, events) = self.film.length();
+        let event = self.film.position;
+        if let Some(playback) = &mut self.model.playback {
+            *playback = Playback { length, event, events, ..playback.clone() };
+        }
+    }
+
+    fn view(&self) -> ShellView<'_> {
+        ShellView::Console(&self.film.session, &self.model)
     }
 }
 

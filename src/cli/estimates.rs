@@ -1,7 +1,8 @@
 //! Commands that look at how good the estimates are: of beliefs, of what signals are worth, of the human model's parameters.
 
 use super::args::{FitArgs, ReplayArgs};
-use super::{Failure, print, progress};
+use super::failure::Failure;
+use super::output::{print, progress};
 use crate::analysis::{belief_check, fitting};
 use crate::edge::files;
 use crate::run::accuracy::AccuracySample;

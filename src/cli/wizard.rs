@@ -5,9 +5,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::{OperateFlags, OutputFormat};
 use super::choices::ConceptArg;
-use super::{Failure, new_session, print, progress};
+use super::failure::Failure;
+use super::operate::{OperateFlags, new_session};
+use super::output::{OutputFormat, print, progress};
 use crate::analysis::watcher::CompareRequest;
 use crate::communication::concept::ConceptName;
 use crate::console::playback::SPEEDS;

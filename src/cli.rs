@@ -28,16 +28,18 @@ use miette::MietteHandlerOpts;
 use self::args::*;
 use self::failure::{Failure, wrong_argument};
 use self::output::{OutputFormat, print};
+use crate::analysis::kitchen_summary::{self, KitchenSummary};
+use crate::analysis::recording_summary::RecordingSummary;
+use crate::analysis::{event_lines, timing_summary};
 use crate::console;
 use crate::edge::doctor;
 use crate::edge::files;
 use crate::edge::key_file;
-use crate::edge::log;
+use crate::edge::log::{self, LogEnding};
 use crate::run::plan::{self, StudyPlanSummary};
 use crate::run::replay::Replay;
 use crate::run::review as console_over;
-use crate::run::standing::{self, ExclusionStatus};
-use crate::run::{kitchen, options, tell, timing, verify};
+use crate::run::{options, standing, timing, verify};
 
 /// Exit code: something failed.
 const FAILED: u8 = 1;
@@ -114,7 +116,7 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     }
     if args.timing {
         let figures = timing::measure(recording)?;
-        return print(args.format, &figures, || timing::describe(&figures));
+        return print(args.format, &figures, || timing_summary::describe(&figures));
     }
     if let Some(rater) = &args.rater {
         return data::rate(recording, rater);
@@ -125,12 +127,13 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     let mut replay = Replay::open(recording)?;
     let mut events = 0;
     if args.format == OutputFormat::Text {
-        writeln!(std::io::stdout(), "{}", tell::HEADING)?;
+        writeln!(std::io::stdout(), "{}", event_lines::HEADING)?;
     }
     loop {
         while let Some(event) = replay.step()? {
             events += 1;
-            if let (OutputFormat::Text, Some(line)) = (args.format, tell::line(&event.stamped, &replay.follower)) {
+            if let (OutputFormat::Text, Some(line)) = (args.format, event_lines::line(&event.stamped, &replay.follower))
+            {
                 writeln!(std::io::stdout(), "{line}")?;
             }
         }
@@ -139,15 +142,17 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         }
         std::thread::sleep(FOLLOW_INTERVAL);
     }
-    let standing = ExclusionStatus::from_recording(replay.session(), replay.log())?;
-    let figures = tell::RecordingSummary::from_follower(&replay.follower, events, replay.log().ending(), standing);
+    let standing = standing::exclusion_status(replay.session(), replay.log())?;
+    let mut figures = RecordingSummary::from_follower(&replay.follower, events, standing);
+    let ending = replay.log().ending();
+    (figures.cut, figures.running) = (ending == LogEnding::Cut, ending == LogEnding::Running);
     print(args.format, &figures, || figures.describe())
 }
 
 fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
     let kitchen = Arc::new(files::read_kitchen(&args.layout)?.kitchen);
-    let figures = kitchen::KitchenSummary::from_kitchen(&kitchen);
-    print(args.format, &figures, || kitchen::describe(&kitchen, &figures))
+    let figures = KitchenSummary::from_kitchen(&kitchen);
+    print(args.format, &figures, || kitchen_summary::describe(&kitchen, &figures))
 }
 
 fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {

@@ -19,11 +19,7 @@ mod event_loop;
 pub mod fit;
 pub mod headless;
 #[cfg(feature = "cli")]
-pub mod kitchen;
-#[cfg(feature = "cli")]
 pub mod leaving;
-#[cfg(feature = "cli")]
-pub mod lesson_report;
 #[cfg(feature = "cli")]
 pub mod live;
 #[cfg(feature = "cli")]
@@ -57,11 +53,11 @@ pub mod study;
 #[cfg(feature = "cli")]
 pub mod sweep;
 #[cfg(feature = "cli")]
-pub mod tell;
-#[cfg(feature = "cli")]
 pub mod timing;
 #[cfg(feature = "cli")]
 pub mod train;
+#[cfg(feature = "cli")]
+mod training_shell;
 #[cfg(feature = "cli")]
 mod unfinished_recording;
 #[cfg(feature = "cli")]

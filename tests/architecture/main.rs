@@ -31,13 +31,12 @@ const EDGE: usize = 12;
 const MAX_LINES: usize = 420;
 
 /// Rooms in which circles of files still stand, with the number of files in them. The numbers only go down, to none.
-const FILES_IN_CIRCLES: [(&str, usize); 9] = [
+const FILES_IN_CIRCLES: [(&str, usize); 8] = [
     ("communication", 6),
     ("edge", 5),
     ("kitchen", 20),
     ("measures", 2),
     ("participant", 2),
-    ("run", 2),
     ("session", 17),
     ("study", 8),
     ("wizard", 2),

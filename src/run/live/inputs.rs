@@ -2,6 +2,7 @@
 
 use super::display::PageEvent;
 use super::live_session::Live;
+use crate::console::notice::NoticeLevel;
 use crate::console::{ConsoleCommand, ConsoleMessage, update};
 use crate::edge::gaze_input::GazeNews;
 use crate::gaze::GazeSample;
@@ -35,7 +36,7 @@ impl Live {
         let outcome = self.engine.input(self.clock.now(), event);
         self.record(&outcome.events);
         if let Some(reason) = outcome.refused.filter(|_| !is_silent) {
-            update(&mut self.model, self.engine.session(), ConsoleMessage::Refused(reason));
+            self.model.say(NoticeLevel::Refused, reason);
         }
     }
 

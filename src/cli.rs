@@ -4,6 +4,9 @@ mod args;
 mod choices;
 mod data;
 mod estimates;
+mod failure;
+mod operate;
+mod output;
 #[cfg(feature = "rerun")]
 mod rerun;
 #[cfg(not(feature = "rerun"))]
@@ -15,36 +18,28 @@ mod study;
 mod wizard;
 
 use std::io::{IsTerminal, Write};
-use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 
 use clap::{CommandFactory, Parser};
-use indicatif::{ProgressBar, ProgressStyle};
 use miette::MietteHandlerOpts;
-use serde::Serialize;
 
 use self::args::*;
-use crate::analysis::watcher::CompareRequest;
-use crate::base::features::{Feature, NotBuilt};
-use crate::communication::concept::ConceptName;
+use self::failure::{Failure, wrong_argument};
+use self::output::{OutputFormat, print};
+use crate::analysis::kitchen_summary::{self, KitchenSummary};
+use crate::analysis::recording_summary::RecordingSummary;
+use crate::analysis::{event_lines, timing_summary};
 use crate::console;
 use crate::edge::doctor;
-use crate::edge::file_error::FileError;
 use crate::edge::files;
 use crate::edge::key_file;
-use crate::edge::log::{self, ExclusionError, WriteError};
-use crate::run::error::RunError;
-use crate::run::live::LiveError;
-use crate::run::options::{self, SessionStart, SettingOverrides, TrialSeries};
+use crate::edge::log::{self, LogEnding};
 use crate::run::plan::{self, StudyPlanSummary};
 use crate::run::replay::Replay;
-use crate::run::review::{self as console_over, ReviewError};
-use crate::run::series::{self, SeriesOutcome};
-use crate::run::standing::{self, ExclusionStatus};
-use crate::run::{kitchen, tell, timing, verify};
-use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, SettingError};
+use crate::run::review as console_over;
+use crate::run::{options, standing, timing, verify};
 
 /// Exit code: something failed.
 const FAILED: u8 = 1;
@@ -54,93 +49,18 @@ const WRONG: u8 = 2;
 /// How often a running session is looked at for new events.
 const FOLLOW_INTERVAL: Duration = Duration::from_millis(50);
 
-/// Why a command did not do what was asked.
-#[derive(Debug)]
-enum Failure {
-    /// Wrong arguments or files.
-    Wrong(miette::Report),
-    /// Something failed on the way.
-    Failed(miette::Report),
-    /// It was done, and the answer is no; it was printed already.
-    No,
-    /// Whoever read the output has read enough, as `head` does.
-    Unread,
-}
-
-impl From<NotBuilt> for Failure {
-    fn from(missing: NotBuilt) -> Failure {
-        Failure::Wrong(miette::miette!(help = missing.remedy(), "{missing}"))
-    }
-}
-
-impl From<FileError> for Failure {
-    fn from(error: FileError) -> Failure {
-        Failure::Wrong(miette::Report::new(error))
-    }
-}
-
-impl From<WriteError> for Failure {
-    fn from(error: WriteError) -> Failure {
-        Failure::Failed(miette::Report::new(error))
-    }
-}
-
-impl From<ExclusionError> for Failure {
-    fn from(error: ExclusionError) -> Failure {
-        match error {
-            ExclusionError::Recording(error) => Failure::from(error),
-            error => Failure::Wrong(miette::Report::new(error)),
-        }
-    }
-}
-
-impl From<RunError> for Failure {
-    fn from(error: RunError) -> Failure {
-        match error {
-            RunError::File(error) => Failure::from(*error),
-            RunError::Recording(error) => Failure::from(error),
-        }
-    }
-}
-
-impl From<LiveError> for Failure {
-    fn from(error: LiveError) -> Failure {
-        match error {
-            LiveError::Resume(error) => Failure::Wrong(miette::Report::new(error)),
-            LiveError::File(error) => Failure::from(*error),
-            error @ LiveError::Plan(_) => Failure::Wrong(miette::Report::new(error)),
-            error => Failure::Failed(miette::Report::new(error)),
-        }
-    }
-}
-
-impl From<ReviewError> for Failure {
-    fn from(error: ReviewError) -> Failure {
-        match error {
-            ReviewError::File(error) => Failure::from(*error),
-            error => Failure::Failed(miette::Report::new(error)),
-        }
-    }
-}
-
-impl From<std::io::Error> for Failure {
-    fn from(error: std::io::Error) -> Failure {
-        match error.kind() {
-            std::io::ErrorKind::BrokenPipe => Failure::Unread,
-            _ => Failure::Failed(miette::miette!("the result cannot be printed: {error}")),
-        }
-    }
-}
-
 /// Runs the command of the arguments. Exit codes: 0 done, 1 failed, 2 wrong arguments or files.
 pub fn main() -> ExitCode {
     // Lines are not wrapped, so that file and line can be searched for; a hook that is set already is as good.
     let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build())));
     let cli = Cli::parse();
-    let command =
-        cli.command.unwrap_or(CliCommand::Operate(OperateArgs { session: None, recording: None, flags: cli.operate }));
+    let command = cli.command.unwrap_or(CliCommand::Operate(operate::OperateArgs {
+        session: None,
+        recording: None,
+        flags: cli.operate,
+    }));
     let done = match command {
-        CliCommand::Operate(args) => operate(&args),
+        CliCommand::Operate(args) => operate::operate(&args),
         CliCommand::Compare(args) => wizard::compare(&args),
         CliCommand::Train(args) => wizard::train(&args),
         CliCommand::Replay(args) => replay(&args),
@@ -166,67 +86,6 @@ pub fn main() -> ExitCode {
     };
     eprintln!("{report:?}");
     ExitCode::from(code)
-}
-
-/// Prints figures as one JSON object, or their text.
-fn print(format: OutputFormat, figures: &impl Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
-    match format {
-        OutputFormat::Json => {
-            writeln!(out, "{}", serde_json::to_string_pretty(figures).map_err(std::io::Error::other)?)?
-        }
-        OutputFormat::Text => write!(out, "{}", text())?,
-    }
-    Ok(out.flush()?)
-}
-
-fn operate(args: &OperateArgs) -> Result<(), Failure> {
-    let done = match &args.recording {
-        Some(recording) => series::operate(SessionStart::Continued(recording.clone()), None)?,
-        None => new_session(args.session.as_deref(), &args.flags, None)?,
-    };
-    Ok(write!(std::io::stdout(), "{}", series::describe(&done))?)
-}
-
-/// Runs a session of this file; with wizard and assistants side by side, where that is asked for.
-fn new_session(
-    session: Option<&Path>,
-    flags: &OperateFlags,
-    compare: Option<CompareRequest>,
-) -> Result<SeriesOutcome, Failure> {
-    if flags.rerun_listen.is_some() {
-        Feature::Rerun.require()?;
-    }
-    let mut files = options::session_or_default(session)?;
-    let overrides = SettingOverrides {
-        participant: flags.participant.map(ParticipantKind::from),
-        arm: flags.arm.map(ArmKind::from),
-        gaze: flags.gaze.map(GazeSource::from),
-        gaze_file: flags.gaze_file.clone(),
-        condition: flags.condition.map(Condition::from),
-        concept: flags.concept.map(ConceptName::from),
-        seed: flags.seed,
-        listen: flags.listen,
-        code: flags.code.clone(),
-        rerun_listen: flags.rerun_listen.clone(),
-    };
-    overrides.apply(&mut files).map_err(wrong_setting)?;
-    let name = session.unwrap_or(Path::new("sessions/default.toml"));
-    files.spec.require_built_live().map_err(|missing| FileError::not_built(name, missing))?;
-    let out = flags.out.clone();
-    match &files.spec.plan {
-        None => Ok(series::operate(SessionStart::New { files: Box::new(files), trial: 0, out }, compare)?),
-        Some(plan) => {
-            let participant = options::participant_of_plan(plan, flags.code.as_deref());
-            let participant = participant.map_err(wrong_setting)?;
-            Ok(series::operate_series(TrialSeries { files, participant, out, compare })?)
-        }
-    }
-}
-
-/// A setting that cannot be, of the command line.
-fn wrong_setting(error: SettingError) -> Failure {
-    Failure::Wrong(miette::miette!(help = error.remedy, "found {}", error.found))
 }
 
 fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
@@ -257,7 +116,7 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     }
     if args.timing {
         let figures = timing::measure(recording)?;
-        return print(args.format, &figures, || timing::describe(&figures));
+        return print(args.format, &figures, || timing_summary::describe(&figures));
     }
     if let Some(rater) = &args.rater {
         return data::rate(recording, rater);
@@ -268,12 +127,13 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     let mut replay = Replay::open(recording)?;
     let mut events = 0;
     if args.format == OutputFormat::Text {
-        writeln!(std::io::stdout(), "{}", tell::HEADING)?;
+        writeln!(std::io::stdout(), "{}", event_lines::HEADING)?;
     }
     loop {
         while let Some(event) = replay.step()? {
             events += 1;
-            if let (OutputFormat::Text, Some(line)) = (args.format, tell::line(&event.stamped, &replay.follower)) {
+            if let (OutputFormat::Text, Some(line)) = (args.format, event_lines::line(&event.stamped, &replay.follower))
+            {
                 writeln!(std::io::stdout(), "{line}")?;
             }
         }
@@ -282,26 +142,17 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         }
         std::thread::sleep(FOLLOW_INTERVAL);
     }
-    let standing = ExclusionStatus::from_recording(replay.session(), replay.log())?;
-    let figures = tell::RecordingSummary::from_follower(&replay.follower, events, replay.log().ending(), standing);
+    let standing = standing::exclusion_status(replay.session(), replay.log())?;
+    let mut figures = RecordingSummary::from_follower(&replay.follower, events, standing);
+    let ending = replay.log().ending();
+    (figures.cut, figures.running) = (ending == LogEnding::Cut, ending == LogEnding::Running);
     print(args.format, &figures, || figures.describe())
-}
-
-/// A bar on stderr that counts so many of something; nothing to be seen where that is no terminal.
-fn progress(of: u64, what: &str) -> ProgressBar {
-    let bar = ProgressBar::new(of);
-    if std::io::stderr().is_terminal()
-        && let Ok(style) = ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {what}, {{eta}} left"))
-    {
-        bar.set_style(style);
-    }
-    bar
 }
 
 fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
     let kitchen = Arc::new(files::read_kitchen(&args.layout)?.kitchen);
-    let figures = kitchen::KitchenSummary::from_kitchen(&kitchen);
-    print(args.format, &figures, || kitchen::describe(&kitchen, &figures))
+    let figures = KitchenSummary::from_kitchen(&kitchen);
+    print(args.format, &figures, || kitchen_summary::describe(&kitchen, &figures))
 }
 
 fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
@@ -353,8 +204,4 @@ fn man(args: &ManArgs) -> Result<(), Failure> {
     let mut text = Vec::new();
     clap_mangen::Man::new(page).render(&mut text)?;
     Ok(std::io::stdout().write_all(&text)?)
-}
-
-fn wrong_argument(path: &Path, found: String, remedy: &str) -> Failure {
-    Failure::Wrong(miette::miette!(help = remedy.to_string(), "{}: found {found}", path.display()))
 }

@@ -3,9 +3,20 @@
 
 pub mod advisor;
 pub mod belief_check;
+pub mod compared_recording;
+pub mod comparison_summary;
+pub mod event_lines;
+pub mod exclusion_status;
 pub mod fitting;
 pub mod follower;
 pub mod gaze_summary;
+pub mod kitchen_summary;
+pub mod lesson_report;
+pub mod planner_accuracy;
+pub mod recording_summary;
+pub mod sweep_row;
+pub mod timing_summary;
+pub mod training_record;
 pub mod trial_summary;
 pub mod watcher;
 pub mod wizard_log;

@@ -1,12 +1,13 @@
 //! What can be typed: commands and their arguments.
 
-use std::net::IpAddr;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::choices::{ArmArg, ConceptArg, ConditionArg, GazeArg, ParticipantArg, SimulatedCondition};
+use super::choices::{ArmArg, ConceptArg, SimulatedCondition};
 use super::data::{CodesArgs, ForgetArgs};
+use super::operate::{OperateArgs, OperateFlags};
+use super::output::OutputFormat;
 use super::review::ReviewArgs;
 use super::study::StudyArgs;
 use super::wizard::{CompareArgs, TrainArgs};
@@ -46,69 +47,6 @@ pub(super) enum CliCommand {
     Doctor(DoctorArgs),
     Completions(CompletionsArgs),
     Man(ManArgs),
-}
-
-/// How figures are printed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum OutputFormat {
-    /// For people.
-    Text,
-    /// One JSON object.
-    Json,
-}
-
-/// Runs a session at the wizard's console, and records it.
-#[derive(Debug, Args)]
-#[command(
-    after_help = "Examples: tomcom operate sessions/default.toml --participant keyboard --gaze mouse\n          \
-                  tomcom operate sessions/study.toml --code P07\nMore: docs/running-a-session.md"
-)]
-pub(super) struct OperateArgs {
-    /// The session file; by default sessions/default.toml, or the one that the program carries.
-    pub(super) session: Option<PathBuf>,
-    /// Take up this recording, which was cut, in a new part beside it; its session is the same, a running trial is paused.
-    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "gaze_file", "arm", "listen", "condition", "concept", "seed", "rerun_listen", "out"])]
-    pub(super) recording: Option<PathBuf>,
-    #[command(flatten)]
-    pub(super) flags: OperateFlags,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct OperateFlags {
-    /// The participant's code, never a name; where the session file has a plan, the next step of this participant is run.
-    #[arg(long)]
-    pub(super) code: Option<String>,
-    /// Who plays the human's part, instead of the session file's.
-    #[arg(long, value_enum)]
-    pub(super) participant: Option<ParticipantArg>,
-    /// Where gaze samples come from, instead of the session file's.
-    #[arg(long, value_enum)]
-    pub(super) gaze: Option<GazeArg>,
-    /// Replay gaze from this file: Pupil Player's gaze_positions_on_surface_NAME.csv, or the folder of a recording.
-    #[arg(long, value_name = "PATH")]
-    pub(super) gaze_file: Option<PathBuf>,
-    /// How the robot's presses come about, instead of the session file's arm.
-    #[arg(long, value_enum)]
-    pub(super) arm: Option<ArmArg>,
-    /// Who sends signals, instead of the session file's.
-    #[arg(long, value_enum)]
-    pub(super) condition: Option<ConditionArg>,
-    /// By what the assistant decides, instead of the session file's concept.
-    #[arg(long, value_enum)]
-    pub(super) concept: Option<ConceptArg>,
-    /// Serve the wall display at this address of this machine, not on localhost alone; the page then asks for the code that
-    /// the console shows.
-    #[arg(long, value_name = "ADDRESS")]
-    pub(super) listen: Option<IpAddr>,
-    /// Everything random follows from it; by default the session file's.
-    #[arg(long)]
-    pub(super) seed: Option<u64>,
-    /// Where Rerun viewers connect, instead of the session file's address: 0.0.0.0:9876 for other machines.
-    #[arg(long, value_name = "ADDRESS")]
-    pub(super) rerun_listen: Option<String>,
-    /// Where the recording's folder is made. Not with --continue: a further part goes beside the recording.
-    #[arg(long, default_value = "sessions")]
-    pub(super) out: PathBuf,
 }
 
 /// Shows a recording at the console, prints it, or verifies it.

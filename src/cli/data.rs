@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::args::OutputFormat;
-use super::{Failure, print, progress};
+use super::failure::Failure;
+use super::output::{OutputFormat, print, progress};
 use crate::base::words::count;
 use crate::edge::forget::{self, ParticipantData};
 use crate::run::codes::{self, CodedRecording, CodesSummary};

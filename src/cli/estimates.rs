@@ -1,8 +1,9 @@
 //! Commands that look at how good the estimates are: of beliefs, of what signals are worth, of the human model's parameters.
 
 use super::args::{FitArgs, ReplayArgs};
-use super::{Failure, print, progress};
-use crate::analysis::{belief_check, fitting};
+use super::failure::Failure;
+use super::output::{print, progress};
+use crate::analysis::{belief_check, fitting, planner_accuracy};
 use crate::edge::files;
 use crate::run::accuracy::AccuracySample;
 use crate::run::{accuracy, check_beliefs, fit};
@@ -23,7 +24,7 @@ pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
     let bar = progress(2 * args.steps + args.reference_steps, "answers at most");
     let found = accuracy::measure(&args.recordings, extent, || bar.inc(1))?;
     bar.finish_and_clear();
-    print(args.format, &found, || accuracy::describe(&found))
+    print(args.format, &found, || planner_accuracy::describe(&found))
 }
 
 /// `tomcom fit RECORDING...`.

@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::Failure;
-use super::review::ReviewArgs;
+use super::failure::Failure;
+use crate::base::time::SessionTime;
 use crate::run::rerun::{
     OngoingRecording, RerunError, ReviewOutcome, ReviewRequest, SavedStream, review, running, save, until_asked_to_end,
 };
@@ -26,13 +26,19 @@ pub(super) fn save_all(recordings: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Opens recordings in a viewer, or writes their stream to a file.
-pub(super) fn open(args: &ReviewArgs, recordings: Vec<PathBuf>, save: Option<Option<PathBuf>>) -> Result<(), Failure> {
+/// Opens recordings in a viewer, at this moment of the trial's clock; or writes their stream to a file. `web`: in a browser,
+/// even if there is another viewer.
+pub(super) fn open(
+    recordings: Vec<PathBuf>,
+    save: Option<Option<PathBuf>>,
+    web: bool,
+    at: Option<SessionTime>,
+) -> Result<(), Failure> {
     let mut out = std::io::stdout();
     for one in running(&recordings)? {
         write!(out, "{}", still_running(&one))?;
     }
-    let asked = ReviewRequest { recordings, save, web: args.web, at: args.at };
+    let asked = ReviewRequest { recordings, save, web, at };
     match review(&asked)? {
         ReviewOutcome::Saved(file) => {
             let how = if file.made { "made from the log" } else { "is there already" };
@@ -41,7 +47,7 @@ pub(super) fn open(args: &ReviewArgs, recordings: Vec<PathBuf>, save: Option<Opt
         ReviewOutcome::Opened(file) => writeln!(out, "the viewer opens {}{}", file.path.display(), because(&file))?,
         ReviewOutcome::Served { url, because, _serving } => {
             writeln!(out, "{because}: it is served here, for a browser on this machine, until ctrl+c\n{url}")?;
-            if let Some(at) = args.at {
+            if let Some(at) = at {
                 writeln!(out, "what comes from {at} on is marked in its time line: a click there goes to it")?;
             }
             out.flush()?;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::Failure;
+use super::failure::Failure;
 use super::rerun::open;
 use crate::base::features::Feature;
 use crate::base::time::SessionTime;
@@ -27,10 +27,10 @@ pub(super) struct ReviewArgs {
     save: Option<Option<PathBuf>>,
     /// Serve the viewer for a browser, even if there is another one.
     #[arg(long, conflicts_with = "save")]
-    pub(super) web: bool,
+    web: bool,
     /// Open at this moment of the trial's clock, as the console shows it: 1:34, or seconds.
     #[arg(long, value_name = "TIME", value_parser = moment, conflicts_with = "save")]
-    pub(super) at: Option<SessionTime>,
+    at: Option<SessionTime>,
 }
 
 /// A moment as the console shows it, or in seconds.
@@ -67,7 +67,7 @@ pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
             recordings.len()
         )));
     }
-    open(args, recordings, save)
+    open(recordings, save, args.web, args.at)
 }
 
 #[cfg(test)]

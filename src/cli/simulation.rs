@@ -1,8 +1,9 @@
 //! Whole trials without anybody at the console: what is simulated, and by which of the options.
 
 use super::args::SimulateArgs;
+use super::failure::{Failure, wrong_argument};
+use super::output::{print, progress};
 use super::rerun::save_all;
-use super::{Failure, print, progress, wrong_argument};
 use crate::base::features::Feature;
 use crate::communication::concept::ConceptName;
 use crate::communication::settings::Shadow;

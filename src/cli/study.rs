@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::args::OutputFormat;
-use super::{Failure, print, progress};
+use super::failure::Failure;
+use super::output::{OutputFormat, print, progress};
 use crate::run::study::reading::AnalysisScope;
 use crate::run::study::{self, AnalysisRequest, NamedRecordings, StudyError};
 

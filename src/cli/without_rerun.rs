@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::Failure;
-use super::review::ReviewArgs;
+use super::failure::Failure;
 use crate::base::features::{Feature, NotBuilt};
+use crate::base::time::SessionTime;
 
 /// Refused.
 pub(super) fn save_all(_: &[String]) -> Result<(), Failure> {
@@ -12,6 +12,11 @@ pub(super) fn save_all(_: &[String]) -> Result<(), Failure> {
 }
 
 /// Refused.
-pub(super) fn open(_: &ReviewArgs, _: Vec<PathBuf>, _: Option<Option<PathBuf>>) -> Result<(), Failure> {
+pub(super) fn open(
+    _: Vec<PathBuf>,
+    _: Option<Option<PathBuf>>,
+    _: bool,
+    _: Option<SessionTime>,
+) -> Result<(), Failure> {
     Err(NotBuilt(Feature::Rerun).into())
 }

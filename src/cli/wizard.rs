@@ -5,18 +5,21 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::{OperateFlags, OutputFormat};
 use super::choices::ConceptArg;
-use super::{Failure, new_session, print, progress};
+use super::failure::Failure;
+use super::operate::{OperateFlags, new_session};
+use super::output::{OutputFormat, print, progress};
+use crate::analysis::comparison_summary::{self, ComparisonSummary};
+use crate::analysis::lesson_report::{self, TrainingSummary};
 use crate::analysis::watcher::CompareRequest;
 use crate::communication::concept::ConceptName;
 use crate::console::playback::SPEEDS;
+use crate::edge::training;
 use crate::measures::matching::WINDOW;
 use crate::measures::wizard::TrainingCriterion;
-use crate::run::lesson_report::TrainingSummary;
-use crate::run::similarity::{self, ComparisonSummary};
+use crate::run::similarity;
 use crate::run::train::{self, TrainingRequest};
-use crate::run::{lesson_report, review, series, simulate};
+use crate::run::{review, series, simulate};
 use crate::session::settings::is_code;
 
 /// Compares what a wizard sent with what assistants would have sent.
@@ -127,12 +130,13 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
         figures = figures.only(&only);
     }
     if let Some(wizard) = &args.wizard {
-        figures.training = Some(TrainingSummary::read(&args.training, &code_of(wizard)?)?);
+        let records = training::read(&args.training, &code_of(wizard)?)?;
+        figures.training = Some(TrainingSummary::from_records(&args.training, wizard, &records));
     }
     bar.finish_and_clear();
     match args.open {
         Some(number) => Ok(write!(std::io::stdout(), "{}", similarity::open(&first, number)?)?),
-        None => print(args.format, &figures, || similarity::describe(&figures, &request(windows[0]))),
+        None => print(args.format, &figures, || comparison_summary::describe(&figures, &request(windows[0]))),
     }
 }
 

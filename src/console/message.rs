@@ -19,8 +19,6 @@ pub enum ConsoleMessage {
     Resized(u16, u16),
     /// The terminal window gained or lost the keyboard.
     Focus(bool),
-    /// The session did not take an input, for this reason.
-    Refused(String),
 }
 
 /// What the console asks of whoever runs it.

@@ -67,10 +67,6 @@ pub fn update(model: &mut ConsoleModel, session: &Session, message: ConsoleMessa
             let event = if focused { Event::FocusRegained } else { Event::FocusLost };
             (changed && session.phase != Phase::Closed).then_some(ConsoleCommand::Input(event))
         }
-        ConsoleMessage::Refused(reason) => {
-            model.say(NoticeLevel::Refused, reason);
-            None
-        }
     }
 }
 

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::file_error::{FileError, FileResult};
 use super::log::{LOG_NAME, RecordingLock, SETTINGS_NAME, WriteError};
-use super::training::TrainingRecord;
+use crate::analysis::training_record::{JudgedRecording, TrainingRecord};
 
 /// Files that are made of recordings, and made again: they are deleted whole where they name the participant.
 const MADE: [&str; 5] = ["html", "json", "svg", "md", "txt"];
@@ -131,7 +131,7 @@ impl About {
 }
 
 /// What a wizard watched beside these recordings.
-fn left(record: &TrainingRecord, about: &About) -> Vec<super::training::JudgedRecording> {
+fn left(record: &TrainingRecord, about: &About) -> Vec<JudgedRecording> {
     record.recordings.iter().filter(|one| !about.recordings.contains(&one.recording)).cloned().collect()
 }
 

@@ -44,6 +44,17 @@ pub fn sequences_by_target(presses: &[JudgedPress]) -> Vec<Sequence> {
     all
 }
 
+/// The error sequences, each with its errors as indices of presses. Whatever a sequence is about, the errors of one follow
+/// each other.
+pub fn sequence_errors(presses: &[JudgedPress]) -> Vec<(Sequence, Vec<usize>)> {
+    let mut errors = presses.iter().enumerate().filter(|(_, press)| target_of(press).is_some()).map(|(index, _)| index);
+    let of_one = |sequence: Sequence| {
+        let own: Vec<usize> = errors.by_ref().take(sequence.length as usize).collect();
+        (sequence, own)
+    };
+    sequences(presses).into_iter().map(of_one).collect()
+}
+
 /// What a belief related error is about.
 fn target_of(press: &JudgedPress) -> Option<Target> {
     match press.cause {

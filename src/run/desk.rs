@@ -1,5 +1,5 @@
-//! The desk at which a wizard sits: terminal, keys, tracker, and the signals that ask the program to end. It is taken
-//! once, and every recording of a series is made at it.
+//! The desk at which a wizard sits: terminal, keys, tracker, the participant's display, and the signals that ask the program
+//! to end. It is taken once, and every recording of a series is made or looked at there.
 
 use std::io;
 use std::path::Path;
@@ -9,11 +9,10 @@ use std::time::Duration;
 
 use tokio::sync::mpsc::{Receiver, Sender};
 use tokio::sync::oneshot;
-use tokio::time::{sleep, timeout};
+use tokio::time::timeout;
 
-use super::live::LiveError;
+use super::error::{LiveError, TerminalError};
 use crate::console::ConsoleMessage;
-use crate::console::question::{QuestionPage, QuestionReply};
 use crate::console::view::theme::Theme;
 use crate::edge::gaze_file::{self, GazeFile};
 use crate::edge::gaze_input::GazeNews;
@@ -25,10 +24,10 @@ use crate::gaze::tags::{DisplayTags, TagError};
 use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
 use crate::session::calibration::AcceptedGazeCheck;
-use crate::session::settings::GazeSource;
+use crate::session::settings::{ConsoleSpec, GazeSource};
 
-/// A question is drawn so often.
-const REDRAW: Duration = Duration::from_millis(100);
+/// So many news are taken at once at most: keys come before them.
+const PACKET: usize = 32;
 /// So long Capture may take for what it was told last.
 const SETTLE: Duration = Duration::from_secs(1);
 
@@ -44,7 +43,8 @@ use wall::WallDisplay;
 /// What the recordings of a series share.
 pub(super) struct OperatorDesk {
     pub screen: TerminalScreen,
-    theme: Theme,
+    /// What questions look like.
+    pub theme: Theme,
     pub seat: OperatorInput,
     pub tracker: GazeTracker,
     pub wall: WallDisplay,
@@ -88,44 +88,21 @@ impl OperatorDesk {
     /// # Errors
     /// There is no terminal, nothing can listen for gaze, a file with gaze cannot be read, or the tags have no room.
     pub async fn take(spec: &SessionSpec, kitchen: &Kitchen) -> Result<OperatorDesk, LiveError> {
-        outlive_file_limits().map_err(LiveError::Terminal)?;
+        outlive_file_limits().map_err(TerminalError)?;
         let tracker = GazeTracker::open(spec, kitchen).await?;
         let wall = WallDisplay::open(spec).await?;
-        let screen = TerminalScreen::take().map_err(LiveError::Terminal)?;
-        let theme = theme(&spec.console, screen.ground);
-        let seat = OperatorInput { hands: TerminalInput::default(), end: Box::pin(asked_to_end()) };
-        Ok(OperatorDesk { screen, theme, seat, tracker, wall })
+        Ok(OperatorDesk { tracker, wall, ..OperatorDesk::without_devices(&spec.console)? })
     }
 
-    /// Asks before a recording begins; the place of the answer, nothing if the program is to be left.
+    /// Takes the terminal; there are no devices.
     ///
     /// # Errors
-    /// The terminal is gone.
-    pub async fn ask(&mut self, question: &QuestionPage) -> Result<Option<usize>, LiveError> {
-        loop {
-            self.screen.ask(question, self.theme).map_err(LiveError::Terminal)?;
-            let message = tokio::select! {
-                biased;
-                message = self.seat.next() => message,
-                // Read all the same, or it would be read later as if it had just come.
-                Some(_) = self.tracker.next() => continue,
-                Some(_) = self.wall.next() => continue,
-                // A terminal that was still busy with a frame gets the question now.
-                () = sleep(REDRAW) => continue,
-            };
-            match message {
-                Some(ConsoleMessage::Key(key)) => match question.reply(&key) {
-                    Some(QuestionReply::Answer(index)) => return Ok(Some(index)),
-                    Some(QuestionReply::Leave) => return Ok(None),
-                    None => {}
-                },
-                Some(_) => {}
-                None => return Ok(None),
-            }
-            if self.screen.is_lost() {
-                return Ok(None);
-            }
-        }
+    /// There is no terminal.
+    pub fn without_devices(console: &ConsoleSpec) -> Result<OperatorDesk, TerminalError> {
+        let screen = TerminalScreen::take().map_err(TerminalError)?;
+        let theme = theme(console, screen.ground);
+        let seat = OperatorInput { hands: TerminalInput::default(), end: Box::pin(asked_to_end()) };
+        Ok(OperatorDesk { screen, theme, seat, tracker: GazeTracker::default(), wall: WallDisplay::default() })
     }
 }
 
@@ -172,27 +149,23 @@ impl GazeTracker {
         }
     }
 
-    /// The next news of the tracker; never, if there are none.
-    pub async fn next(&mut self) -> Option<GazeNews> {
+    /// The next news of the tracker with those that came with them, since samples come in packets; never, if there are none.
+    pub async fn next(&mut self) -> Option<Vec<GazeNews>> {
         let Some(news) = &mut self.news else { return std::future::pending().await };
-        let news = news.recv().await;
-        self.know(news)
+        let mut packet = Vec::new();
+        // All of it is received in one go, so none is lost where something else comes first.
+        news.recv_many(&mut packet, PACKET).await;
+        packet.iter().for_each(|news| self.know(news));
+        (!packet.is_empty()).then_some(packet)
     }
 
-    /// The next news, if there are some already.
-    pub fn ready(&mut self) -> Option<GazeNews> {
-        let news = self.news.as_mut()?.try_recv().ok();
-        self.know(news)
-    }
-
-    fn know(&mut self, news: Option<GazeNews>) -> Option<GazeNews> {
-        match &news {
-            Some(GazeNews::Connected(_)) => self.link = news.clone(),
-            Some(GazeNews::Lost(_)) => (self.link, self.sees_display) = (news.clone(), None),
-            Some(GazeNews::SeesDisplay(_)) => self.sees_display = news.clone(),
+    fn know(&mut self, news: &GazeNews) {
+        match news {
+            GazeNews::Connected(_) => self.link = Some(news.clone()),
+            GazeNews::Lost(_) => (self.link, self.sees_display) = (Some(news.clone()), None),
+            GazeNews::SeesDisplay(_) => self.sees_display = Some(news.clone()),
             _ => {}
         }
-        news
     }
 
     /// What a recording has to be told that begins now.

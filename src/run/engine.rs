@@ -4,13 +4,13 @@
 //! It has no clock: whoever runs it says what time it is, so that real time, virtual time and the check of a recording
 //! go through the same code.
 
+mod agents;
 mod informing;
 mod robot;
 
 use std::sync::Arc;
 
-use self::informing::participant_of;
-use self::robot::robot_of;
+use self::agents::{simulated_participant, trial_robot};
 use crate::analysis::advisor::{AdviceRequest, Advisor, changes_task};
 use crate::analysis::follower::Follower;
 use crate::arm::worker::Robot;
@@ -78,9 +78,9 @@ impl Engine {
     /// The settings ask for an arm in the physics, and this build has no physics: `SessionSpec::require_built` tells.
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64, cost: CostToGo) -> Engine {
         let orders = OrderList::new(kitchen.dishes.len(), &spec, trial);
-        let robot = robot_of(&kitchen, &spec, trial);
+        let robot = trial_robot(&kitchen, &spec, trial);
         let participant = (spec.participant.kind == ParticipantKind::Simulated)
-            .then(|| participant_of(kitchen.clone(), &spec, trial));
+            .then(|| simulated_participant(kitchen.clone(), &spec, trial));
         let wizard = spec.scripts_wizard().then(|| {
             ScriptedWizard::new(kitchen.clone(), spec.wizard.clone(), spec.signals.own_hand, spec.seed, trial)
         });

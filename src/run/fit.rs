@@ -2,9 +2,9 @@
 //! [`crate::analysis::fitting`].
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
-use super::parallel;
+use super::parallel::WorkerPool;
 use super::replay::{Replay, SameKitchen, each_once};
 use crate::analysis::fitting::{self, FitPlan, FitSummary, FittedRecordings};
 use crate::edge::file_error::FileResult;
@@ -46,40 +46,23 @@ impl FitTrials {
     }
 }
 
-/// Likelihoods of all trials, on all processors. The sum does not depend on how many there are.
-struct Judge<'a> {
-    trials: &'a FitTrials,
-    /// What threads remember of costs to go between tries.
-    costs: Mutex<Vec<CostToGo>>,
-}
-
-impl Judge<'_> {
-    fn likelihood(&self, model: &HumanModel) -> Likelihood {
-        let kitchen = &self.trials.kitchen;
-        let of_trial = |(seed, observations): &(u64, Vec<Observation>)| {
-            let kept = lock(&self.costs).pop();
-            let mut cost = kept.unwrap_or_else(|| CostToGo::new(kitchen.clone()));
-            let found = likelihood(kitchen, model, *seed, observations, &mut cost);
-            lock(&self.costs).push(cost);
-            found
-        };
-        let found = parallel::each(&self.trials.observations, of_trial, || {});
-        let add = |sum: Likelihood, one: &Likelihood| Likelihood {
-            presses: sum.presses + one.presses,
-            log_p: sum.log_p + one.log_p,
-        };
-        found.iter().fold(Likelihood::default(), add)
-    }
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
-}
-
 /// Fits the parameters of a plan to trials. `tried` is called after each try.
 pub fn fit(trials: &FitTrials, plan: &FitPlan, tried: impl Fn()) -> FitSummary {
-    let judge = Judge { trials, costs: Mutex::new(Vec::new()) };
+    let kitchen = &trials.kitchen;
+    // What threads remember of costs to go lasts from try to try.
+    let pool = WorkerPool::new(|| CostToGo::new(kitchen.clone()));
+    let of_all = |model: &HumanModel| {
+        let of_trial = |cost: &mut CostToGo, (seed, observations): &(u64, Vec<Observation>)| {
+            likelihood(kitchen, model, *seed, observations, cost)
+        };
+        // In the order of the trials: the sum does not depend on how many threads there are.
+        let found = pool.each(&trials.observations, of_trial, || {});
+        found.into_iter().fold(Likelihood::default(), |sum, one| Likelihood {
+            presses: sum.presses + one.presses,
+            log_p: sum.log_p + one.log_p,
+        })
+    };
     let number = trials.observations.len() as u64;
     let recordings = FittedRecordings { number, model: &trials.model, differ: trials.differ };
-    fitting::fit(recordings, plan, |model| judge.likelihood(model), tried)
+    fitting::fit(recordings, plan, of_all, tried)
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::options::SessionStart;
-use super::standing::ExclusionStatus;
+use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::base::words::count;
 

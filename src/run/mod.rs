@@ -14,14 +14,12 @@ pub mod engine;
 #[cfg(feature = "cli")]
 pub mod error;
 #[cfg(feature = "cli")]
+mod event_loop;
+#[cfg(feature = "cli")]
 pub mod fit;
 pub mod headless;
 #[cfg(feature = "cli")]
-pub mod kitchen;
-#[cfg(feature = "cli")]
 pub mod leaving;
-#[cfg(feature = "cli")]
-pub mod lesson_report;
 #[cfg(feature = "cli")]
 pub mod live;
 #[cfg(feature = "cli")]
@@ -30,6 +28,8 @@ pub mod options;
 pub mod parallel;
 #[cfg(feature = "cli")]
 pub mod plan;
+#[cfg(feature = "cli")]
+mod question;
 #[cfg(feature = "cli")]
 pub mod replay;
 #[cfg(all(feature = "cli", feature = "rerun"))]
@@ -53,11 +53,11 @@ pub mod study;
 #[cfg(feature = "cli")]
 pub mod sweep;
 #[cfg(feature = "cli")]
-pub mod tell;
-#[cfg(feature = "cli")]
 pub mod timing;
 #[cfg(feature = "cli")]
 pub mod train;
+#[cfg(feature = "cli")]
+mod training_shell;
 #[cfg(feature = "cli")]
 mod unfinished_recording;
 #[cfg(feature = "cli")]

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::live::LiveError;
+use super::error::LiveError;
 use super::series::{slot_name, stands};
 use crate::edge::recordings;
 use crate::session::plan::{Progress, RecordingOutcome, Study};

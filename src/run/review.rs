@@ -1,60 +1,31 @@
 //! The console over a recording, or over a session that is still running: pause, step, seek, speed.
 
-use std::io;
-use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::path::Path;
+use std::time::{Duration, Instant};
 
-use tokio::time::{Instant, sleep_until};
-
+use super::desk::OperatorDesk;
+use super::error::{ReviewError, TerminalError};
+use super::event_loop::{self, ConsoleShell, LoopEvent, ShellView};
 use super::seekable_replay::SeekableReplay;
 use super::watch_desk::ComparisonDesk;
 use crate::analysis::watcher::{CompareRequest, ComparisonFollower};
 use crate::base::time::SessionTime;
 use crate::console::compared::ComparisonView;
-use crate::console::key_action::KeyError;
 use crate::console::notice::NoticeLevel;
 use crate::console::playback::{Playback, ReplayKey, SPEEDS};
 use crate::console::rater_session::RaterSession;
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
-use crate::edge::file_error::FileError;
 use crate::edge::key_file::key_map;
 use crate::edge::log::{LogEnding, codes};
-use crate::edge::terminal::{TerminalInput, TerminalScreen, asked_to_end, theme};
+use crate::edge::terminal::TerminalScreen;
 use crate::history::landmark::ReplayLandmark;
 use crate::measures::coding::Codable;
 use crate::session::Event;
 
-/// At most 30 frames a second.
-const FRAME: Duration = Duration::from_millis(33);
 /// At full speed, so much of every frame goes into applying events.
 const WORK: Duration = Duration::from_millis(20);
-/// A growing recording is looked at so often.
-const LOOK: Duration = Duration::from_millis(50);
 /// How far a seek goes.
 const SEEK: SessionTime = SessionTime(10_000_000_000);
-
-/// Why a recording could not be shown.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum ReviewError {
-    #[error("the console cannot be opened: {0}")]
-    #[diagnostic(help("run it in a terminal; `tomcom replay RECORDING` tells a recording in words through a pipe"))]
-    Terminal(io::Error),
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    File(#[from] Box<FileError>),
-    #[error("{}: the training cannot be recorded: {reason}", path.display())]
-    #[diagnostic(help("a folder that can be written to, with --out"))]
-    Training { path: PathBuf, reason: io::Error },
-    #[error("the header of the recording: {0}")]
-    #[diagnostic(help("{}", .0.remedy))]
-    Keys(#[from] KeyError),
-}
-
-impl From<FileError> for ReviewError {
-    fn from(error: FileError) -> ReviewError {
-        ReviewError::File(Box::new(error))
-    }
-}
 
 /// Opens the console over a recording; with `follow`, at the growing end of a running session; with a comparison of wizard
 /// and assistants, where that is asked for.
@@ -63,7 +34,7 @@ impl From<FileError> for ReviewError {
 /// The recording cannot be read, or there is no terminal.
 pub fn review(recording: &Path, follow: bool, compare: Option<&CompareRequest>) -> Result<(), ReviewError> {
     let film = SeekableReplay::open(recording)?;
-    on_thread(Review::open(film, recording, follow, compare, None)?)
+    at_desk(film, recording, follow, compare, None)
 }
 
 /// Opens the console over a recording for a rater, who codes its errors and sees what a wizard without estimates sees; what
@@ -76,18 +47,29 @@ pub fn rate(recording: &Path, rater: &str) -> Result<(), ReviewError> {
     let codable = Codable::from_presses(&film.replay.session().kitchen, &film.replay.follower.judged);
     let codes = codes::read(film.replay.log().folder(), rater, &codable)?;
     let coding = RaterSession { rater: rater.to_string(), errors: codable.errors, codes };
-    on_thread(Review::open(film, recording, false, None, Some(coding))?)
+    at_desk(film, recording, false, None, Some(coding))
 }
 
-fn on_thread(review: Review) -> Result<(), ReviewError> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(ReviewError::Terminal)?;
-    runtime.block_on(review.run())
+/// Shows a recording at a desk without devices, until it is left.
+fn at_desk(
+    film: SeekableReplay,
+    recording: &Path,
+    follow: bool,
+    compare: Option<&CompareRequest>,
+    coding: Option<RaterSession>,
+) -> Result<(), ReviewError> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
+    runtime.block_on(async {
+        let mut desk = OperatorDesk::without_devices(&film.session.spec.console)?;
+        let mut review = Review::open(film, &desk, recording, follow, compare, coding)?;
+        event_loop::run(&mut review, &mut desk).await?;
+        Ok(())
+    })
 }
 
 struct Review {
     film: SeekableReplay,
     model: ConsoleModel,
-    screen: TerminalScreen,
     opened: Instant,
     /// The moment that is shown, and when it was reached.
     now: SessionTime,
@@ -97,27 +79,27 @@ struct Review {
     grows: bool,
     dirty: bool,
     /// Who compares wizard and assistants.
-    watch: Option<ComparisonDesk>,
+    comparison: Option<ComparisonDesk>,
 }
 
 impl Review {
     fn open(
         film: SeekableReplay,
+        desk: &OperatorDesk,
         recording: &Path,
         follow: bool,
         compare: Option<&CompareRequest>,
         coding: Option<RaterSession>,
     ) -> Result<Review, ReviewError> {
-        let screen = TerminalScreen::take().map_err(ReviewError::Terminal)?;
-        let size = TerminalScreen::size().map_err(ReviewError::Terminal)?;
+        let size = TerminalScreen::size().map_err(TerminalError)?;
         let keys = film.replay.log().header.keys.as_ref();
         let keys = KeyBindings::replay(&film.session.kitchen, &key_map(keys)?)?;
         let keys = if compare.is_some() { keys.with_comparison() } else { keys };
         let keys = if coding.is_some() { keys.with_coding(&film.session.kitchen) } else { keys };
-        let mut model = ConsoleModel::new(keys, theme(&film.session.spec.console, screen.ground), size);
+        let mut model = ConsoleModel::new(keys, desk.theme, size);
         model.comparison = compare.map(|_| ComparisonView::default());
         model.coding = coding;
-        let watch = compare.map(|request| {
+        let comparison = compare.map(|request| {
             let session = film.replay.log().session();
             ComparisonFollower::new(session, request).without_causes().on_thread()
         });
@@ -129,14 +111,13 @@ impl Review {
         let mut review = Review {
             film,
             model,
-            screen,
             opened: now,
             now: SessionTime::ZERO,
             at: now,
             read_at: now,
             grows: follow,
             dirty: true,
-            watch,
+            comparison,
         };
         review.tell(0);
         // Who codes goes from error to error.
@@ -148,36 +129,8 @@ impl Review {
         Ok(review)
     }
 
-    async fn run(mut self) -> Result<(), ReviewError> {
-        let mut hands = TerminalInput::default();
-        let end = asked_to_end();
-        tokio::pin!(end);
-        let mut next_frame = Instant::now();
-        let mut next_look = Instant::now();
-        while !self.screen.is_lost() {
-            tokio::select! {
-                biased;
-                _ = &mut end => break,
-                message = hands.next() => match message {
-                    Some(message) => if self.take(message) { break },
-                    None => break,
-                },
-                () = sleep_until(next_look), if self.grows => {
-                    next_look = Instant::now() + LOOK;
-                    self.look()?;
-                }
-                () = sleep_until(next_frame) => {
-                    next_frame = Instant::now() + FRAME;
-                    self.play();
-                    self.draw().map_err(ReviewError::Terminal)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
     /// Takes a message of the terminal; whether somebody has quit.
-    fn take(&mut self, message: ConsoleMessage) -> bool {
+    fn take_message(&mut self, message: ConsoleMessage) -> bool {
         self.dirty = true;
         self.tick();
         match update(&mut self.model, &self.film.session, message) {
@@ -283,8 +236,8 @@ impl Review {
 
     /// Tells whoever compares what was read from the event with this place on.
     fn tell(&self, from: usize) {
-        if let Some(watch) = &self.watch {
-            self.film.events[from..].iter().for_each(|stamped| watch.tell(stamped));
+        if let Some(comparison) = &self.comparison {
+            self.film.events[from..].iter().for_each(|stamped| comparison.tell(stamped));
         }
     }
 
@@ -334,17 +287,33 @@ impl Review {
         }
         self.dirty = true;
     }
+}
 
-    fn draw(&mut self) -> io::Result<()> {
+impl ConsoleShell for Review {
+    type Outcome = ();
+    type Error = ReviewError;
+
+    fn take(&mut self, event: LoopEvent) -> Result<Option<()>, ReviewError> {
+        match event {
+            LoopEvent::Terminal(message) => return Ok(self.take_message(message).then_some(())),
+            LoopEvent::FileTick if self.grows => self.look()?,
+            _ => {}
+        }
+        Ok(None)
+    }
+
+    fn advance(&mut self) -> bool {
+        self.play();
         if let (Some(newest), Some(compared)) =
-            (self.watch.as_ref().and_then(ComparisonDesk::newest), &mut self.model.comparison)
+            (self.comparison.as_ref().and_then(ComparisonDesk::newest), &mut self.model.comparison)
         {
             compared.show(newest);
             self.dirty = true;
         }
-        if !self.dirty || !self.screen.is_ready() {
-            return Ok(());
-        }
+        self.dirty
+    }
+
+    fn prepare(&mut self) {
         self.dirty = false;
         self.tick();
         self.model.now = self.now;
@@ -353,6 +322,9 @@ impl Review {
         let (length, events) = self.film.length();
         let (event, cut) = (self.film.position, self.film.is_cut());
         self.playback(|playback| *playback = Playback { length, event, events, cut, ..playback.clone() });
-        self.screen.draw(&self.film.session, &self.model)
+    }
+
+    fn view(&self) -> ShellView<'_> {
+        ShellView::Console(&self.film.session, &self.model)
     }
 }

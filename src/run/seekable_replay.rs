@@ -4,7 +4,8 @@
 use std::path::Path;
 
 use super::replay::Replay;
-use super::standing::ExclusionStatus;
+use super::standing::exclusion_status;
+use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::base::time::SessionTime;
 use crate::edge::file_error::FileResult;
 use crate::history::belief_track::{BeliefHistory, BeliefSnapshot};
@@ -96,9 +97,9 @@ impl SeekableReplay {
     /// Whether it counts.
     ///
     /// # Errors
-    /// Those of [`ExclusionStatus::from_recording`].
+    /// Those of [`exclusion_status`].
     pub fn standing(&self) -> FileResult<ExclusionStatus> {
-        ExclusionStatus::from_recording(self.replay.session(), self.replay.log())
+        exclusion_status(self.replay.session(), self.replay.log())
     }
 
     /// The time of the last event, and the number of events.

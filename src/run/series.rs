@@ -2,9 +2,11 @@
 //! series of them, made at the same desk without leaving the console.
 
 use super::desk::OperatorDesk;
+use super::error::{LiveError, TerminalError};
 use super::leaving::{LeavingReason, LiveOutcome};
-use super::live::{self, LiveError};
+use super::live;
 use super::options::{SessionStart, TrialSeries};
+use super::question::ask;
 use super::unfinished_recording::PreparedSession;
 use crate::analysis::watcher::CompareRequest;
 use crate::console::question::QuestionPage;
@@ -53,7 +55,7 @@ pub fn operate_series(series: TrialSeries) -> Result<SeriesOutcome, LiveError> {
 
 /// Signals and sockets belong to a runtime.
 fn in_runtime(work: impl Future<Output = Result<SeriesOutcome, LiveError>>) -> Result<SeriesOutcome, LiveError> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(LiveError::Terminal)?;
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
     runtime.block_on(work)
 }
 
@@ -127,14 +129,14 @@ impl Planned {
         let label = spec.step.as_ref().map_or(String::new(), |step| step.label());
         let continued = match open {
             None => None,
-            Some(recording) => match desk.ask(&which(progress, recording, slot)).await? {
+            Some(recording) => match ask(desk, &which(progress, recording, slot)).await? {
                 Some(0) => Some(recording),
                 Some(_) => None,
                 None => return Ok(Choice::Leave(None)),
             },
         };
         if !progress.consent {
-            match desk.ask(&consent(&self.study, progress, &label)).await? {
+            match ask(desk, &consent(&self.study, progress, &label)).await? {
                 Some(0) => {}
                 Some(_) => {
                     let remark = format!("{} does not agree: nothing was recorded", progress.code);

@@ -9,7 +9,8 @@ use super::engine::Engine;
 use super::error::RunError;
 use super::parallel::WorkerPool;
 use super::replay::Replay;
-use super::{headless, kitchen, options};
+use super::{headless, options};
+use crate::analysis::kitchen_summary::plan_lengths;
 use crate::analysis::trial_summary::{ConditionSummary, SimulationSummary, SimulationSums, TrialSummary};
 use crate::base::words::count;
 use crate::communication::settings::Shadow;
@@ -90,7 +91,7 @@ pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
 pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Result<SimulationSummary, RunError> {
     let mut sums = SimulationSums::default();
     let began = Instant::now();
-    let plan_lengths = kitchen::plan_lengths(
+    let plan_lengths = plan_lengths(
         &simulation.files.kitchen.kitchen,
         &mut CostToGo::new(Arc::new(simulation.files.kitchen.kitchen.clone())),
     );

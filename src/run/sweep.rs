@@ -8,8 +8,9 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::error::RunError;
-use super::kitchen::plan_lengths;
 use super::simulate::{Shard, SimulationRequest, each_trial};
+use crate::analysis::kitchen_summary::plan_lengths;
+use crate::analysis::sweep_row::{SweepRow, TrialErrors};
 use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
 use crate::communication::concept::ConceptName;
 use crate::communication::settings::Shadow;
@@ -118,25 +119,6 @@ impl SweepAxis {
 /// One point of the grid: its settings by name, as they were typed.
 type Cell = Vec<(&'static str, String)>;
 
-/// Errors and presses of the human in each trial.
-type Counts = Vec<[u64; 2]>;
-
-/// One line of the table.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SweepRow {
-    /// What was set, by name; nothing in the line without signals.
-    pub settings: serde_json::Map<String, serde_json::Value>,
-    pub trials: u64,
-    /// Errors and signals per 100 presses of the human.
-    pub errors_per_100: f64,
-    pub signals_per_100: f64,
-    /// Errors per 100 presses of the human fewer than without signals, over the same trials: mean and standard error.
-    pub spared_per_100: Option<f64>,
-    pub spared_error: Option<f64>,
-    pub mean_sequence_length: Option<f64>,
-    pub presses_per_order: Option<f64>,
-}
-
 /// The table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SweepSummary {
@@ -168,13 +150,13 @@ pub fn sweep(
     unassisted.files.spec.trial.condition = Condition::None;
     unassisted.out = simulation.out.join("unassisted");
     let (before, figures) = of_cell(&unassisted, &done)?;
-    let mut rows = vec![row(&Cell::new(), &figures, None)];
+    let mut rows = vec![SweepRow::new(&Cell::new(), &figures, None)];
     for (cell, spec) in cells.iter().zip(specs) {
         let mut one = simulation.clone();
         one.files.spec = spec;
         one.out = simulation.out.join(folder_of(cell));
         let (trials, figures) = of_cell(&one, &done)?;
-        rows.push(row(cell, &figures, Some([&before, &trials])));
+        rows.push(SweepRow::new(cell, &figures, Some([&before, &trials])));
     }
     let table = simulation.out.join(table_name(simulation.shard));
     write_table(&table, axes, &rows).map_err(|reason| WriteError::Unwritable {
@@ -259,42 +241,23 @@ fn folder_of(cell: &Cell) -> String {
 }
 
 /// The trials of one cell, and the figures of all of them.
-fn of_cell(simulation: &SimulationRequest, done: &(impl Fn() + Sync)) -> Result<(Counts, SimulationSummary), RunError> {
+fn of_cell(
+    simulation: &SimulationRequest,
+    done: &(impl Fn() + Sync),
+) -> Result<(Vec<TrialErrors>, SimulationSummary), RunError> {
     let mut simulation = simulation.clone();
     // The assistant advises where it acts; advice beside a trial without signals would only take time.
     simulation.files.spec.assistant.shadow = Shadow::Off;
     let kitchen = Arc::new(simulation.files.kitchen.kitchen.clone());
     let plan_lengths = plan_lengths(&kitchen, &mut CostToGo::new(kitchen.clone()));
-    let (mut trials, mut sums) = (Counts::new(), SimulationSums::default());
+    let (mut trials, mut sums) = (Vec::new(), SimulationSums::default());
     each_trial(&simulation, done, |trial| {
         let TrialSummary { errors, human_actions, .. } = trial.figures;
-        trials.push([errors, human_actions]);
+        trials.push(TrialErrors { errors, human_actions });
         sums.add(trial.condition, &trial.figures, &plan_lengths);
         Ok(())
     })?;
     Ok((trials, sums.figures()))
-}
-
-/// A line of the table; `paired`: errors and presses of each trial without signals, and with them.
-fn row(cell: &Cell, figures: &SimulationSummary, paired: Option<[&Counts; 2]>) -> SweepRow {
-    let per_100 = |number: u64, presses: u64| 100.0 * number as f64 / presses.max(1) as f64;
-    let rate = |[errors, presses]: [u64; 2]| per_100(errors, presses);
-    let spared: Vec<f64> = paired.map_or(Vec::new(), |[before, after]| {
-        before.iter().zip(after).map(|(before, after)| rate(*before) - rate(*after)).collect()
-    });
-    let count = spared.len() as f64;
-    let mean = (count > 0.0).then(|| spared.iter().sum::<f64>() / count);
-    let squares = mean.map(|mean| spared.iter().map(|one| (one - mean) * (one - mean)).sum::<f64>());
-    SweepRow {
-        settings: cell.iter().map(|(name, value)| (name.to_string(), value.as_str().into())).collect(),
-        trials: figures.trials,
-        errors_per_100: per_100(figures.errors, figures.human_actions),
-        signals_per_100: per_100(figures.signals, figures.human_actions),
-        spared_per_100: mean,
-        spared_error: squares.filter(|_| count > 1.0).map(|squares| (squares / (count - 1.0) / count).sqrt()),
-        mean_sequence_length: figures.beliefs.mean_sequence_length,
-        presses_per_order: figures.presses_per_order,
-    }
 }
 
 /// What stands in a column of numbers; nothing where it is not known.

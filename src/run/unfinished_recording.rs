@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::engine::Engine;
-use super::live::LiveError;
+use super::error::LiveError;
 use super::options::SessionStart;
 use super::resume::resume;
 use crate::analysis::watcher::CompareRequest;

@@ -3,11 +3,12 @@
 use crate::display::words::DisplayWords;
 use crate::edge::display::Display;
 pub(in crate::run) use crate::edge::display::PageInput;
-use crate::run::live::LiveError;
+use crate::run::error::LiveError;
 use crate::session::SessionSpec;
 use crate::session::settings::ParticipantKind;
 
 /// The participant's display, if the participant is at one.
+#[derive(Default)]
 pub(in crate::run) struct WallDisplay(Option<Display>);
 
 impl WallDisplay {

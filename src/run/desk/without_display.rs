@@ -1,12 +1,13 @@
 //! The desk in a build without the feature `display`: no display, and nothing comes from one.
 
-use crate::run::live::LiveError;
+use crate::run::error::LiveError;
 use crate::session::SessionSpec;
 
 /// What comes from a display: this type has no value.
 pub(in crate::run) enum PageInput {}
 
 /// No display.
+#[derive(Default)]
 pub(in crate::run) struct WallDisplay;
 
 impl WallDisplay {

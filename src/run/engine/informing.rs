@@ -1,24 +1,9 @@
 //! What those around a running session are told of its events: simulated participant, scripted wizard.
 
-use std::sync::Arc;
-
 use super::Engine;
-use crate::kitchen::{Change, Kitchen};
-use crate::participant::SimulatedParticipant;
-use crate::participant::population::Experience;
+use crate::kitchen::Change;
 use crate::session::calibration::RunningGazeCheck;
-use crate::session::{Event, SessionSpec, Stamped};
-
-/// The simulated participant of a trial. In a plan the same person has several trials, and has learnt from the earlier ones
-/// what its population learns.
-pub(super) fn participant_of(kitchen: Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> SimulatedParticipant {
-    let person = spec.step.as_ref().map_or(trial, |step| u64::from(step.participant));
-    let trials = spec.step.as_ref().and_then(|step| step.period).map_or(0, |period| period.saturating_sub(1));
-    // About half of the presses are the human's.
-    let presses = f64::from(trials) * f64::from(spec.trial.presses) / 2.0;
-    let population = spec.participant.population.clone().unwrap_or_default();
-    SimulatedParticipant::new(kitchen, &population, spec.seed, person, trial, Experience { trials, presses })
-}
+use crate::session::{Event, Stamped};
 
 impl Engine {
     /// What the participant may notice of an event that was just applied.

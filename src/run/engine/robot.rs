@@ -1,47 +1,12 @@
 //! The robot in a running session: its deeds become events, and it is told what concerns it.
 
 use super::Engine;
-#[cfg(feature = "physics")]
-use crate::arm::body::SteppedArm;
-#[cfg(feature = "physics")]
-use crate::arm::reaching::ReachingBehaviour;
 use crate::arm::worker::Robot;
-#[cfg(not(feature = "physics"))]
-use crate::base::features::{Feature, NotBuilt};
 use crate::base::time::SessionTime;
-use crate::kitchen::{Agent, ButtonId, Change, Kitchen};
+use crate::kitchen::{Agent, ButtonId, Change};
 use crate::participant::SimulatedParticipant;
 use crate::robot::RobotActivity;
-use crate::session::settings::ArmKind;
-#[cfg(feature = "physics")]
-use crate::session::settings::ParticipantKind;
-use crate::session::{Event, SessionSpec, Stamped};
-
-/// The robot of a trial.
-///
-/// # Panics
-/// The arm is to be simulated, and this build has no physics.
-pub(super) fn robot_of(kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> Robot {
-    let robot = Robot::new(spec.robot.press_s, spec.robot.press_spread, spec.seed, trial);
-    match spec.robot.arm {
-        ArmKind::Timed => robot,
-        ArmKind::Physics => with_physics(robot, kitchen, spec, trial),
-    }
-}
-
-#[cfg(feature = "physics")]
-fn with_physics(robot: Robot, kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> Robot {
-    let hand = match spec.participant.kind {
-        ParticipantKind::Simulated => ReachingBehaviour::SIMULATED,
-        ParticipantKind::Keyboard | ParticipantKind::Display => ReachingBehaviour::UNSEEN,
-    };
-    robot.with_body(SteppedArm::new(kitchen, hand, spec.seed, trial))
-}
-
-#[cfg(not(feature = "physics"))]
-fn with_physics(_: Robot, _: &Kitchen, _: &SessionSpec, _: u64) -> Robot {
-    panic!("{}", NotBuilt(Feature::Physics))
-}
+use crate::session::{Event, Stamped};
 
 impl Engine {
     /// The robot, for experiments with its arm.

@@ -1,8 +1,7 @@
 //! The targets of a check of the calibration, when it is time for them.
 
-use tokio::time::Instant;
-
-use super::Live;
+use super::live_session::Live;
+use crate::base::time::SessionTime;
 use crate::session::Event;
 use crate::session::calibration::{AcceptedGazeCheck, CalibrationEvent, RunningGazeCheck};
 use crate::session::settings::GazeSource;
@@ -21,10 +20,9 @@ impl Live {
         }
     }
 
-    /// When the next target is to be shown; nothing while no check goes on.
-    pub(super) fn next_target(&self) -> Option<Instant> {
-        let (time, _) = self.engine.session().calibration.as_ref().and_then(RunningGazeCheck::next)?;
-        Some(Instant::from_std(self.clock.instant_of(time)))
+    /// When the next target is to be shown; none while no check goes on.
+    pub(super) fn target_due(&self) -> Option<SessionTime> {
+        self.engine.session().calibration.as_ref().and_then(RunningGazeCheck::next).map(|(time, _)| time)
     }
 
     /// Shows the next target, or hides the last one.

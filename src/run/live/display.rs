@@ -1,8 +1,7 @@
-//! The participant's display in a live session: what it is shown, and what comes from it.
+//! The participant's display in a live session: what it is shown, and the events that come from it.
 
 use std::time::Instant;
 
-use super::Live;
 use crate::base::time::SessionTime;
 use crate::console::display::DisplayHealth;
 use crate::console::notice::NoticeLevel;
@@ -14,7 +13,7 @@ use crate::run::desk::{OperatorDesk, PageInput};
 use crate::session::display::{Answering, DisplayEvent};
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
-use crate::session::{Event, Phase};
+use crate::session::{Event, Session};
 
 /// The display of this recording.
 pub(super) struct ParticipantDisplay {
@@ -34,103 +33,89 @@ impl ParticipantDisplay {
         let display = desk.wall.display();
         (display.map(|display| ParticipantDisplay { screen: display.screen(), shown: None }), display.map(health))
     }
-}
 
-impl Live {
-    /// Builds the display for this recording.
-    pub(super) fn build_display(&mut self) {
-        if let Some(display) = &self.display {
-            display.screen.build(&scene(self.engine.session()));
-        }
-        self.look_at_display();
-        // The page may have been there before this recording.
-        let page = self.model.display.as_ref().and_then(|display| display.page);
-        if let Some([width_px, height_px]) = page {
-            self.input(Event::Display(DisplayEvent::Connected { width_px, height_px }));
-        }
-        self.show_participant();
+    /// Builds the page for this session.
+    pub fn build(&self, session: &Session) {
+        self.screen.build(&scene(session));
     }
 
     /// Shows what the participant may see now, if that is something else than before.
-    pub(super) fn show_participant(&mut self) {
-        if let Some(display) = &mut self.display {
-            let now = sight(self.engine.session());
-            if display.shown.as_ref() != Some(&now) {
-                display.screen.show(&now);
-                display.shown = Some(now);
-            }
+    pub fn show(&mut self, session: &Session) {
+        let now = sight(session);
+        if self.shown.as_ref() != Some(&now) {
+            self.screen.show(&now);
+            self.shown = Some(now);
         }
     }
 
     /// Tells the wizard how the display is.
-    pub(super) fn look_at_display(&mut self) {
-        let (Some(display), Some(health)) = (&self.display, &mut self.model.display) else { return };
-        let counts = display.screen.counts();
+    pub fn examine(&self, health: &mut DisplayHealth) {
+        let counts = self.screen.counts();
         health.page = counts.page.map(|page| [page.width_px, page.height_px]);
         health.round_trip_ms = counts.page.and_then(|page| page.round_trip_ms);
         health.redraw_ms = counts.page.and_then(|page| page.redraw_ms);
         (health.watching, health.malformed, health.refused) = (counts.watching, counts.malformed, counts.refused);
     }
+}
 
-    /// Takes what the page that acts says.
-    pub(super) fn hear(&mut self, input: PageInput) {
-        if self.engine.session().phase == Phase::Closed {
-            return;
-        }
-        match input {
+/// What an input of the page is to the session, and to the wizard.
+#[derive(Debug, Default)]
+pub(super) struct PageEvent {
+    pub event: Option<Event>,
+    pub notice: Option<(NoticeLevel, String)>,
+}
+
+impl PageEvent {
+    /// Of what the page that acts says. `now` is the session's time.
+    pub fn from_input(input: PageInput, session: &Session, now: SessionTime) -> PageEvent {
+        let event = match input {
             PageInput::Connected { width_px, height_px } => {
-                self.input(Event::Display(DisplayEvent::Connected { width_px, height_px }));
-                self.model
-                    .say(NoticeLevel::Done, format!("the participant's display is there, {width_px}x{height_px}"));
+                let text = format!("the participant's display is there, {width_px}x{height_px}");
+                let event = Event::Display(DisplayEvent::Connected { width_px, height_px });
+                return PageEvent { event: Some(event), notice: Some((NoticeLevel::Done, text)) };
             }
             PageInput::Lost => {
-                self.input(Event::Display(DisplayEvent::Lost));
-                self.model.say(
-                    NoticeLevel::Alarm,
-                    "the participant's display is gone: it comes back by itself, or open it again",
-                );
+                let text = "the participant's display is gone: it comes back by itself, or open it again";
+                let event = Event::Display(DisplayEvent::Lost);
+                return PageEvent { event: Some(event), notice: Some((NoticeLevel::Alarm, text.to_string())) };
             }
-            PageInput::Press { button, at } => self.press(button, at),
+            PageInput::Press { button, at } => return press(button, at, session, now),
             PageInput::Pointer { x, y } => {
-                if self.engine.session().spec.participant.gaze == GazeSource::Mouse {
-                    self.input(Event::Gaze(GazeSample::new(x, y, 1.0)));
-                }
+                let is_gaze = session.spec.participant.gaze == GazeSource::Mouse;
+                is_gaze.then(|| Event::Gaze(GazeSample::new(x, y, 1.0)))
             }
-            PageInput::Answer { item, rated: Some(answer) } => {
-                self.answer(ProtocolEvent::ItemAnswered { item, answer });
+            PageInput::Answer { item, rated: Some(rated) } => {
+                answer(ProtocolEvent::ItemAnswered { item, answer: rated }, session)
             }
-            PageInput::Answer { item, rated: None } => self.answer(ProtocolEvent::ItemSkipped { item }),
-            PageInput::Back { item } => self.answer(ProtocolEvent::ItemShown { item }),
-            PageInput::Confirm => self.answer(ProtocolEvent::AnswersConfirmed),
+            PageInput::Answer { item, rated: None } => answer(ProtocolEvent::ItemSkipped { item }, session),
+            PageInput::Back { item } => answer(ProtocolEvent::ItemShown { item }, session),
+            PageInput::Confirm => answer(ProtocolEvent::AnswersConfirmed, session),
             PageInput::Drawn { cue, at } => {
-                let at_ns = self.session_time_of(at);
-                self.input(Event::Display(DisplayEvent::Drawn { cue, at_ns }));
+                Some(Event::Display(DisplayEvent::Drawn { cue, at_ns: session_time(at, now) }))
             }
-        }
+        };
+        PageEvent { event, notice: None }
     }
+}
 
-    /// A press of the participant. It is stamped when it is taken, since the log's time never runs back, and what became
-    /// of the kitchen until then was there before it; when the button went down stands beside it.
-    fn press(&mut self, button: String, at: Instant) {
-        if self.engine.session().kitchen.button_named(Agent::Human, &button).is_none() {
-            self.model.say(NoticeLevel::Refused, "the display told a button that the kitchen does not have");
-            return;
-        }
-        let at_ns = Some(self.session_time_of(at));
-        self.input(Event::Press { agent: Agent::Human, button, at_ns });
+/// A press of the participant. It is stamped when it is taken, since the log's time never runs back, and what became
+/// of the kitchen until then was there before it; when the button went down stands beside it.
+fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> PageEvent {
+    if session.kitchen.button_named(Agent::Human, &button).is_none() {
+        let text = "the display told a button that the kitchen does not have".to_string();
+        return PageEvent { event: None, notice: Some((NoticeLevel::Refused, text)) };
     }
+    let at_ns = Some(session_time(at, now));
+    PageEvent { event: Some(Event::Press { agent: Agent::Human, button, at_ns }), notice: None }
+}
 
-    /// Answers come from the display only where the session says so.
-    fn answer(&mut self, event: ProtocolEvent) {
-        if self.engine.session().spec.display.questionnaire == Answering::Display {
-            self.input(Event::Protocol(event));
-        }
-    }
+/// Answers come from the display only where the session says so.
+fn answer(event: ProtocolEvent, session: &Session) -> Option<Event> {
+    (session.spec.display.questionnaire == Answering::Display).then_some(Event::Protocol(event))
+}
 
-    /// The session time of a moment that is a little ago.
-    fn session_time_of(&mut self, at: Instant) -> SessionTime {
-        let now = self.clock.now();
-        let age_ns = Instant::now().saturating_duration_since(at).as_nanos() as u64;
-        SessionTime(now.0.saturating_sub(age_ns))
-    }
+/// The session time of a moment that is a little ago.
+fn session_time(at: Instant, now: SessionTime) -> SessionTime {
+    let age_ns = Instant::now().saturating_duration_since(at).as_nanos() as u64;
+    SessionTime(now.0.saturating_sub(age_ns))
 }

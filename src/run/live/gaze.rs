@@ -1,11 +1,10 @@
-//! Gaze and what else a tracker tells, on its way into the session; and what the tracker's program is told of the trial.
+//! Gaze and what else a tracker tells, as events of the session; and what the tracker's program is told of the trial.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use tokio::sync::mpsc::Sender;
-use tokio::time::Instant;
 
-use super::Live;
 use crate::base::time::SessionTime;
 use crate::edge::gaze_file::GazeFile;
 use crate::edge::gaze_input::{GazeNews, SampleTime};
@@ -15,10 +14,7 @@ use crate::gaze::device_clock::DeviceClock;
 use crate::gaze::quality::{DropCounts, RateLimit};
 use crate::run::desk::GazeTracker;
 use crate::session::tracker::TrackerEvent;
-use crate::session::{Event, Phase, Stamped};
-
-/// So many news are taken at once at most: keys come before them.
-const PACKET: usize = 32;
+use crate::session::{Event, Phase, Session};
 
 /// The recording's side of the tracker.
 #[derive(Debug, Default)]
@@ -29,128 +25,129 @@ pub(super) struct GazeInput {
     /// Gaze that is replayed, and the place of the next sample in it.
     file: Option<Arc<GazeFile>>,
     next: usize,
-    /// Where Capture takes orders.
-    orders: Option<Sender<CaptureRequest>>,
-    is_recording: bool,
 }
 
-impl Live {
-    /// Takes up with the tracker at the beginning of a recording: what is known of it is told again.
-    pub(super) fn greet(&mut self, tracker: &GazeTracker) {
-        self.gaze.file = tracker.file();
-        self.gaze.orders = tracker.orders();
-        if let Some(file) = &self.gaze.file {
-            self.gaze.dropped.malformed = file.malformed;
-        }
-        let session = self.engine.session();
-        if let Some(file) = self.gaze.file.as_ref().filter(|_| session.phase != Phase::Ready) {
-            let clock_s = session.trial_clock(session.time).as_secs_f64();
-            self.gaze.next = file.samples.iter().take_while(|(at_s, _)| *at_s < clock_s).count();
-        }
-        for news in tracker.known() {
-            self.take_gaze(news);
-        }
-        // A trial that goes on after a cut.
-        if matches!(self.engine.session().phase, Phase::Running | Phase::Paused) {
-            self.order_recording();
-        }
+impl GazeInput {
+    /// Of a recording that begins, or goes on from this session.
+    pub fn at(tracker: &GazeTracker, session: &Session) -> GazeInput {
+        let Some(file) = tracker.file() else { return GazeInput::default() };
+        let dropped = DropCounts { malformed: file.malformed, ..DropCounts::default() };
+        let clock_s = session.trial_clock(session.time).as_secs_f64();
+        let is_past = |(at_s, _): &&(f64, GazeSample)| session.phase != Phase::Ready && *at_s < clock_s;
+        let next = file.samples.iter().take_while(is_past).count();
+        GazeInput { dropped, file: Some(file), next, ..GazeInput::default() }
     }
 
-    /// Takes news of the tracker, and what came with them: samples come in packets.
-    pub(super) fn take_all(&mut self, first: GazeNews, tracker: &mut GazeTracker) {
-        let mut next = Some(first);
-        for _ in 0..PACKET {
-            let Some(news) = next else { return };
-            self.take_gaze(news);
-            next = tracker.ready();
-        }
-        if let Some(news) = next {
-            self.take_gaze(news);
-        }
-    }
-
-    /// Takes news of the tracker.
-    pub(super) fn take_gaze(&mut self, news: GazeNews) {
-        match news {
-            GazeNews::Sample(sample, at) => self.sample(sample, at),
-            GazeNews::Malformed(count) => self.gaze.dropped.malformed += count,
-            GazeNews::Overrun(count) => self.gaze.dropped.overrun += count,
-            GazeNews::Began => self.gaze.clock = DeviceClock::default(),
-            GazeNews::Connected(device) => self.tracker(TrackerEvent::Connected { device }),
-            GazeNews::Lost(reason) => self.tracker(TrackerEvent::Lost { reason }),
-            GazeNews::SeesDisplay(true) => self.tracker(TrackerEvent::DisplayFound),
-            GazeNews::SeesDisplay(false) => self.tracker(TrackerEvent::DisplayLost),
+    /// The event of the tracker's news; none of those that are only counted.
+    pub fn event(&mut self, news: GazeNews, now: SessionTime) -> Option<Event> {
+        let tracker = match news {
+            GazeNews::Sample(sample, at) => return self.sample(sample, at, now),
+            GazeNews::Malformed(count) => {
+                self.dropped.malformed += count;
+                return None;
+            }
+            GazeNews::Overrun(count) => {
+                self.dropped.overrun += count;
+                return None;
+            }
+            GazeNews::Began => {
+                self.clock = DeviceClock::default();
+                return None;
+            }
+            GazeNews::Connected(device) => TrackerEvent::Connected { device },
+            GazeNews::Lost(reason) => TrackerEvent::Lost { reason },
+            GazeNews::SeesDisplay(true) => TrackerEvent::DisplayFound,
+            GazeNews::SeesDisplay(false) => TrackerEvent::DisplayLost,
             GazeNews::Fixation(found) => {
                 let (duration_ms, dispersion_deg) = (found.duration_ms, found.dispersion_deg);
-                let (device_ns, began_ns) = (found.began.device_ns, self.session_time(found.began));
+                let (device_ns, began_ns) = (found.began.device_ns, session_time(found.began, now));
                 let (at, confidence) = (found.at, found.confidence);
-                let event = TrackerEvent::Fixation { at, duration_ms, dispersion_deg, confidence, device_ns, began_ns };
-                self.tracker(event);
+                TrackerEvent::Fixation { at, duration_ms, dispersion_deg, confidence, device_ns, began_ns }
             }
             GazeNews::Blink { is_onset, confidence, taken } => {
-                let (device_ns, taken_ns) = (taken.device_ns, self.session_time(taken));
-                self.tracker(TrackerEvent::Blink { closed: is_onset, confidence, device_ns, taken_ns });
+                let (device_ns, taken_ns) = (taken.device_ns, session_time(taken, now));
+                TrackerEvent::Blink { closed: is_onset, confidence, device_ns, taken_ns }
             }
-        }
+        };
+        Some(Event::Tracker(tracker))
     }
 
-    fn tracker(&mut self, event: TrackerEvent) {
-        self.input(Event::Tracker(event));
-    }
-
-    fn sample(&mut self, sample: GazeSample, at: Option<std::time::Instant>) {
-        let now = self.clock.now();
-        if !self.gaze.limit.admits(now) {
-            self.gaze.dropped.too_frequent += 1;
-            return;
+    fn sample(&mut self, sample: GazeSample, at: Option<Instant>, now: SessionTime) -> Option<Event> {
+        if !self.limit.admits(now) {
+            self.dropped.too_frequent += 1;
+            return None;
         }
         let taken_ns = match (at, sample.device_ns) {
             (Some(at), _) => Some(ago(now, at)),
-            (None, Some(device_ns)) => Some(self.gaze.clock.session_time(device_ns, now)),
+            (None, Some(device_ns)) => Some(self.clock.session_time(device_ns, now)),
             (None, None) => None,
         };
-        self.input(Event::Gaze(GazeSample { taken_ns, ..sample }));
+        Some(Event::Gaze(GazeSample { taken_ns, ..sample }))
     }
 
-    fn session_time(&mut self, taken: SampleTime) -> SessionTime {
-        let now = self.clock.now();
-        taken.at.map_or(now, |at| ago(now, at))
+    /// How much could not be recorded, if that is more than the session was told.
+    pub fn drops(&self, session: &Session) -> Option<Event> {
+        let is_news = self.dropped != session.tracker.dropped && session.phase != Phase::Closed;
+        is_news.then_some(Event::Tracker(TrackerEvent::Dropped(self.dropped)))
     }
 
-    /// Tells how much could not be recorded, if it got more.
-    pub(super) fn tell_drops(&mut self) {
-        let session = self.engine.session();
-        if self.gaze.dropped != session.tracker.dropped && session.phase != Phase::Closed {
-            self.tracker(TrackerEvent::Dropped(self.gaze.dropped));
+    /// When the next sample of replayed gaze is due; none while the trial stands.
+    pub fn file_due(&self, session: &Session) -> Option<SessionTime> {
+        let (at_s, _) = self.file.as_ref()?.samples.get(self.next)?;
+        session.is_running().then(|| session_time_in_file(session, *at_s))
+    }
+
+    /// The next sample of replayed gaze.
+    pub fn next_of_file(&mut self, session: &Session) -> Option<Event> {
+        let (at_s, sample) = self.file.as_ref()?.samples.get(self.next).copied()?;
+        self.next += 1;
+        let taken = session_time_in_file(session, at_s);
+        Some(Event::Gaze(GazeSample { taken_ns: Some(taken), ..sample }))
+    }
+}
+
+/// The session time of a moment of a file, in seconds of the trial's clock.
+fn session_time_in_file(session: &Session, at_s: f64) -> SessionTime {
+    session.trial_start + session.paused_total + SessionTime::from_secs_f64(at_s)
+}
+
+fn session_time(taken: SampleTime, now: SessionTime) -> SessionTime {
+    taken.at.map_or(now, |at| ago(now, at))
+}
+
+/// The session time of a moment that is not after now.
+fn ago(now: SessionTime, at: Instant) -> SessionTime {
+    now - SessionTime(at.elapsed().as_nanos().min(u128::from(u64::MAX)) as u64)
+}
+
+/// What Pupil Capture is told of a recording.
+#[derive(Debug, Default)]
+pub(super) struct CaptureOrders {
+    /// Where Capture takes orders, if it is there.
+    orders: Option<Sender<CaptureRequest>>,
+    /// The name of the recording.
+    name: String,
+    is_recording: bool,
+}
+
+impl CaptureOrders {
+    /// Takes up with Capture for a recording of this name. A trial that goes on after a cut is recorded from now on.
+    pub fn begin(tracker: &GazeTracker, name: String, session: &Session) -> CaptureOrders {
+        let mut capture = CaptureOrders { orders: tracker.orders(), name, is_recording: false };
+        if matches!(session.phase, Phase::Running | Phase::Paused) {
+            capture.record();
         }
+        capture
     }
 
-    /// When the next sample of replayed gaze is due; nothing while the trial stands.
-    pub(super) fn next_recorded(&self) -> Option<Instant> {
-        let (at_s, _) = self.gaze.file.as_ref()?.samples.get(self.gaze.next)?;
-        let session = self.engine.session();
-        let time = session.trial_start + session.paused_total + SessionTime::from_secs_f64(*at_s);
-        session.is_running().then(|| Instant::from_std(self.clock.instant_of(time)))
-    }
-
-    /// Takes the next sample of replayed gaze.
-    pub(super) fn take_recorded(&mut self) {
-        let next = self.gaze.file.as_ref().and_then(|file| file.samples.get(self.gaze.next)).copied();
-        let Some((at_s, sample)) = next else { return };
-        self.gaze.next += 1;
-        let session = self.engine.session();
-        let taken = session.trial_start + session.paused_total + SessionTime::from_secs_f64(at_s);
-        self.input(Event::Gaze(GazeSample { taken_ns: Some(taken), ..sample }));
-    }
-
-    /// Tells Capture what happens in the trial.
-    pub(super) fn tell_tracker(&mut self, stamped: &Stamped) {
-        if self.gaze.orders.is_none() {
+    /// Tells what happens in the trial; `at` is when it did.
+    pub fn tell(&mut self, event: &Event, at: Instant) {
+        if self.orders.is_none() {
             return;
         }
-        let label = match &stamped.event {
+        let label = match event {
             Event::TrialStarted => {
-                self.order_recording();
+                self.record();
                 "trial started".to_string()
             }
             Event::TrialPaused => "trial paused".to_string(),
@@ -163,29 +160,23 @@ impl Live {
             _ => return,
         };
         if !label.is_empty() {
-            self.order(CaptureRequest::Annotate(label, self.clock.instant_of(stamped.time)));
+            self.order(CaptureRequest::Annotate(label, at));
         }
-        let ends = matches!(stamped.event, Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded);
-        if ends && std::mem::take(&mut self.gaze.is_recording) {
+        let ends = matches!(event, Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded);
+        if ends && std::mem::take(&mut self.is_recording) {
             self.order(CaptureRequest::StopRecording);
         }
     }
 
-    fn order_recording(&mut self) {
-        let name = self.log.folder().file_name().unwrap_or_default().to_string_lossy().into_owned();
-        self.gaze.is_recording = true;
-        self.order(CaptureRequest::Record(name));
+    fn record(&mut self) {
+        self.is_recording = true;
+        self.order(CaptureRequest::Record(self.name.clone()));
     }
 
     /// Capture is told as long as it listens; that it does not is said in the health line.
     fn order(&self, order: CaptureRequest) {
-        if let Some(orders) = &self.gaze.orders {
+        if let Some(orders) = &self.orders {
             let _ = orders.try_send(order);
         }
     }
-}
-
-/// The session time of a moment that is not after now.
-fn ago(now: SessionTime, at: std::time::Instant) -> SessionTime {
-    now - SessionTime(at.elapsed().as_nanos().min(u128::from(u64::MAX)) as u64)
 }

@@ -1,15 +1,18 @@
-//! What comes in: messages of the terminal, the assistant's answers, gaze.
+//! What comes in, on its way into the engine: messages of the terminal, gaze, the participant's page, the assistant's answers.
 
-use super::Live;
-use crate::communication::recommendation::Recommendation;
+use super::display::PageEvent;
+use super::live_session::Live;
+use crate::console::notice::NoticeLevel;
 use crate::console::{ConsoleCommand, ConsoleMessage, update};
+use crate::edge::gaze_input::GazeNews;
 use crate::gaze::GazeSample;
+use crate::run::desk::PageInput;
 use crate::run::leaving::LeavingReason;
-use crate::session::Event;
+use crate::session::{Event, Phase};
 
 impl Live {
     /// Takes a message of the terminal; how the wizard leaves the recording, if that is what it says.
-    pub(super) fn take(&mut self, message: ConsoleMessage) -> Option<LeavingReason> {
+    pub(super) fn take_message(&mut self, message: ConsoleMessage) -> Option<LeavingReason> {
         self.tick();
         self.dirty |= !matches!(message, ConsoleMessage::Pointer(..));
         match update(&mut self.model, self.engine.session(), message) {
@@ -26,23 +29,56 @@ impl Live {
         None
     }
 
+    /// Gives an event to the engine, and records what comes of it. The wizard is told why something was refused: of gaze,
+    /// and of advice that comes when the trial is over, there is nothing to tell.
     pub(super) fn input(&mut self, event: Event) {
-        let is_gaze = matches!(event, Event::Gaze(_));
+        let is_silent = matches!(event, Event::Gaze(_) | Event::Advised(_));
         let outcome = self.engine.input(self.clock.now(), event);
         self.record(&outcome.events);
-        if let Some(reason) = outcome.refused.filter(|_| !is_gaze) {
-            update(&mut self.model, self.engine.session(), ConsoleMessage::Refused(reason));
+        if let Some(reason) = outcome.refused.filter(|_| !is_silent) {
+            self.model.say(NoticeLevel::Refused, reason);
         }
     }
 
-    /// Takes the assistant's answer; one that comes when the trial is over is of no use any more.
-    pub(super) fn advise(&mut self, advice: Recommendation) {
-        let outcome = self.engine.input(self.clock.now(), Event::Advised(advice));
-        self.record(&outcome.events);
+    /// Lets the engine do what is due.
+    pub(super) fn fire(&mut self) {
+        let events = self.engine.fire();
+        // Most cycles of the arm tell nothing.
+        if !events.is_empty() {
+            self.record(&events);
+        }
+    }
+
+    /// Takes what the page that acts says.
+    pub(super) fn hear(&mut self, input: PageInput) {
+        if self.engine.session().phase == Phase::Closed {
+            return;
+        }
+        let PageEvent { event, notice } = PageEvent::from_input(input, self.engine.session(), self.clock.now());
+        if let Some(event) = event {
+            self.input(event);
+        }
+        if let Some((level, text)) = notice {
+            self.model.say(level, text);
+        }
+    }
+
+    /// Takes news of the tracker.
+    pub(super) fn take_gaze(&mut self, news: GazeNews) {
+        if let Some(event) = self.gaze.event(news, self.clock.now()) {
+            self.input(event);
+        }
+    }
+
+    /// Takes the next sample of replayed gaze.
+    pub(super) fn take_file_gaze(&mut self) {
+        if let Some(event) = self.gaze.next_of_file(self.engine.session()) {
+            self.input(event);
+        }
     }
 
     /// The pointer as a gaze sample; nobody has moved it yet: no sample.
-    pub(super) fn look(&mut self) {
+    pub(super) fn sample_pointer(&mut self) {
         if let Some([x, y]) = self.model.pointer {
             self.input(Event::Gaze(GazeSample::new(x, y, 1.0)));
         }

@@ -1,6 +1,7 @@
 //! Every event into the log, and to whoever else wants to know of it; what is done when that fails.
 
-use super::Live;
+use super::live_session::Live;
+use super::viewing::StreamedSession;
 use crate::console::model::RecordingStatus;
 use crate::console::notice::NoticeLevel;
 use crate::edge::doctor::free_bytes;
@@ -22,9 +23,9 @@ impl Live {
                 }
                 _ => {}
             }
-            self.tell_tracker(stamped);
-            if let Some(watch) = &self.watch {
-                watch.tell(stamped);
+            self.capture.tell(&stamped.event, self.clock.instant_of(stamped.time));
+            if let Some(comparison) = &self.comparison {
+                comparison.tell(stamped);
             }
             if self.failed.is_none()
                 && let Err(error) = self.log.append(stamped)
@@ -49,10 +50,20 @@ impl Live {
         let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
         self.model.errors.extend(new);
         self.judged = judged.len();
-        self.view(events);
+        if let Some(viewing) = &mut self.viewing {
+            viewing.view(events, &self.engine);
+        }
     }
 
+    /// Hands what waits to the operating system and to Rerun's viewers.
     pub(super) fn flush(&mut self) {
+        self.flush_log();
+        if let Some(viewing) = &mut self.viewing {
+            viewing.view_motion(self.clock.now());
+        }
+    }
+
+    pub(super) fn flush_log(&mut self) {
         if self.failed.is_none()
             && let Err(error) = self.log.flush()
         {
@@ -62,14 +73,16 @@ impl Live {
 
     /// Whether the recording is still where it should be, and whether the clock jumped.
     pub(super) fn watch(&mut self) {
-        self.look_at_display();
+        self.examine_display();
         if let Some(by_ms) = self.clock.jump() {
             self.input(Event::ClockJumped { by_ms });
             let text = format!("the clock jumped by {:.1} s: session time did not", by_ms as f64 / 1000.0);
             self.model.say(NoticeLevel::Alarm, text);
         }
-        self.tell_viewing();
-        self.tell_drops();
+        self.model.viewers = self.viewing.as_ref().map(StreamedSession::status);
+        if let Some(drops) = self.gaze.drops(self.engine.session()) {
+            self.input(drops);
+        }
         if self.engine.session().phase == Phase::Ready {
             self.model.free_bytes = free_bytes(self.log.folder()).ok();
         }

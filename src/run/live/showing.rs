@@ -1,11 +1,9 @@
-//! The wizard's screen, and the record of what it shows.
+//! The screens of wizard and participant, and the record of what the wizard's shows.
 
-use std::io;
-
-use super::Live;
-use crate::console::screen::screen as on_screen;
-use crate::edge::terminal::TerminalScreen;
+use super::live_session::Live;
+use crate::console::screen::screen;
 use crate::run::watch_desk::ComparisonDesk;
+use crate::session::display::DisplayEvent;
 use crate::session::{Event, Phase};
 
 impl Live {
@@ -15,32 +13,59 @@ impl Live {
         self.model.clock = self.model.now;
     }
 
-    pub(super) fn draw(&mut self, screen: &mut TerminalScreen) -> io::Result<()> {
+    /// Makes up what the frame that is drawn now shows, and records it.
+    pub(super) fn prepare_frame(&mut self) {
         self.tick();
         if let (Some(newest), Some(compared)) =
-            (self.watch.as_ref().and_then(ComparisonDesk::newest), &mut self.model.comparison)
+            (self.comparison.as_ref().and_then(ComparisonDesk::newest), &mut self.model.comparison)
         {
             compared.show(newest);
         }
-        let is_ready = screen.is_ready();
-        if is_ready {
-            self.tell_screen();
-        }
-        // A terminal that is still busy with the last frame gets this one later.
-        self.dirty = !is_ready;
-        screen.draw(self.engine.session(), &self.model)?;
-        if let Some(signal) = self.undrawn.take_if(|_| is_ready && self.engine.session().phase != Phase::Closed) {
-            self.input(Event::SignalDrawn { signal });
-        }
-        Ok(())
+        self.tell_screen();
+        self.dirty = false;
     }
 
     /// Records what the wizard is about to see, if that is something else than before.
-    pub(super) fn tell_screen(&mut self) {
-        let now = on_screen(self.engine.session(), &self.model);
+    fn tell_screen(&mut self) {
+        let now = screen(self.engine.session(), &self.model);
         if self.engine.session().phase != Phase::Closed && self.seen.as_ref() != Some(&now) {
             self.seen = Some(now.clone());
             self.input(Event::Screen(now));
+        }
+    }
+
+    /// Records that the frame which was just drawn is the first one with a signal.
+    pub(super) fn tell_drawn(&mut self) {
+        if let Some(signal) = self.undrawn.take_if(|_| self.engine.session().phase != Phase::Closed) {
+            self.input(Event::SignalDrawn { signal });
+        }
+    }
+
+    /// Builds the participant's display for this recording.
+    pub(super) fn build_display(&mut self) {
+        if let Some(display) = &self.display {
+            display.build(self.engine.session());
+        }
+        self.examine_display();
+        // The page may have been there before this recording.
+        let page = self.model.display.as_ref().and_then(|display| display.page);
+        if let Some([width_px, height_px]) = page {
+            self.input(Event::Display(DisplayEvent::Connected { width_px, height_px }));
+        }
+        self.show_participant();
+    }
+
+    /// Shows the participant what is to be seen now.
+    pub(super) fn show_participant(&mut self) {
+        if let Some(display) = &mut self.display {
+            display.show(self.engine.session());
+        }
+    }
+
+    /// Tells the wizard how the participant's display is.
+    pub(super) fn examine_display(&mut self) {
+        if let (Some(display), Some(health)) = (&self.display, &mut self.model.display) {
+            display.examine(health);
         }
     }
 }

@@ -2,16 +2,15 @@
 
 use std::net::SocketAddr;
 
-use super::Live;
 use crate::base::time::SessionTime;
 use crate::console::model::ViewerStreamStatus;
-use crate::console::notice::NoticeLevel;
 use crate::edge::log::{LOG_NAME, LogWriter};
 use crate::edge::rerun::{StreamIdentity, uri};
 use crate::edge::rrd::{self, RRD_NAME};
 use crate::edge::stream::RerunStream;
+use crate::run::engine::Engine;
 use crate::scene::{DerivedData, SessionScene};
-use crate::session::Stamped;
+use crate::session::{Header, Session, Stamped};
 
 /// What moves between events is shown so late, so that no event of before is still to come.
 const BEHIND: SessionTime = SessionTime(100_000_000);
@@ -25,72 +24,66 @@ pub(super) struct StreamedSession {
 }
 
 impl StreamedSession {
-    /// Ends the stream. The log is complete by now: a file that shows all of it is sealed.
-    pub(super) fn close(self, log: &LogWriter) {
-        if let Some(file) = self.stream.close().filter(|_| self.is_whole) {
-            // Without its seal it is made anew when somebody asks for it.
-            let _ = rrd::seal(&file, &[log.folder().join(LOG_NAME)]);
-        }
-    }
-}
-
-impl Live {
-    /// Opens the stream, where the session asks for one; the recording begins here, unless it goes on from an earlier part.
-    /// Its next event has the number `next`. A stream that cannot be opened is told, and the session goes on without it.
-    pub(super) fn begin_viewing(&mut self, is_new: bool, next: u64) {
-        let session = self.engine.session();
-        let spec = session.spec.rerun.clone();
+    /// Opens the stream of a recording, whose next event has the number `next`; none, where the session asks for none.
+    /// `is_whole`: the recording does not go on from an earlier part.
+    ///
+    /// # Errors
+    /// The stream cannot be opened, for this reason; the session can go on without it.
+    pub fn open(
+        session: &Session,
+        header: &Header,
+        log: &mut LogWriter,
+        next: u64,
+        is_whole: bool,
+    ) -> Result<Option<StreamedSession>, String> {
+        let spec = &session.spec.rerun;
         if !spec.is_on() {
-            return;
+            return Ok(None);
         }
         let mut scene = SessionScene::new(session, next);
         let (fixed, opening) = (scene.fixed(), scene.opening());
-        let folder = self.log.folder();
+        let folder = log.folder();
         let file = spec.record.then(|| folder.join(RRD_NAME));
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let began = self.header.started.as_deref().unwrap_or_default();
-        let whole = if is_new { rrd::mark() } else { "part".to_string() };
+        let began = header.started.as_deref().unwrap_or_default();
+        let whole = if is_whole { rrd::mark() } else { "part".to_string() };
         let identity = StreamIdentity { id: format!("{name} {began} {whole}"), name };
         let address = spec.live.then(|| spec.address.parse::<SocketAddr>()).transpose();
-        let opened = address.map_err(|error| format!("{}: {error}", spec.address)).and_then(|server| {
-            RerunStream::open(&identity, file.as_deref(), server, fixed, opening).map_err(|error| error.to_string())
-        });
-        match opened {
-            Ok(stream) => {
-                if let Some(server) = stream.server {
-                    self.log.announce(&uri(server));
-                }
-                self.viewing = Some(StreamedSession { scene, stream, is_whole: is_new });
-            }
-            Err(reason) => self.model.say(NoticeLevel::Alarm, format!("the session goes on without Rerun: {reason}")),
+        let server = address.map_err(|error| format!("{}: {error}", spec.address))?;
+        let stream = RerunStream::open(&identity, file.as_deref(), server, fixed, opening);
+        let stream = stream.map_err(|error| error.to_string())?;
+        if let Some(server) = stream.server {
+            log.announce(&uri(server));
         }
-        self.tell_viewing();
+        Ok(Some(StreamedSession { scene, stream, is_whole }))
     }
 
     /// Shows what has just been recorded.
-    pub(super) fn view(&mut self, events: &[Stamped]) {
-        let Some(StreamedSession { scene, stream, .. }) = &mut self.viewing else { return };
-        let judged = self.engine.judged();
+    pub fn view(&mut self, events: &[Stamped], engine: &Engine) {
+        let judged = engine.judged();
         for (index, stamped) in events.iter().enumerate() {
-            let belief = (index + 1 == events.len()).then(|| self.engine.belief());
-            stream.tell(scene.see(stamped, DerivedData { judged, belief }));
+            let belief = (index + 1 == events.len()).then(|| engine.belief());
+            self.stream.tell(self.scene.see(stamped, DerivedData { judged, belief }));
         }
     }
 
     /// Shows what moved since the last event.
-    pub(super) fn view_motion(&mut self) {
-        let until = self.clock.now() - BEHIND;
-        if let Some(StreamedSession { scene, stream, .. }) = &mut self.viewing {
-            stream.tell(scene.until(until));
-        }
+    pub fn view_motion(&mut self, now: SessionTime) {
+        self.stream.tell(self.scene.until(now - BEHIND));
     }
 
-    /// Tells the console how the stream fares.
-    pub(super) fn tell_viewing(&mut self) {
-        self.model.viewers = self.viewing.as_ref().map(|StreamedSession { stream, .. }| {
-            let fares = stream.fares();
-            let address = stream.server.map(|address| address.to_string());
-            ViewerStreamStatus { address, written: fares.written, dropped: fares.dropped }
-        });
+    /// How the stream fares.
+    pub fn status(&self) -> ViewerStreamStatus {
+        let fares = self.stream.fares();
+        let address = self.stream.server.map(|address| address.to_string());
+        ViewerStreamStatus { address, written: fares.written, dropped: fares.dropped }
+    }
+
+    /// Ends the stream. The log is complete by now: a file that shows all of it is sealed.
+    pub fn close(self, log: &LogWriter) {
+        if let Some(file) = self.stream.close().filter(|_| self.is_whole) {
+            // Without its seal it is made anew when somebody asks for it.
+            let _ = rrd::seal(&file, &[log.folder().join(LOG_NAME)]);
+        }
     }
 }

@@ -1,8 +1,10 @@
 //! A live session in a build without the feature `display`: sessions whose participant is at a display were refused before.
 
-use super::Live;
+use crate::base::time::SessionTime;
 use crate::console::display::DisplayHealth;
+use crate::console::notice::NoticeLevel;
 use crate::run::desk::{OperatorDesk, PageInput};
+use crate::session::{Event, Session};
 
 /// No display: this type has no value.
 pub(super) enum ParticipantDisplay {}
@@ -12,20 +14,32 @@ impl ParticipantDisplay {
     pub fn at(_: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<DisplayHealth>) {
         (None, None)
     }
-}
 
-impl Live {
-    /// Nothing is shown to the participant.
-    pub(super) fn build_display(&mut self) {}
+    /// There is nothing to build.
+    pub fn build(&self, _: &Session) {
+        match *self {}
+    }
 
     /// Nothing is shown to the participant.
-    pub(super) fn show_participant(&mut self) {}
+    pub fn show(&mut self, _: &Session) {
+        match *self {}
+    }
 
     /// There is nothing to look at.
-    pub(super) fn look_at_display(&mut self) {}
+    pub fn examine(&self, _: &mut DisplayHealth) {
+        match *self {}
+    }
+}
 
+/// What an input of the page is to the session, and to the wizard.
+pub(super) struct PageEvent {
+    pub event: Option<Event>,
+    pub notice: Option<(NoticeLevel, String)>,
+}
+
+impl PageEvent {
     /// Nothing comes from a display.
-    pub(super) fn hear(&mut self, input: PageInput) {
+    pub fn from_input(input: PageInput, _: &Session, _: SessionTime) -> PageEvent {
         match input {}
     }
 }

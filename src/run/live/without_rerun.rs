@@ -1,37 +1,48 @@
 //! A live session in a build without the feature `rerun`: no stream is written. Where the session asks for one the wizard
 //! is told, as where a stream cannot be opened.
 
-use super::Live;
 use crate::base::features::{Feature, NotBuilt};
-use crate::console::notice::NoticeLevel;
+use crate::base::time::SessionTime;
+use crate::console::model::ViewerStreamStatus;
 use crate::edge::log::LogWriter;
-use crate::session::Stamped;
+use crate::run::engine::Engine;
+use crate::session::{Header, Session, Stamped};
 
 /// No stream: this type has no value.
 pub(super) enum StreamedSession {}
 
 impl StreamedSession {
-    /// There is nothing to end.
-    pub(super) fn close(self, _: &LogWriter) {
-        match self {}
-    }
-}
-
-impl Live {
-    /// Tells the wizard that no stream is opened, where the session asks for one.
-    pub(super) fn begin_viewing(&mut self, _: bool, _: u64) {
-        if self.engine.session().spec.rerun.is_on() {
-            self.model
-                .say(NoticeLevel::Alarm, format!("the session goes on without Rerun: {}", NotBuilt(Feature::Rerun)));
-        }
+    /// Opens no stream.
+    ///
+    /// # Errors
+    /// The session asks for one.
+    pub fn open(
+        session: &Session,
+        _: &Header,
+        _: &mut LogWriter,
+        _: u64,
+        _: bool,
+    ) -> Result<Option<StreamedSession>, String> {
+        if session.spec.rerun.is_on() { Err(NotBuilt(Feature::Rerun).to_string()) } else { Ok(None) }
     }
 
     /// Nothing is streamed.
-    pub(super) fn view(&mut self, _: &[Stamped]) {}
+    pub fn view(&mut self, _: &[Stamped], _: &Engine) {
+        match *self {}
+    }
 
     /// Nothing is streamed.
-    pub(super) fn view_motion(&mut self) {}
+    pub fn view_motion(&mut self, _: SessionTime) {
+        match *self {}
+    }
 
     /// There is nothing to tell.
-    pub(super) fn tell_viewing(&mut self) {}
+    pub fn status(&self) -> ViewerStreamStatus {
+        match *self {}
+    }
+
+    /// There is nothing to end.
+    pub fn close(self, _: &LogWriter) {
+        match self {}
+    }
 }

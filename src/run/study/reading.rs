@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::rows::{PressFacts, RowCollector};
 use super::sweep::ConceptSweep;
+use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::follower::Follower;
 use crate::analysis::watcher::{CompareRequest, ComparisonFollower};
 use crate::analysis::wizard_log::{WizardLog, clock_at};
@@ -18,11 +19,11 @@ use crate::kitchen::{Agent, AspectId, Change, Kitchen};
 use crate::measures::attribution::{Attributor, Cause};
 use crate::measures::coding::{CauseKind, Codable, Codes};
 use crate::measures::matching::{CommunicationEvent, WINDOW};
-use crate::measures::sequences::{Sequence, sequences, sequences_by_target};
+use crate::measures::sequences::{Sequence, sequence_errors, sequences, sequences_by_target};
 use crate::measures::{JudgedPress, median};
 use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
-use crate::run::standing::ExclusionStatus;
+use crate::run::standing::exclusion_status;
 use crate::session::apply::ApplyError;
 use crate::session::plan::PhaseSpec;
 use crate::session::protocol::{ItemAnswer, ProtocolEvent};
@@ -174,7 +175,7 @@ pub fn read(
             answers.extend(confirmed(&follower.session));
         }
     }
-    let standing = ExclusionStatus::from_recording(&pass.follower().session, &log)?;
+    let standing = exclusion_status(&pass.follower().session, &log)?;
     let raters = raters(&log, pass.follower())?;
     let lanes = lanes(&mut pass);
     let follower = pass.follower();
@@ -292,18 +293,6 @@ fn beliefs(follower: &Follower, judged: &[JudgedPress], basis: BeliefBasis) -> B
         recovery_s: all.iter().filter_map(recovery).collect(),
         episodes: (basis == BeliefBasis::Recorded).then(|| follower.episodes.harmful().count() as u64),
     }
-}
-
-/// The error sequences, each with its errors as indices of presses. Whatever a sequence is about, the errors of one follow
-/// each other.
-pub(super) fn sequence_errors(judged: &[JudgedPress]) -> Vec<(Sequence, Vec<usize>)> {
-    let is_related = |press: &JudgedPress| matches!(press.cause, Some(Cause::Belief { .. }));
-    let mut errors = judged.iter().enumerate().filter(|(_, press)| is_related(press)).map(|(index, _)| index);
-    let of_one = |sequence: Sequence| {
-        let own: Vec<usize> = errors.by_ref().take(sequence.length as usize).collect();
-        (sequence, own)
-    };
-    sequences(judged).into_iter().map(of_one).collect()
 }
 
 /// The answers that were just confirmed.

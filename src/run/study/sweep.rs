@@ -1,7 +1,6 @@
 //! What communication concepts would have done in an unassisted trial, for every value of their parameters at once: the
 //! dear part, the planning, is done once a moment, and all costs are swept over the same benefits.
 
-use super::reading::sequence_errors;
 use crate::analysis::advisor::AdviceRequest;
 use crate::analysis::advisor::changes_task;
 use crate::analysis::follower::Follower;
@@ -16,6 +15,7 @@ use crate::communication::tom::TomConcept;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Change};
 use crate::measures::attribution::Cause;
+use crate::measures::sequences::{Episode, Sequence, sequence_errors};
 use crate::session::apply::ApplyError;
 use crate::session::{Applied, Event, Session, Stamped};
 use crate::study::prevention::{ConceptSignal, FalseBeliefTruth, PressTruth, SequenceTruth, TrialTruth};
@@ -142,13 +142,13 @@ fn truth(follower: &Follower) -> TrialTruth {
         error: press.verdict.error,
         related: matches!(press.cause, Some(Cause::Belief { .. })),
     };
-    let spell = |episode: &crate::measures::sequences::Episode| FalseBeliefTruth {
+    let spell = |episode: &Episode| FalseBeliefTruth {
         aspect: episode.aspect,
         began: episode.began,
         ended: episode.corrected,
         harmful: episode.errors > 0,
     };
-    let sequence = |(sequence, errors): (crate::measures::sequences::Sequence, Vec<usize>)| SequenceTruth {
+    let sequence = |(sequence, errors): (Sequence, Vec<usize>)| SequenceTruth {
         aspects: sequence.target.aspects(kitchen).collect(),
         errors: errors.into_iter().map(|index| follower.judged[index].time).collect(),
     };

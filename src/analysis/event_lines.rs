@@ -1,15 +1,9 @@
 //! A recording in words: one line for each thing that happened, for pipes and plain terminals.
 
-use serde::Serialize;
-
-use super::standing::ExclusionStatus;
-use crate::analysis::follower::Follower;
-use crate::analysis::gaze_summary::{self, GazeSummary};
-use crate::analysis::trial_summary::{BeliefErrorSummary, TrialSummary};
+use super::follower::Follower;
 use crate::base::words::count;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
-use crate::edge::log::LogEnding;
 use crate::history::wording::{self, location as said};
 use crate::kitchen::{Agent, Kitchen};
 use crate::measures::attribution::Cause;
@@ -23,87 +17,6 @@ use crate::session::event::{EndReason, SignalEnd};
 use crate::session::preflight::{PreflightCheck, PreflightVerdict};
 use crate::session::screen::VisibleScreen;
 use crate::session::{Event, Phase, Stamped};
-
-/// What `tomcom replay RECORDING` prints as figures.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RecordingSummary {
-    pub events: u64,
-    /// The recording ends without its end event, and nobody writes on.
-    pub cut: bool,
-    /// Its session still runs: these are the figures up to now.
-    pub running: bool,
-    #[serde(flatten)]
-    pub standing: ExclusionStatus,
-    pub human_actions: u64,
-    pub robot_actions: u64,
-    pub errors: u64,
-    pub races: u64,
-    #[serde(flatten)]
-    pub beliefs: BeliefErrorSummary,
-    pub signals: u64,
-    /// The wizard saw what assistants would say, beside what was sent.
-    pub unblinded: bool,
-    pub orders_served: u64,
-    /// The trial's length by its own clock, in seconds.
-    pub trial_s: f64,
-    pub gaze: GazeSummary,
-    /// What was wrong with the gaze, in words.
-    #[serde(skip)]
-    gaze_faults: Option<String>,
-}
-
-impl RecordingSummary {
-    pub fn from_follower(
-        follower: &Follower,
-        events: u64,
-        ending: LogEnding,
-        standing: ExclusionStatus,
-    ) -> RecordingSummary {
-        let trial = TrialSummary::from_follower(follower);
-        RecordingSummary {
-            events,
-            cut: ending == LogEnding::Cut,
-            running: ending == LogEnding::Running,
-            standing,
-            human_actions: trial.human_actions,
-            robot_actions: trial.robot_actions,
-            errors: trial.errors,
-            races: trial.races,
-            beliefs: BeliefErrorSummary::from_trials([&trial]),
-            signals: trial.signals,
-            unblinded: follower.session.unblinded,
-            orders_served: trial.served.len() as u64,
-            trial_s: trial.seconds,
-            gaze: GazeSummary::from_session(&follower.session),
-            gaze_faults: gaze_summary::describe(&follower.session),
-        }
-    }
-
-    /// The figures for people.
-    pub fn describe(&self) -> String {
-        let cut = match (self.running, self.cut) {
-            (true, _) => "; it is still running: --follow",
-            (false, true) => "; it ends without its end event",
-            (false, false) => "",
-        };
-        let standing = match self.standing.counts() {
-            true => String::new(),
-            false => format!("left out of the analysis: {}\n", self.standing.describe()),
-        };
-        let gaze = self.gaze_faults.as_ref().map_or(String::new(), |faults| format!("{faults}\n"));
-        format!(
-            "{standing}{}, {:.0} s of trial{cut}\n{} of the human ({}), {} of the robot, {}, {} served\n{}\n{gaze}",
-            count(self.events, "event", "events"),
-            self.trial_s,
-            count(self.human_actions, "press", "presses"),
-            count(self.errors, "error", "errors"),
-            self.robot_actions,
-            count(self.signals, "signal", "signals"),
-            count(self.orders_served, "order", "orders"),
-            self.beliefs.describe(self.errors)
-        )
-    }
-}
 
 /// What stands above the lines.
 pub const HEADING: &str = " trial time  what happened";

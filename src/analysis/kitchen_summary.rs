@@ -1,4 +1,4 @@
-//! `tomcom kitchen`: checks a kitchen and describes it.
+//! What is to be known about a kitchen: its size, its shortest plans, its tags.
 
 use std::fmt::Write;
 use std::sync::Arc;

@@ -5,11 +5,10 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::training_record::{JudgedBelief, JudgedRecording, JudgedSignal, TrainingRecord};
 use crate::base::words::count;
 use crate::communication::recommendation::{aspects_told, phrase};
 use crate::communication::{Signal, signals, unavailable};
-use crate::edge::file_error::FileResult;
-use crate::edge::training::{self, JudgedBelief, JudgedRecording, JudgedSignal, TrainingRecord};
 use crate::history::wording;
 use crate::kitchen::{AspectId, Kitchen};
 use crate::measures::matching::{CommunicationEvent, CommunicationKind, CommunicationTarget, MatchCounts, WINDOW};
@@ -34,14 +33,10 @@ pub struct TrainingSummary {
 }
 
 impl TrainingSummary {
-    /// Of a wizard's training as it is recorded in this folder.
-    ///
-    /// # Errors
-    /// Those of [`training::read`].
-    pub fn read(folder: &Path, wizard: &str) -> FileResult<TrainingSummary> {
-        let records = training::read(folder, wizard)?;
+    /// Of a wizard's training, whose records were found in this folder.
+    pub fn from_records(folder: &Path, wizard: &str, records: &[TrainingRecord]) -> TrainingSummary {
         let last = records.last();
-        Ok(TrainingSummary {
+        TrainingSummary {
             wizard: wizard.to_string(),
             folder: folder.display().to_string(),
             times: records.len() as u64,
@@ -49,7 +44,7 @@ impl TrainingSummary {
             minutes: records.iter().fold(0.0, |sum, record| sum + record.minutes),
             criterion: last.map(|record| record.criterion),
             met: last.map(|record| record.met),
-        })
+        }
     }
 
     /// In words, for people.

@@ -1,0 +1,320 @@
+//! How alike wizard and assistants are over recordings, and where they differ.
+
+use serde::Serialize;
+
+use super::compared_recording::ComparedRecording;
+use super::exclusion_status::ExclusionStatus;
+use super::lesson_report::TrainingSummary;
+use super::watcher::CompareRequest;
+use super::wizard_log::{self, WizardSummary};
+use crate::base::time::SessionTime;
+use crate::base::words::count;
+use crate::communication::concept::ConceptName;
+use crate::communication::recommendation::Recommendation;
+use crate::history::belief_track::AspectSnapshot;
+use crate::history::comparison::{Communication, UnmatchedCommunication};
+use crate::kitchen::AspectId;
+use crate::measures::matching::{CommunicationEvent, MatchCounts, MatchShares, Similarity, WINDOW};
+use crate::session::screen::VisibleScreen;
+
+/// So many differences of a kind are listed for people.
+const LISTED: usize = 20;
+
+/// What `tomcom compare` prints.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ComparisonSummary {
+    /// Over all recordings that count.
+    pub pairs: Vec<LanePairSummary>,
+    pub recordings: Vec<RecordingComparison>,
+    /// Of the wizard who was named.
+    pub training: Option<TrainingSummary>,
+}
+
+/// Two lanes against each other.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LanePairSummary {
+    pub of: String,
+    pub with: String,
+    /// Presses of the human within which communications match, and for which the estimate leaves out what was sent.
+    pub window_actions: u32,
+    #[serde(flatten)]
+    pub similarity: Similarity,
+}
+
+/// One recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RecordingComparison {
+    pub recording: String,
+    #[serde(flatten)]
+    pub standing: ExclusionStatus,
+    pub human_actions: u64,
+    pub lanes: Vec<LaneSummary>,
+    /// Of the wizard; null where nobody could send signals.
+    pub wizard: Option<WizardSummary>,
+    pub differences: Vec<UnmatchedSummary>,
+}
+
+/// What one side said.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LaneSummary {
+    pub name: String,
+    pub communications: Vec<CommunicationSummary>,
+}
+
+/// A communication.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CommunicationSummary {
+    /// Presses of the human before it.
+    pub press: u32,
+    /// On the trial's clock.
+    pub clock_s: f64,
+    pub says: String,
+}
+
+/// A communication without a match, and what was known then.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct UnmatchedSummary {
+    /// As `--open` takes it, from 1.
+    pub number: usize,
+    /// In words.
+    pub headline: String,
+    pub by: String,
+    pub not_by: String,
+    /// The assistant that it is about, by its lane, and whether who sent the signals said it.
+    #[serde(skip)]
+    pair: usize,
+    #[serde(skip)]
+    by_sender: bool,
+    #[serde(flatten)]
+    pub spoken: CommunicationSummary,
+    pub knew: Option<ContextSummary>,
+}
+
+/// What was known.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ContextSummary {
+    /// Of every aspect, by the estimate that leaves out what was sent within the window.
+    pub beliefs: Vec<AspectContext>,
+    /// What the assistant thought.
+    pub advice: Option<Recommendation>,
+    pub screen: Option<VisibleScreen>,
+}
+
+/// An aspect of the belief.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AspectContext {
+    pub aspect: String,
+    pub truth: String,
+    pub believes: String,
+    pub p_truth: f64,
+}
+
+impl ComparisonSummary {
+    /// Sums recordings up. Of several, those that are excluded are left out of the pairs.
+    pub fn from_recordings(watched: &[ComparedRecording]) -> ComparisonSummary {
+        let counting: Vec<&ComparedRecording> =
+            watched.iter().filter(|one| watched.len() == 1 || one.standing.counts()).collect();
+        let mut pairs: Vec<(LanePairSummary, MatchCounts)> = Vec::new();
+        for one in counting {
+            let said: Vec<Vec<CommunicationEvent>> = one.comparison.lanes.iter().map(|lane| lane.said()).collect();
+            for (a, b) in (0..said.len()).flat_map(|a| (a + 1..said.len()).map(move |b| (a, b))) {
+                let [of, with] = [a, b].map(|lane| one.comparison.lanes[lane].name.clone());
+                let is_it = |(pair, _): &&mut (LanePairSummary, MatchCounts)| pair.of == of && pair.with == with;
+                let window = one.comparison.window;
+                let add = |tally: &mut MatchCounts| tally.add(&said[a], &said[b], one.follower.presses(), window);
+                match pairs.iter_mut().find(is_it) {
+                    Some((_, tally)) => add(tally),
+                    None => {
+                        let mut tally = MatchCounts::default();
+                        add(&mut tally);
+                        let similarity = Similarity::default();
+                        pairs.push((LanePairSummary { of, with, window_actions: window, similarity }, tally));
+                    }
+                }
+            }
+        }
+        let pairs = pairs.into_iter().map(|(pair, tally)| LanePairSummary { similarity: tally.similarity(), ..pair });
+        ComparisonSummary {
+            pairs: pairs.collect(),
+            recordings: watched.iter().map(RecordingComparison::from_recording).collect(),
+            training: None,
+        }
+    }
+
+    /// The same without what is about other concepts than these. Differences keep their numbers.
+    pub fn only(mut self, concepts: &[ConceptName]) -> ComparisonSummary {
+        let hidden = ConceptName::ALL.into_iter().filter(|concept| !concepts.contains(concept));
+        let hidden: Vec<&str> = hidden.map(ConceptName::name).collect();
+        let is_shown = |lane: &str| !hidden.contains(&lane);
+        self.pairs.retain(|pair| is_shown(&pair.of) && is_shown(&pair.with));
+        for one in &mut self.recordings {
+            one.lanes.retain(|lane| is_shown(&lane.name));
+            one.differences.retain(|difference| is_shown(&difference.by) && is_shown(&difference.not_by));
+        }
+        self
+    }
+}
+
+impl RecordingComparison {
+    fn from_recording(watched: &ComparedRecording) -> RecordingComparison {
+        let comparison = &watched.comparison;
+        let lanes = comparison.lanes.iter().map(|lane| LaneSummary {
+            name: lane.name.clone(),
+            communications: lane.spoken.iter().map(CommunicationSummary::from_communication).collect(),
+        });
+        let differences = comparison.differences.iter().enumerate();
+        RecordingComparison {
+            recording: watched.recording.clone(),
+            standing: watched.standing.clone(),
+            human_actions: u64::from(watched.follower.presses()),
+            lanes: lanes.collect(),
+            wizard: watched.wizard.clone(),
+            differences: differences
+                .map(|(index, one)| UnmatchedSummary::from_unmatched(watched, index, one))
+                .collect(),
+        }
+    }
+}
+
+impl CommunicationSummary {
+    fn from_communication(spoken: &Communication) -> CommunicationSummary {
+        let (press, clock_s) = (spoken.said.press, spoken.said.clock.as_secs_f64());
+        CommunicationSummary { press, clock_s, says: spoken.what.words() }
+    }
+}
+
+impl UnmatchedSummary {
+    /// What matters most has the lowest: what concerns the first assistant, and what the sender said alone.
+    fn rank(&self) -> (usize, bool, usize) {
+        (self.pair, !self.by_sender, self.number)
+    }
+
+    fn from_unmatched(
+        watched: &ComparedRecording,
+        index: usize,
+        difference: &UnmatchedCommunication,
+    ) -> UnmatchedSummary {
+        let comparison = &watched.comparison;
+        let spoken = comparison.spoken(difference);
+        let knew = spoken.known.as_ref().map(|known| {
+            let held = |(index, held): (usize, &AspectSnapshot)| {
+                let aspect = &watched.kitchen().aspects[index];
+                let truth = watched.kitchen().true_value(known.state, AspectId(index as u8));
+                AspectContext {
+                    aspect: aspect.name.clone(),
+                    truth: aspect.labels[truth].clone(),
+                    believes: aspect.labels[usize::from(held.believes)].clone(),
+                    p_truth: (f64::from(held.p_truth) * 1e4).round() / 1e4,
+                }
+            };
+            ContextSummary {
+                beliefs: known.held.iter().enumerate().map(held).collect(),
+                advice: comparison.advice(difference).cloned(),
+                screen: known.screen.clone(),
+            }
+        });
+        UnmatchedSummary {
+            number: index + 1,
+            headline: comparison.headline(difference),
+            by: comparison.lanes[difference.lane].name.clone(),
+            not_by: comparison.lanes[difference.not].name.clone(),
+            pair: difference.lane.max(difference.not),
+            by_sender: difference.lane == 0,
+            spoken: CommunicationSummary::from_communication(spoken),
+            knew,
+        }
+    }
+}
+
+/// The figures for people, of what was compared by this request.
+pub fn describe(figures: &ComparisonSummary, request: &CompareRequest) -> String {
+    let mut text = format!(
+        "{:<24}{:>7}{:>8}{:>8}{:>11}{:>6}{:>7}{:>8}\n",
+        "", "window", "recall", "chance", "precision", "F1", "kappa", "lead"
+    );
+    figures.pairs.iter().for_each(|pair| text += &describe_pair(pair));
+    text += &figures.training.as_ref().map_or(String::new(), TrainingSummary::describe);
+    for one in &figures.recordings {
+        let presses = count(one.human_actions, "press", "presses");
+        text += &format!("\n{}: {presses} of the human\n", one.recording);
+        if !one.standing.counts() {
+            text += &format!("left out of the analysis: {}\n", one.standing.describe());
+        }
+        text += &one.wizard.as_ref().map_or(String::new(), wizard_log::describe);
+        text += &describe_differences(&one.differences);
+        // That of the session's own concept, if there is one.
+        if let Some(first) = one.differences.iter().min_by_key(|one| one.rank()) {
+            text += &format!(
+                "what each knew: tomcom compare {}{} --open {}\nthe moment itself: tomcom review {} --at {}\n",
+                one.recording,
+                flags(request),
+                first.number,
+                one.recording,
+                SessionTime::from_secs_f64(first.spoken.clock_s)
+            );
+        }
+    }
+    text
+}
+
+/// The options that ask for the same comparison again.
+fn flags(request: &CompareRequest) -> String {
+    let mut flags = String::new();
+    if !request.with.is_empty() {
+        let names: Vec<&str> = request.with.iter().map(|concept| concept.name()).collect();
+        flags += &format!(" --with {}", names.join(","));
+    }
+    if request.window != WINDOW {
+        flags += &format!(" --window {}", request.window);
+    }
+    flags
+}
+
+/// Differences by who said what the other did not: the session's own concept first. Their numbers go by time.
+fn describe_differences(differences: &[UnmatchedSummary]) -> String {
+    let mut groups: Vec<(String, Vec<&UnmatchedSummary>)> = Vec::new();
+    let mut sorted: Vec<&UnmatchedSummary> = differences.iter().collect();
+    sorted.sort_by_key(|one| one.rank());
+    for one in sorted {
+        let who = format!("only {}, not {}", one.by, one.not_by);
+        match groups.iter_mut().find(|(of, _)| *of == who) {
+            Some((_, group)) => group.push(one),
+            None => groups.push((who, vec![one])),
+        }
+    }
+    let sums: Vec<String> = groups.iter().map(|(who, group)| format!("{} {who}", group.len())).collect();
+    let mut text = match differences.len() as u64 {
+        0 => return "no differences\n".to_string(),
+        number => format!("{}: {}\n", count(number, "difference", "differences"), sums.join("; ")),
+    };
+    for (who, group) in groups {
+        text += &format!("{who}:\n");
+        for one in group.iter().take(LISTED) {
+            let clock = SessionTime::from_secs_f64(one.spoken.clock_s);
+            text += &format!("{:>4}  {clock}  {}\n", one.number, one.spoken.says);
+        }
+        if let Some(more @ 1..) = group.len().checked_sub(LISTED) {
+            text += &format!("      … and {more} more: --format json has all\n");
+        }
+    }
+    text
+}
+
+fn describe_pair(pair: &LanePairSummary) -> String {
+    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
+    let found = &pair.similarity;
+    let lead = found.median_lead_s.map_or("-".to_string(), |lead| format!("{lead:+.1} s"));
+    let line = |what: &str, window: &str, chance: &str, level: MatchShares| {
+        let [recall, precision, f1] = [level.recall, level.precision, level.f1].map(number);
+        format!("{what:<24}{window:>7}{recall:>8}{chance:>8}{precision:>11}{f1:>6}")
+    };
+    let what = format!("{}, {}", pair.of, pair.with);
+    let strict = line(&what, &pair.window_actions.to_string(), &number(found.chance_recall), found.strict);
+    let kappa = number(found.kappa);
+    let said = format!("{} of {} matched, {} said", found.matched, found.of_n, found.with_n);
+    format!(
+        "{strict}{kappa:>7}{lead:>8}  {said}\n{}\n{}\n",
+        line("  the same kind", "", "", found.lenient),
+        line("  the same time", "", "", found.timing)
+    )
+}

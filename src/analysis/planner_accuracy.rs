@@ -1,0 +1,301 @@
+//! How far the planner's answers are from what it would answer with time enough, and how much longer its plain reference
+//! takes.
+//!
+//! The planner answers after every press, as in a session; on steps spread evenly over the recordings it answers once more,
+//! with 64 times the rollouts and no early end: the converged answer. The plain reference answers on a few of these steps,
+//! at default fidelity.
+
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::advisor::{AdviceRequest, Advisor};
+use crate::base::words::count;
+use crate::communication::Signal;
+use crate::communication::concept::ConceptName;
+use crate::communication::reference::{ReferenceBenefit, ReferencePlanner};
+use crate::kitchen::Kitchen;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::session::Session;
+
+/// How many times the rollouts of the converged answer.
+const CONVERGED: usize = 64;
+/// Settings know no more rollouts than this.
+const MOST_ROLLOUTS: usize = 65_536;
+/// The decision is clear where the best option leads by more than this, in presses.
+const LEAD: f64 = 0.2;
+/// Benefits that matter: those beyond this, in presses.
+const MATTERS: f64 = 0.3;
+
+/// What `--accuracy` prints. Null is what there were no steps for.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct AccuracySummary {
+    /// Steps at which the planner was held against the converged one.
+    pub steps: u64,
+    /// Those at which the best option, silence included, leads by more than 0.2 presses.
+    pub clear_steps: u64,
+    /// The share of the clear steps with the same decision.
+    pub same_decision: Option<f64>,
+    /// Root mean square error of the benefit, in presses, over these pairs of step and signal: those whose converged
+    /// benefit is beyond 0.3.
+    pub benefit_rmse: Option<f64>,
+    pub benefit_pairs: u64,
+    /// Time of the plain reference by the planner's, for planning the same steps.
+    pub reference_ratio: Option<f64>,
+    pub reference_steps: u64,
+    /// Of the plain reference against the converged planner, over the pairs of its steps: the same error, and how much of
+    /// it the reference's own standard errors explain.
+    pub reference_rmse: Option<f64>,
+    pub reference_error: Option<f64>,
+    pub reference_pairs: u64,
+    pub reference_same_decision: Option<f64>,
+    /// Time a step, in milliseconds, in the mean over the reference's steps.
+    pub plan_ms: Option<f64>,
+    pub reference_ms: Option<f64>,
+}
+
+/// What the assistant is asked after presses in a recording.
+#[derive(Debug)]
+pub struct RecordedQuestions {
+    /// The session before its first event.
+    pub session: Session,
+    pub questions: Vec<AdviceRequest>,
+}
+
+/// A step: of which recording, which question, and the benefits that were answered.
+#[derive(Clone, Debug, Default)]
+pub struct AccuracyStep {
+    recording: usize,
+    question: usize,
+    took_s: f64,
+    ours: Vec<(Signal, f64)>,
+    converged: Vec<(Signal, f64)>,
+    plain: Option<(f64, Vec<ReferenceBenefit>)>,
+}
+
+/// What planners are compared on: the questions of recordings of one kitchen.
+#[derive(Debug)]
+pub struct PlannerBench {
+    kitchen: Arc<Kitchen>,
+    asked: Vec<RecordedQuestions>,
+    /// Nanoseconds on a clock of the caller's that only goes forward.
+    clock_ns: fn() -> u64,
+}
+
+impl PlannerBench {
+    /// Of these recordings, with times by this clock, in nanoseconds.
+    pub fn new(kitchen: Arc<Kitchen>, asked: Vec<RecordedQuestions>, clock_ns: fn() -> u64) -> PlannerBench {
+        PlannerBench { kitchen, asked, clock_ns }
+    }
+
+    /// This many steps at most, spread evenly over all questions; nothing is answered yet.
+    pub fn spread(&self, most: usize) -> Vec<AccuracyStep> {
+        let all = self.asked.iter().enumerate().flat_map(|(recording, asked)| {
+            let step = move |question| AccuracyStep { recording, question, ..AccuracyStep::default() };
+            (0..asked.questions.len()).map(step)
+        });
+        let all: Vec<AccuracyStep> = all.collect();
+        let chosen = most.min(all.len());
+        (0..chosen).map(|index| all[index * all.len() / chosen].clone()).collect()
+    }
+
+    /// Lets the planner answer all steps, and the plain reference some of them. `done` is called after each answer.
+    ///
+    /// As in a session: after every press, on one thread, what is remembered helps the next answer. The plain reference
+    /// follows at once, so that the machine is as fast for both.
+    pub fn answer(&self, steps: &mut [AccuracyStep], reference_steps: usize, done: impl Fn()) {
+        let every = (reference_steps > 0).then(|| steps.len().div_ceil(reference_steps));
+        let mut planner = BenchPlanner::default();
+        for (index, step) in steps.iter_mut().enumerate() {
+            let (advisor, answered) = planner.advisor(self, step.recording, 1);
+            for question in &self.asked[step.recording].questions[*answered..step.question] {
+                benefits(advisor, question);
+            }
+            *answered = step.question + 1;
+            let began = (self.clock_ns)();
+            step.ours = benefits(advisor, self.question(step));
+            step.took_s = self.seconds_since(began);
+            done();
+            if every.is_some_and(|every| index % every == 0) {
+                step.plain = Some(self.plain(step));
+                done();
+            }
+        }
+    }
+
+    /// The step with the converged answer. Steps may be answered in any order, by several planners at once.
+    pub fn converge(&self, planner: &mut BenchPlanner, step: &AccuracyStep) -> AccuracyStep {
+        let (advisor, _) = planner.advisor(self, step.recording, CONVERGED);
+        AccuracyStep { converged: benefits(advisor, self.question(step)), ..step.clone() }
+    }
+
+    /// The figures of steps that were answered and converged.
+    pub fn summary(&self, steps: &[AccuracyStep]) -> AccuracySummary {
+        let price = self.asked.first().map_or(0.0, |asked| asked.session.spec.assistant.cost_of_communication);
+        figures(steps, price)
+    }
+
+    fn question(&self, step: &AccuracyStep) -> &AdviceRequest {
+        &self.asked[step.recording].questions[step.question]
+    }
+
+    /// How long the plain reference takes for a step, in seconds, and what it answers.
+    fn plain(&self, step: &AccuracyStep) -> (f64, Vec<ReferenceBenefit>) {
+        let session = &self.asked[step.recording].session;
+        let (human, assistant) = (session.spec.human.clone(), session.spec.assistant.clone());
+        let plain = ReferencePlanner::new(self.kitchen.clone(), human, assistant, session.seed());
+        let (question, mut cost) = (self.question(step), CostToGo::new(self.kitchen.clone()));
+        let began = (self.clock_ns)();
+        let worth = plain.advise(&mut cost, &question.moment());
+        (self.seconds_since(began), worth)
+    }
+
+    fn seconds_since(&self, began_ns: u64) -> f64 {
+        (self.clock_ns)().saturating_sub(began_ns) as f64 / 1e9
+    }
+}
+
+fn benefits(advisor: &mut Advisor, question: &AdviceRequest) -> Vec<(Signal, f64)> {
+    let options = advisor.answer(question).options;
+    options.into_iter().map(|option| (option.signal, option.benefit)).collect()
+}
+
+/// The planner of the recording that a thread is at.
+#[derive(Debug, Default)]
+pub struct BenchPlanner {
+    /// The recording, its planner, and how many of its questions were answered.
+    advisor: Option<(usize, Advisor, usize)>,
+}
+
+impl BenchPlanner {
+    /// The planner of a recording's session, with so many times the rollouts, and how many questions it has answered.
+    fn advisor(&mut self, bench: &PlannerBench, recording: usize, times: usize) -> (&mut Advisor, &mut usize) {
+        let made = || {
+            let mut session = bench.asked[recording].session.clone();
+            if times > 1 {
+                let rollout = &mut session.spec.assistant.rollout;
+                rollout.rollouts = (rollout.rollouts * times).min(MOST_ROLLOUTS);
+                rollout.least_rollouts = rollout.rollouts;
+            }
+            let cost = CostToGo::new(bench.kitchen.clone());
+            (recording, Advisor::by(ConceptName::TomCom, &session, cost), 0)
+        };
+        self.advisor = self.advisor.take().filter(|(other, ..)| *other == recording);
+        let (_, advisor, answered) = self.advisor.get_or_insert_with(made);
+        (advisor, answered)
+    }
+}
+
+/// What is best to do, silence (`None`) included, and by how much it leads.
+fn decision(benefits: &[(Signal, f64)], price: f64) -> (Option<&Signal>, f64) {
+    let mut net: Vec<(Option<&Signal>, f64)> = benefits.iter().map(|(signal, of)| (Some(signal), of - price)).collect();
+    net.push((None, 0.0));
+    net.sort_by(|a, b| b.1.total_cmp(&a.1));
+    (net[0].0, net[0].1 - net.get(1).map_or(f64::NEG_INFINITY, |second| second.1))
+}
+
+/// Sums that figures are made of: pairs of benefits, and decisions.
+#[derive(Default)]
+struct DecisionAgreement {
+    clear: u64,
+    same: u64,
+    pairs: u64,
+    squares: f64,
+}
+
+impl DecisionAgreement {
+    fn add(&mut self, found: &[(Signal, f64)], converged: &[(Signal, f64)], price: f64) {
+        let (best, lead) = decision(converged, price);
+        if lead > LEAD {
+            self.clear += 1;
+            self.same += u64::from(decision(found, price).0 == best);
+        }
+        for (signal, benefit) in converged.iter().filter(|(_, benefit)| benefit.abs() > MATTERS) {
+            if let Some((_, ours)) = found.iter().find(|(other, _)| other == signal) {
+                self.pairs += 1;
+                self.squares += (ours - benefit).powi(2);
+            }
+        }
+    }
+
+    fn same_decision(&self) -> Option<f64> {
+        (self.clear > 0).then(|| self.same as f64 / self.clear as f64)
+    }
+
+    fn rmse(&self) -> Option<f64> {
+        (self.pairs > 0).then(|| (self.squares / self.pairs as f64).sqrt())
+    }
+}
+
+fn figures(steps: &[AccuracyStep], price: f64) -> AccuracySummary {
+    let (mut ours, mut plain) = (DecisionAgreement::default(), DecisionAgreement::default());
+    let (mut of_errors, mut plain_s, mut ours_s, mut reference_steps) = (0.0, 0.0, 0.0, 0u64);
+    for step in steps {
+        ours.add(&step.ours, &step.converged, price);
+        let Some((took_s, worth)) = &step.plain else { continue };
+        let found: Vec<(Signal, f64)> = worth.iter().map(|one| (one.signal.clone(), one.benefit)).collect();
+        plain.add(&found, &step.converged, price);
+        for (signal, _) in step.converged.iter().filter(|(_, benefit)| benefit.abs() > MATTERS) {
+            let error = worth.iter().find(|one| one.signal == *signal).map_or(0.0, |one| one.standard_error);
+            of_errors += error * error;
+        }
+        (plain_s, ours_s, reference_steps) = (plain_s + took_s, ours_s + step.took_s, reference_steps + 1);
+    }
+    let each = |total_s: f64| (reference_steps > 0).then(|| 1e3 * total_s / reference_steps as f64);
+    AccuracySummary {
+        steps: steps.len() as u64,
+        clear_steps: ours.clear,
+        same_decision: ours.same_decision(),
+        benefit_rmse: ours.rmse(),
+        benefit_pairs: ours.pairs,
+        reference_ratio: (ours_s > 0.0).then(|| plain_s / ours_s),
+        reference_steps,
+        reference_rmse: plain.rmse(),
+        reference_error: (plain.pairs > 0).then(|| (of_errors / plain.pairs as f64).sqrt()),
+        reference_pairs: plain.pairs,
+        reference_same_decision: plain.same_decision(),
+        plan_ms: each(ours_s),
+        reference_ms: each(plain_s),
+    }
+}
+
+/// The figures for people.
+pub fn describe(figures: &AccuracySummary) -> String {
+    if figures.benefit_pairs == 0 {
+        return format!(
+            "{}: at none a signal was worth more than {MATTERS} presses, so nothing can be held against the answer with \
+             {CONVERGED} times the rollouts; take more steps (--steps) or recordings\n",
+            count(figures.steps, "step", "steps")
+        );
+    }
+    let told = |value: Option<f64>, digits: usize| value.map_or("-".to_string(), |value| format!("{value:.digits$}"));
+    let of_reference = match figures.reference_pairs {
+        0 => "no signal was worth enough at them to compare benefits; take more (--reference-steps)".to_string(),
+        pairs => format!(
+            "benefits off by {} presses over {}, of which its own standard errors explain {}",
+            told(figures.reference_rmse, 3),
+            count(pairs, "pair", "pairs"),
+            told(figures.reference_error, 3),
+        ),
+    };
+    let mut text = format!(
+        "{}: the same decision as with {CONVERGED} times the rollouts at {} of the {} clear ones, benefits off by {} presses \
+         (root mean square over {} of step and signal, worth more than {MATTERS})\n",
+        count(figures.steps, "step", "steps"),
+        told(figures.same_decision, 3),
+        figures.clear_steps,
+        told(figures.benefit_rmse, 3),
+        count(figures.benefit_pairs, "pair", "pairs"),
+    );
+    if figures.reference_steps > 0 {
+        text += &format!(
+            "plain reference on {}: {} times the time ({} ms a step, planner {} ms); the same decision at {}, {of_reference}\n",
+            count(figures.reference_steps, "step", "steps"),
+            told(figures.reference_ratio, 0),
+            told(figures.reference_ms, 1),
+            told(figures.plan_ms, 2),
+            told(figures.reference_same_decision, 3),
+        );
+    }
+    text
+}

@@ -1,0 +1,56 @@
+//! How long inference and planning took in a replay, from times that the caller took.
+
+use serde::Serialize;
+
+/// What `--timing` prints, in microseconds. Null is what the recording does not have.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TimingSummary {
+    pub gaze_us: Option<DurationPercentiles>,
+    /// A press of the human or of the robot.
+    pub action_us: Option<DurationPercentiles>,
+    pub plan_us: Option<DurationPercentiles>,
+    /// Inference and planning.
+    pub step_us: Option<DurationPercentiles>,
+    /// The length of the recording by session time, and how long its replay took, in seconds.
+    pub session_s: f64,
+    pub wall_s: f64,
+}
+
+/// Times of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct DurationPercentiles {
+    pub n: u64,
+    pub p50: f64,
+    pub p99: f64,
+    pub max: f64,
+}
+
+impl DurationPercentiles {
+    /// Of times in nanoseconds, in microseconds; none of nothing. The percentiles are times that occurred (nearest rank).
+    pub fn from_nanoseconds(mut times_ns: Vec<u64>) -> Option<DurationPercentiles> {
+        times_ns.sort_unstable();
+        let (&max, n) = (times_ns.last()?, times_ns.len());
+        let us = |ns: u64| ns as f64 / 1000.0;
+        let rank = |share: f64| us(times_ns[((share * n as f64).ceil() as usize).clamp(1, n) - 1]);
+        Some(DurationPercentiles { n: n as u64, p50: rank(0.5), p99: rank(0.99), max: us(max) })
+    }
+}
+
+/// The figures for people.
+pub fn describe(figures: &TimingSummary) -> String {
+    let line = |what: &str, spread: Option<DurationPercentiles>| match spread {
+        Some(DurationPercentiles { n, p50, p99, max }) => {
+            format!("{what:<34}{n:>8} times, median {p50:>9.2} us, 99 % {p99:>9.2} us, most {max:>9.2} us\n")
+        }
+        None => format!("{what:<34}       -\n"),
+    };
+    format!(
+        "{}{}{}{}{:.0} s of session replayed in {:.2} s\n",
+        line("inference, gaze sample", figures.gaze_us),
+        line("inference, press", figures.action_us),
+        line("planning", figures.plan_us),
+        line("inference and planning", figures.step_us),
+        figures.session_s,
+        figures.wall_s
+    )
+}

@@ -1,0 +1,97 @@
+//! Why a command did not do what was asked, and what of it is printed.
+
+use std::path::Path;
+
+use crate::base::features::NotBuilt;
+use crate::edge::file_error::FileError;
+use crate::edge::log::{ExclusionError, WriteError};
+use crate::run::error::{LiveError, ReviewError, RunError};
+use crate::session::settings::SettingError;
+
+/// Why a command did not do what was asked.
+#[derive(Debug)]
+pub(super) enum Failure {
+    /// Wrong arguments or files.
+    Wrong(miette::Report),
+    /// Something failed on the way.
+    Failed(miette::Report),
+    /// It was done, and the answer is no; it was printed already.
+    No,
+    /// Whoever read the output has read enough, as `head` does.
+    Unread,
+}
+
+impl From<NotBuilt> for Failure {
+    fn from(missing: NotBuilt) -> Failure {
+        Failure::Wrong(miette::miette!(help = missing.remedy(), "{missing}"))
+    }
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Failure {
+        Failure::Wrong(miette::Report::new(error))
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Failure {
+        Failure::Failed(miette::Report::new(error))
+    }
+}
+
+impl From<ExclusionError> for Failure {
+    fn from(error: ExclusionError) -> Failure {
+        match error {
+            ExclusionError::Recording(error) => Failure::from(error),
+            error => Failure::Wrong(miette::Report::new(error)),
+        }
+    }
+}
+
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Failure {
+        match error {
+            RunError::File(error) => Failure::from(*error),
+            RunError::Recording(error) => Failure::from(error),
+        }
+    }
+}
+
+impl From<LiveError> for Failure {
+    fn from(error: LiveError) -> Failure {
+        match error {
+            LiveError::Resume(error) => Failure::Wrong(miette::Report::new(error)),
+            LiveError::File(error) => Failure::from(*error),
+            error @ LiveError::Plan(_) => Failure::Wrong(miette::Report::new(error)),
+            error => Failure::Failed(miette::Report::new(error)),
+        }
+    }
+}
+
+impl From<ReviewError> for Failure {
+    fn from(error: ReviewError) -> Failure {
+        match error {
+            ReviewError::File(error) => Failure::from(*error),
+            error => Failure::Failed(miette::Report::new(error)),
+        }
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Failure {
+        match error.kind() {
+            std::io::ErrorKind::BrokenPipe => Failure::Unread,
+            _ => Failure::Failed(miette::miette!("the result cannot be printed: {error}")),
+        }
+    }
+}
+
+/// A setting that cannot be, of the command line.
+pub(super) fn wrong_setting(error: SettingError) -> Failure {
+    Failure::Wrong(miette::miette!(help = error.remedy, "found {}", error.found))
+}
+
+/// An argument that cannot be, of this file.
+pub(super) fn wrong_argument(path: &Path, found: String, remedy: &str) -> Failure {
+    Failure::Wrong(miette::miette!(help = remedy.to_string(), "{}: found {found}", path.display()))
+}

@@ -1,0 +1,115 @@
+//! `tomcom operate`.
+
+use std::io::Write;
+use std::net::IpAddr;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::choices::{ArmArg, ConceptArg, ConditionArg, GazeArg, ParticipantArg};
+use super::failure::{Failure, wrong_setting};
+use crate::analysis::watcher::CompareRequest;
+use crate::base::features::Feature;
+use crate::communication::concept::ConceptName;
+use crate::edge::file_error::FileError;
+use crate::run::options::{self, SessionStart, SettingOverrides, TrialSeries};
+use crate::run::series::{self, SeriesOutcome};
+use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
+
+/// Runs a session at the wizard's console, and records it.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples: tomcom operate sessions/default.toml --participant keyboard --gaze mouse\n          \
+                  tomcom operate sessions/study.toml --code P07\nMore: docs/running-a-session.md"
+)]
+pub(super) struct OperateArgs {
+    /// The session file; by default sessions/default.toml, or the one that the program carries.
+    pub(super) session: Option<PathBuf>,
+    /// Take up this recording, which was cut, in a new part beside it; its session is the same, a running trial is paused.
+    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "gaze_file", "arm", "listen", "condition", "concept", "seed", "rerun_listen", "out"])]
+    pub(super) recording: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) flags: OperateFlags,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct OperateFlags {
+    /// The participant's code, never a name; where the session file has a plan, the next step of this participant is run.
+    #[arg(long)]
+    pub(super) code: Option<String>,
+    /// Who plays the human's part, instead of the session file's.
+    #[arg(long, value_enum)]
+    pub(super) participant: Option<ParticipantArg>,
+    /// Where gaze samples come from, instead of the session file's.
+    #[arg(long, value_enum)]
+    pub(super) gaze: Option<GazeArg>,
+    /// Replay gaze from this file: Pupil Player's gaze_positions_on_surface_NAME.csv, or the folder of a recording.
+    #[arg(long, value_name = "PATH")]
+    pub(super) gaze_file: Option<PathBuf>,
+    /// How the robot's presses come about, instead of the session file's arm.
+    #[arg(long, value_enum)]
+    pub(super) arm: Option<ArmArg>,
+    /// Who sends signals, instead of the session file's.
+    #[arg(long, value_enum)]
+    pub(super) condition: Option<ConditionArg>,
+    /// By what the assistant decides, instead of the session file's concept.
+    #[arg(long, value_enum)]
+    pub(super) concept: Option<ConceptArg>,
+    /// Serve the wall display at this address of this machine, not on localhost alone; the page then asks for the code that
+    /// the console shows.
+    #[arg(long, value_name = "ADDRESS")]
+    pub(super) listen: Option<IpAddr>,
+    /// Everything random follows from it; by default the session file's.
+    #[arg(long)]
+    pub(super) seed: Option<u64>,
+    /// Where Rerun viewers connect, instead of the session file's address: 0.0.0.0:9876 for other machines.
+    #[arg(long, value_name = "ADDRESS")]
+    pub(super) rerun_listen: Option<String>,
+    /// Where the recording's folder is made. Not with --continue: a further part goes beside the recording.
+    #[arg(long, default_value = "sessions")]
+    pub(super) out: PathBuf,
+}
+
+pub(super) fn operate(args: &OperateArgs) -> Result<(), Failure> {
+    let done = match &args.recording {
+        Some(recording) => series::operate(SessionStart::Continued(recording.clone()), None)?,
+        None => new_session(args.session.as_deref(), &args.flags, None)?,
+    };
+    Ok(write!(std::io::stdout(), "{}", series::describe(&done))?)
+}
+
+/// Runs a session of this file; with wizard and assistants side by side, where that is asked for.
+pub(super) fn new_session(
+    session: Option<&Path>,
+    flags: &OperateFlags,
+    compare: Option<CompareRequest>,
+) -> Result<SeriesOutcome, Failure> {
+    if flags.rerun_listen.is_some() {
+        Feature::Rerun.require()?;
+    }
+    let mut files = options::session_or_default(session)?;
+    let overrides = SettingOverrides {
+        participant: flags.participant.map(ParticipantKind::from),
+        arm: flags.arm.map(ArmKind::from),
+        gaze: flags.gaze.map(GazeSource::from),
+        gaze_file: flags.gaze_file.clone(),
+        condition: flags.condition.map(Condition::from),
+        concept: flags.concept.map(ConceptName::from),
+        seed: flags.seed,
+        listen: flags.listen,
+        code: flags.code.clone(),
+        rerun_listen: flags.rerun_listen.clone(),
+    };
+    overrides.apply(&mut files).map_err(wrong_setting)?;
+    let name = session.unwrap_or(Path::new("sessions/default.toml"));
+    files.spec.require_built_live().map_err(|missing| FileError::not_built(name, missing))?;
+    let out = flags.out.clone();
+    match &files.spec.plan {
+        None => Ok(series::operate(SessionStart::New { files: Box::new(files), trial: 0, out }, compare)?),
+        Some(plan) => {
+            let participant = options::participant_of_plan(plan, flags.code.as_deref());
+            let participant = participant.map_err(wrong_setting)?;
+            Ok(series::operate_series(TrialSeries { files, participant, out, compare })?)
+        }
+    }
+}

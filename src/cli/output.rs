@@ -1,0 +1,45 @@
+//! What commands print: figures, and how far they are.
+
+use std::io::{IsTerminal, Write};
+
+use clap::ValueEnum;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use super::failure::Failure;
+
+/// How figures are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum OutputFormat {
+    /// For people.
+    Text,
+    /// One JSON object.
+    Json,
+}
+
+/// Prints figures as one JSON object, or their text.
+pub(super) fn print(
+    format: OutputFormat,
+    figures: &impl Serialize,
+    text: impl FnOnce() -> String,
+) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match format {
+        OutputFormat::Json => {
+            writeln!(out, "{}", serde_json::to_string_pretty(figures).map_err(std::io::Error::other)?)?
+        }
+        OutputFormat::Text => write!(out, "{}", text())?,
+    }
+    Ok(out.flush()?)
+}
+
+/// A bar on stderr that counts so many of something; nothing to be seen where that is no terminal.
+pub(super) fn progress(of: u64, what: &str) -> ProgressBar {
+    let bar = ProgressBar::new(of);
+    if std::io::stderr().is_terminal()
+        && let Ok(style) = ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {what}, {{eta}} left"))
+    {
+        bar.set_style(style);
+    }
+    bar
+}

@@ -1,0 +1,55 @@
+//! Who acts in a trial by its settings: the robot, and a simulated participant.
+
+use std::sync::Arc;
+
+#[cfg(feature = "physics")]
+use crate::arm::body::SteppedArm;
+#[cfg(feature = "physics")]
+use crate::arm::reaching::ReachingBehaviour;
+use crate::arm::worker::Robot;
+#[cfg(not(feature = "physics"))]
+use crate::base::features::{Feature, NotBuilt};
+use crate::kitchen::Kitchen;
+use crate::participant::SimulatedParticipant;
+use crate::participant::population::Experience;
+use crate::session::SessionSpec;
+use crate::session::settings::ArmKind;
+#[cfg(feature = "physics")]
+use crate::session::settings::ParticipantKind;
+
+/// The simulated participant of a trial. In a plan the same person has several trials, and has learnt from the earlier ones
+/// what its population learns.
+pub(super) fn simulated_participant(kitchen: Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> SimulatedParticipant {
+    let person = spec.step.as_ref().map_or(trial, |step| u64::from(step.participant));
+    let trials = spec.step.as_ref().and_then(|step| step.period).map_or(0, |period| period.saturating_sub(1));
+    // About half of the presses are the human's.
+    let presses = f64::from(trials) * f64::from(spec.trial.presses) / 2.0;
+    let population = spec.participant.population.clone().unwrap_or_default();
+    SimulatedParticipant::new(kitchen, &population, spec.seed, person, trial, Experience { trials, presses })
+}
+
+/// The robot of a trial.
+///
+/// # Panics
+/// The arm is to be simulated, and this build has no physics.
+pub(super) fn trial_robot(kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> Robot {
+    let robot = Robot::new(spec.robot.press_s, spec.robot.press_spread, spec.seed, trial);
+    match spec.robot.arm {
+        ArmKind::Timed => robot,
+        ArmKind::Physics => with_physics(robot, kitchen, spec, trial),
+    }
+}
+
+#[cfg(feature = "physics")]
+fn with_physics(robot: Robot, kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> Robot {
+    let hand = match spec.participant.kind {
+        ParticipantKind::Simulated => ReachingBehaviour::SIMULATED,
+        ParticipantKind::Keyboard | ParticipantKind::Display => ReachingBehaviour::UNSEEN,
+    };
+    robot.with_body(SteppedArm::new(kitchen, hand, spec.seed, trial))
+}
+
+#[cfg(not(feature = "physics"))]
+fn with_physics(_: Robot, _: &Kitchen, _: &SessionSpec, _: u64) -> Robot {
+    panic!("{}", NotBuilt(Feature::Physics))
+}

@@ -1,0 +1,261 @@
+//! A live session from its first event to its last: what it consists of, how it begins and how it is closed.
+
+use std::time::Duration;
+
+use super::display::ParticipantDisplay;
+use super::gaze::{CaptureOrders, GazeInput};
+use super::viewing::StreamedSession;
+use crate::analysis::exclusion_status::ExclusionStatus;
+use crate::analysis::trial_summary::TrialSummary;
+use crate::analysis::watcher::ComparisonFollower;
+use crate::communication::recommendation::Recommendation;
+use crate::console::compared::ComparisonView;
+use crate::console::model::RecordingStatus;
+use crate::console::notice::NoticeLevel;
+use crate::console::{ConsoleModel, KeyBindings};
+use crate::edge::clock::{SessionClock, WallTime};
+use crate::edge::doctor::free_bytes;
+use crate::edge::key_file::key_map;
+use crate::edge::log::{LogWriter, RecordingLock, WriteError};
+use crate::edge::terminal::{TerminalScreen, theme};
+use crate::run::advisor_desk::{AdvisorDesk, next_advice};
+use crate::run::desk::{GazeTracker, OperatorDesk};
+use crate::run::engine::Engine;
+use crate::run::error::{LiveError, TerminalError};
+use crate::run::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
+use crate::run::leaving::{LeavingReason, LiveOutcome};
+use crate::run::options::SessionStart;
+use crate::run::unfinished_recording::{PreparedSession, RecordingPlace};
+use crate::run::watch_desk::ComparisonDesk;
+use crate::session::protocol::ProtocolEvent;
+use crate::session::screen::VisibleScreen;
+use crate::session::settings::GazeSource;
+use crate::session::{Event, Header, Session};
+
+/// Clocks, bars and ages move on so often while the trial runs, and while it does not.
+const RUNNING: Duration = Duration::from_millis(100);
+const RESTING: Duration = Duration::from_millis(250);
+
+/// A recording that is run at the desk.
+pub(super) struct Live {
+    pub(super) engine: Engine,
+    /// The assistant, if this session asks it.
+    pub(super) advisor: Option<AdvisorDesk>,
+    /// Who compares wizard and assistants, if somebody does.
+    pub(super) comparison: Option<ComparisonDesk>,
+    /// The participant's display, if there is one.
+    pub(super) display: Option<ParticipantDisplay>,
+    pub(super) model: ConsoleModel,
+    /// Of this recording.
+    header: Header,
+    pub(super) log: LogWriter,
+    /// What Rerun's viewers see.
+    pub(super) viewing: Option<StreamedSession>,
+    /// The part that is continued is not to be written by anybody else.
+    _before: Option<RecordingLock>,
+    /// The log cannot be written any more.
+    pub(super) failed: Option<WriteError>,
+    pub(super) clock: SessionClock,
+    pub(super) gaze: GazeInput,
+    pub(super) capture: CaptureOrders,
+    /// The signal that no frame shows yet, by its number.
+    pub(super) undrawn: Option<u64>,
+    /// What the wizard sees, as it was recorded last.
+    pub(super) seen: Option<VisibleScreen>,
+    /// How many judged presses the model knows.
+    pub(super) judged: usize,
+    /// Something changed since the last frame.
+    pub(super) dirty: bool,
+}
+
+/// Runs a session at the desk until the wizard leaves it; everything that happens is recorded.
+///
+/// # Errors
+/// The session cannot be recorded, or the terminal is gone.
+pub(in crate::run) async fn run(begun: PreparedSession, desk: &mut OperatorDesk) -> Result<LiveOutcome, LiveError> {
+    let mut live = Live::open(begun, desk)?;
+    live.greet(&desk.tracker);
+    // Who does not leave by a key leaves the program.
+    let leaving = event_loop::run(&mut live, desk).await?.unwrap_or(LeavingReason::Quit);
+    desk.tracker.keep(live.engine.session().calibrated.clone());
+    let end = live.close(leaving);
+    desk.tracker.settle().await;
+    end
+}
+
+impl ConsoleShell for Live {
+    type Outcome = LeavingReason;
+    type Error = LiveError;
+
+    fn deadlines(&mut self) -> ShellDeadlines {
+        self.tick();
+        let session = self.engine.session();
+        let at = |time| self.clock.instant_of(time).into();
+        let resting = if session.is_running() { RUNNING } else { RESTING };
+        ShellDeadlines {
+            engine: self.engine.next_due().map(at),
+            target: self.target_due().map(at),
+            file_gaze: self.gaze.file_due(session).map(at),
+            frame_after: if self.dirty { FRAME } else { resting },
+        }
+    }
+
+    fn samples_pointer(&self) -> bool {
+        // With a display, the pointer is on it.
+        self.engine.session().spec.participant.gaze == GazeSource::Mouse && self.display.is_none()
+    }
+
+    async fn advice(&mut self) -> Option<Recommendation> {
+        next_advice(&mut self.advisor).await
+    }
+
+    fn take(&mut self, event: LoopEvent) -> Result<Option<LeavingReason>, LiveError> {
+        match event {
+            LoopEvent::Terminal(message) => return Ok(self.take_message(message)),
+            LoopEvent::EngineDue => self.fire(),
+            LoopEvent::TargetDue => self.show_target(),
+            LoopEvent::Page(input) => self.hear(input),
+            LoopEvent::Advice(advice) => self.input(Event::Advised(advice)),
+            LoopEvent::PointerTick => self.sample_pointer(),
+            LoopEvent::FileTick => self.flush(),
+            LoopEvent::WatchTick => self.watch(),
+            LoopEvent::FileGazeDue => self.take_file_gaze(),
+            LoopEvent::Gaze(news) => news.into_iter().for_each(|one| self.take_gaze(one)),
+            LoopEvent::EndRequest | LoopEvent::FrameDue => {}
+        }
+        Ok(None)
+    }
+
+    fn prepare(&mut self) {
+        self.prepare_frame();
+    }
+
+    fn view(&self) -> ShellView<'_> {
+        ShellView::Console(self.engine.session(), &self.model)
+    }
+
+    fn drawn(&mut self) {
+        self.tell_drawn();
+    }
+}
+
+impl Live {
+    fn open(begun: PreparedSession, desk: &OperatorDesk) -> Result<Live, LiveError> {
+        let PreparedSession { engine, mut header, first, consent, time, compare, place } = begun;
+        let (kitchen, spec) = (engine.session().kitchen.clone(), engine.session().spec.clone());
+        let keys = KeyBindings::live(&kitchen, &spec, &key_map(header.keys.as_ref())?)?;
+        let keys = if compare.is_some() { keys.with_comparison() } else { keys };
+        let wall = WallTime::now();
+        header.started = Some(wall.rfc3339());
+        let is_new = matches!(place, RecordingPlace::In(_));
+        let (log, before) = match place {
+            RecordingPlace::In(root) => (LogWriter::create_live(&root, &wall.date(), &header)?, None),
+            RecordingPlace::After(folder, lock) => (LogWriter::create_part(&folder, &header)?, Some(lock)),
+        };
+        let size = TerminalScreen::size().map_err(TerminalError)?;
+        let mut model = ConsoleModel::new(keys, theme(&spec.console, desk.screen.ground), size);
+        model.recording = RecordingStatus::On(log.folder().display().to_string());
+        model.comparison = compare.as_ref().map(|_| ComparisonView::default());
+        let comparison = compare
+            .as_ref()
+            .map(|request| ComparisonFollower::new(Session::new(kitchen.clone(), spec.clone(), header.trial), request));
+        let comparison = comparison.map(|follower| follower.without_causes().on_thread());
+        let (display, health) = ParticipantDisplay::at(desk);
+        model.display = health;
+        let clock = SessionClock::start(time);
+        let advisor = spec.asks_assistant().then(|| engine.advisor().on_thread());
+        let mut live = Live {
+            engine,
+            advisor,
+            comparison,
+            display,
+            model,
+            header,
+            log,
+            viewing: None,
+            _before: before,
+            failed: None,
+            clock,
+            gaze: GazeInput::default(),
+            capture: CaptureOrders::default(),
+            undrawn: None,
+            seen: None,
+            judged: 0,
+            dirty: true,
+        };
+        live.model.free_bytes = free_bytes(live.log.folder()).ok();
+        live.begin_viewing(is_new, first.last().map_or(0, |last| last.seq + 1));
+        live.record(&first);
+        live.tick();
+        if let Some(request) = compare {
+            live.input(Event::Unblinded { concepts: request.concepts(&spec) });
+        }
+        live.carry_calibration(desk.tracker.calibrated());
+        live.build_display();
+        live.begin_protocol(consent);
+        Ok(live)
+    }
+
+    /// Opens the stream to Rerun, where the session asks for one; without it the session goes on, too.
+    fn begin_viewing(&mut self, is_new: bool, next: u64) {
+        match StreamedSession::open(self.engine.session(), &self.header, &mut self.log, next, is_new) {
+            Ok(viewing) => self.viewing = viewing,
+            Err(reason) => self.model.say(NoticeLevel::Alarm, format!("the session goes on without Rerun: {reason}")),
+        }
+        self.model.viewers = self.viewing.as_ref().map(StreamedSession::status);
+    }
+
+    /// Takes up with the tracker: what is known of it is told again.
+    fn greet(&mut self, tracker: &GazeTracker) {
+        self.gaze = GazeInput::at(tracker, self.engine.session());
+        tracker.known().for_each(|news| self.take_gaze(news));
+        self.capture = CaptureOrders::begin(tracker, self.name(), self.engine.session());
+    }
+
+    /// Begins the first phase of a plan; without consent nothing is recorded, so that comes first.
+    fn begin_protocol(&mut self, consent: bool) {
+        if consent {
+            self.input(Event::Protocol(ProtocolEvent::ConsentGiven));
+        }
+        let session = self.engine.session();
+        let first = session.next_phase().filter(|_| session.protocol.as_ref().is_some_and(|it| it.number == 0));
+        if let Some(phase) = first {
+            self.input(Event::Protocol(ProtocolEvent::PhaseStarted { phase, number: 1 }));
+        }
+    }
+
+    /// The name of the recording.
+    fn name(&self) -> String {
+        self.log.folder().file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// The same trial in another recording beside this one.
+    fn beginning_again(&self) -> SessionStart {
+        let out = self.log.folder().parent().unwrap_or(std::path::Path::new(".")).to_path_buf();
+        let header = Header { redoes: Some(self.name()), started: None, continues: None, ..self.header.clone() };
+        SessionStart::Again { header: Box::new(header), kitchen: self.engine.session().kitchen.clone(), out }
+    }
+
+    fn close(mut self, leaving: LeavingReason) -> Result<LiveOutcome, LiveError> {
+        if self.failed.is_none() {
+            // What was left in the middle of a plan is not over: it can be continued.
+            if leaving != LeavingReason::Quit || self.engine.session().is_step_done() {
+                self.input(Event::SessionEnded);
+            }
+            self.flush_log();
+        }
+        if let Some(viewing) = self.viewing.take() {
+            viewing.close(&self.log);
+        }
+        let folder = self.log.folder().to_path_buf();
+        match self.failed {
+            Some(error) => Err(error.into()),
+            None => {
+                let again = (leaving == LeavingReason::Redo).then(|| self.beginning_again());
+                let standing = ExclusionStatus::at_console(self.engine.session());
+                let figures = TrialSummary::from_follower(&self.engine.into_follower());
+                Ok(LiveOutcome { folder, leaving, figures, standing, again })
+            }
+        }
+    }
+}

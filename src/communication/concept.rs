@@ -1,6 +1,6 @@
 //! The interface of the communication concepts: each advises beside a wizard, answers for a recording, or acts by itself.
 //!
-//! The wizard is what they are compared with, and no concept: what a person did stands in the log.
+//! The wizard is not a concept: a person's signals are in the log, and concepts are compared with them.
 
 use std::fmt;
 
@@ -11,24 +11,24 @@ use super::situation::Situation;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 
-/// A moment at which something could be said.
+/// A decision of a concept: which signal to send, if any.
 #[derive(Clone, Copy, Debug)]
 pub struct DecisionPoint<'a> {
-    /// The number and the time of the event that brought it about.
+    /// Sequence number of the event that led to the decision.
     pub seq: u64,
     pub time: SessionTime,
-    /// Presses of both agents so far. Chance follows from their number, so that nothing else that is recorded changes it.
+    /// Number of presses of both agents so far, which seeds the random stream.
     pub presses: u32,
     pub situation: Situation<'a>,
-    /// What may be said; what is no use saying again is not among it.
+    /// The signals that may be sent, after the repeat rule.
     pub signals: &'a [Signal],
-    /// The number of the human's last press, if that was an error.
+    /// Sequence number of the human's last press, if that press was an error.
     pub error: Option<u64>,
 }
 
-/// A way to decide what to say and when. The answer follows from the moment and the settings alone; what is remembered from
-/// one moment to the next changes the time that it takes, and nothing else.
+/// A communication concept. Its answer depends on the decision point and the settings only; caches change computing time, never
+/// results.
 pub trait Concept: fmt::Debug + Send {
-    /// What to say now, if anything, what else could be said, and why.
+    /// The recommendation at a decision point: the best signal, if any, all options, and the reason.
     fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation;
 }

@@ -2,26 +2,26 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What decides what the assistant says.
+/// Name of a communication concept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ConceptName {
-    /// Theory of mind with communication planning: what saves more presses than a signal costs.
+    /// Theory of mind with communication planning: signals that save more presses than they cost.
     #[default]
     TomCom,
-    /// Theory of mind alone: what is believed wrong surely enough.
+    /// Theory of mind without planning: signals about aspects with a large expected belief deviation.
     Tom,
-    /// Deviation based: after an error, the next good presses.
+    /// Deviation based: proposes the next good presses after an error.
     Dev,
-    /// Nothing is said.
+    /// No communication.
     None,
 }
 
 impl ConceptName {
-    /// All of them.
+    /// All concepts.
     pub const ALL: [ConceptName; 4] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev, ConceptName::None];
 
-    /// As it stands in files.
+    /// Name in files.
     pub fn name(self) -> &'static str {
         match self {
             ConceptName::TomCom => "tom-com",
@@ -31,7 +31,7 @@ impl ConceptName {
         }
     }
 
-    /// As it is written in texts.
+    /// Name in texts.
     pub fn title(self) -> &'static str {
         match self {
             ConceptName::TomCom => "ToM-Com",

@@ -13,7 +13,7 @@ use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::mind::model::HumanModel;
 
-/// The concept of this name with the settings of a session. Chance follows from `seed` and the moment's presses.
+/// Builds a concept by name with the settings of a session. Its random stream is seeded by `seed` and the number of presses.
 pub fn concept(
     name: ConceptName,
     kitchen: Arc<Kitchen>,
@@ -29,7 +29,7 @@ pub fn concept(
     }
 }
 
-/// Says nothing: the unassisted condition as a concept.
+/// The concept that never sends a signal: the unassisted condition.
 #[derive(Clone, Copy, Debug)]
 pub struct SilentConcept;
 

@@ -1,11 +1,10 @@
 //! DEV: the deviation based concept. When the human's press was an error, it proposes the next good presses (paper, "Concept
 //! comparisons": 1 to 5 of them).
 //!
-//! A proposal is no signal: the display has signals about recipes and places, and none for a press, and most good presses
-//! are about the own hand or a storage, which no signal is about. To highlight the place of a press instead would tell its
-//! content, which is what the concepts with a theory of mind do. So a proposal is advice. It is recorded and shown at the
-//! console, and nothing is sent, also where the assistant acts by itself; where concepts are compared, participants are taken
-//! to follow it, as in the paper.
+//! A proposal is not a signal: signals show recipes and locations, not presses, and most good presses involve the own hand or a
+//! storage, for which there is no signal. Highlighting the location of a press would instead reveal its content, as the theory of
+//! mind concepts do. A proposal is therefore recorded and shown at the console, but never sent, not even in the assistant
+//! condition. The comparison of concepts assumes that participants follow proposals, as in the paper.
 
 use std::sync::Arc;
 
@@ -14,10 +13,10 @@ use super::recommendation::{Proposal, Recommendation};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonId, Kitchen, State};
 
-/// A proposal looks at most so many presses of both agents ahead.
+/// Largest number of presses of both agents that a proposal plans ahead.
 const MOST_AHEAD: usize = 40;
 
-/// Proposes presses after errors.
+/// The DEV concept.
 #[derive(Clone, Debug)]
 pub struct DevConcept {
     kitchen: Arc<Kitchen>,
@@ -25,13 +24,13 @@ pub struct DevConcept {
 }
 
 impl DevConcept {
-    /// Proposes so many presses at a time.
+    /// A DEV concept that proposes `presses` presses at a time.
     pub fn new(kitchen: Arc<Kitchen>, presses: usize) -> DevConcept {
         DevConcept { kitchen, presses }
     }
 
-    /// The next good presses of the human: each lowers the cost to go of all orders; where none of the human's does, a
-    /// press of the robot that does is taken for granted.
+    /// The next good presses of the human: presses that lower the cost to go of all orders. Where no press of the human does, a
+    /// press of the robot that does is assumed.
     fn good(&self, cost: &mut CostToGo, state: State) -> Vec<ButtonId> {
         let mut state = state;
         let mut presses = Vec::new();
@@ -45,7 +44,7 @@ impl DevConcept {
         presses
     }
 
-    /// The agent's best press, if it lowers the cost to go; of equals the first.
+    /// The agent's best press if it lowers the cost to go; ties go to the layout's order.
     fn step(&self, cost: &mut CostToGo, state: State, agent: Agent) -> Option<(ButtonId, State)> {
         let recipes = self.kitchen.true_recipes();
         let decision = *cost.decision(state, &recipes, agent);
@@ -58,7 +57,7 @@ impl DevConcept {
 }
 
 impl Concept for DevConcept {
-    /// The proposal stands, and is kept up to date, until the human's next press.
+    /// A proposal is valid, and is updated, until the human's next press.
     fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
         let name = |button: ButtonId| self.kitchen.button(Agent::Human, button).name.clone();
         let proposal = moment.error.map(|error| {

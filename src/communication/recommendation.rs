@@ -1,4 +1,4 @@
-//! The answer of a communication concept: what could be said, what that is worth, and why.
+//! The answer of a communication concept: ranked signals with their net benefit, and the reason.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,73 +8,73 @@ use crate::kitchen::{AspectId, Kitchen, LocationKind, OrderContent, State};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::witness::rounded;
 
-/// What a concept advises after an event.
+/// Recommendation of a concept after an event.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recommendation {
-    /// The number of the event that it was computed for.
+    /// Sequence number of the event for which it was computed.
     pub for_seq: u64,
-    /// When that was.
+    /// Session time of that event.
     pub for_ns: SessionTime,
-    /// What could be said, the best first.
+    /// All options, the best first.
     pub options: Vec<SignalOption>,
-    /// What to say; nothing: better be silent.
+    /// The recommended signal; `None` if no signal is worth its cost.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub best: Option<Signal>,
-    /// Why the first option would help.
+    /// Reason for the first option.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<Reason>,
-    /// Presses that are proposed, by a concept that proposes presses.
+    /// Proposed presses (DEV only).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub proposal: Option<Proposal>,
 }
 
-/// Good presses, proposed after an error.
+/// Good presses proposed after an error.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Proposal {
-    /// The number of the press that was the error.
+    /// Sequence number of the press that was the error.
     pub error: u64,
-    /// The human's next presses, by the names of their buttons.
+    /// Proposed next presses of the human, by the names of their buttons.
     pub presses: Vec<String>,
 }
 
-/// One thing that could be said.
+/// A signal with its estimated benefit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SignalOption {
     pub signal: Signal,
-    /// Expected presses of both agents that it saves; of ToM, the expected deviation of the belief.
+    /// Expected saving in presses of both agents; for ToM, the expected belief deviation.
     pub benefit: f64,
     pub standard_error: f64,
-    /// The benefit without the cost of communication; of ToM, the deviation above the threshold.
+    /// Net benefit: benefit minus the cost of communication; for ToM, deviation minus threshold.
     pub net: f64,
-    /// How many pairs of rollouts that is the mean of; of ToM none.
+    /// Number of paired rollouts; 0 for ToM.
     pub rollouts: u32,
 }
 
-/// Why something should be said.
+/// The false belief that a signal would correct, and the press that it would prevent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reason {
-    /// The aspect that is believed wrong, by its name.
+    /// Name of the aspect with the false belief.
     pub aspect: String,
-    /// What is believed of it if not the truth.
+    /// Falsely believed value.
     pub believes: String,
     pub truth: String,
-    /// The expected probability of that.
+    /// Expected probability of the falsely believed value.
     pub p_believes: f64,
-    /// The press that this would lead to and the signal would prevent, by its name.
+    /// Name of the press that the false belief would lead to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prevents: Option<String>,
-    /// What would be pressed instead; nothing: a moment's waiting.
+    /// Name of the press after the signal; `None` for waiting.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub instead: Option<String>,
 }
 
 impl Recommendation {
-    /// The advice to say nothing, after the event of this number and time.
+    /// The recommendation to send no signal, after the event with this sequence number and time.
     pub fn silent(seq: u64, time: SessionTime) -> Recommendation {
         Recommendation { for_seq: seq, for_ns: time, options: Vec::new(), best: None, reason: None, proposal: None }
     }
 
-    /// Takes out a signal that was sent. What is best after it only the next advice knows.
+    /// Removes a signal that has been sent; the next best signal is unknown until the next recommendation.
     pub fn remove(&mut self, sent: &Signal) {
         self.options.retain(|option| option.signal != *sent);
         if self.best.as_ref() == Some(sent) {
@@ -82,13 +82,13 @@ impl Recommendation {
         }
     }
 
-    /// The option that is worth most.
+    /// The option with the highest net benefit.
     pub fn top(&self) -> Option<&SignalOption> {
         self.options.first()
     }
 }
 
-/// The aspects that a signal about a location makes certain: its content, and for an order the recipe of its dish.
+/// The aspects that a signal makes certain: a location's content, or an order and the recipe of its dish.
 pub fn aspects_told(kitchen: &Kitchen, state: State, signal: &Signal) -> Vec<AspectId> {
     let Some(location) = kitchen.location_named(signal.target()) else { return Vec::new() };
     let mut aspects = vec![AspectId::of_location(location)];
@@ -98,13 +98,13 @@ pub fn aspects_told(kitchen: &Kitchen, state: State, signal: &Signal) -> Vec<Asp
     aspects
 }
 
-/// A content as part of a sentence: what is made of several items stands in quotes.
+/// A content as part of a sentence; a stack is put in quotes.
 pub fn phrase(label: &str) -> String {
     if label.contains(" + ") { format!("\"{label}\"") } else { label.to_string() }
 }
 
 impl Reason {
-    /// Of what a signal is about, that which is known least.
+    /// The reason for a signal: its aspect with the lowest expected P(truth).
     pub fn for_signal(kitchen: &Kitchen, state: State, belief: &DirichletBelief, signal: &Signal) -> Option<Reason> {
         let p_truth = |aspect: &AspectId| belief.p_truth(kitchen, state, *aspect);
         let aspects = aspects_told(kitchen, state, signal);
@@ -124,15 +124,14 @@ impl Reason {
         })
     }
 
-    /// What is taken for what, in words: "takes order 1 for tuna nigiri (0.83)", and where it is less likely than not "may
-    /// take".
+    /// The false belief in words: "takes order 1 for tuna nigiri (0.83)", or "may take" below a probability of 0.5.
     pub fn taken(&self) -> String {
         let Reason { aspect, believes, p_believes, .. } = self;
         let takes = if *p_believes < 0.5 { "may take" } else { "takes" };
         format!("{takes} {} for {} ({p_believes:.2})", aspect.replace('_', " "), phrase(believes))
     }
 
-    /// In words: "takes order 1 for tuna nigiri (0.83): would press "take tuna" instead of "take salmon"".
+    /// The reason in words: "takes order 1 for tuna nigiri (0.83): would press "take tuna" instead of "take salmon"".
     pub fn words(&self) -> String {
         let said = |name: &str| name.replace('_', " ");
         let taken = self.taken();

@@ -1,10 +1,10 @@
-//! The reference: planning of communication in its plainest form, straight from the equations (paper, section "Planning
-//! communication"), for tests and benchmarks. It shares nothing with [`super::planner`] but the cost to go, the kitchen's
-//! rules, the robot's policy and the parameters.
+//! The reference planner: planning of communication implemented directly from the equations (paper, section "Planning
+//! communication"), for tests and benchmarks. It shares with [`super::planner`] only the cost to go, the kitchen's rules, the
+//! robot's policy and the parameters.
 //!
-//! Every rollout has an explicit belief, every component of it drawn by a gamma draw, which is moved on by the human model
-//! ([`Particle`]); Q is thought through anew, over states drawn from that belief, at every decision. All signals are rolled out
-//! as often as silence, in full, with the random numbers of a rollout the same for all of them.
+//! Every rollout has an explicit belief whose components are gamma variates, updated by the human model ([`Particle`]). Every
+//! decision computes Q from worlds drawn from that belief. All signals and the baseline get the same number of complete rollouts
+//! with the same random numbers.
 
 use std::sync::Arc;
 
@@ -22,16 +22,16 @@ use crate::mind::model::HumanModel;
 use crate::mind::reference::person::{Particle, pick, press_chances};
 use crate::robot::policy;
 
-/// What a signal is worth.
+/// Estimated benefit of one signal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceBenefit {
     pub signal: Signal,
-    /// Presses of both agents that it saves.
+    /// Expected saving in presses of both agents.
     pub benefit: f64,
     pub standard_error: f64,
 }
 
-/// The planner in its plainest form.
+/// The unoptimised planner.
 #[derive(Clone, Debug)]
 pub struct ReferencePlanner {
     kitchen: Arc<Kitchen>,
@@ -40,18 +40,18 @@ pub struct ReferencePlanner {
     seed: u64,
 }
 
-/// A rollout that is under way.
+/// State of a rollout.
 struct Future {
     state: State,
     person: Particle,
-    /// The button that the arm is on its way to, when it is there, and whether it is pressed there in any case.
+    /// The button towards which the arm moves, the time of arrival, and whether the press is made in any case.
     errand: Option<(ButtonId, f64, bool)>,
     now_s: f64,
     presses: u32,
 }
 
 impl Future {
-    /// The human sees what these places hold.
+    /// The human sees the contents of the locations for which `is_seen` holds.
     fn see(&mut self, kitchen: &Kitchen, is_seen: impl Fn(LocationId) -> bool) {
         for place in (0..kitchen.locations.len()).map(|index| LocationId(index as u8)).filter(|place| is_seen(*place)) {
             let aspect = AspectId::of_location(place);
@@ -61,12 +61,12 @@ impl Future {
 }
 
 impl ReferencePlanner {
-    /// A planner for people as `human` says. Its chances follow from `seed` and a moment's presses.
+    /// A planner for a human model. Its random stream is seeded by `seed` and the number of presses so far.
     pub fn new(kitchen: Arc<Kitchen>, human: HumanModel, spec: AssistantSpec, seed: u64) -> ReferencePlanner {
         ReferencePlanner { kitchen, human, spec, seed }
     }
 
-    /// What each signal of a moment is worth; those that cannot be sent are left out.
+    /// Benefit of each available signal.
     pub fn advise(&self, cost: &mut CostToGo, moment: &DecisionPoint) -> Vec<ReferenceBenefit> {
         let situation = &moment.situation;
         let possible =
@@ -89,7 +89,7 @@ impl ReferencePlanner {
         signals.iter().zip(&saved).map(worth).collect()
     }
 
-    /// The random numbers of a rollout for something at a step, the same whatever was said.
+    /// Random stream of a rollout for one purpose at one step, the same for all signals.
     fn chance(&self, of: &str, presses: u32, rollout: u64, step: u64) -> Stream {
         stream(self.seed, of, u64::from(presses) << 32 | rollout << 8 | step)
     }
@@ -125,7 +125,7 @@ impl ReferencePlanner {
         f64::from(future.presses) + f64::from(cost.all_orders(future.state, &self.kitchen.true_recipes()))
     }
 
-    /// The robot follows its policy until the human decides.
+    /// Runs the robot until the human's next decision.
     fn robot_until(&self, cost: &mut CostToGo, future: &mut Future, until_s: f64, press_s: f64, random: &mut Stream) {
         let (kitchen, recipes) = (&self.kitchen, self.kitchen.true_recipes());
         loop {
@@ -154,7 +154,7 @@ impl ReferencePlanner {
         }
     }
 
-    /// The human looks around and at what its next press needs, decides, and presses.
+    /// The human looks at locations, decides, and presses.
     fn decide(&self, cost: &mut CostToGo, future: &mut Future, random: &mut Stream) {
         let kitchen = &self.kitchen;
         let chance = |rate_hz: f64| 1.0 - (-rate_hz * self.spec.rollout.human_press_s).exp();
@@ -165,7 +165,7 @@ impl ReferencePlanner {
         future.see(kitchen, |place| glances[place.index()] < other_looks);
         let mut deed = self.deed(cost, &future.person, draw, random);
         if let Some(button) = deed {
-            // The robot may be bringing what is about to be fetched.
+            // The robot may be bringing the item that the human wants to fetch.
             let fetches = matches!(kitchen.button(Agent::Human, button).action, ButtonAction::Take(_));
             let robots_hand = fetches.then_some(kitchen.hands[Agent::Robot.index()]);
             let places = kitchen.involved(Agent::Human, button).into_iter().chain(robots_hand);
@@ -178,7 +178,7 @@ impl ReferencePlanner {
         let Some(button) = deed else { return };
         let before = future.state;
         let after = kitchen.press(before, &kitchen.true_recipes(), Agent::Human, button);
-        // Who is proved wrong altogether looks.
+        // A human whose belief is contradicted by the press looks at the locations involved.
         let truth = |index: usize| {
             let mut certain = vec![0.0; kitchen.aspects[index].values.len()];
             certain[kitchen.true_value(before, AspectId(index as u8))] = 1.0;
@@ -190,7 +190,7 @@ impl ReferencePlanner {
         future.presses += 1;
     }
 
-    /// What the human does by a draw from 0 to 1: nothing (it waits), or a press, slips included.
+    /// The human's action for a uniform draw: `None` for waiting, or a press, slips included.
     fn deed(&self, cost: &mut CostToGo, person: &Particle, draw: f64, random: &mut Stream) -> Option<ButtonId> {
         let (kitchen, decision) = (&self.kitchen, &self.human.decision);
         let (here, after) = person.prospects(kitchen, cost, self.spec.rollout.states, random);

@@ -1,4 +1,4 @@
-//! What was said already: nothing is said twice before it could have been forgotten again.
+//! The repeat rule: a signal is not repeated before its content can have been forgotten.
 
 use super::recommendation::aspects_told;
 use super::signal::{Signal, signals};
@@ -6,39 +6,39 @@ use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{AspectId, Kitchen, LocationId, State};
 use crate::mind::dirichlet::DirichletBelief;
 
-/// What was told is known when the truth has this expected probability.
+/// Expected P(truth) from which the content of a signal counts as known.
 const KNOWN: f64 = 0.9;
 
-/// The signals that were shown, until they may be shown again: when P(truth) of what they are about has passed 0.9 and
-/// fallen again, or the truth has changed.
+/// The signals that must not be repeated yet. A signal may be repeated once P(truth) of its aspects has passed 0.9 and fallen
+/// again, or the truth has changed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Repeats {
-    /// By location.
+    /// One entry per location.
     told: [Option<Told>; MAX_LOCATIONS],
 }
 
-/// What a signal told.
+/// Content of a signal that was shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Told {
-    /// The state's byte at the location.
+    /// Code of the location's content at the time.
     code: u8,
     was_known: bool,
 }
 
 impl Repeats {
-    /// A signal was shown.
+    /// Notes that a signal was shown.
     pub fn shown(&mut self, kitchen: &Kitchen, state: State, signal: &Signal) {
         if let Some(location) = kitchen.location_named(signal.target()) {
             self.told[location.index()] = Some(Told { code: state.code(location), was_known: false });
         }
     }
 
-    /// It was not shown after all.
+    /// Notes that the signal about a location was not shown after all.
     pub fn not_shown(&mut self, location: LocationId) {
         self.told[location.index()] = None;
     }
 
-    /// The estimate or the truth may have changed.
+    /// Applies the rule after a change of the estimate or of the true state.
     pub fn update(&mut self, kitchen: &Kitchen, state: State, belief: &DirichletBelief) {
         for (location, signal) in signals(kitchen, true) {
             let slot = &mut self.told[location.index()];
@@ -53,7 +53,7 @@ impl Repeats {
         }
     }
 
-    /// The signals that may be shown.
+    /// The available signals that may be shown now.
     pub fn allowed(&self, kitchen: &Kitchen, own_hand: bool) -> Vec<Signal> {
         let all = signals(kitchen, own_hand).into_iter();
         all.filter(|(location, _)| self.told[location.index()].is_none()).map(|(_, signal)| signal).collect()

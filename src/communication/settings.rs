@@ -1,25 +1,25 @@
-//! What a session file asks of the assistant.
+//! Settings of the assistant in a session file.
 
 use serde::{Deserialize, Serialize};
 
 use super::concept_name::ConceptName;
 
-/// The assistant: what it advises by, how carefully, and whether it does so beside a wizard.
+/// Settings of the assistant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AssistantSpec {
     pub shadow: Shadow,
     pub concept: ConceptName,
-    /// What a signal costs, in presses: a signal has to save more than that (1.5 in the paper).
+    /// Cost of communication in presses: the expected saving of a signal must exceed it (1.5 in the paper).
     pub cost_of_communication: f64,
-    /// The expected deviation of a belief, as a probability, above which ToM tells the truth.
+    /// Expected belief deviation, a probability, above which ToM sends a signal.
     pub belief_threshold: f64,
-    /// How many presses DEV proposes after an error.
+    /// Number of presses that DEV proposes after an error.
     pub proposed_presses: usize,
     pub rollout: RolloutModel,
 }
 
-/// Whether the assistant advises where it does not act.
+/// Whether the assistant computes recommendations in conditions in which it does not send signals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shadow {
@@ -34,7 +34,7 @@ impl Default for AssistantSpec {
             shadow: Shadow::On,
             concept: ConceptName::TomCom,
             cost_of_communication: 1.5,
-            // Believed wrong, as false belief episodes are defined.
+            // The definition of a false belief.
             belief_threshold: 0.5,
             proposed_presses: 1,
             rollout: RolloutModel::default(),
@@ -42,17 +42,17 @@ impl Default for AssistantSpec {
     }
 }
 
-/// How far and how often the future is tried out.
+/// Settings of the planner's rollouts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RolloutModel {
-    /// Decisions of the human in a rollout.
+    /// Number of human decisions in a rollout (horizon).
     pub horizon: usize,
-    /// Rollouts of each signal and of saying nothing, paired by their random numbers; at most so many.
+    /// Largest number of paired rollouts per signal.
     pub rollouts: usize,
-    /// States and recipes drawn from each sample of the belief.
+    /// Number of worlds drawn from each belief sample.
     pub states: usize,
-    /// From one press of the human to the next, in seconds.
+    /// Time between presses of the human, in seconds.
     pub human_press_s: f64,
     /// Looks a second at each place that the next press needs; before something is fetched, also at the robot's hand, which
     /// may be bringing it. Measured on unassisted simulated participants: 1.1 and 0.7.
@@ -63,10 +63,10 @@ pub struct RolloutModel {
     /// Share of the changes by others that draw the eye at once; none, as long as nobody has measured it. Of simulated
     /// participants, beyond those looks: 0.3 at the robot's hand and at places, 0.4 at orders.
     pub capture: f64,
-    /// No more rollouts of a signal are made when the standard error of its benefit is at most this, in presses, or at most
-    /// twice this where it is clear whether it pays: where the net benefit is off zero by three standard errors.
+    /// Rollouts of a signal end when the standard error of its benefit is at most this, in presses, or at most twice this if the net
+    /// benefit differs from zero by three standard errors.
     pub enough_error: f64,
-    /// At least so many are made.
+    /// Least number of paired rollouts per signal.
     pub least_rollouts: usize,
 }
 
@@ -87,7 +87,7 @@ impl Default for RolloutModel {
 }
 
 impl AssistantSpec {
-    /// What the worth of an option has to exceed to be said, in the concept's unit: presses, of ToM a deviation.
+    /// The value that an option's benefit must exceed: the cost of communication in presses, or ToM's threshold.
     pub fn price(&self) -> f64 {
         match self.concept {
             ConceptName::Tom => self.belief_threshold,
@@ -95,7 +95,7 @@ impl AssistantSpec {
         }
     }
 
-    /// The first setting that cannot be: its name, what it is, and what would be right.
+    /// The first invalid setting: its name, the value found, and the valid range; `None` if all are valid.
     pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
         let rollout = &self.rollout;
         let not_below = |key, value: f64| (key, value, value.is_finite() && value >= 0.0, "a number not below 0");

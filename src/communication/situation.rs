@@ -1,17 +1,17 @@
-//! What there is to decide about: the situation in which something could be said.
+//! The situation in which a concept decides: true state, belief estimate, robot.
 
 use crate::kitchen::{AspectId, ButtonId, State};
 use crate::mind::dirichlet::DirichletBelief;
 
-/// A moment of a trial, as the assistant knows it: the true state, the arm's errand, and the estimate of the belief.
+/// A situation of a trial as the assistant knows it.
 #[derive(Clone, Copy, Debug)]
 pub struct Situation<'a> {
     pub state: State,
     pub belief: &'a DirichletBelief,
-    /// The locations that have changed at this very moment, which may draw the eye.
+    /// Locations that have just changed and may draw the human's eye.
     pub changed: &'a [AspectId],
     pub robot: RobotIntent,
-    /// How long a press of the robot takes, in seconds.
+    /// Duration of a robot press, in seconds.
     pub robot_press_s: f64,
 }
 
@@ -22,10 +22,10 @@ impl<'a> Situation<'a> {
     }
 }
 
-/// What the robot is about to do.
+/// The robot's present action.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RobotIntent {
-    /// Its arm is on its way to a button, which it will touch in so many seconds; `driven`: useful or not.
+    /// The arm moves towards a button and will touch it in `in_s` seconds; `driven` if the wizard chose the press.
     Busy { button: ButtonId, remaining_s: f64, driven: bool },
     /// It follows its policy.
     Free,

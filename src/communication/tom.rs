@@ -1,9 +1,9 @@
-//! ToM: theory of mind without planning. Says what is believed wrong or not known, whether that matters now or not (paper,
-//! "Concept comparisons"; Buehler and Weisswange 2018).
+//! ToM: theory of mind without planning. Communicates false or uncertain beliefs, whether they matter now or not (paper, "Concept
+//! comparisons"; Buehler and Weisswange 2018).
 //!
-//! Of all that can be told, the aspect with the largest expected deviation of the belief, 1 - E[P(truth)], is told if that
-//! passes a threshold (0.4 to 0.99 in the paper). An aspect that no signal is about cannot be told: the own hand, unless the
-//! session allows it, and the recipes of dishes that no order wants.
+//! Among the available signals, the one whose aspect has the largest expected belief deviation, 1 - E[P(truth)], is recommended if
+//! that deviation exceeds a threshold (0.4 to 0.99 in the paper). There is no signal about the own hand (unless the session allows
+//! it) and about recipes of dishes that are not ordered.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::mind::witness::rounded;
 
-/// Tells what deviates most.
+/// The ToM concept.
 #[derive(Clone, Debug)]
 pub struct TomConcept {
     kitchen: Arc<Kitchen>,
@@ -22,12 +22,12 @@ pub struct TomConcept {
 }
 
 impl TomConcept {
-    /// Speaks where the expected deviation of a belief is above `threshold`, a probability.
+    /// A ToM concept with this threshold of the expected belief deviation, a probability.
     pub fn new(kitchen: Arc<Kitchen>, threshold: f64) -> TomConcept {
         TomConcept { kitchen, threshold }
     }
 
-    /// The largest deviation among the aspects that a signal is about.
+    /// Largest expected belief deviation among the aspects that a signal shows.
     fn deviation(&self, moment: &DecisionPoint, signal: &Signal) -> f64 {
         let (kitchen, state, belief) = (&self.kitchen, moment.situation.state, moment.situation.belief);
         let aspects = aspects_told(kitchen, state, signal).into_iter();
@@ -36,12 +36,12 @@ impl TomConcept {
 }
 
 impl Concept for TomConcept {
-    /// The options' benefits are deviations, and their net benefits what these are above the threshold.
+    /// An option's benefit is its expected belief deviation; its net benefit is the deviation minus the threshold.
     fn advise(&mut self, _: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
         let (kitchen, state) = (&self.kitchen, moment.situation.state);
         let possible = moment.signals.iter().filter(|signal| unavailable(kitchen, state, signal).is_none());
         let mut ranked: Vec<(f64, &Signal)> = possible.map(|signal| (self.deviation(moment, signal), signal)).collect();
-        // The sort is stable: the first of equals is the first in the layout.
+        // The sort is stable: ties go to the layout's order.
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         let best = ranked.first().filter(|(deviation, _)| *deviation > self.threshold);
         let option = |&(deviation, signal): &(f64, &Signal)| SignalOption {

@@ -1,4 +1,4 @@
-//! Why a press was an error: because of a false belief, or a slip.
+//! Attribution of an error to a cause: a false belief, or a slip.
 //!
 //! An error is belief related if log p(a | b) - log p(a | truth) >= ln 3, with b from before the press and p of the human
 //! model. It is put down to the target whose replacement by the truth lowers p(a | b) most. A single target explains the
@@ -14,38 +14,38 @@ use crate::mind::ChoiceModel;
 use crate::mind::belief::Belief;
 use crate::mind::decision::DecisionModel;
 
-/// So many times likelier under the belief than under the truth.
+/// Least likelihood ratio of belief to truth for a belief related error.
 pub const LIKELIER: f64 = 3.0;
-/// What is believed wrong at least so surely can be one of the two causes of an error.
+/// Least P(false) of a target that can be part of a pair of causes.
 const DOUBTFUL: f64 = 0.1;
 
-/// What a human can be wrong about and be told: an order and the recipe of its dish count as one.
+/// A possible cause of an error that a signal can correct; an order and the recipe of its dish are one target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Target {
-    /// What an order wants, and how that is made.
+    /// An order and the recipe of its dish.
     Order(LocationId, Option<DishId>),
-    /// What lies at a location that is no order.
+    /// The content of a location other than an order.
     Place(LocationId),
-    /// The recipe of a dish that no order wants.
+    /// The recipe of a dish that is not ordered.
     Recipe(DishId),
 }
 
-/// Why a press was an error.
+/// Cause of an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
-    /// Not likelier for the belief than for the truth.
+    /// A slip: the press is not likelier under the belief than under the truth.
     Slip,
     Belief {
         /// log p(a | b) - log p(a | truth), in nats.
         gain_nats: f64,
         target: Target,
-        /// The second target, where one alone does not explain the error.
+        /// Second target, where a single target does not explain the error.
         with: Option<Target>,
     },
 }
 
 impl Target {
-    /// Everything that a human can be told in this state.
+    /// All targets in a state.
     pub fn all(kitchen: &Kitchen, state: State) -> Vec<Target> {
         let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
         let of_location = |location: LocationId| match (kitchen.location(location).kind, state.order(location)) {
@@ -58,7 +58,7 @@ impl Target {
         locations.map(of_location).chain(unwanted.map(Target::Recipe)).collect()
     }
 
-    /// The state aspects that it is about.
+    /// The state aspects of the target.
     pub fn aspects(self, kitchen: &Kitchen) -> impl Iterator<Item = AspectId> {
         let (location, dish) = match self {
             Target::Order(location, dish) => (Some(location), dish),
@@ -69,7 +69,7 @@ impl Target {
         location.map(AspectId::of_location).into_iter().chain(recipe)
     }
 
-    /// In words: "cooking pot", "tuna maki of order 1".
+    /// The target in words: "cooking pot", "tuna maki of order 1".
     pub fn label(self, kitchen: &Kitchen) -> String {
         match self {
             Target::Order(order, Some(dish)) => {
@@ -81,19 +81,19 @@ impl Target {
     }
 }
 
-/// Finds the causes of errors.
+/// Attributes errors to causes.
 #[derive(Clone, Debug)]
 pub struct Attributor {
     model: DecisionModel,
-    /// Everything random follows from it.
+    /// Seed of the random streams.
     seed: u64,
 }
 
-/// An error that is looked into.
+/// An error during attribution.
 struct Inquiry<'a> {
     kitchen: &'a Kitchen,
     model: ChoiceModel,
-    /// The worlds that stand for the belief.
+    /// The worlds that represent the belief.
     worlds: WeightedWorlds,
     state: State,
     button: ButtonId,
@@ -104,8 +104,8 @@ impl Attributor {
         Attributor { model, seed }
     }
 
-    /// The cause of a press that was an error, given the belief before it. `number`: how many presses both agents have
-    /// made, this one included; it seeds the random stream.
+    /// The cause of an error, given the belief before it. `number` is the number of presses of both agents including this one; it
+    /// seeds the random stream.
     pub fn cause(&self, kitchen: &Kitchen, cost: &mut CostToGo, belief: &Belief, press: &Press, number: u32) -> Cause {
         let (state, button) = (press.before, press.button);
         let mut random = stream(self.seed, "attribution", u64::from(number));
@@ -129,13 +129,13 @@ impl Inquiry<'_> {
         self.model.probabilities(cost, worlds).press[self.button.index()].ln()
     }
 
-    /// The target, or pair of targets, that makes the press unlikely when it is put right.
+    /// The target, or pair of targets, whose replacement by the truth makes the press unlikely.
     fn explain(&self, cost: &mut CostToGo, informed: f64) -> Option<(Target, Option<Target>)> {
         let mut targets = Target::all(self.kitchen, self.state);
         targets.retain(|&target| self.doubt(target) > 0.0);
         let mut singles: Vec<(f64, Target)> =
             targets.into_iter().map(|target| (self.log_p(cost, &self.told(&self.worlds, target)), target)).collect();
-        // The sort is stable: of equals the first location.
+        // The sort is stable: ties go to the layout's order.
         singles.sort_by(|a, b| a.0.total_cmp(&b.0));
         let &(least, target) = singles.first()?;
         if least - informed < LIKELIER.ln() {
@@ -145,8 +145,8 @@ impl Inquiry<'_> {
         Some(self.best_pair(cost, &singles, least).map_or((target, None), |(one, other)| (one, Some(other))))
     }
 
-    /// The pair of these targets that makes the press least likely when it is put right, if it becomes less likely than
-    /// `least`; the one that does more by itself comes first.
+    /// The pair of targets whose replacement by the truth lowers the log probability of the press most, if it falls below `least`;
+    /// the target with the larger effect of its own comes first.
     fn best_pair(&self, cost: &mut CostToGo, targets: &[(f64, Target)], mut least: f64) -> Option<(Target, Target)> {
         let mut best = None;
         for (index, &(_, one)) in targets.iter().enumerate() {
@@ -161,14 +161,14 @@ impl Inquiry<'_> {
         best
     }
 
-    /// How likely it is, for the human, that the target is other than it truly is.
+    /// Probability, in the human's belief, that the target differs from the truth.
     fn doubt(&self, target: Target) -> f64 {
         let told = self.told(&self.worlds, target);
         let wrong = self.worlds.all.iter().zip(&told.all).filter(|(held, true_one)| held != true_one);
         wrong.map(|(held, _)| held.weight).sum()
     }
 
-    /// The same worlds with one target as it truly is.
+    /// The same worlds with one target replaced by the truth.
     fn told(&self, worlds: &WeightedWorlds, target: Target) -> WeightedWorlds {
         let mut worlds = worlds.clone();
         for aspect in target.aspects(self.kitchen) {

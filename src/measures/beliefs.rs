@@ -1,5 +1,5 @@
-//! How well an estimate of beliefs knows what is believed wrong, held against beliefs that are known: those that simulated
-//! participants tell before each press.
+//! Detection of false beliefs by an estimate, compared with known beliefs: those that simulated participants record before each
+//! press.
 //!
 //! The unit is a press of the human, and what was estimated right before it. An aspect is believed wrong if the
 //! participant's own P(truth) is below 0.5. The area under the ROC of a group (locations, recipes) is that of all its pairs
@@ -14,33 +14,31 @@ use super::flags::{Flags, Thresholds};
 pub use super::press_view::{EstimateView, PressView, TrialView};
 use crate::kitchen::{AspectKind, Kitchen};
 
-/// Predictions outside of this range are not asked for their calibration: most aspects are plainly right most of the time.
+/// Calibration uses predictions within this range, since most aspects are obviously right most of the time.
 pub const CALIBRATED: [f64; 2] = [0.05, 0.95];
-/// Bins of predictions.
+/// Number of calibration bins.
 pub const CALIBRATION_BINS: usize = 10;
 
-/// The area under the ROC of one aspect.
+/// Area under the ROC curve of one aspect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AspectAuc {
     pub aspect: String,
-    /// Null if it was never, or always, believed wrong.
+    /// Null if its belief was never or always false.
     pub auc: Option<f64>,
-    /// The share of the presses before which it was believed wrong.
+    /// Share of presses before which its belief was false.
     pub wrong: f64,
 }
 
-/// How well the estimate knows what is believed wrong; null where nothing estimates, or where nobody knows what was
-/// believed.
+/// Detection of false beliefs; null without an estimate or without known beliefs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Detection {
-    /// The mean of locations and recipes.
+    /// Mean of the areas of locations and recipes.
     pub auc: Option<f64>,
     pub auc_locations: Option<f64>,
     pub auc_recipes: Option<f64>,
-    /// What one reaches on the locations who knows only whether somebody else changed something there since the human last
-    /// looked at it.
+    /// Area of the baseline on locations, which knows only whether somebody else changed a location since the human last looked at it.
     pub auc_baseline: Option<f64>,
-    /// The mean over the aspects, each with an area of its own.
+    /// Mean of the areas of single aspects.
     pub auc_mean_of_aspects: Option<f64>,
     #[serde(flatten)]
     pub flags: Flags,
@@ -51,8 +49,8 @@ pub struct Detection {
 }
 
 impl Detection {
-    /// Holds estimates against beliefs. `thresholds`: the probabilities from which an aspect is flagged; `None` lets them
-    /// be chosen on these trials (see [`Flags`]).
+    /// Compares estimates with beliefs. `thresholds` are the probabilities from which an aspect is flagged; with `None` they are
+    /// chosen on these trials (see [`Flags`]).
     pub fn from_trials(kitchen: &Kitchen, trials: &[TrialView], thresholds: Option<Thresholds>) -> Detection {
         let estimated = |press: &PressView, aspect| press.estimate.as_ref().map(|one| one.p_wrong[aspect]);
         let changed = |press: &PressView, aspect| press.unseen_change.get(aspect).map(|&one| f64::from(u8::from(one)));
@@ -82,10 +80,10 @@ impl Detection {
     }
 }
 
-/// A score of one aspect before a press.
+/// Score of one aspect before a press.
 type Score<'a> = &'a dyn Fn(&PressView, usize) -> Option<f64>;
 
-/// The scores of these aspects before every press, and whether they were believed wrong; only where both are known.
+/// Scores of aspects before every press with whether their belief was false; only where both are known.
 fn scored(trials: &[TrialView], aspects: &[usize], score: Score) -> Vec<(f64, bool)> {
     let one = |press: &PressView, aspect: usize| Some((score(press, aspect)?, press.is_wrong(aspect)?));
     let presses = trials.iter().flatten();
@@ -98,7 +96,7 @@ fn aspects(kitchen: &Kitchen, recipes: bool) -> Vec<usize> {
     (0..kitchen.aspects.len()).filter(|index| is_recipe(index) == recipes).collect()
 }
 
-/// The mean; none of nothing.
+/// The mean; `None` for an empty list.
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
     (count > 0).then(|| sum / f64::from(count))

@@ -1,11 +1,9 @@
-//! How well a score tells cases from others: the area under the ROC, thresholds, and how well probabilities are
-//! calibrated. Nothing here knows what the cases are.
+//! Quality of a binary detector in general: area under the ROC curve, and calibration of probabilities.
 
 use serde::Serialize;
 
-/// The area under the ROC curve of a score over (score, is a case): the share of pairs of a case and another one in which
-/// the case scores higher; equal scores count as half (mid-ranks; Hanley and McNeil 1982). `None` if there are no cases,
-/// or nothing else.
+/// Area under the ROC curve from pairs (score, is positive): the share of pairs of a positive and a negative in which the positive
+/// scores higher; ties count as half (mid-ranks; Hanley and McNeil 1982). `None` without positives or without negatives.
 pub fn auc(scored: &[(f64, bool)]) -> Option<f64> {
     let mut sorted = scored.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -14,7 +12,7 @@ pub fn auc(scored: &[(f64, bool)]) -> Option<f64> {
     if cases == 0.0 || others == 0.0 {
         return None;
     }
-    // Twice the number of pairs that are in order, so that it is a whole number.
+    // Twice the number of ordered pairs, to stay with integers.
     let (mut twice, mut below) = (0.0, 0.0);
     for tied in sorted.chunk_by(|a, b| a.0 == b.0) {
         let tied_cases = tied.iter().filter(|(_, case)| *case).count() as f64;
@@ -28,25 +26,25 @@ pub fn auc(scored: &[(f64, bool)]) -> Option<f64> {
 /// One bin of predicted probabilities.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CalibrationBin {
-    /// Predictions in it.
+    /// Number of predictions.
     pub n: u64,
-    /// Their mean.
+    /// Mean prediction.
     pub predicted: f64,
-    /// The share of them that came true.
+    /// Share of predicted events that happened.
     pub observed: f64,
 }
 
-/// Predicted probabilities against what came true, in bins of equal width.
+/// Calibration of predicted probabilities, in bins of equal width.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Calibration {
     pub bins: Vec<CalibrationBin>,
-    /// Expected calibration error: the mean over the predictions of what their bin's mean is off (Naeini et al. 2015).
-    /// `None` without predictions.
+    /// Expected calibration error: mean over predictions of the difference between predicted and observed in their bin (Naeini et al.
+    /// 2015). `None` without predictions.
     pub ece: Option<f64>,
 }
 
 impl Calibration {
-    /// Of those (prediction, came true) whose prediction is within `range`, in so many bins.
+    /// The calibration of pairs (prediction, happened) whose prediction lies within `range`.
     pub fn from_predictions(
         predictions: impl IntoIterator<Item = (f64, bool)>,
         range: [f64; 2],

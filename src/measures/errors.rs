@@ -13,24 +13,24 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, Press, State};
 
-/// A press so soon after a change by the robot, or by nobody, at the same place cannot have taken the change into account.
+/// A press within this time after a change by somebody else at the same place is a race, in seconds.
 pub const RACE_S: f64 = 0.3;
-/// Up to this excess, a press that brings an active order nearer counts as preparation.
+/// Largest excess regret of a press that counts as preparation of the other order.
 pub const PREPARATION_EXCESS: i32 = 2;
 
-/// What a press of the human was worth.
+/// Judgement of a press of the human.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PressVerdict {
-    /// r(a): presses lost by it, those of both agents.
+    /// Regret r(a): number of presses of both agents that it loses.
     pub regret: i32,
-    /// By how much the regret exceeds that of the human's best press.
+    /// Excess of its regret over that of the human's best press.
     pub excess: i32,
-    /// Somebody else had changed the same place within [`RACE_S`]: not counted.
+    /// Whether somebody else changed the same place within [`RACE_S`] before; such presses are not counted.
     pub race: bool,
     pub error: bool,
 }
 
-/// Judges presses; it remembers when something else than the human last changed what.
+/// Judges presses; keeps the time of the last change of each location by somebody other than the human.
 #[derive(Clone, Debug)]
 pub struct PressJudge {
     kitchen: Arc<Kitchen>,
@@ -42,7 +42,7 @@ impl PressJudge {
         PressJudge { kitchen, others_changed_at: [None; MAX_LOCATIONS] }
     }
 
-    /// Takes note of what a press of the robot, or a correction by hand, changed.
+    /// Notes the changes of a robot press or of a correction by the wizard.
     pub fn others_changed(&mut self, now: SessionTime, before: State, after: State) {
         for location in self.kitchen.changed(before, after) {
             self.others_changed_at[location.index()] = Some(now);
@@ -78,7 +78,7 @@ impl PressJudge {
         PressVerdict { regret, excess, race, error }
     }
 
-    /// Whether somebody else changed a place of this button of the human a moment ago.
+    /// Whether somebody else changed a place of this button within [`RACE_S`].
     fn is_race(&self, now: SessionTime, button: ButtonId) -> bool {
         let kitchen = &self.kitchen;
         let hand = kitchen.hands[Agent::Human.index()];

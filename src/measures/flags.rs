@@ -1,5 +1,5 @@
-//! Flags: aspects whose probability of being believed wrong passes a threshold, and which false belief episodes they catch
-//! in time.
+//! Flags: aspects whose estimated probability of a false belief exceeds a threshold, and the false belief episodes that flags
+//! detect in time.
 //!
 //! An episode counts if it caused two or more errors; it is caught if its aspect is flagged after it became false and
 //! before the third error (the estimate from before a press is before that press). A false flag is one that is raised on an
@@ -11,48 +11,48 @@ use serde::Serialize;
 
 use super::press_view::{PressView, TrialView};
 
-/// The share of (press, aspect) pairs believed right that may be flagged.
+/// Largest share of (press, aspect) pairs with a right belief that may be flagged.
 pub const MOST_WRONGLY_FLAGGED: f64 = 0.05;
-/// False flags per [`PER_PRESSES`] presses of the human.
+/// Largest number of false flags per [`PER_PRESSES`] presses of the human.
 pub const MOST_FALSE_FLAGS: f64 = 0.7;
 /// The unit of the rate of false flags, in presses of the human.
 pub const PER_PRESSES: f64 = 20.0;
-/// An episode counts from so many errors on.
+/// Least number of errors of an episode that counts.
 const ERRORS: u32 = 2;
-/// It has to be flagged before this one of its errors.
+/// An episode must be flagged before this error to count as detected.
 const BEFORE_ERROR: u32 = 3;
-/// So many thresholds are tried for each group.
+/// Number of thresholds that are tried for each group.
 const CANDIDATES: usize = 200;
 
-/// An aspect is flagged from this probability of being believed wrong on.
+/// Probabilities of a false belief from which an aspect is flagged.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Thresholds {
     pub locations: f64,
     pub recipes: f64,
 }
 
-/// What flags catch, and what they cost.
+/// Detections and false alarms of flags.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Flags {
-    /// False belief episodes with two or more errors.
+    /// Number of false belief episodes with two or more errors.
     pub episodes: Option<u64>,
-    /// The share of them that was flagged in time.
+    /// Share of these episodes that were flagged in time.
     pub flagged_before_third_error: Option<f64>,
     pub false_flags_per_20_actions: Option<f64>,
-    /// The share of (press, aspect) pairs that were flagged although believed right.
+    /// Share of (press, aspect) pairs with a right belief that were flagged.
     pub wrongly_flagged: Option<f64>,
     pub thresholds: Option<Thresholds>,
 }
 
-/// A time during which an aspect is believed wrong, as presses of a trial.
+/// A period of false belief about an aspect, as a range of presses.
 struct Episode {
     trial: usize,
     aspect: usize,
-    /// The presses before which it can be flagged in time.
+    /// The presses before which a flag is in time.
     in_time: std::ops::RangeInclusive<usize>,
 }
 
-/// What comes of one threshold for one group.
+/// Result of one threshold for one group.
 #[derive(Clone, Copy, Debug, Default)]
 struct Outcome {
     threshold: f64,
@@ -63,7 +63,7 @@ struct Outcome {
 }
 
 impl Flags {
-    /// What flags do on these trials. `groups`: the aspects that are locations, and those that are recipes.
+    /// Evaluates flags on trials. `groups` holds the aspects of locations and those of recipes.
     pub fn from_trials(trials: &[TrialView], groups: &[Vec<usize>; 2], thresholds: Option<Thresholds>) -> Flags {
         let presses: Vec<&PressView> = trials.iter().flatten().collect();
         if presses.is_empty() || presses.iter().any(|press| press.held.is_none() || press.estimate.is_none()) {
@@ -97,7 +97,7 @@ impl Flags {
     }
 }
 
-/// The pair of outcomes that catches most with at most so many false flags, and so much flagged wrongly.
+/// The pair of outcomes with most detections within the allowed numbers of false flags and of wrongly flagged pairs.
 fn best_pair(locations: &[Outcome], recipes: &[Outcome], allowed: [usize; 2]) -> Option<[Outcome; 2]> {
     let pairs = locations.iter().flat_map(|one| recipes.iter().map(move |other| [*one, *other]));
     let false_flags = |pair: &[Outcome; 2]| pair.iter().map(|one| one.false_flags).sum::<usize>();
@@ -107,18 +107,18 @@ fn best_pair(locations: &[Outcome], recipes: &[Outcome], allowed: [usize; 2]) ->
     fitting.max_by(|a, b| caught(a).cmp(&caught(b)).then(false_flags(b).cmp(&false_flags(a))))
 }
 
-/// How many pairs of a press and an aspect that is believed right may be flagged.
+/// Allowed number of (press, aspect) pairs with a right belief that are flagged.
 fn allowed_wrongly(trials: &[TrialView], groups: &[Vec<usize>; 2]) -> usize {
     let right = groups.iter().map(|group| while_right(trials, group).count()).sum::<usize>();
     (MOST_WRONGLY_FLAGGED * right as f64) as usize
 }
 
-/// Thresholds worth trying: those that flag at most so much of what is believed right, from the strictest on.
+/// Candidate thresholds, the strictest first: those that flag at most `allowed` pairs with a right belief.
 fn candidates(trials: &[TrialView], group: &[usize], allowed: usize) -> Vec<f64> {
     let mut right: Vec<f64> = while_right(trials, group).collect();
     right.sort_by(|a, b| b.total_cmp(a));
     let allowed = allowed.min(right.len().saturating_sub(1));
-    // Just above the score at a rank at most that many are flagged, also where scores are equal.
+    // A threshold just above the score at a rank flags at most that many pairs, also with tied scores.
     let above = |index: usize| right.get(index).map(|p| p.next_up());
     let steps = CANDIDATES.min(allowed + 1);
     let mut tried: Vec<f64> =
@@ -131,7 +131,7 @@ fn p_wrong(press: &PressView, aspect: usize) -> f64 {
     press.estimate.as_ref().map_or(0.0, |estimate| estimate.p_wrong[aspect])
 }
 
-/// The estimates of these aspects before all presses while they are believed right.
+/// Estimated probabilities of a false belief for all (press, aspect) pairs with a right belief.
 fn while_right<'a>(trials: &'a [TrialView], group: &'a [usize]) -> impl Iterator<Item = f64> + 'a {
     let is_right = |press: &PressView, aspect: usize| press.is_wrong(aspect) == Some(false);
     trials.iter().flatten().flat_map(move |press| {
@@ -139,7 +139,7 @@ fn while_right<'a>(trials: &'a [TrialView], group: &'a [usize]) -> impl Iterator
     })
 }
 
-/// The episodes of an aspect with enough errors.
+/// The episodes of an aspect that count.
 fn harmful(trials: &[TrialView], aspect: usize) -> Vec<Episode> {
     let mut episodes = Vec::new();
     for (trial, presses) in trials.iter().enumerate() {

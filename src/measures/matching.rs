@@ -1,9 +1,9 @@
-//! How alike two lanes of communications are, a wizard's and an assistant's: one-to-one matching in time, and what follows
-//! from it.
+//! Similarity of two lanes of communications, a wizard's and an assistant's: one-to-one matching in time, with recall, precision
+//! and kappa.
 //!
-//! Two communications can match if at most a window of human presses lies between them and they say the same: the same
-//! signal and target (strict), the same kind of signal (lenient), or anything at all (timing alone). Of all one-to-one
-//! matchings one with most pairs is taken, of those one with the least presses between the pairs.
+//! Two communications can match if at most a window of human presses lies between them and their contents agree: the same
+//! signal and target (strict), the same kind of signal (lenient), or any content (timing only). Among all one-to-one matchings,
+//! one with the most pairs is used, and among those one with the fewest presses between the pairs.
 //!
 //! Kappa (Cohen 1960) is over human presses and {none, each signal and target}. A strictly matched pair counts as agreement
 //! at the press of its first lane, as when events are aligned within a tolerance (Quera, Bakeman and Gnisci 2007); all else
@@ -17,49 +17,49 @@ use super::median::median;
 use crate::base::time::SessionTime;
 use crate::kitchen::LocationId;
 
-/// The window that communications match within, in presses of the human.
+/// Default window of a match, in presses of the human.
 pub const WINDOW: u32 = 3;
 
-/// What kind of communication something is.
+/// Kind of a communication.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum CommunicationKind {
     Recipe,
     Highlight,
-    /// Of presses, after an error: no signal.
+    /// A proposal of presses after an error (not a signal).
     Proposal,
 }
 
-/// What is said.
+/// Content of a communication, as the matching compares it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct CommunicationTarget {
     pub kind: CommunicationKind,
-    /// What a signal is about.
+    /// Location of the signal.
     pub target: Option<LocationId>,
 }
 
-/// A communication.
+/// A communication with its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CommunicationEvent {
-    /// How many presses of the human came before it in the trial.
+    /// Number of human presses in the trial before it.
     pub press: u32,
-    /// On the trial's clock.
+    /// Time on the trial's clock.
     pub clock: SessionTime,
     pub content: CommunicationTarget,
 }
 
-/// What has to be the same of two communications that match.
+/// Which part of the content must agree in a match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatchCriterion {
-    /// Signal and target.
+    /// Signal and target must agree.
     Strict,
-    /// The kind of signal.
+    /// The kind of signal must agree.
     Lenient,
-    /// Nothing but the time.
+    /// Any content matches.
     Timing,
 }
 
 impl MatchCriterion {
-    /// What communications have in common that can match.
+    /// Equivalence class of a content under this criterion.
     fn class(self, content: CommunicationTarget) -> Option<CommunicationTarget> {
         match self {
             MatchCriterion::Strict => Some(content),
@@ -69,8 +69,8 @@ impl MatchCriterion {
     }
 }
 
-/// The pairs of a best one-to-one matching, as indices into both lanes, in the order of the first. Both lanes are in the
-/// order of time.
+/// Pairs of an optimal one-to-one matching, as indices into both lanes, in the order of the first. Both lanes must be sorted by
+/// time.
 pub fn matched(
     of: &[CommunicationEvent],
     with: &[CommunicationEvent],
@@ -88,8 +88,8 @@ pub fn matched(
     pairs
 }
 
-/// The best matching of communications of one class. Where only distances on a line count, some best matching crosses
-/// nowhere, so that it is found as an alignment of two sequences.
+/// Optimal matching within one class. Since costs are distances on a line, some optimal matching has no crossings and is found by
+/// sequence alignment.
 fn aligned(
     of: &[CommunicationEvent],
     with: &[CommunicationEvent],
@@ -97,7 +97,7 @@ fn aligned(
     b: &[usize],
     window: u32,
 ) -> Vec<(usize, usize)> {
-    // Pairs, and presses between them counted down: the most is the best.
+    // Objective: number of pairs first, then the negative number of presses between them.
     let mut best = vec![vec![(0i64, 0i64); b.len() + 1]; a.len() + 1];
     let apart = |i: usize, j: usize| of[a[i]].press.abs_diff(with[b[j]].press);
     for i in (0..a.len()).rev() {
@@ -122,23 +122,23 @@ fn aligned(
     pairs
 }
 
-/// What two lanes have in common, in one trial or several.
+/// Running counts of matches between two lanes over trials.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MatchCounts {
     of: u64,
     with: u64,
-    /// Pairs: strict, lenient, by time alone.
+    /// Number of pairs: strict, lenient, timing only.
     pairs: [u64; 3],
-    /// Strict pairs that circular shifts leave, in the mean, and the communications of the first lane in those trials.
+    /// Mean number of strict pairs over circular shifts, and number of communications of the first lane in those trials.
     chance: (f64, u64),
-    /// Seconds from the second lane's communication to the first's.
+    /// Time from the second lane's communication to the first's, in seconds, by pair.
     leads_s: Vec<f64>,
-    /// How often a press has this content in the first lane and that in the second.
+    /// Contingency table of contents per press, first lane by second lane.
     units: BTreeMap<(Option<CommunicationTarget>, Option<CommunicationTarget>), u64>,
 }
 
 impl MatchCounts {
-    /// Adds a trial of so many presses of the human.
+    /// Adds a trial with `presses` presses of the human.
     pub fn add(&mut self, of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, window: u32) {
         self.of += of.len() as u64;
         self.with += with.len() as u64;
@@ -158,7 +158,7 @@ impl MatchCounts {
         }
     }
 
-    /// The figures.
+    /// The similarity over all added trials.
     pub fn similarity(&self) -> Similarity {
         let share = |part: f64, all: u64| (all > 0).then(|| part / all as f64);
         let level = |pairs: u64| MatchShares {
@@ -180,42 +180,41 @@ impl MatchCounts {
     }
 }
 
-/// Shares of matched communications; null of nothing.
+/// Shares of matched communications; null without communications.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MatchShares {
-    /// Of the first lane's.
+    /// Share of the first lane's communications that are matched.
     pub recall: Option<f64>,
-    /// Of the second lane's.
+    /// Share of the second lane's communications that are matched.
     pub precision: Option<f64>,
     pub f1: Option<f64>,
 }
 
-/// How alike two lanes are.
+/// Similarity of two lanes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Similarity {
-    /// The same signal and target.
+    /// Matches with the same signal and target.
     #[serde(flatten)]
     pub strict: MatchShares,
-    /// Null where nothing but chance could be.
+    /// Cohen's kappa per human press; null where agreement by chance is 1.
     pub kappa: Option<f64>,
-    /// By how much the second lane is earlier than the first, in seconds; negative: later.
+    /// Median lead of the second lane over the first, in seconds; negative if it is later.
     pub median_lead_s: Option<f64>,
-    /// The recall that circular shifts of the second lane leave.
+    /// Chance level of recall: mean over circular shifts of the second lane.
     pub chance_recall: Option<f64>,
-    /// Communications of the first lane, of the second, and strict pairs.
+    /// Number of communications of the first lane, of the second lane, and of strict pairs.
     pub of_n: u64,
     pub with_n: u64,
     pub matched: u64,
-    /// The same kind of signal.
+    /// Matches with the same kind of signal.
     pub lenient: MatchShares,
-    /// Anything, at about the same time.
+    /// Matches with any content.
     pub timing: MatchShares,
 }
 
-/// The mean number of strict pairs over the circular shifts of the second lane by more than the window; none if the trial is
-/// too short for one.
+/// Mean number of strict pairs over circular shifts of the second lane by more than the window; `None` if the trial is too short.
 fn chance(of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, window: u32) -> Option<f64> {
-    // Before, between and after the presses.
+    // Positions before, between and after the presses.
     let places = presses + 1;
     let shifts = window + 1..places.saturating_sub(window);
     let pairs = |shift: u32| {
@@ -230,7 +229,7 @@ fn chance(of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, 
 
 type Units = BTreeMap<(Option<CommunicationTarget>, Option<CommunicationTarget>), u64>;
 
-/// The contents of both lanes press by press; where a lane has several at a press, there are several units.
+/// Contingency table of both lanes per press; several communications at one press give several units.
 fn units(of: &[CommunicationEvent], with: &[CommunicationEvent], pairs: &[(usize, usize)], presses: u32) -> Units {
     let mut units = Units::new();
     let mut spoken = vec![[Vec::new(), Vec::new()]; presses as usize + 1];

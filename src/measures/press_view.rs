@@ -1,26 +1,26 @@
-//! What was known right before a press: what the participant believed, and what an estimate said of it.
+//! Belief and estimate directly before a press, the unit of the belief check.
 
 use super::sequences::FALSE_BELOW;
 use crate::kitchen::{AspectId, ButtonId, State};
 use crate::mind::witness::EstimateWitness;
 
-/// What was known right before a press of the human.
+/// Belief and estimate directly before a press of the human.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressView {
-    /// The state that the press met, and the button.
+    /// State before the press.
     pub state: State,
     pub button: ButtonId,
-    /// The participant's own P(truth) of each aspect; `None` where nobody knows, as with people.
+    /// The participant's P(truth) of each aspect; `None` where it is not known, as with people.
     pub held: Option<Vec<f64>>,
-    /// The estimate before the press; `None` where nothing estimates.
+    /// The estimate before the press, if there is one.
     pub estimate: Option<EstimateView>,
-    /// For each location whether somebody else changed it since the human last looked at it: all that the baseline knows.
+    /// For each location, whether somebody else changed it since the human last looked at it: the input of the baseline.
     pub unseen_change: Vec<bool>,
-    /// The false aspects that this press, if it was an error, is put down to.
+    /// The false aspects to which the press is attributed, if it was an error.
     pub errs_about: Vec<AspectId>,
 }
 
-/// What an estimate says before a press.
+/// An estimate before a press.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimateView {
     /// For each aspect the expected share of the belief that is not on the truth. People hold point-like beliefs, so this
@@ -31,7 +31,7 @@ pub struct EstimateView {
 }
 
 impl EstimateView {
-    /// Of an estimate as it is written down.
+    /// The view of a recorded estimate.
     pub fn from_witness(witness: &EstimateWitness) -> EstimateView {
         let p_wrong = witness.aspects.iter().map(|aspect| 1.0 - aspect.p_truth);
         EstimateView { p_wrong: p_wrong.collect(), log_p: witness.log_p }
@@ -42,7 +42,7 @@ impl EstimateView {
 pub type TrialView = Vec<PressView>;
 
 impl PressView {
-    /// Whether an aspect is believed wrong; `None` where nobody knows.
+    /// Whether the participant's belief about an aspect is false; `None` where it is not known.
     pub fn is_wrong(&self, aspect: usize) -> Option<bool> {
         self.held.as_ref().map(|held| held[aspect] < FALSE_BELOW)
     }

@@ -13,30 +13,30 @@ use crate::base::time::SessionTime;
 use crate::kitchen::{AspectId, Kitchen, State};
 use crate::mind::belief::Belief;
 
-/// So many correct presses may lie between two errors of a sequence.
+/// Largest number of correct presses between two errors of a sequence.
 pub const MAX_APART: u32 = 3;
-/// Below this probability of the truth an aspect is believed wrong.
+/// A belief is false if its P(truth) is below this.
 pub const FALSE_BELOW: f64 = 0.5;
 
-/// Belief related errors that belong together.
+/// An error sequence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sequence {
-    /// What most of its errors are about; of equals, what the first one is about.
+    /// The most frequent target of its errors; of several, the target of the earliest error.
     pub target: Target,
     /// The number of errors.
     pub length: u32,
     pub began: SessionTime,
-    /// The first correct press after the last error; none before the end of the trial.
+    /// Time of the first correct press after the last error; `None` if the trial ended before.
     pub recovered: Option<SessionTime>,
 }
 
-/// The error sequences of a trial, whatever their errors are about.
+/// The error sequences of a trial, regardless of their targets.
 pub fn sequences(presses: &[JudgedPress]) -> Vec<Sequence> {
     grouped(presses, |_| true)
 }
 
-/// The error sequences of a trial by single targets, in the order of their first errors: those of one target are counted
-/// as if there were no others.
+/// The error sequences of a trial by target, in order of their first errors: the errors of one target are grouped as if there
+/// were no others.
 pub fn sequences_by_target(presses: &[JudgedPress]) -> Vec<Sequence> {
     let targets: BTreeMap<Target, ()> = presses.iter().filter_map(|press| Some((target_of(press)?, ()))).collect();
     let mut all: Vec<Sequence> = targets.into_keys().flat_map(|one| grouped(presses, |other| other == one)).collect();
@@ -44,8 +44,7 @@ pub fn sequences_by_target(presses: &[JudgedPress]) -> Vec<Sequence> {
     all
 }
 
-/// The error sequences, each with its errors as indices of presses. Whatever a sequence is about, the errors of one follow
-/// each other.
+/// The error sequences regardless of targets, each with its errors as indices of presses.
 pub fn sequence_errors(presses: &[JudgedPress]) -> Vec<(Sequence, Vec<usize>)> {
     let mut errors = presses.iter().enumerate().filter(|(_, press)| target_of(press).is_some()).map(|(index, _)| index);
     let of_one = |sequence: Sequence| {
@@ -55,7 +54,7 @@ pub fn sequence_errors(presses: &[JudgedPress]) -> Vec<(Sequence, Vec<usize>)> {
     sequences(presses).into_iter().map(of_one).collect()
 }
 
-/// What a belief related error is about.
+/// Target of a belief related error.
 fn target_of(press: &JudgedPress) -> Option<Target> {
     match press.cause {
         Some(Cause::Belief { target, .. }) => Some(target),
@@ -95,29 +94,29 @@ fn closed(errors: &[(SessionTime, Target)], recovered: Option<SessionTime>) -> O
     Some(Sequence { target, length: errors.len() as u32, began, recovered })
 }
 
-/// A belief that was false for a while, and led to errors.
+/// A false belief episode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Episode {
     pub aspect: AspectId,
     pub began: SessionTime,
-    /// When it was seen to be right again; none before the end of the trial.
+    /// Time at which the belief was right again; `None` if the trial ended before.
     pub corrected: Option<SessionTime>,
-    /// The errors that are put down to it.
+    /// Number of errors attributed to it.
     pub errors: u32,
 }
 
-/// Follows which aspects are believed wrong.
+/// Tracks false beliefs over a trial.
 #[derive(Clone, Debug, Default)]
 pub struct Episodes {
     open: Vec<Option<Episode>>,
     done: Vec<Episode>,
-    /// When the belief was last known.
+    /// Time of the last recorded belief.
     last: SessionTime,
 }
 
 impl Episodes {
-    /// Takes note of what is believed now. `changed_at`: when each location last changed, which is when a belief in it
-    /// became false that was right when it was last known.
+    /// Notes the belief at a time. `changed_at` holds the time of each location's last change, at which a belief that was right when
+    /// last recorded became false.
     pub fn believed(
         &mut self,
         kitchen: &Kitchen,
@@ -141,7 +140,7 @@ impl Episodes {
         self.last = now;
     }
 
-    /// Takes note of an error: it counts for every false aspect of its targets.
+    /// Notes an error: it counts for every false aspect of its targets.
     pub fn erred(&mut self, kitchen: &Kitchen, cause: Cause) {
         let Cause::Belief { target, with, .. } = cause else { return };
         for target in [Some(target), with].into_iter().flatten() {
@@ -153,12 +152,12 @@ impl Episodes {
         }
     }
 
-    /// All so far, harmful or not, in the order of their corrections, open ones last.
+    /// All episodes so far, with and without errors, in order of their corrections, open ones last.
     pub fn all(&self) -> impl Iterator<Item = &Episode> {
         self.done.iter().chain(self.open.iter().flatten())
     }
 
-    /// The episodes so far that caused at least one error, in the order of their corrections, open ones last.
+    /// The episodes so far with at least one error, in order of their corrections, open ones last.
     pub fn harmful(&self) -> impl Iterator<Item = &Episode> {
         self.all().filter(|episode| episode.errors > 0)
     }

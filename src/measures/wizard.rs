@@ -1,8 +1,8 @@
-//! How well a wizard does: how fast, about what, and what was left out (Riek 2012, "Wizard of Oz studies in HRI", asks for the
-//! wizard's errors and reaction times to be reported).
+//! Performance of a wizard: reaction times, targets and omissions (Riek 2012, "Wizard of Oz studies in HRI", asks for the wizard's
+//! errors and reaction times to be reported).
 //!
-//! Signals are held against spells: times in which an aspect was believed wrong. Only of spells that led to an error something
-//! is asked; one without any signal about it is an omission. All times are on the trial's clock.
+//! Signals are compared with periods of false belief. A period that led to an error and had no signal is an omission; periods
+//! without errors need no signal. All times are on the trial's clock.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,60 +10,59 @@ use super::median::median;
 use crate::base::time::SessionTime;
 use crate::kitchen::AspectId;
 
-/// A signal is late, and not wrong, if what it is about was seen to be right at most so many presses of the human ago.
+/// A signal is late rather than wrong if the false belief ended at most this many presses of the human before.
 pub const LATE_PRESSES: u32 = 3;
 
-/// A time in which an aspect was believed wrong.
+/// A period of false belief about an aspect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FalseBeliefPeriod {
     pub aspect: AspectId,
     pub began: SessionTime,
-    /// When it was right again, and the presses of the human until then; none before the end of the trial.
+    /// End of the period with the number of human presses until then; `None` if the trial ended before.
     pub corrected: Option<(SessionTime, u32)>,
-    /// Errors that are put down to it.
+    /// Number of errors attributed to it.
     pub errors: u32,
 }
 
 impl FalseBeliefPeriod {
-    /// Whether it is believed wrong at this time.
+    /// Whether the belief is false at this time.
     pub fn holds(&self, clock: SessionTime) -> bool {
         self.began <= clock && self.corrected.is_none_or(|(end, _)| clock < end)
     }
 }
 
-/// A signal that a wizard sent.
+/// A signal of a wizard.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WizardSignal {
     pub clock: SessionTime,
-    /// Presses of the human before it.
+    /// Number of human presses before it.
     pub press: u32,
-    /// What it made certain.
+    /// Aspects that it made certain.
     pub aspects: Vec<AspectId>,
-    /// From the key to the frame that shows it; none if that was not recorded.
+    /// Time from the key press to the frame that shows the signal, in milliseconds; `None` if it was not recorded.
     pub to_display_ms: Option<f64>,
     pub taken_back: bool,
 }
 
-/// What a signal was.
+/// Judgement of a signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SignalVerdict {
-    /// The first about something that was believed wrong and led to an error, so many seconds after it became so; with the
-    /// spell's index.
+    /// The first signal about a false belief that led to an error: the index of the period, and the seconds since it began.
     Hit { latency_s: f64, spell: usize },
-    /// Another one about the same.
+    /// A further signal about the same false belief.
     Again,
-    /// About something that was believed wrong and led to no error.
+    /// A signal about a false belief that led to no error.
     Harmless,
-    /// It was right again already, since at most [`LATE_PRESSES`].
+    /// A signal about a false belief that had ended at most [`LATE_PRESSES`] before.
     Late,
-    /// About something that was believed as it is, while something else was not.
+    /// A signal about a right belief while another belief was false.
     WrongTarget,
-    /// Nothing was believed wrong.
+    /// A signal while no belief was false.
     Needless,
 }
 
 impl SignalVerdict {
-    /// In a word.
+    /// The judgement in a word.
     pub fn name(self) -> &'static str {
         match self {
             SignalVerdict::Hit { .. } => "hit",
@@ -76,14 +75,14 @@ impl SignalVerdict {
     }
 }
 
-/// What each signal was, in their order.
+/// The judgement of each signal, in order.
 pub fn worths(sent: &[WizardSignal], spells: &[FalseBeliefPeriod]) -> Vec<SignalVerdict> {
     let mut hit = vec![false; spells.len()];
     let worth = |sent: &WizardSignal| {
         let about = |spell: &FalseBeliefPeriod| sent.aspects.contains(&spell.aspect);
         let open = |spell: &FalseBeliefPeriod| spell.holds(sent.clock);
         let mut now = spells.iter().enumerate().filter(|(_, spell)| about(spell) && open(spell));
-        // Of two aspects that one signal tells, that which led to an error.
+        // If a signal shows two aspects, the one whose false belief led to an error counts.
         let of_errors = now.clone().find(|(_, spell)| spell.errors > 0);
         match of_errors.or_else(|| now.next()) {
             Some((index, spell)) if spell.errors > 0 && !hit[index] => {
@@ -106,7 +105,7 @@ pub fn worths(sent: &[WizardSignal], spells: &[FalseBeliefPeriod]) -> Vec<Signal
     sent.iter().map(worth).collect()
 }
 
-/// Times of one kind.
+/// Summary of durations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimeSummary {
     pub n: u64,
@@ -115,14 +114,14 @@ pub struct TimeSummary {
 }
 
 impl TimeSummary {
-    /// None of nothing.
+    /// The summary of a list; `None` if it is empty.
     pub fn from_times(times: Vec<f64>) -> Option<TimeSummary> {
         let max = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let n = times.len() as u64;
         median(times).map(|median| TimeSummary { n, median, max })
     }
 
-    /// Those of several trials: the median of their medians.
+    /// The summary over several trials: the median of their medians.
     fn together(trials: impl Iterator<Item = TimeSummary>) -> Option<TimeSummary> {
         let trials: Vec<TimeSummary> = trials.collect();
         let medians = TimeSummary::from_times(trials.iter().map(|times| times.median).collect())?;
@@ -131,32 +130,32 @@ impl TimeSummary {
     }
 }
 
-/// A wizard in a trial. What takes knowing what was believed is null where nobody knows.
+/// Performance of a wizard in a trial. Numbers that need the participant's beliefs are null where those are not known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WizardMeasures {
     pub signals: u64,
     pub taken_back: u64,
-    /// From the key to the frame that shows the signal, in milliseconds; null if that was not recorded.
+    /// Time from key press to the frame that shows the signal, in milliseconds; null if it was not recorded.
     pub key_to_display_ms: Option<TimeSummary>,
-    /// Of false beliefs that led to errors.
+    /// Number of periods of false belief that led to errors.
     pub episodes: Option<u64>,
-    /// Of those: with a signal about them, in time.
+    /// Number of these periods with a signal in time.
     pub hits: Option<u64>,
-    /// Without any.
+    /// Number of these periods without a signal.
     pub omissions: Option<u64>,
-    /// From the beginning of an episode to its signal.
+    /// Time from the beginning of a period to its signal, in seconds.
     pub latency_s: Option<TimeSummary>,
     pub repeated: Option<u64>,
     pub late: Option<u64>,
     pub wrong_targets: Option<u64>,
-    /// While nothing was believed wrong.
+    /// Number of signals while no belief was false.
     pub needless: Option<u64>,
-    /// About what was believed wrong without an error.
+    /// Number of signals about false beliefs that led to no error.
     pub harmless: Option<u64>,
 }
 
 impl WizardMeasures {
-    /// Of the signals of a trial and, where that is known, of what was believed wrong in it.
+    /// Performance from the signals of a trial and, where known, its periods of false belief.
     pub fn from_signals(sent: &[WizardSignal], spells: Option<&[FalseBeliefPeriod]>) -> WizardMeasures {
         let drawn: Vec<f64> = sent.iter().filter_map(|sent| sent.to_display_ms).collect();
         let measures = WizardMeasures {
@@ -189,7 +188,7 @@ impl WizardMeasures {
 }
 
 impl WizardMeasures {
-    /// The counts of several trials together, null where one is; of times the median of the trials' medians.
+    /// Totals over several trials, null where one trial is null; for durations the median of the trials' medians.
     pub fn sum<'a>(trials: impl IntoIterator<Item = &'a WizardMeasures>) -> WizardMeasures {
         let add = |a: Option<u64>, b: Option<u64>| Some(a? + b?);
         let trials: Vec<&WizardMeasures> = trials.into_iter().collect();
@@ -214,17 +213,17 @@ impl WizardMeasures {
     }
 }
 
-/// When a wizard is trained enough.
+/// Criterion of wizard training.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrainingCriterion {
-    /// At least this share of the episodes are hit.
+    /// Least share of hits among the periods that led to errors.
     pub hits: f64,
-    /// At most this share of the signals have a wrong target, or are needless.
+    /// Largest share of signals with a wrong target or without need.
     pub wrong: f64,
 }
 
 impl TrainingCriterion {
-    /// Whether these measures meet it; not where there was nothing to hit.
+    /// Whether a wizard's performance meets the criterion; false where no period led to errors.
     pub fn is_met(&self, measures: &WizardMeasures) -> bool {
         let share = |part: Option<u64>, all: u64| part.map(|part| part as f64 / all as f64).filter(|_| all > 0);
         let hits = share(measures.hits, measures.episodes.unwrap_or(0));

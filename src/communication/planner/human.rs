@@ -1,7 +1,7 @@
-//! The human in a rollout: the worlds that it holds possible, how they change, and how it chooses.
+//! The human in a rollout: the update of its weighted worlds, and its choices.
 //!
-//! One sample of the belief stands for the human: worlds drawn from it, equal ones merged with their number of draws. Most
-//! people hold point-like beliefs, so few different worlds are left.
+//! The human's belief is one belief sample, represented by worlds drawn from it; equal worlds are merged, with their number of
+//! draws as weight. Most people hold point-like beliefs, so few distinct worlds remain.
 
 use super::robot::{RobotChoices, RobotPolicy};
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
@@ -11,11 +11,11 @@ use crate::kitchen::{
 };
 use crate::mind::choice::{ChoiceModel, ChoiceWeights};
 
-/// Worlds of less than one draw in this many get the lower bound of their cost to go.
+/// Worlds with a weight below 1 in this many draws use the lower bound of their cost to go.
 const FEW_DRAWS: u32 = 8;
 
 impl WeightedWorlds<u32> {
-    /// The truth about an aspect is known from now on; whether that changed anything.
+    /// Sets an aspect to its true value in all worlds; returns whether a world changed.
     pub fn learn(&mut self, kitchen: &Kitchen, aspect: AspectId, truth: State) -> bool {
         let mut changed = false;
         match kitchen.aspects[aspect.index()].kind {
@@ -40,8 +40,8 @@ impl WeightedWorlds<u32> {
         changed
     }
 
-    /// The human pressed a button itself, and knows whether that had an effect: worlds where it would have been otherwise are
-    /// given up. If none is left, what was involved is looked at: it is as it truly is.
+    /// Conditions the worlds on an own press and whether it was effective. If no world is consistent with it, the aspects involved
+    /// are set to their true values, as if the human looked at them.
     pub fn pressed(
         &mut self,
         kitchen: &Kitchen,
@@ -70,8 +70,8 @@ impl WeightedWorlds<u32> {
         }
     }
 
-    /// The human notices that the robot pressed something, not what: every world moves on as the robot's policy would in it,
-    /// divided evenly among what it may press. `draw` (0 to 1) decides about remainders.
+    /// Predicts a press of the robot, of which the human notices only that it happened: the weight of every world is divided evenly
+    /// among the presses that the robot's policy allows in it. `draw`, uniform in [0, 1), distributes remainders.
     pub fn robot_pressed(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, policy: &mut RobotPolicy, draw: f64) {
         let n = self.draws();
         for index in 0..self.all.len() {
@@ -95,12 +95,12 @@ impl WeightedWorlds<u32> {
     }
 }
 
-/// At which fidelity a world of `count` among `n` draws is evaluated.
+/// Fidelity of the cost to go of a world with `count` of `n` draws.
 fn fidelity(count: u32, n: u32) -> Fidelity {
     if count * FEW_DRAWS >= n { Fidelity::PlanBound } else { Fidelity::LowerBound }
 }
 
-/// The weights of the human's choices under these worlds.
+/// Softmax weights of the human's choices under a belief given by weighted worlds.
 pub fn choice_weights(model: &ChoiceModel, cost: &mut CostToGo, worlds: &WeightedWorlds<u32>) -> ChoiceWeights {
     let mut sums = [0u32; MAX_BUTTONS];
     let n = worlds.draws();

@@ -1,30 +1,30 @@
-//! Random numbers that lie evenly over all rollouts: of what matters most, what comes first.
+//! Quasi-random numbers for the first random decisions of each rollout, which matter most.
 //!
-//! Point k is the fraction of k times a vector of irrational numbers, from a random shift on (a Kronecker sequence, by powers
-//! of a generalised golden ratio). Every point by itself is uniform, so means stay unbiased; any number of the first ones
-//! lies more evenly than independent draws, so means come out nearer.
+//! Point k is the fractional part of a random shift plus k times a vector of irrational numbers (a Kronecker sequence with powers
+//! of a generalised golden ratio). Every single point is uniform, so means are unbiased. The first n points are spread more evenly
+//! than independent draws, so means have a smaller error.
 
 use rand::RngExt;
 
 use crate::base::rng::Stream;
 
-/// Numbers of a decision: the decision itself, the robot's choice before it, whether the eye is drawn to its press.
+/// Numbers per decision: the decision, the robot's choice before it, and whether that press draws the eye.
 pub const PER_DECISION: usize = 3;
-/// Decisions that have such numbers.
+/// Number of decisions with quasi-random numbers.
 const DECISIONS: usize = 2;
-/// When the human decides first, whether it sees what has just changed, and the first decisions.
+/// Dimension: time of the first decision, whether the latest change is seen, and the first decisions.
 const NUMBERS: usize = 2 + PER_DECISION * DECISIONS;
-/// The root above 1 of x^(NUMBERS + 1) = x + 1.
+/// The generalised golden ratio: the root above 1 of x^(NUMBERS + 1) = x + 1.
 const RATIO: f64 = 1.085_070_245_491_450_8;
 
-/// Evenly spread points of the unit cube.
+/// Quasi-random points of the unit cube.
 #[derive(Clone, Debug)]
 pub struct Lattice {
     shift: [f64; NUMBERS],
 }
 
 impl Lattice {
-    /// With a random shift.
+    /// The lattice with a random shift.
     pub fn shifted(random: &mut Stream) -> Lattice {
         Lattice { shift: std::array::from_fn(|_| random.random()) }
     }

@@ -34,8 +34,7 @@ use crate::mind::witness::rounded;
 /// Number of rollouts after which the planner checks which signals are decided.
 const BATCH: usize = 32;
 
-/// Plans communication. What it remembers from one question to the next changes the time that an answer takes, never the
-/// answer.
+/// The ToM-Com planner. Its caches change computing time, never results.
 #[derive(Clone, Debug)]
 pub struct Planner {
     kitchen: Arc<Kitchen>,
@@ -44,14 +43,14 @@ pub struct Planner {
     choice: ChoiceModel,
     foresight: f64,
     involved: Vec<Vec<AspectId>>,
-    /// By button of the human, what is looked at before it is pressed: those places, and before something is fetched the
+    /// By button of the human, the aspects that it looks at before a press: the locations involved and, before fetching an item, the
     /// robot's hand, which may be bringing it.
     watched: Vec<Vec<AspectId>>,
     policy: RobotPolicy,
     samples: BeliefSamples,
     baseline: BaselineRollout,
     state: RolloutState,
-    /// The worlds that the human holds possible without a signal, and with one.
+    /// The human's weighted worlds without and with a signal.
     believed: WeightedWorlds<u32>,
     signalled: WeightedWorlds<u32>,
     draws: Vec<RolloutDraws>,
@@ -67,7 +66,7 @@ struct Candidate {
 }
 
 impl Planner {
-    /// A planner for people as `human` says. Its chances follow from `seed` and the presses until a moment.
+    /// A planner for a human model. Its random stream is seeded by `seed` and the number of presses so far.
     pub fn new(kitchen: Arc<Kitchen>, human: &HumanModel, spec: AssistantSpec, seed: u64) -> Planner {
         let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
         let aspects = |button| kitchen.involved(Agent::Human, button).into_iter().map(AspectId::of_location);
@@ -103,7 +102,7 @@ impl Planner {
         possible.map(candidate).collect()
     }
 
-    /// The baseline rollout, and a paired one for each signal that changes a world.
+    /// Runs one baseline rollout, and a paired rollout for each signal that changes a world.
     fn roll_out(
         &mut self,
         cost: &mut CostToGo,
@@ -205,7 +204,7 @@ impl Planner {
 }
 
 impl Concept for Planner {
-    /// What the signals are worth now; those that cannot be sent are left out.
+    /// Ranks the available signals by net benefit.
     fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
         let situation = &moment.situation;
         let mut random = stream(self.seed, "communication", u64::from(moment.presses));

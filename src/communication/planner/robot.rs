@@ -1,14 +1,14 @@
-//! The robot in a rollout: its task policy, remembered by state, and its arm in time.
+//! The robot in a rollout: its task policy with a cache, and the timing of its arm.
 
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{Agent, ButtonId, Kitchen, OrderContent, Recipes, State};
 use crate::robot::policy;
 
-/// 2^15 answers of the policy.
+/// The policy cache has 2^15 entries.
 const BITS: u32 = 15;
 
-/// What the robot may press in a state, each as likely, and what it goes on with if its arm is on its way already. One bit
-/// a button.
+/// The equally likely choices of the robot in a state, and the presses that it completes if its arm is already moving, as bit sets
+/// of buttons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RobotChoices {
     pub choices: u64,
@@ -20,7 +20,7 @@ impl RobotChoices {
         self.choices.count_ones()
     }
 
-    /// The n-th of the choices, counted from 0.
+    /// The n-th choice, counted from 0.
     pub fn nth(self, n: u32) -> ButtonId {
         let mut left = self.choices;
         for _ in 0..n {
@@ -30,8 +30,7 @@ impl RobotChoices {
     }
 }
 
-/// The robot's task policy, remembered by fidelity, state and wanted recipes: what was asked before changes the time it takes and
-/// never the answer.
+/// The robot's task policy with a cache by fidelity, state and ordered recipes. The cache changes computing time, never results.
 #[derive(Clone, Debug)]
 pub struct RobotPolicy {
     known: Vec<Option<(Fidelity, State, Recipes, RobotChoices)>>,
@@ -44,7 +43,7 @@ impl Default for RobotPolicy {
 }
 
 impl RobotPolicy {
-    /// What the policy says to a state and recipes.
+    /// Choices of the policy in a state, given the recipes.
     #[inline]
     pub fn choices(
         &mut self,
@@ -73,7 +72,7 @@ impl RobotPolicy {
     }
 }
 
-/// The recipes of the dishes that the state's orders want; nothing else matters to a decision.
+/// The recipes of ordered dishes, with all other recipes set to a fixed value: decisions do not depend on them.
 fn wanted_recipes(kitchen: &Kitchen, state: State, recipes: &Recipes) -> Recipes {
     let mut wanted = Recipes::default();
     for &order in &kitchen.orders {
@@ -90,23 +89,23 @@ fn hash(state: State, recipes: &Recipes) -> u64 {
     mix(mix(state as u64 ^ mix((state >> 64) as u64)) ^ mix(recipes as u64 ^ mix((recipes >> 64) as u64)))
 }
 
-/// A press that the robot's arm is on its way to.
+/// The press towards which the robot's arm is moving.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OngoingRobotPress {
     pub button: ButtonId,
-    /// When it touches the button, in seconds since the rollout's start.
+    /// Time at which the arm touches the button, in seconds since the start of the rollout.
     pub due_s: f64,
     pub driven: bool,
 }
 
 impl OngoingRobotPress {
-    /// Whether the press is still made when the arm is there.
+    /// Whether the arm completes the press when it reaches the button.
     pub fn holds(&self, choices: RobotChoices) -> bool {
         self.driven || choices.useful >> self.button.0 & 1 == 1
     }
 }
 
-/// The effect of a press of the robot.
+/// State after a press of the robot.
 pub fn press(kitchen: &Kitchen, state: State, recipes: &Recipes, button: ButtonId) -> State {
     kitchen.press(state, recipes, Agent::Robot, button).unwrap_or(state)
 }

@@ -1,8 +1,7 @@
-//! One rollout: a human who decides by a sample of the belief, and the robot in between.
+//! One rollout: decisions of a human whose belief is one sample, and presses of the robot in between.
 //!
-//! All rollouts of one number share their random numbers, with and without a signal (paired rollouts), so that their
-//! differences are precise. A rollout that reaches the same state as the baseline ends like the baseline, and is not
-//! continued.
+//! Rollouts with the same number use the same random numbers with and without a signal (paired rollouts), which makes their
+//! differences precise. A rollout that reaches the same state as its baseline is not continued, since it ends like the baseline.
 
 use rand::RngExt;
 
@@ -16,10 +15,10 @@ use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, Recipes, State, WeightedWorlds};
 use crate::mind::choice::{ChoiceModel, HumanChoice};
 
-/// So many presses of the robot between two decisions have random numbers of their own.
+/// Number of robot presses between two decisions that have random numbers of their own.
 const ROBOT_DRAWS: usize = 4;
 
-/// The random numbers of one decision of the human, and of the robot until then; `looks` by location.
+/// Random numbers of one decision of the human and of the robot's presses before it; `looks` by location.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RolloutDraws {
     decision: f64,
@@ -40,8 +39,8 @@ impl RolloutDraws {
         draws
     }
 
-    /// Takes these numbers for the decision, for the robot's first choice before it, and for whether the eye is drawn to
-    /// its first press.
+    /// Sets the numbers of the decision, of the robot's first choice before it, and of whether the robot's first press draws the
+    /// eye.
     pub fn begin_with(&mut self, first: &[f64]) {
         if let &[decision, choice, capture] = first {
             (self.decision, self.choices[0], self.captures[0]) = (decision, choice, capture);
@@ -49,31 +48,31 @@ impl RolloutDraws {
     }
 }
 
-/// What all rollouts of one recommendation share.
+/// Data shared by all rollouts of one recommendation.
 pub struct RolloutContext<'a> {
     pub kitchen: &'a Kitchen,
     pub recipes: Recipes,
     pub choice: &'a ChoiceModel,
-    /// By button of the human, the aspects of the places that decide what it does.
+    /// By button of the human, the aspects of the locations on which its effect depends.
     pub involved: &'a [Vec<AspectId>],
-    /// What is looked at before each of them is pressed.
+    /// By button of the human, the aspects that it looks at before the press.
     pub watched: &'a [Vec<AspectId>],
     pub model: &'a RolloutModel,
     pub robot_press_s: f64,
-    /// The chance that a place which is needed is looked at before a press.
+    /// Probability that a needed location is looked at before a press.
     pub looks: f64,
-    /// The chance that any other place is looked at before a decision.
+    /// Probability that any other location is looked at before a decision.
     pub other_looks: f64,
-    /// The chance that the human thinks a press of the robot through.
+    /// Probability that the human infers the consequences of a robot press.
     pub foresight: f64,
 }
 
-/// The state of a rollout right before a decision of the human.
+/// State of a rollout before a decision of the human.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RolloutState {
     /// The true state of the kitchen.
     pub kitchen: State,
-    /// The worlds that the human holds possible.
+    /// The worlds that represent the human's belief.
     pub worlds: WeightedWorlds<u32>,
     ongoing: Option<OngoingRobotPress>,
     is_still: bool,
@@ -81,7 +80,7 @@ pub struct RolloutState {
     now_s: f64,
 }
 
-/// The rollout without a signal: its states, the human's choices, and its presses plus the cost to go at its end.
+/// The rollout without a signal: its states, the human's choices, and its value (presses plus the cost to go at its end).
 #[derive(Clone, Debug, Default)]
 pub struct BaselineRollout {
     states: Vec<RolloutState>,
@@ -89,17 +88,17 @@ pub struct BaselineRollout {
     pub value: i32,
 }
 
-/// What came of a rollout with a signal that is paired with the baseline.
+/// Result of a rollout with a signal that is paired with the baseline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RolloutOutcome {
-    /// Presses of both and the cost to go at the end.
+    /// Presses of both agents plus the cost to go at the end.
     pub value: i32,
-    /// The first choice that differs from the baseline's: the baseline's, and the one with the signal.
+    /// The first choice that differs: the baseline's choice, and the choice with the signal.
     pub diverged: Option<(HumanChoice, HumanChoice)>,
 }
 
 impl RolloutState {
-    /// The beginning of a rollout in which the human holds these worlds possible; `sees`: what has just changed draws its eye.
+    /// Starts a rollout with these worlds as the human's belief. `sees` says whether the latest change draws the human's eye.
     pub fn begin(&mut self, kitchen: &Kitchen, situation: &Situation, worlds: &WeightedWorlds<u32>, sees: bool) {
         self.kitchen = situation.state;
         self.worlds.copy_from(worlds);
@@ -131,24 +130,24 @@ impl RolloutState {
         (self.presses, self.now_s) = (other.presses, other.now_s);
     }
 
-    /// Whether all that follows is the same as from another state at the same time.
+    /// Whether the rollout continues exactly like one in the state `other` at the same time.
     fn continues_like(&self, other: &RolloutState) -> bool {
         self.kitchen == other.kitchen && self.ongoing == other.ongoing && self.worlds == other.worlds
     }
 }
 
-/// One rollout, and what it computes with.
+/// One rollout with its models, caches and random numbers.
 pub struct Rollout<'a> {
     pub context: &'a RolloutContext<'a>,
     pub cost: &'a mut CostToGo,
     pub policy: &'a mut RobotPolicy,
     pub draws: &'a [RolloutDraws],
-    /// When the human decides first, in seconds.
+    /// Time of the human's first decision, in seconds.
     pub first_s: f64,
 }
 
 impl Rollout<'_> {
-    /// The rollout without a signal; keeps its states and choices.
+    /// Runs the rollout without a signal and stores its states and choices.
     pub fn baseline(&mut self, state: &mut RolloutState, baseline: &mut BaselineRollout) {
         baseline.choices.clear();
         for step in 0..self.draws.len() {
@@ -163,7 +162,7 @@ impl Rollout<'_> {
         baseline.value = self.value(state);
     }
 
-    /// The rollout with a signal, paired with the baseline: once both are in the same state, the rest is the baseline's.
+    /// Runs the rollout with a signal, paired with the baseline; it stops once both are in the same state.
     pub fn with_signal(&mut self, state: &mut RolloutState, baseline: &BaselineRollout) -> RolloutOutcome {
         let mut diverged = None;
         for step in 0..self.draws.len() {
@@ -185,7 +184,7 @@ impl Rollout<'_> {
         state.presses + self.cost.all_orders(state.kitchen, &self.context.recipes) as i32
     }
 
-    /// The robot goes on until the human decides.
+    /// Runs the robot until the human's next decision.
     fn until_decision(&mut self, state: &mut RolloutState, step: usize) {
         let until_s = self.first_s + step as f64 * self.context.model.human_press_s;
         let mut presses = 0;
@@ -217,12 +216,12 @@ impl Rollout<'_> {
         state.now_s = until_s;
     }
 
-    /// What the robot's policy says to the state as it truly is.
+    /// Choices of the robot's policy in the true state.
     fn choices(&mut self, state: State) -> RobotChoices {
         self.policy.choices(self.context.kitchen, self.cost, Fidelity::Exact, state, &self.context.recipes)
     }
 
-    /// A free arm sets out for what the policy says.
+    /// Starts the next press of an idle arm, as the policy chooses.
     fn set_out(&mut self, state: &mut RolloutState, step: usize, presses: usize) {
         if state.ongoing.is_some() {
             return;
@@ -236,7 +235,7 @@ impl Rollout<'_> {
         }
     }
 
-    /// The human looks around and at what its next press needs, decides, and presses.
+    /// The human looks at locations, decides, and presses.
     fn decide(&mut self, state: &mut RolloutState, step: usize) -> HumanChoice {
         let (context, draws) = (self.context, &self.draws[step]);
         for (index, &draw) in draws.looks[..context.kitchen.locations.len()].iter().enumerate() {

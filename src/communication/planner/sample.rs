@@ -1,26 +1,26 @@
-//! BeliefSamples of the belief for rollouts: worlds, drawn from one belief that is drawn from the Dirichlets.
+//! Belief samples for rollouts: worlds drawn from a belief that is drawn from the Dirichlets.
 
 use crate::base::rng::Stream;
 use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, State, WeightedWorlds, World};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::urn::Urn;
 
-/// BeliefSamples of a belief. Over all samples every aspect has each of its values as often first as its mean says, to a sample.
+/// Belief samples of one recommendation. First draws are stratified over the samples by the mean of each aspect.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefSamples {
     urns: Vec<Urn>,
-    /// `[aspect * samples + sample]`: the first draws.
+    /// First draws: `[aspect * samples + sample]`.
     firsts: Vec<u8>,
-    /// `[aspect * states + draw]`: the draws of one sample.
+    /// Draws of the present sample: `[aspect * states + draw]`.
     drawn: Vec<u8>,
-    /// Aspects of which the sample has several values.
+    /// Aspects with several values in the present sample.
     mixed: Vec<usize>,
     samples: usize,
     states: usize,
 }
 
 impl BeliefSamples {
-    /// Gets ready for so many samples of so many states each.
+    /// Prepares `samples` samples of `states` worlds each.
     pub fn prepare(&mut self, belief: &DirichletBelief, samples: usize, states: usize, random: &mut Stream) {
         (self.samples, self.states) = (samples, states);
         let aspects = belief.aspects.len();
@@ -33,7 +33,7 @@ impl BeliefSamples {
         }
     }
 
-    /// RolloutDraws one sample. Recipes count in worlds whose orders want the dish, and where the true orders do.
+    /// Draws one sample. A recipe matters in worlds whose orders show its dish, and if the true orders do.
     pub fn draw(
         &mut self,
         kitchen: &Kitchen,
@@ -55,7 +55,7 @@ impl BeliefSamples {
         worlds.all.clear();
         let all: Vec<usize> = (0..self.urns.len()).collect();
         if self.mixed.iter().any(|index| kitchen.orders.iter().any(|order| order.index() == *index)) {
-            // Which recipes count differs from draw to draw.
+            // The recipes that matter differ from draw to draw.
             for draw in 0..states {
                 let mut world = World::empty(kitchen);
                 self.set(kitchen, truth, draw, &all, &mut world);
@@ -74,7 +74,7 @@ impl BeliefSamples {
         }
     }
 
-    /// Gives these aspects the values of one draw; locations come before recipes.
+    /// Sets these aspects of a world to the values of one draw; locations come before recipes.
     fn set(&self, kitchen: &Kitchen, truth: State, draw: usize, aspects: &[usize], world: &mut World) {
         for &index in aspects {
             let counts = match kitchen.aspects[index].kind {

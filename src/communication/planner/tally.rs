@@ -1,9 +1,9 @@
-//! What the paired rollouts of one signal saved.
+//! Statistics of the paired rollouts of one signal.
 
 use crate::kitchen::ButtonId;
 use crate::mind::choice::HumanChoice;
 
-/// Differences between paired rollouts.
+/// Running statistics of the differences between paired rollouts.
 #[derive(Clone, Debug, Default)]
 pub struct PairedDifferences {
     count: u32,
@@ -12,25 +12,25 @@ pub struct PairedDifferences {
     divergences: Vec<Divergence>,
 }
 
-/// The choices at which rollouts without and with the signal first differ.
+/// A pair of choices at which rollouts without and with the signal first differ.
 #[derive(Clone, Copy, Debug)]
 struct Divergence {
     baseline: HumanChoice,
     signalled: HumanChoice,
-    /// What that saved in all, and the sum of its squares.
+    /// Sum of the savings in these rollouts, and of their squares, in presses.
     sum: f64,
     squares: f64,
 }
 
 impl Divergence {
-    /// What it saved at least, by a standard error: what saved much by chance, once, is no reason.
+    /// Total saving minus one standard error: a single large saving by chance is not a reason.
     fn surely_saved(&self) -> f64 {
         self.sum - self.squares.sqrt()
     }
 }
 
 impl PairedDifferences {
-    /// Adds what a rollout saved, and where it diverged from the baseline.
+    /// Adds the saving of a rollout, in presses, and the choices at which it diverged from the baseline.
     pub fn add(&mut self, saved: f64, diverged: Option<(HumanChoice, HumanChoice)>) {
         self.count += 1;
         self.sum += saved;
@@ -62,8 +62,8 @@ impl PairedDifferences {
         self.error_with(0.0)
     }
 
-    /// The standard error, if a further rollout might save three presses: no difference so far is no proof that there is
-    /// none.
+    /// Standard error of the mean if one further rollout saved three presses: without any difference so far, the plain standard error
+    /// would be 0.
     pub fn cautious_error(&self) -> f64 {
         self.error_with(9.0)
     }
@@ -74,7 +74,7 @@ impl PairedDifferences {
         (spread / (n - 1.0) / n).sqrt()
     }
 
-    /// The press that the signal prevents where that saves most, and what is pressed instead (nothing: waiting).
+    /// The press whose prevention by the signal saves most, and the press instead of it (`None` for waiting).
     pub fn turning_point(&self) -> Option<(ButtonId, Option<ButtonId>)> {
         let presses =
             self.divergences.iter().filter_map(|divergence| match (divergence.baseline, divergence.signalled) {

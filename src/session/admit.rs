@@ -1,5 +1,5 @@
-//! What can happen at this point of a session, and why something cannot: asked before an input is taken, and of every
-//! event that is applied.
+//! Preconditions of events: whether a session accepts an event now, checked before an input is taken and again when an event
+//! is applied.
 
 use super::event::{EndReason, Event, SignalEnd};
 use super::phase::Phase;
@@ -11,10 +11,10 @@ use crate::base::time::SessionTime;
 use crate::communication::{self, Sender, Signal};
 use crate::kitchen::{Agent, LocationKind};
 
-/// Whether the session as it is now takes this event.
+/// Whether the session accepts this event now.
 ///
 /// # Errors
-/// The reason why it does not, in words for the wizard.
+/// The reason for the refusal, in words for the wizard.
 pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
     let refuse_if = |refused: bool, reason: &'static str| if refused { Err(reason) } else { Ok(()) };
     let phase = session.phase;
@@ -57,10 +57,10 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
     }
 }
 
-/// Whether this sender's signals are shown in the trial's condition.
+/// Whether the condition of the trial allows signals of this sender.
 ///
 /// # Errors
-/// The reason why not, in words.
+/// The reason for the refusal, in words.
 pub fn may_send(session: &Session, by: Sender) -> Result<(), &'static str> {
     match (session.spec.trial.condition, by) {
         (Condition::None, _) => Err("nobody sends signals in the unassisted condition"),
@@ -85,10 +85,10 @@ fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'
     }
 }
 
-/// Whether the wizard's hand may do this again already: rules for keys, that bind no recording.
+/// Rules for the wizard's keys, such as the cool-down between signals. They apply at the keyboard only, not to recordings.
 ///
 /// # Errors
-/// The reason why not, in words for the wizard.
+/// The reason for the refusal, in words for the wizard.
 pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(), String> {
     let Event::SignalShown { by: Sender::Wizard, signal, .. } = event else { return Ok(()) };
     if session.spec.scripts_wizard() {
@@ -104,7 +104,7 @@ pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(),
     }
 }
 
-/// Whether an event comes from outside (wizard, participant, tracker) and not from the running session itself.
+/// Whether an event comes from outside (wizard, participant, tracker) rather than from the running session itself.
 pub fn is_external(session: &Session, event: &Event) -> bool {
     let participant = &session.spec.participant;
     match event {

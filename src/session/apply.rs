@@ -12,31 +12,31 @@ use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Change, ContentId, DishId, LocationId, OrderContent, State};
 
-/// What has to be done because of an event, by whoever runs the session. A replay does none of it.
+/// An action that the running session must perform because of an event. A replay performs none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
-    /// Raise the timer's event at this time, or later by what [`Effect::Postpone`] adds meanwhile.
+    /// Set a timer; [`Effect::Postpone`] can delay it.
     At { time: SessionTime, timer: Timer },
-    /// A timer that is no longer wanted.
+    /// Cancel a timer.
     Cancel(Timer),
-    /// The trial is over: nothing is pending any more.
+    /// Cancel all timers, at the end of the trial.
     CancelAll,
-    /// A pause of this length is over: everything that is pending comes later by it.
+    /// Postpone all timers by the length of a pause.
     Postpone(SessionTime),
-    /// The session is over: close the recording.
+    /// Close the recording, at the end of the session.
     Close,
 }
 
-/// Something that a session wants to be reminded of.
+/// A timer of a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Timer {
-    /// An order stops showing `served`.
+    /// An order location stops showing `served`.
     ClearOrder(LocationId),
-    /// A new order appears; whoever runs the session draws the dish.
+    /// A new order appears; the running session draws its dish.
     NewOrder(LocationId),
-    /// The shown signal has been shown for its set time.
+    /// The display time of the signal is over.
     EndSignal,
-    /// The trial's time is over.
+    /// The time of the trial is over.
     EndTrial,
     /// The set number of presses was reached.
     EndTrialByPresses,
@@ -44,7 +44,7 @@ pub enum Timer {
     EndTrialByOrders,
 }
 
-/// An event that cannot be: a log written by another program, or a broken one.
+/// An event that the session cannot accept: the log is damaged or was written by another program.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{found}; right would be {remedy}")]
 pub struct ApplyError {
@@ -53,18 +53,17 @@ pub struct ApplyError {
     pub remedy: String,
 }
 
-/// What came of an event: what has to be done because of it, and what it changed in the kitchen.
+/// Result of an event: effects to perform, and the change of the kitchen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Applied {
     pub effects: Vec<Effect>,
     pub change: Change,
 }
 
-/// Moves the session on by one event.
+/// Applies an event to the session.
 ///
 /// # Errors
-/// Names that the kitchen does not have, times that run backwards, and events that cannot be at this point (see
-/// [`admit`]); the session is unchanged then.
+/// Unknown names, decreasing times, and events that are not possible now (see [`admit`]). The session is unchanged then.
 pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyError> {
     check(session, stamped)?;
     let now = stamped.time;
@@ -158,7 +157,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
     Ok(Applied { effects, change })
 }
 
-/// Whether the event can come next.
+/// Checks sequence number, time and precondition of an event.
 fn check(session: &Session, stamped: &Stamped) -> Result<(), ApplyError> {
     if stamped.time < session.time {
         return Err(ApplyError {
@@ -175,7 +174,7 @@ fn check(session: &Session, stamped: &Stamped) -> Result<(), ApplyError> {
     Ok(())
 }
 
-/// Looks up names of an event.
+/// Resolves the names in an event.
 struct Named<'a> {
     session: &'a Session,
     seq: u64,
@@ -216,7 +215,7 @@ impl Named<'_> {
     }
 }
 
-/// Changes the task state, remembers which locations changed, and returns the state before and after.
+/// Changes the kitchen, notes which locations changed, and returns the state before and after.
 fn update(session: &mut Session, now: SessionTime, how: impl FnOnce(&mut State)) -> (State, State) {
     let before = session.state;
     how(&mut session.state);
@@ -266,7 +265,7 @@ fn stop_clock(session: &mut Session, now: SessionTime) {
     }
 }
 
-/// Goes on after a pause: what was on its way comes later by the pause's length.
+/// Resumes after a pause: pending times are postponed by its length.
 fn resume(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
     let by = now - session.paused_at;
     session.pauses.push((session.paused_at, now));
@@ -323,7 +322,7 @@ fn show(
     session.note(now, TimelineEvent::Signal { by, signal: signal.clone() });
 }
 
-/// An answer to what was asked before the wizard sent a signal does not know of it.
+/// Stores a recommendation, without a signal that was sent after the request.
 fn advise(session: &mut Session, mut advice: Recommendation) {
     let shown = session.shown.as_ref().filter(|shown| shown.by == Sender::Wizard && shown.since >= advice.for_ns);
     if let Some(shown) = shown {
@@ -374,7 +373,7 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
     Change::Press { press, presses: session.presses }
 }
 
-/// The dish that a serve action served, from the state before it.
+/// The dish that a serve press served, given the state before it.
 fn served_dish(action: &ButtonAction, before: State) -> OrderContent {
     match action {
         ButtonAction::Serve(order) => before.order(*order),

@@ -1,5 +1,5 @@
-//! The check of the calibration: targets one after another on the display, what the gaze did meanwhile, and whether that is
-//! good enough. It is made while the trial does not run; the participant looks at targets, not at the kitchen.
+//! The gaze accuracy check: targets are shown one after another on the display, and the gaze is compared with them. The check
+//! runs while the trial does not.
 
 pub use super::gaze_check::{AcceptedGazeCheck, CalibrationEvent, GazeCheckResult, RunningGazeCheck};
 use super::participant_settings::GazeSource;
@@ -10,12 +10,12 @@ use crate::gaze::GazeSample;
 use crate::gaze::calibration::{GazeAccuracy, ViewingGeometry};
 
 impl Session {
-    /// Where the participant sits.
+    /// Size of the display, and distance of the participant.
     pub fn viewing(&self) -> ViewingGeometry {
         ViewingGeometry { display_m: self.kitchen.display_m, distance_m: self.spec.tracker.distance_m }
     }
 
-    /// Gaze as it is used: with the accepted offset taken off.
+    /// A gaze sample after correction of the accepted offset.
     pub fn corrected(&self, sample: GazeSample) -> GazeSample {
         match self.calibrated.as_ref().filter(|calibrated| calibrated.corrected) {
             Some(AcceptedGazeCheck { found: GazeAccuracy { offset, .. }, .. }) => {
@@ -25,16 +25,16 @@ impl Session {
         }
     }
 
-    /// Whether targets are to be looked at now: the trial has to wait.
+    /// Whether a check is running, which blocks the trial.
     pub fn is_calibrating(&self) -> bool {
         self.calibration.as_ref().is_some_and(|check| check.result.is_none())
     }
 }
 
-/// Whether the session takes the event now.
+/// Whether the session accepts the event now.
 ///
 /// # Errors
-/// The reason why it does not, in words for the wizard.
+/// The reason for the refusal, in words for the wizard.
 pub(super) fn admit(session: &Session, event: &CalibrationEvent) -> Result<(), &'static str> {
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
     let check = session.calibration.as_ref();
@@ -67,7 +67,7 @@ pub(super) fn admit(session: &Session, event: &CalibrationEvent) -> Result<(), &
     }
 }
 
-/// Moves on by an event that was admitted.
+/// Applies an admitted event.
 pub(super) fn apply(session: &mut Session, now: SessionTime, event: &CalibrationEvent) {
     match event {
         CalibrationEvent::Begun { targets } => {
@@ -104,7 +104,7 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &Calibration
     }
 }
 
-/// Takes a sample, as it came.
+/// Adds an uncorrected sample to a running check.
 pub(super) fn gaze(session: &mut Session, taken: SessionTime, sample: GazeSample) {
     if let Some(check) = &mut session.calibration {
         check.take(taken, sample);

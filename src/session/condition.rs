@@ -2,20 +2,20 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Who sends signals.
+/// Who sends signals in a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Condition {
-    /// Nobody: the unassisted condition.
+    /// Nobody sends signals (unassisted).
     None,
-    /// The person at the console.
+    /// The person at the console sends signals.
     Wizard,
-    /// The assistant by itself.
+    /// The assistant sends signals by itself.
     Assistant,
 }
 
 impl Condition {
-    /// As it stands in files.
+    /// Name in files.
     pub fn name(self) -> &'static str {
         match self {
             Condition::None => "none",

@@ -1,4 +1,4 @@
-//! What a session file says about the console.
+//! Settings of the wizard's console in a session file.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,22 +11,22 @@ pub struct ConsoleSpec {
     pub visibility: Visibility,
     /// Draw with ASCII signs only, for terminals and fonts without the others.
     pub ascii: bool,
-    /// For which background the colours are.
+    /// Colour theme: for a dark or a light terminal background.
     pub theme: ThemeChoice,
-    /// The key file, relative to the session file; without one the keys are those of program and layout.
+    /// Path of the key file, relative to the session file; without it the default keys apply.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub keys: Option<String>,
-    /// The notes of the markers, so that no text has to be typed while the trial runs: key 1 is the first.
+    /// Preset notes for markers: key 1 sets a marker with the first note.
     pub notes: Vec<String>,
-    /// Why a trial is aborted or excluded: what the console offers.
+    /// Preset reasons for aborting or excluding a trial.
     pub reasons: Vec<String>,
 }
 
-/// The console has so many keys for notes.
+/// Largest number of preset notes (keys 1 to 5).
 pub const MAX_NOTES: usize = 5;
-/// No list of reasons is longer.
+/// Largest number of preset reasons.
 const MAX_REASONS: usize = 20;
-/// No preset text is longer, in characters.
+/// Largest length of a preset text, in characters.
 const MAX_PRESET: usize = 40;
 
 impl Default for ConsoleSpec {
@@ -66,24 +66,24 @@ impl ConsoleSpec {
     }
 }
 
-/// For which background of the terminal the colours are.
+/// Colour theme of the console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ThemeChoice {
-    /// The one that the terminal says it has; dark, if it does not say.
+    /// The background that the terminal reports; dark if it reports none.
     Auto,
     Dark,
     Light,
 }
 
-/// How much the wizard sees.
+/// Amount of information on the wizard's console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Visibility {
-    /// Kitchen and gaze, as the paper's wizard had.
+    /// Kitchen and gaze only, as in the paper.
     State,
-    /// The estimated belief too.
+    /// Kitchen, gaze and estimated belief.
     Belief,
-    /// Everything.
+    /// Kitchen, gaze, estimated belief and recommendations.
     Recommendation,
 }

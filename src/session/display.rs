@@ -1,7 +1,6 @@
-//! The participant's wall display: what a session file says of it, and what it tells of itself. What stands on it is made
-//! from the session in the room `display`.
+//! The participant's wall display: its settings in a session file, and its reports. The room `display` computes its content.
 
-// Addresses are values here; nothing is connected to.
+// Addresses are plain values here; nothing connects to them.
 use core::net::{IpAddr, Ipv4Addr};
 use std::collections::BTreeMap;
 
@@ -14,22 +13,22 @@ use crate::base::time::SessionTime;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DisplaySpec {
-    /// Where the page is served; anything but localhost needs the pairing code that the console shows.
+    /// Address at which the page is served; other addresses than localhost need the pairing code that the console shows.
     pub listen: IpAddr,
     pub port: u16,
-    /// "en", "de", or a file with words, relative to the session file.
+    /// Language of the page: "en", "de", or the path of a file with words, relative to the session file.
     pub language: String,
-    /// The words of that file; in a recording those that were in force.
+    /// Words from that file; in a recording, the words in use.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub words: BTreeMap<String, String>,
     pub names: Names,
-    /// Each button shows its key.
+    /// Whether each button shows its key.
     pub keys: bool,
-    /// What the robot is about to press is shown. The paper does without: a shown intention is communication.
+    /// Whether the robot's next press is shown. The paper does not show it, since a shown intention is communication.
     pub intention: bool,
-    /// AprilTags in the corners, by which an eye tracker knows the display.
+    /// Whether AprilTags are shown in the corners, by which an eye tracker finds the display.
     pub tags: bool,
-    /// A square flashes at the start of the trial and at signals, for a video from outside.
+    /// Whether a square flashes at the start of the trial and at signals, to synchronise video recordings.
     pub flash: bool,
     pub questionnaire: Answering,
 }
@@ -52,17 +51,17 @@ impl Default for DisplaySpec {
 }
 
 impl DisplaySpec {
-    /// Whether the network reaches the page.
+    /// Whether the page can be reached from other computers.
     pub fn is_open(&self) -> bool {
         !self.listen.is_loopback()
     }
 
-    /// The code of the language: a file with words names its own.
+    /// Language code; a file with words contains its own.
     pub fn code(&self) -> &str {
         self.words.get("language").unwrap_or(&self.language)
     }
 
-    /// The languages that the program carries.
+    /// Built-in languages.
     pub const LANGUAGES: [&str; 2] = ["en", "de"];
 
     pub(super) fn check(&self) -> Result<(), SettingError> {
@@ -77,36 +76,36 @@ impl DisplaySpec {
     }
 }
 
-/// What is written beside its picture. What lies at a place never is: to tell salmon from tuna is part of the task.
+/// Which pictures have labels. Contents of places never have one, since telling salmon from tuna is part of the task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Names {
     None,
-    /// What the storages hold.
+    /// Labels at storages.
     Storages,
-    /// That, and what the orders want.
+    /// Labels at storages and orders.
     Orders,
 }
 
-/// Where a questionnaire is answered.
+/// Who enters the answers of a questionnaire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Answering {
-    /// The wizard reads it out and types the answers.
+    /// The wizard reads the items out and enters the answers.
     Console,
-    /// By the participant, on the display; the wizard can help.
+    /// The participant answers on the display; the wizard can also enter answers.
     Display,
 }
 
-/// What the page that takes part tells; witnesses, all of them.
+/// Reports of the acting page; all are witnesses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum DisplayEvent {
-    /// It is there, of this size in pixels.
+    /// The page is connected, with this size in pixels.
     Connected { width_px: u32, height_px: u32 },
-    /// It is gone.
+    /// The page is disconnected.
     Lost,
-    /// It drew what the event of this number brought (the start of the trial, a signal), with a flash for a video, at this
-    /// session time by its own clock.
+    /// The page drew the event with this sequence number (trial start, signal) with a flash, at this session time by its
+    /// synchronised clock.
     Drawn { cue: u64, at_ns: SessionTime },
 }

@@ -1,6 +1,6 @@
-//! What can happen in a session. The log is a list of these, and a session is its log.
+//! Events of a session. A log is a list of events, and a session is determined by its log.
 //!
-//! Facts change the session when applied; witnesses are only kept. Locations, dishes and buttons stand by their names, so
+//! Facts change the session when applied; witnesses are recorded only. Locations, dishes and buttons are identified by name, so
 //! that a log can be read without the program.
 
 use serde::{Deserialize, Serialize};
@@ -26,58 +26,58 @@ use crate::robot::{AbortReason, IdleReason};
 /// An event with its place in the log.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stamped {
-    /// 0, 1, 2, … without gaps.
+    /// Sequence number: 0, 1, 2, … without gaps.
     pub seq: u64,
-    /// Nanoseconds since the session began; never decreases along the log.
+    /// Session time; never decreases along the log.
     #[serde(rename = "t_ns")]
     pub time: SessionTime,
     #[serde(flatten)]
     pub event: Event,
 }
 
-/// One thing that happened.
+/// An event of a session.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Event {
-    /// What was looked at before the trial, and whether it was started although not all was ok.
+    /// Results of the preflight checks before the trial, and whether the wizard overrode them.
     Preflight {
         checks: Vec<PreflightCheck>,
         overridden: bool,
     },
-    /// The trial's clock starts; empty kitchen.
+    /// The trial starts with an empty kitchen.
     TrialStarted,
-    /// Clock, robot and orders stand still; presses have no effect.
+    /// The trial is paused: clock, robot and orders stop, presses have no effect.
     TrialPaused,
     TrialResumed,
     TrialEnded {
         reason: EndReason,
     },
-    /// The trial is over and does not count; it may be done again, in another recording.
+    /// The trial is aborted and does not count; it may be repeated in another recording.
     TrialAborted {
         reason: String,
     },
-    /// The trial is to be left out of the analysis.
+    /// The trial is excluded from the analysis.
     TrialExcluded {
         reason: String,
     },
-    /// It is not to be left out after all.
+    /// The exclusion is taken back.
     TrialIncluded,
     /// A gaze sample of the participant.
     Gaze(GazeSample),
-    /// What the eye tracker tells beside its samples.
+    /// An event of the eye tracker other than a sample.
     Tracker(TrackerEvent),
-    /// A step in a check of the calibration.
+    /// A step of a gaze accuracy check.
     Calibration(CalibrationEvent),
     /// An agent pressed a physical button.
     Press {
         agent: Agent,
         button: String,
-        /// When it went down by the clock of the display that it is at, aligned to session time; a little before the
-        /// stamp, which is when the session took it and never runs back.
+        /// Session time of the press by the display's synchronised clock; slightly before the event's time, at which the
+        /// session received it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         at_ns: Option<SessionTime>,
     },
-    /// An order location shows a wanted dish.
+    /// A new order appears at an order location.
     OrderShown {
         order: String,
         dish: String,
@@ -86,117 +86,116 @@ pub enum Event {
     OrderCleared {
         order: String,
     },
-    /// The robot sets out to press a button and will touch it at `until_ns` if nothing comes between.
+    /// The robot starts a press and will touch the button at `until_ns` unless it is interrupted.
     RobotIntends {
         button: String,
         until_ns: SessionTime,
     },
-    /// The robot gave up the press that it was on its way to.
+    /// The robot aborts its ongoing press.
     RobotAborts {
         button: String,
         reason: AbortReason,
     },
-    /// The robot has nothing useful to do.
+    /// The robot becomes idle.
     RobotIdles {
         reason: IdleReason,
     },
-    /// Witness: how the arm in the physics stands, some twelve times a second while it moves.
+    /// Witness: a sample of the simulated arm's motion, about 12 per second while it moves.
     RobotMoves(ArmSample),
-    /// The arm in the physics is safe in another way. After a protective stop or a fault it stays where it is until the
-    /// wizard resumes it.
+    /// The safety mode of the simulated arm changes. After a protective stop or a fault the arm does not move until the wizard
+    /// resumes it.
     RobotSafety {
         mode: SafetyMode,
-        /// What it felt in newtons, where that is why.
+        /// Contact force in newtons, if it caused the change.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         force_n: Option<f64>,
-        /// The joint at fault, 1 the first.
+        /// Number of the faulty joint, from 1.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         joint: Option<u8>,
     },
-    /// Witness: somebody touched the arm in the physics, with so much force in newtons; told once for each contact, also of
-    /// one that stopped the arm.
+    /// Witness: a contact between the simulated arm and the human, with its peak force in newtons; once per contact.
     RobotTouched {
         force_n: f64,
     },
-    /// The wizard stopped the robot; it stays so until it is resumed.
+    /// The wizard stops the robot until it is resumed.
     RobotStopped,
     RobotResumed,
-    /// The robot sets out for nothing new and waits before the button that it is on its way to, until it is released.
+    /// The wizard holds the robot: it starts no press and waits before the button of the ongoing press, until it is released.
     RobotHeld {
         by: Sender,
     },
     RobotReleased {
         by: Sender,
     },
-    /// The robot gives up the press that it is on its way to, and decides anew.
+    /// The wizard skips the robot's ongoing press; the robot decides anew.
     RobotSkipped {
         by: Sender,
     },
-    /// The robot's next press is this one, useful or not.
+    /// The wizard chooses the robot's next press.
     RobotDriven {
         by: Sender,
         button: String,
     },
-    /// The wizard found something else at a location than the program thought: a change by nobody.
+    /// The wizard corrects the content of a location in the program's state.
     KitchenCorrected {
         location: String,
         content: String,
     },
-    /// A signal appears to the participant; an earlier one vanishes.
+    /// A signal is shown to the participant and replaces an earlier one.
     SignalShown {
         by: Sender,
         signal: Signal,
-        /// The wizard accepted the recommendation for the event of this number.
+        /// Sequence number of the event whose recommendation the wizard accepted, if any.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         accepted: Option<u64>,
     },
-    /// What the assistant advises, for an event that is some time ago where it was computed while the session went on.
+    /// A recommendation of the assistant; it refers to an earlier event if it was computed while the session continued.
     Advised(Recommendation),
-    /// Witness: the first frame that shows the signal of this number was handed to the terminal.
+    /// Witness: the first frame with the signal of this sequence number was written to the terminal.
     SignalDrawn {
         signal: u64,
     },
-    /// The signal vanishes.
+    /// The signal disappears.
     SignalEnded {
         reason: SignalEnd,
     },
-    /// The wizard marked this moment.
+    /// The wizard sets a marker with a note.
     Marker {
         note: String,
     },
-    /// What is around the trial, in a plan.
+    /// An event of the study protocol.
     Protocol(ProtocolEvent),
-    /// Witness: the wall clock went on by so much more than session time (less, if negative), in milliseconds: the
-    /// program or the computer stood still, or the clock was set.
+    /// Witness: the wall clock advanced by this much more than session time, in milliseconds (negative: less), because the
+    /// computer was suspended or its clock was set.
     ClockJumped {
         by_ms: i64,
     },
-    /// Witness: what the participant's display tells of itself.
+    /// Witness: a report of the participant's display.
     Display(DisplayEvent),
-    /// Witness: what is on the wizard's screen from now on.
+    /// Witness: the visible content of the wizard's screen changes.
     Screen(VisibleScreen),
-    /// Witness: the wizard sees from now on what these concepts would say, beside what is sent.
+    /// Witness: the wizard sees the comparison with these concepts from now on.
     Unblinded {
         concepts: Vec<ConceptName>,
     },
-    /// Witness: the terminal lost the keyboard: keys went elsewhere, the robot stop among them.
+    /// Witness: the terminal lost or regained keyboard focus; without it no key arrives, including the robot stop.
     FocusLost,
     FocusRegained,
-    /// Witness: what a simulated participant believes, written before each of its presses.
+    /// Witness: the belief of a simulated participant before its next press.
     ParticipantBelieves(BeliefWitness),
-    /// Witness: what was estimated of the human's belief before the press of the human that was just recorded.
+    /// Witness: the belief estimate before the last press of the human.
     BeliefEstimated(EstimateWitness),
-    /// The session is over; a log without it was cut.
+    /// The session ends; a log without this event was cut off.
     SessionEnded,
 }
 
 impl Event {
-    /// Whether it is one of many samples, of the gaze or of how the arm stands.
+    /// Whether it is a sample of the gaze or of the arm.
     pub fn is_sample(&self) -> bool {
         matches!(self, Event::Gaze(_) | Event::RobotMoves(_))
     }
 
-    /// The word that stands for it in the log.
+    /// Name of the event in the log.
     pub fn kind(&self) -> &'static str {
         match self {
             Event::Preflight { .. } => "preflight",
@@ -245,24 +244,24 @@ impl Event {
     }
 }
 
-/// Why a trial ended.
+/// Reason for the end of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndReason {
-    /// The set number of presses of both agents was reached.
+    /// The set number of presses was reached.
     Presses,
-    /// The set time was over.
+    /// The set time was reached.
     Time,
     /// The set number of orders was served.
     Orders,
     /// The wizard ended it.
     Wizard,
-    /// The wizard aborted it: `trial_aborted` says why, and `trial_ended` never says this.
+    /// The wizard aborted the trial; recorded as `trial_aborted`, never as `trial_ended`.
     Aborted,
 }
 
 impl EndReason {
-    /// As it stands in logs.
+    /// Name in logs.
     pub fn name(self) -> &'static str {
         match self {
             EndReason::Presses => "presses",
@@ -274,12 +273,12 @@ impl EndReason {
     }
 }
 
-/// How a signal ended.
+/// Reason for the end of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SignalEnd {
     /// It was shown for its set time.
     Elapsed,
-    /// Its sender took it back.
+    /// The sender took it back.
     TakenBack,
 }

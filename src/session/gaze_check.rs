@@ -1,4 +1,4 @@
-//! A check of the calibration: its events, and what a running and an accepted one are.
+//! The gaze accuracy check: its events, its running state, and its accepted result.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,78 +6,78 @@ use crate::base::time::SessionTime;
 use crate::gaze::calibration::{GazeAccuracy, SETTLE_S, TARGET_S, TARGETS, ViewingGeometry, measure};
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 
-/// No target keeps more samples: 1,000 a second for longer than it is shown.
+/// Largest number of samples per target: 1,000 Hz for longer than a target is shown.
 const MOST_SAMPLES: usize = 4096;
-/// From the beginning to the first target, in seconds.
+/// Time from the beginning to the first target, in seconds.
 const READY_S: f64 = 1.0;
 
 /// A step of the check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum CalibrationEvent {
-    /// A check begins, or begins again; the targets in fractions of the display.
+    /// The check begins or restarts, with its targets in fractions of the display.
     Begun { targets: Vec<[f64; 2]> },
-    /// The target of this place in the list is shown, and no other.
+    /// The target with this index is shown.
     TargetShown { target: usize },
-    /// The last one was shown long enough.
+    /// All targets have been shown.
     TargetsHidden,
-    /// What follows from the samples; nothing if too few were usable.
+    /// Measured accuracy; `None` if too few samples were usable.
     Measured {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         found: Option<GazeAccuracy>,
     },
-    /// The wizard takes the gaze as it is, or with the offset taken off from now on.
+    /// The wizard accepts the gaze, with or without correction of the offset.
     Accepted { corrected: bool },
-    /// What was accepted in the recording before, at the same desk, holds in this one, too.
+    /// The accepted result of the previous recording is carried over.
     Carried { found: GazeAccuracy, corrected: bool },
-    /// The check is given up; what was accepted before holds.
+    /// The check is cancelled; the earlier accepted result remains valid.
     Dismissed,
 }
 
-/// A check that goes on.
+/// A running gaze accuracy check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunningGazeCheck {
     pub targets: Vec<[f64; 2]>,
-    /// The target that is shown, and since when.
+    /// Index of the shown target with the time since which it is shown.
     pub shown: Option<(usize, SessionTime)>,
     /// By target.
     pub(super) samples: Vec<Vec<GazeSample>>,
-    /// When it began, and then when the last thing happened.
+    /// Time of its last event.
     pub(super) at: SessionTime,
     pub result: Option<GazeCheckResult>,
     pub(super) are_hidden: bool,
 }
 
-/// What a check came to.
+/// Result of a check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GazeCheckResult {
-    /// Nothing: too few usable samples.
+    /// Measured accuracy; `None` if too few samples were usable.
     pub found: Option<GazeAccuracy>,
 }
 
-/// A check that was accepted.
+/// An accepted gaze accuracy check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcceptedGazeCheck {
     pub at: SessionTime,
     pub found: GazeAccuracy,
-    /// The offset is taken off.
+    /// Whether the offset is corrected.
     pub corrected: bool,
 }
 
 impl AcceptedGazeCheck {
-    /// How far gaze is off, in degrees, as it is used from then on.
+    /// Accuracy of the gaze as it is used from then on, in degrees.
     pub fn accuracy_deg(&self) -> f64 {
         if self.corrected { self.found.corrected_deg } else { self.found.accuracy_deg }
     }
 }
 
 impl RunningGazeCheck {
-    /// The display point of the shown target, in fractions.
+    /// Position of the shown target, in fractions of the display.
     pub fn target(&self) -> Option<[f64; 2]> {
         self.shown.and_then(|(index, _)| self.targets.get(index).copied())
     }
 
-    /// What has to happen next, and when; nothing when everything was shown.
+    /// The next step with its time; `None` when all targets have been shown.
     pub fn next(&self) -> Option<(SessionTime, CalibrationEvent)> {
         let (shown_s, target) = match self.shown {
             None if self.are_hidden => return None,
@@ -91,13 +91,13 @@ impl RunningGazeCheck {
         Some((self.at + SessionTime::from_secs_f64(shown_s), event))
     }
 
-    /// What follows from the samples when all targets were shown and nothing was measured yet.
+    /// The measurement, once all targets have been shown.
     pub fn to_measure(&self, viewing: &ViewingGeometry) -> Option<CalibrationEvent> {
         let is_due = self.are_hidden && self.result.is_none();
         is_due.then(|| CalibrationEvent::Measured { found: measure(viewing, &self.targets, &self.samples) })
     }
 
-    /// Takes a sample that was taken then.
+    /// Adds a sample taken at session time `taken`.
     pub(super) fn take(&mut self, taken: SessionTime, sample: GazeSample) {
         let Some((target, since)) = self.shown else { return };
         let counts = taken.secs_since(since) >= SETTLE_S && sample.confidence >= MIN_CONFIDENCE;
@@ -108,12 +108,12 @@ impl RunningGazeCheck {
 }
 
 impl CalibrationEvent {
-    /// The beginning of a check with the usual targets.
+    /// The event that begins a check with the standard targets.
     pub fn begin() -> CalibrationEvent {
         CalibrationEvent::Begun { targets: TARGETS.to_vec() }
     }
 
-    /// Whether it comes from outside; what is measured follows from the rest.
+    /// Whether the event comes from outside; the measurement follows from earlier events.
     pub(super) fn is_external(&self) -> bool {
         !matches!(self, CalibrationEvent::Measured { .. })
     }

@@ -1,14 +1,14 @@
-//! The stream of gaze samples: what one of them changes, and what is wrong with the stream so far.
+//! The stream of gaze samples: state changes by a sample, and faults of the stream.
 
 use super::calibration;
 use super::session_state::Session;
 use crate::base::time::SessionTime;
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 
-/// After a gap of this length in the samples, in seconds, the rate is measured anew.
+/// Gap between samples after which the rate is measured anew, in seconds.
 const GAP_S: f64 = 0.5;
 
-/// Takes a gaze sample: counts it, measures the rate, and remembers which locations are looked at.
+/// Applies a gaze sample: counts it, updates the rate, and notes which locations are looked at.
 pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeSample) {
     let status = &mut session.gaze;
     status.samples += 1;
@@ -46,7 +46,7 @@ pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
     }
 }
 
-/// What is wrong with the stream of gaze so far: counts that are not 0, and what they count.
+/// Faults of the gaze stream so far: nonzero counts with what they count.
 pub fn faults(session: &Session) -> Vec<(u64, &'static str)> {
     let (dropped, read) = (session.tracker.dropped, session.gaze.judge.counts);
     let all = [

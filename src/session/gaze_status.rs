@@ -5,23 +5,23 @@ use crate::gaze::GazeSample;
 use crate::gaze::quality::{GazeFault, SampleChecker};
 use crate::kitchen::state::MAX_LOCATIONS;
 
-/// The participant's gaze as far as the console needs it.
+/// State of the gaze stream in a session.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GazeStatus {
-    /// When the newest sample came, usable or not.
+    /// Arrival time of the latest sample, usable or not.
     pub arrived: Option<SessionTime>,
     pub last: Option<(SessionTime, GazeSample)>,
-    /// When each location was last looked at (gaze inside its area), indexed by location.
+    /// Time of the last look at each location (gaze inside its area).
     pub looked_at: [Option<SessionTime>; MAX_LOCATIONS],
-    /// Samples so far; those with too low a confidence or outside of the display are counted apart.
+    /// Number of samples; samples with low confidence or outside the display are counted in `unusable`.
     pub samples: u64,
     pub unusable: u64,
-    /// Those that were recorded and are not read, by kind.
+    /// Detector and counts of faulty samples.
     pub judge: SampleChecker,
-    /// What is wrong with the newest sample.
+    /// Fault of the latest sample.
     pub fault: Option<GazeFault>,
-    /// Samples a second, smoothed over about a second: see [`super::Session::gaze_hz`].
+    /// Sampling rate in Hz, smoothed over about a second: see [`super::Session::gaze_hz`].
     pub(crate) rate_hz: f64,
-    /// Since when samples come without a gap; nothing after a pause.
+    /// Start of the present gapless run of samples; `None` after a pause.
     pub(crate) steady_since: Option<SessionTime>,
 }

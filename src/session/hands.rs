@@ -1,5 +1,5 @@
-//! The experimenter's hands: the kitchen corrected, the robot held, skipped and driven, trials aborted and excluded. What
-//! can be when, and what it changes.
+//! Manual interventions of the experimenter: correcting the kitchen, holding, skipping and driving the robot, aborting and
+//! excluding trials. Their preconditions and state changes.
 
 use super::event::Event;
 use super::phase::Phase;
@@ -7,10 +7,10 @@ use super::session_state::Session;
 use crate::communication::Sender;
 use crate::kitchen::{ContentId, LocationKind};
 
-/// Whether the hands can do this now.
+/// Whether an intervention is possible now.
 ///
 /// # Errors
-/// The reason why they cannot, in words for the wizard.
+/// The reason for the refusal, in words for the wizard.
 pub(super) fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
     let refuse_if = |refused: bool, reason: &'static str| if refused { Err(reason) } else { Ok(()) };
     let (phase, robot) = (session.phase, &session.robot);

@@ -1,4 +1,4 @@
-//! The first line of a log: everything that is needed to replay it on its own.
+//! The header: the first line of a log, with everything that a replay needs.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,19 +20,19 @@ pub struct Header {
     pub version: u32,
     /// The version of the program that wrote the log.
     pub program: String,
-    /// Which trial of its seed it is: trials with the same seed and another index have other orders and participants.
+    /// Index of the trial: with the same seed, another index gives other orders and another participant.
     pub trial: u64,
-    /// Wall clock when the recording began (UTC, RFC 3339): at session time 0, or at that of [`Continues`]. Of live
-    /// sessions only: a simulated log has none.
+    /// Wall clock time at the beginning of the recording (UTC, RFC 3339), which is session time 0 or that of [`Continues`]. Live
+    /// sessions only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub started: Option<String>,
-    /// What this recording is a later part of.
+    /// The earlier part that this recording continues.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub continues: Option<Continues>,
-    /// The recording, beside this one, whose trial is done again here.
+    /// Name of the recording whose trial is repeated here.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub redoes: Option<String>,
-    /// The settings, the seed among them, as they were in force.
+    /// All settings in use, including the seed.
     pub session: SessionSpec,
     pub layout: FileText,
     pub recipes: FileText,
@@ -41,15 +41,15 @@ pub struct Header {
     pub keys: Option<FileText>,
 }
 
-/// The part before: the session goes on from where that was cut.
+/// The previous part of a recording, after which the session continues.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Continues {
-    /// The name of its folder, which is beside the later part's.
+    /// Name of its folder, in the same parent folder.
     pub recording: String,
-    /// The events until then, of all parts: the first event here has this number.
+    /// Number of events in all earlier parts: the sequence number of the first event here.
     pub events: u64,
-    /// The session time at which it goes on.
+    /// Session time at which the session continues.
     pub t_ns: SessionTime,
 }
 
@@ -57,7 +57,7 @@ pub struct Continues {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FileText {
-    /// Where it was read, for messages.
+    /// Path from which it was read, for messages.
     pub path: String,
     pub text: String,
 }

@@ -1,4 +1,4 @@
-//! The orders of a trial: a seeded list, drawn and never typed in.
+//! The orders of a trial, drawn from a seeded random stream.
 
 use rand::RngExt;
 
@@ -6,10 +6,10 @@ use super::settings::SessionSpec;
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::DishId;
 
-/// After at most so many orders, matched lists hold the same dishes.
+/// Length of a run: after each run, matched lists contain the same dishes.
 const RUN: usize = 3;
 
-/// The dishes that a trial's orders want, one after another, whichever order location is free.
+/// The sequence of dishes that a trial's orders show, independent of which order location is free.
 #[derive(Clone, Debug)]
 pub struct OrderList {
     random: Stream,
@@ -17,21 +17,21 @@ pub struct OrderList {
     matched: Option<Matched>,
 }
 
-/// Blocks in which every dish of the menu comes once, in an order that all trials of a participant share. Every block is
-/// cut into short runs, and each trial has its own order within a run: as far as two trials of a participant have come, they
-/// asked for the same dishes as often, up to the run in which each ended.
+/// Matched lists: blocks contain every dish of the menu once, in an order that all trials of a participant share. Each block is
+/// divided into short runs, and each trial has its own order within a run. So two trials of a participant have the same dishes
+/// up to their last complete run.
 #[derive(Clone, Debug)]
 struct Matched {
     shared: Stream,
-    /// What is left of the block, from the back.
+    /// Remaining dishes of the block, in reverse order.
     block: Vec<u8>,
-    /// What is left of the run, from the back.
+    /// Remaining dishes of the run, in reverse order.
     run: Vec<u8>,
 }
 
 impl OrderList {
-    /// The list of a trial: of a plan matched with the participant's other trials, else every dish as likely every time.
-    /// `menu` is the number of dishes.
+    /// The list of a trial: matched with the participant's other trials in a plan, else independent uniform draws. `menu` is the
+    /// number of dishes.
     pub fn new(menu: usize, spec: &SessionSpec, trial: u64) -> OrderList {
         let seed = spec.seed;
         let matched = spec.step.as_ref().map(|step| {
@@ -65,7 +65,7 @@ impl Matched {
     }
 }
 
-/// Fisher and Yates: every order as likely.
+/// Fisher-Yates shuffle.
 fn shuffle(dishes: &mut [u8], random: &mut Stream) {
     for last in (1..dishes.len()).rev() {
         dishes.swap(last, random.random_range(0..=last));

@@ -1,4 +1,4 @@
-//! What a session file says about the participant.
+//! Settings of the participant and of the gaze source in a session file.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,13 +8,13 @@ use crate::participant::population::Population;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ParticipantSpec {
-    /// A code, never a name.
+    /// Participant code, never a name.
     pub code: String,
     pub kind: ParticipantKind,
     pub gaze: GazeSource,
-    /// Where the JSON gaze input listens, on localhost.
+    /// Port of the JSON gaze input on localhost.
     pub gaze_port: u16,
-    /// From what population simulated participants are drawn; none: the program's own.
+    /// Population from which simulated participants are drawn; `None` for the default population.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub population: Option<Population>,
 }
@@ -33,29 +33,29 @@ impl Default for ParticipantSpec {
 }
 
 impl ParticipantSpec {
-    /// Whether the gaze samples come from the simulated participant.
+    /// Whether gaze samples come from the simulated participant.
     pub fn simulates_gaze(&self) -> bool {
         self.kind == ParticipantKind::Simulated && self.gaze == GazeSource::Simulated
     }
 }
 
-/// Who plays the human's part.
+/// Who plays the human.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ParticipantKind {
     Simulated,
-    /// Somebody at the keyboard of the console.
+    /// A person at the keyboard of the console.
     Keyboard,
-    /// Somebody at the wall display, a page in a browser.
+    /// A person at the wall display, a page in a browser.
     Display,
 }
 
-/// Where gaze samples come from.
+/// Source of gaze samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GazeSource {
     Simulated,
-    /// The mouse pointer over the kitchen: the console's, or the display's if the participant is there.
+    /// The mouse pointer: over the console's kitchen, or over the display if the participant plays there.
     Mouse,
     /// Pupil Core, through Pupil Capture's network API.
     Pupil,

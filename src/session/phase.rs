@@ -1,8 +1,8 @@
-//! Where a session's trial is.
+//! Phase of a session's trial.
 
 use super::event::EndReason;
 
-/// Where the trial is.
+/// Phase of the trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// Before the trial's start.

@@ -1,4 +1,4 @@
-//! What is looked at before a trial starts, and before a session: each with a verdict, and how to mend it.
+//! Preflight checks of participant, gaze, eye tracker and disk space.
 
 use super::gaze_samples::faults;
 use super::participant_settings::{GazeSource, ParticipantKind};
@@ -8,15 +8,14 @@ use super::tracker::TrackerConnection;
 use crate::base::time::SessionTime;
 use crate::gaze::calibration::{GOOD_DEG, USABLE_DEG};
 
-/// Slower gaze misses short looks, in samples a second.
+/// Sampling rate below which short looks are missed, in Hz.
 const SLOW_HZ: f64 = 20.0;
-/// After so many seconds without a usable sample nothing is known of the gaze.
+/// Time without a usable sample after which gaze counts as missing, in seconds.
 const UNUSABLE_S: f64 = 1.0;
-/// A session of a quarter of an hour takes about 10 MB: with less than the first there is room for some, with less than
-/// the second there may not be for one. In bytes.
+/// Free disk space, in bytes, below which the check warns, and below which it fails; a session of 15 min takes about 10 MB.
 const FREE_BYTES: (u64, u64) = (1 << 30, 50 << 20);
 
-/// Whether there is room for a recording, with so many bytes free; `None`: the system does not say.
+/// Checks the disk space for a recording; `None` if the system does not report the free space.
 pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
     let remedy = "free some, or record elsewhere with --out";
     let Some(free) = free_bytes else {
@@ -35,7 +34,7 @@ pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
     PreflightCheck::new("free space", verdict, format!("{} MB", free / 1_000_000), remedy)
 }
 
-/// Who takes part, where the gaze comes from, and how true it is; `check_gaze` is the key that checks it by targets.
+/// Checks participant, gaze source and gaze accuracy; `check_gaze` is the key that starts a gaze accuracy check.
 pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec<PreflightCheck> {
     let spec = &session.spec.participant;
     let who = match spec.kind {
@@ -106,7 +105,7 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
     let faults = faults(session);
     let (samples, wrong) = (session.gaze.samples, faults.iter().map(|(count, _)| count).sum::<u64>());
     if wrong > 0 {
-        // Real streams have some; what is wrong is not read, and does not matter before it is much.
+        // Real streams have some faulty samples; they are not used, and matter only if they are many.
         let verdict = if wrong * 20 > samples { PreflightVerdict::Warning } else { PreflightVerdict::Ok };
         let kinds: Vec<String> = faults.iter().map(|(count, kind)| format!("{count} {kind}")).collect();
         let found = format!("{samples} samples; {}", kinds.join(", "));
@@ -120,7 +119,7 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
     checks
 }
 
-/// Whether the eye tracker is there, and sees the display.
+/// Checks the connection to the eye tracker, and whether it detects the display.
 fn tracker(session: &Session) -> PreflightCheck {
     let spec = &session.spec.tracker;
     let name = "eye tracker";
@@ -140,7 +139,7 @@ fn tracker(session: &Session) -> PreflightCheck {
     }
 }
 
-/// How the gaze was found to be, if it was looked at.
+/// The result of the last gaze accuracy check, if there was one.
 fn calibration(session: &Session, check_gaze: &str) -> Option<PreflightCheck> {
     let accuracy_deg = session.calibrated.as_ref()?.accuracy_deg();
     let verdict = match accuracy_deg {

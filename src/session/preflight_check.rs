@@ -1,26 +1,26 @@
-//! One thing that is looked at before a trial or a session: its verdict, and how to mend it.
+//! The result of one preflight check: verdict, finding and remedy.
 
 use serde::{Deserialize, Serialize};
 
-/// How something was found.
+/// Verdict of a preflight check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PreflightVerdict {
     Ok,
-    /// It works, but less well.
+    /// Usable with limitations.
     Warning,
-    /// It does not work so.
+    /// Not usable.
     Failed,
 }
 
-/// One thing that was looked at.
+/// Result of a preflight check before a trial or a session.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PreflightCheck {
     pub name: String,
     pub verdict: PreflightVerdict,
     pub found: String,
-    /// How to mend it, unless it is ok.
+    /// Remedy, unless the verdict is ok.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub remedy: Option<String>,
 }
@@ -36,7 +36,7 @@ impl PreflightCheck {
         PreflightCheck { name: name.to_string(), verdict, found: found.into(), remedy }
     }
 
-    /// Something that is as it should be.
+    /// A check with the verdict ok.
     pub fn ok(name: &str, found: impl Into<String>) -> PreflightCheck {
         PreflightCheck::new(name, PreflightVerdict::Ok, found, "")
     }

@@ -1,4 +1,4 @@
-//! What is around a trial: the phases that a recording of a plan goes through, one after another.
+//! The study protocol: the phases of a recording of a plan, one after another.
 
 use super::phase::Phase;
 use super::plan::{PhaseSpec, Questionnaire, StepSpec};
@@ -7,24 +7,24 @@ pub use super::protocol_state::{ItemAnswer, Practice, Protocol};
 use super::session_state::Session;
 
 impl Session {
-    /// Where it is in its plan, if it belongs to one.
+    /// The plan step and the protocol state, if the recording belongs to a plan.
     pub fn step(&self) -> Option<(&StepSpec, &Protocol)> {
         self.spec.step.as_ref().zip(self.protocol.as_ref())
     }
 
-    /// The running phase of a plan.
+    /// The present phase of the protocol.
     pub fn study_phase(&self) -> Option<&PhaseSpec> {
         let (step, protocol) = self.step()?;
         step.phases.get(protocol.number.checked_sub(1)?)
     }
 
-    /// The phase that comes after the running one.
+    /// The phase after the present one.
     pub fn next_phase(&self) -> Option<StudyPhase> {
         let (step, protocol) = self.step()?;
         step.phases.get(protocol.number).map(PhaseSpec::phase)
     }
 
-    /// The questionnaire that is being answered.
+    /// The questionnaire of the present phase, if it has one.
     pub fn questionnaire(&self) -> Option<&Questionnaire> {
         match self.study_phase()? {
             PhaseSpec::Questionnaire { questionnaire } => Some(questionnaire),
@@ -32,7 +32,7 @@ impl Session {
         }
     }
 
-    /// Why the running phase of a plan cannot be left yet; nothing if it can.
+    /// Reason why the present phase cannot be left yet; `None` if it can.
     pub fn phase_lacks(&self) -> Option<&'static str> {
         let protocol = self.protocol.as_ref()?;
         if self.aborted.is_some() {
@@ -49,7 +49,7 @@ impl Session {
         }
     }
 
-    /// Whether everything was done that the recording is for, or its trial was aborted. True of one without a plan.
+    /// Whether all phases are done or the trial was aborted; true without a plan.
     pub fn is_step_done(&self) -> bool {
         match &self.protocol {
             None => true,
@@ -59,10 +59,10 @@ impl Session {
     }
 }
 
-/// Whether the session takes the event now.
+/// Whether the session accepts the event now.
 ///
 /// # Errors
-/// The reason why it does not, in words for the wizard.
+/// The reason for the refusal, in words for the wizard.
 pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static str> {
     let Some((step, protocol)) = session.step() else { return Err("the session has no plan") };
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
@@ -103,10 +103,10 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
     }
 }
 
-/// Whether a trial may start: in a plan, in its phase.
+/// Whether a trial may start; in a plan, only in the phase of the trial.
 ///
 /// # Errors
-/// The reason why not.
+/// The reason for the refusal.
 pub fn admit_trial(session: &Session) -> Result<(), &'static str> {
     let has_trial = session.study_phase().is_some_and(|phase| phase.phase().has_trial());
     match session.protocol.is_none() || has_trial {
@@ -134,7 +134,7 @@ fn shown_item<'a>(session: &'a Session, item: &str) -> Result<&'a Questionnaire,
     }
 }
 
-/// Moves on by an event that was admitted.
+/// Applies an admitted event.
 pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
     let place = |item: &str| session.questionnaire().and_then(|questionnaire| questionnaire.position(item));
     let (steps, items) = match event {
@@ -177,7 +177,7 @@ pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
     }
 }
 
-/// How many steps and items a phase has.
+/// Number of steps and of items of a phase.
 fn sizes(step: Option<&StepSpec>, number: usize) -> (usize, usize) {
     let phase = step.and_then(|step| step.phases.get(number.checked_sub(1)?));
     let items = match phase {

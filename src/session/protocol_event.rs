@@ -1,4 +1,4 @@
-//! The phases of a study, and what happens in them around a trial.
+//! The phases of a study, and the events in them around a trial.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 pub enum StudyPhase {
     Instruction,
-    /// A trial for practice.
+    /// Practice.
     Familiarisation,
     Trial,
     Questionnaire,
-    /// Of the wizard.
+    /// Debriefing of the wizard.
     Debriefing,
 }
 
@@ -26,52 +26,52 @@ impl StudyPhase {
         }
     }
 
-    /// Whether the kitchen is worked in.
+    /// Whether the phase has a trial.
     pub fn has_trial(self) -> bool {
         matches!(self, StudyPhase::Trial | StudyPhase::Familiarisation)
     }
 }
 
-/// Something that happens around a trial.
+/// An event of the study protocol around a trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum ProtocolEvent {
-    /// The participant agreed to what the plan asks; without it, there is no recording.
+    /// The participant consented; without consent nothing is recorded.
     ConsentGiven,
     /// The next phase of the recording begins; `number` counts from 1.
     PhaseStarted {
         phase: StudyPhase,
         number: usize,
     },
-    /// A step of an instruction or debriefing, counted from 1, was done, or was not after all.
+    /// A step of an instruction or debriefing, counted from 1, was ticked or unticked.
     Ticked {
         step: usize,
         done: bool,
     },
-    /// An item is in front of the participant.
+    /// An item of a questionnaire is shown.
     ItemShown {
         item: String,
     },
-    /// All answers are, to be confirmed.
+    /// All answers are shown, to be confirmed.
     AnswersShown,
-    /// The shown item, from 1 to the points of the scale; a later answer replaces it. The next item is shown then.
+    /// Answer to the shown item, from 1 to the points of the scale; a later answer replaces it. The next item follows.
     ItemAnswered {
         item: String,
         answer: u8,
     },
-    /// The participant gives no answer to the shown item. The next item is shown then.
+    /// The shown item is skipped. The next item follows.
     ItemSkipped {
         item: String,
     },
     AnswersConfirmed,
-    /// The practice is over: how it went, and whether that meets the criterion.
+    /// Result of the practice, and whether it meets the criterion.
     CriterionChecked {
         met: bool,
         orders: u32,
         presses: u32,
         errors: u32,
     },
-    /// The wizard lets the participant go on all the same.
+    /// The wizard waives the criterion, for this reason.
     CriterionWaived {
         reason: String,
     },

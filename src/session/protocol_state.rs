@@ -1,4 +1,4 @@
-//! Where a recording of a plan is: its phase, the steps that are done, and the answers.
+//! State of the study protocol in a recording: phase, completed steps, and answers.
 
 /// An answer to an item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -7,35 +7,35 @@ pub enum ItemAnswer {
     Skipped,
 }
 
-/// How the practice went.
+/// Result of the practice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Practice {
     pub met: bool,
     pub orders: u32,
     pub presses: u32,
     pub errors: u32,
-    /// Why the participant goes on all the same.
+    /// Reason for waiving the criterion, if it was waived.
     pub waived: Option<String>,
 }
 
-/// Where a recording of a plan is.
+/// State of the study protocol in a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Protocol {
     pub consent: bool,
-    /// The number of the phase, from 1; 0: before the first.
+    /// Number of the phase, from 1; 0 before the first.
     pub number: usize,
-    /// The steps of the phase that are done.
+    /// Whether each step of the phase is done.
     pub ticks: Vec<bool>,
-    /// The answers to the items of the phase.
+    /// Answers to the items of the phase.
     pub answers: Vec<Option<ItemAnswer>>,
-    /// The item in front of the participant; the number of items: all of them, to be confirmed.
+    /// Index of the shown item; the number of items while all answers are shown for confirmation.
     pub item: usize,
     pub confirmed: bool,
     pub practice: Option<Practice>,
 }
 
 impl Protocol {
-    /// Answers the shown item, and shows the next one; after the last, the first that was left out, or all answers.
+    /// Records the answer to the shown item and shows the next one; after the last item, the first unanswered one or all answers.
     pub(super) fn answer(&mut self, answer: ItemAnswer) {
         if let Some(place) = self.answers.get_mut(self.item) {
             *place = Some(answer);

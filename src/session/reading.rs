@@ -3,11 +3,10 @@
 use super::settings::{SessionSpec, SettingError};
 
 impl SessionSpec {
-    /// Reads a session file's text; settings that it does not name have their defaults. The files that it names are not
-    /// read.
+    /// Parses the text of a session file. Missing settings get their defaults; the files that it refers to are not read.
     ///
     /// # Errors
-    /// The text is not TOML, a setting is unknown, or a setting cannot be.
+    /// The text is not TOML, or a setting is unknown or invalid.
     pub fn from_toml(text: &str) -> Result<SessionSpec, SettingError> {
         let wrong = |error: toml::de::Error| SettingError::new("", error.to_string(), "settings of a session");
         let spec: SessionSpec = toml::from_str(text).map_err(wrong)?;

@@ -1,13 +1,13 @@
-//! Which parts of the crate a session needs, and whether this build has them.
+//! The optional parts of the crate that a session needs.
 
 use super::settings::{ArmKind, ParticipantKind, SessionSpec};
 use crate::base::features::{Feature, NotBuilt};
 
 impl SessionSpec {
-    /// Whether this build can run a session of these settings without a console: it takes the part that moves the arm.
+    /// Whether this build can run the session without a console (it may need the simulated arm).
     ///
     /// # Errors
-    /// It cannot: the part that it lacks.
+    /// The missing part.
     pub const fn require_built(&self) -> Result<(), NotBuilt> {
         match self.robot.arm {
             ArmKind::Physics => Feature::Physics.require(),
@@ -15,10 +15,10 @@ impl SessionSpec {
         }
     }
 
-    /// Whether this build can run such a session at the console.
+    /// Whether this build can run the session at the console.
     ///
     /// # Errors
-    /// It cannot: the part that it lacks.
+    /// The missing part.
     pub fn require_built_live(&self) -> Result<(), NotBuilt> {
         self.require_built()?;
         match self.participant.kind {

@@ -1,11 +1,11 @@
-//! What events change of the robot.
+//! State changes of the robot by events.
 
 use super::event::Event;
 use super::session_state::Session;
 use super::timeline_entry::TimelineEvent;
 use crate::base::time::SessionTime;
 
-/// What is told of the arm in the physics.
+/// Applies an event of the simulated arm.
 pub(super) fn arm(session: &mut Session, now: SessionTime, event: &Event) {
     match event {
         Event::RobotMoves(moment) => session.robot.arm.last = Some((now, *moment)),
@@ -13,7 +13,7 @@ pub(super) fn arm(session: &mut Session, now: SessionTime, event: &Event) {
         Event::RobotSafety { mode, force_n, joint } => {
             let arm = &mut session.robot.arm;
             (arm.mode, arm.stopped_by_n) = (*mode, *force_n);
-            // Where the wizard stopped it, that is told already.
+            // A stop by the wizard has its own event.
             if mode.is_stopped() && !session.robot.stopped {
                 session.robot.stopped = true;
                 session.robot.idle = None;
@@ -24,14 +24,14 @@ pub(super) fn arm(session: &mut Session, now: SessionTime, event: &Event) {
     }
 }
 
-/// The wizard stops it, or lets it go on.
+/// Applies the wizard's stop, or its end.
 pub(super) fn stop(session: &mut Session, now: SessionTime, stopped: bool) {
     session.robot.stopped = stopped;
     session.robot.idle = None;
     session.note(now, if stopped { TimelineEvent::RobotStopped } else { TimelineEvent::RobotResumed });
 }
 
-/// The wizard holds it before its next press, or lets it go.
+/// Applies the wizard's hold, or its end.
 pub(super) fn hold(session: &mut Session, now: SessionTime, held: bool) {
     session.robot.held = held;
     session.robot.idle = None;

@@ -1,20 +1,20 @@
-//! What a session file says about the robot.
+//! Settings of the robot in a session file.
 
 use serde::{Deserialize, Serialize};
 
-/// How the robot's presses come about.
+/// Kind of the robot's arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ArmKind {
-    /// They take a while by chance; the arm is only shown.
+    /// Presses have a random duration; the arm's motion is only displayed.
     #[default]
     Timed,
-    /// A simulated arm makes them, in the physics: it slows near the human's hand, and stops when it touches it.
+    /// A simulated UR5 presses buttons by contact; it slows near the human's hand and stops on contact with it.
     Physics,
 }
 
 impl ArmKind {
-    /// As it stands in files.
+    /// Name in files.
     pub fn name(self) -> &'static str {
         match self {
             ArmKind::Timed => "timed",
@@ -31,12 +31,12 @@ impl ArmKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RobotSpec {
-    /// Its arm; where nothing is said, and in recordings of before there was another one, it is timed.
+    /// Kind of the arm; `timed` by default and in recordings made before the simulated arm existed.
     #[serde(skip_serializing_if = "ArmKind::is_timed")]
     pub arm: ArmKind,
-    /// Of the timed arm: median duration of a press in seconds.
+    /// Timed arm: median duration of a press, in seconds.
     pub press_s: f64,
-    /// Of the timed arm: the standard deviation of the logarithm of the duration.
+    /// Timed arm: standard deviation of the logarithm of the duration.
     pub press_spread: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What the robot does in a session, and how its arm stands.
+//! State of the robot in a session: its present action, its stops, and its arm.
 
 use crate::base::time::SessionTime;
 use crate::kitchen::ButtonId;
@@ -6,40 +6,40 @@ use crate::robot::moment::ArmSample;
 use crate::robot::safety::SafetyMode;
 use crate::robot::{AbortReason, IdleReason};
 
-/// What the robot does.
+/// State of the robot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RobotStatus {
-    /// The press that the arm is busy with, since when, and when it will touch the button.
+    /// The ongoing press: button, start, and expected time of contact.
     pub intention: Option<(ButtonId, SessionTime, SessionTime)>,
-    /// Stopped, by the wizard or by itself, until the wizard lets it go on.
+    /// Whether the robot is stopped, by the wizard or by itself, until the wizard resumes it.
     pub stopped: bool,
-    /// Held by the wizard before its next press.
+    /// Whether the wizard holds the robot before its next press.
     pub held: bool,
-    /// The press that the wizard drives the robot to, until it is made or given up.
+    /// The press that the wizard chose for the robot, until it is made or aborted.
     pub driven_to: Option<ButtonId>,
-    /// Why it does nothing, if it does nothing.
+    /// Reason for being idle, if the robot is idle.
     pub idle: Option<IdleReason>,
-    /// The arm in the physics.
+    /// State of the simulated arm.
     pub arm: ArmStatus,
 }
 
-/// How the arm in the physics stands, and how safe it is.
+/// Pose and safety state of the simulated arm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArmStatus {
-    /// What was told of it last, and when; nothing before it moves first, and of a timed arm.
+    /// Last sample with its time; `None` before the first motion and for the timed arm.
     pub last: Option<(SessionTime, ArmSample)>,
     pub mode: SafetyMode,
-    /// Why it stopped by itself: the force that it felt, in newtons.
+    /// Contact force that caused a protective stop, in newtons.
     pub stopped_by_n: Option<f64>,
 }
 
 impl RobotStatus {
-    /// Whether the wizard has stopped it. An arm that stopped by itself can still be stopped by the wizard.
+    /// Whether the wizard stopped the robot (also possible after a protective stop).
     pub fn is_stopped_by_wizard(&self) -> bool {
         self.stopped && !self.arm.mode.has_stopped_itself()
     }
 
-    /// It is on its way to a button, and will touch it at `until` if nothing comes between.
+    /// Notes that the robot starts a press and will touch the button at `until`.
     pub(super) fn sets_out(&mut self, button: ButtonId, now: SessionTime, until: SessionTime) {
         self.intention = Some((button, now, until));
         self.idle = None;
@@ -47,11 +47,11 @@ impl RobotStatus {
 
     pub(super) fn gives_up(&mut self, reason: AbortReason) {
         self.intention = None;
-        // What the wizard drives it to is still to come.
+        // A press that the wizard chose is still pending.
         self.driven_to = self.driven_to.filter(|_| reason == AbortReason::Driven);
     }
 
-    /// The trial is over.
+    /// Notes the end of the trial.
     pub(super) fn rests(&mut self) {
         self.intention = None;
         self.driven_to = None;

@@ -1,4 +1,4 @@
-//! The state of a session: what follows from its events so far.
+//! The state of a session, computed from its events.
 
 use std::sync::Arc;
 
@@ -17,58 +17,58 @@ use crate::communication::{Sender, Signal};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{DishId, Kitchen, LocationId, State};
 
-/// After so many seconds without a sample there is no gaze.
+/// Time without a sample after which there is no gaze, in seconds.
 const SILENT_S: f64 = 1.0;
 
-/// Everything that follows from the events so far.
+/// The state of a session after the events so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Session {
     pub kitchen: Arc<Kitchen>,
     pub spec: SessionSpec,
-    /// Which trial of its seed it is.
+    /// Index of the trial.
     pub trial: u64,
     /// The time of the last event.
     pub time: SessionTime,
     pub phase: Phase,
-    /// When the trial's clock started, and how long it stood still since.
+    /// Session time of the trial's start.
     pub trial_start: SessionTime,
     pub paused_total: SessionTime,
     pub paused_at: SessionTime,
-    /// The pauses that are over: from, until.
+    /// Start and end of each finished pause.
     pub pauses: Vec<(SessionTime, SessionTime)>,
-    /// The task state, as it truly is.
+    /// True state of the kitchen.
     pub state: State,
-    /// When each location last changed, indexed by location.
+    /// Time of the last change of each location.
     pub changed_at: [SessionTime; MAX_LOCATIONS],
     /// Presses during the trial, indexed by [`Agent::index`].
     pub presses: [u32; 2],
-    /// Served orders: when, and the number of presses of both agents until then.
+    /// Served orders.
     pub served: Vec<Served>,
     pub robot: RobotStatus,
-    /// The signal that the participant sees now.
+    /// The signal on the display, if there is one.
     pub shown: Option<ShownSignal>,
-    /// The newest advice of the assistant in the running trial.
+    /// Latest recommendation of the assistant in the running trial.
     pub advice: Option<Recommendation>,
-    /// The number of the newest event that the display marks with a flash: a start, a signal.
+    /// Sequence number of the latest event that the display marks with a flash (trial start, signal).
     pub cue: Option<u64>,
-    /// When the wizard last sent a signal.
+    /// Time of the wizard's last signal.
     pub signalled_at: Option<SessionTime>,
-    /// The wizard saw what assistants would say, beside what was sent.
+    /// Whether the wizard saw the comparison with the assistants.
     pub unblinded: bool,
-    /// Why the trial was aborted, if it was.
+    /// Reason for aborting the trial, if it was aborted.
     pub aborted: Option<String>,
-    /// Why the trial is to be left out of the analysis, if it is.
+    /// Reason for excluding the trial from the analysis, if it is excluded.
     pub excluded: Option<String>,
     pub gaze: GazeStatus,
-    /// What is known of the eye tracker.
+    /// State of the eye tracker.
     pub tracker: TrackerStatus,
-    /// The check of the calibration that goes on, or waits for the wizard's verdict.
+    /// Running gaze accuracy check, or one that waits for the wizard's decision.
     pub calibration: Option<RunningGazeCheck>,
-    /// The check that was accepted last.
+    /// Last accepted gaze accuracy check.
     pub calibrated: Option<AcceptedGazeCheck>,
-    /// What happened, without the gaze: the timeline of the console.
+    /// All entries of the timeline (events without gaze samples).
     pub timeline: Vec<TimelineEntry>,
-    /// Where it is in its plan, if it belongs to one.
+    /// Progress within the recording's phases, if it belongs to a plan.
     pub protocol: Option<Protocol>,
 }
 
@@ -77,7 +77,7 @@ pub struct Session {
 pub struct Served {
     pub time: SessionTime,
     pub dish: DishId,
-    /// Presses of both agents in the trial when it was served, its own included.
+    /// Number of presses of both agents in the trial, including the serving press.
     pub presses: u32,
 }
 
@@ -93,7 +93,7 @@ pub struct ShownSignal {
 }
 
 impl Session {
-    /// The locations that changed last at this time.
+    /// Locations whose last change was at this time.
     pub fn changed_at(&self, time: SessionTime) -> impl Iterator<Item = LocationId> + '_ {
         let times = self.changed_at[..self.kitchen.locations.len()].iter().enumerate();
         times.filter(move |(_, at)| **at == time).map(|(index, _)| LocationId(index as u8))
@@ -144,7 +144,7 @@ impl Session {
         }
     }
 
-    /// How long ago `at` is in the trial's time at `now`: pauses do not count, and after the end it stands still.
+    /// Time from `at` to `now` on the trial's clock, without pauses and without the time after the trial's end.
     pub fn age(&self, at: SessionTime, now: SessionTime) -> SessionTime {
         let end = match self.phase {
             Phase::Ready | Phase::Running => now,
@@ -154,20 +154,20 @@ impl Session {
         paused.fold(end - at, |age, pause| age - pause)
     }
 
-    /// The location that the gaze is on, by a sample that came at `now`.
+    /// The location at which the participant looks, by the latest sample before `now`.
     pub fn looked_at(&self, now: SessionTime) -> Option<LocationId> {
         let places = self.kitchen.locations.len();
         let at = self.gaze.looked_at[..places].iter().position(|at| *at == Some(now));
         at.map(|index| LocationId(index as u8))
     }
 
-    /// Gaze samples a second at `now`; nothing if none came for a second.
+    /// Sampling rate of the gaze in Hz; `None` if no sample came for a second.
     pub fn gaze_hz(&self, now: SessionTime) -> Option<f64> {
         let arrived = self.gaze.arrived.filter(|&arrived| now.secs_since(arrived) <= SILENT_S);
         arrived.map(|_| self.gaze.rate_hz)
     }
 
-    /// The seed of estimates and advice, which no two trials share.
+    /// Seed of estimates and recommendations, unique to the trial.
     pub fn seed(&self) -> u64 {
         of_trial(self.spec.seed, self.trial)
     }
@@ -177,12 +177,12 @@ impl Session {
         self.presses.iter().sum()
     }
 
-    /// Whether presses count now.
+    /// Whether the trial is running.
     pub fn is_running(&self) -> bool {
         self.phase == Phase::Running
     }
 
-    /// Writes an entry of the timeline.
+    /// Adds an entry to the timeline.
     pub(super) fn note(&mut self, time: SessionTime, what: TimelineEvent) {
         self.timeline.push(TimelineEntry { time, what });
     }

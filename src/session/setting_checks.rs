@@ -1,32 +1,32 @@
-//! A setting that cannot be, and what several settings are checked by.
+//! Errors of invalid settings, and checks that several settings share.
 
-/// A setting that cannot be.
+/// An invalid setting.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("found {found}, wanted {remedy}")]
 pub struct SettingError {
-    /// The setting with the tables around it, from outside; tables in between may be left out: "rerun.address".
+    /// Dotted path of the setting, outermost table first; inner tables may be left out: "rerun.address".
     pub path: String,
-    /// What was found.
+    /// The value found.
     pub found: String,
-    /// What would be right.
+    /// Description of a valid value.
     pub remedy: &'static str,
-    /// Which of the settings of that path it is; 0 is the first.
+    /// Index among several settings with the same path.
     pub nth: usize,
 }
 
 impl SettingError {
-    /// An error about the first setting of that path.
+    /// An error about the first setting with this path.
     pub fn new(path: impl Into<String>, found: String, remedy: &'static str) -> SettingError {
         SettingError { path: path.into(), found, remedy, nth: 0 }
     }
 
-    /// The setting without the tables around it.
+    /// Name of the setting without its tables.
     pub fn key(&self) -> &str {
         self.path.rsplit('.').next().unwrap_or(&self.path)
     }
 }
 
-/// Whether a text is short and simple enough to name a participant, a plan, an item: in folders, keys and tables.
+/// Whether a text is a valid code: 1 to 32 ASCII letters, digits, `-` and `_`, safe in folder names, keys and tables.
 pub fn is_code(text: &str) -> bool {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     !text.is_empty() && text.len() <= 32 && text.chars().all(is_plain)

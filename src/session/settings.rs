@@ -1,4 +1,4 @@
-//! What a session file asks for.
+//! The settings of a session file.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +22,7 @@ use crate::wizard::settings::{WizardKind, WizardSpec};
 pub struct SessionSpec {
     /// The layout file, relative to the session file.
     pub layout: String,
-    /// Everything random in the session follows from it.
+    /// Seed of all random streams of the session.
     #[serde(default = "default_seed")]
     pub seed: u64,
     #[serde(default)]
@@ -33,7 +33,7 @@ pub struct SessionSpec {
     pub tracker: TrackerSpec,
     #[serde(default)]
     pub robot: RobotSpec,
-    /// Who the wizard is: a person, or a script.
+    /// The wizard: a person, or a script.
     #[serde(default, skip_serializing_if = "WizardSpec::is_default")]
     pub wizard: WizardSpec,
     #[serde(default)]
@@ -46,16 +46,16 @@ pub struct SessionSpec {
     pub display: DisplaySpec,
     #[serde(default)]
     pub rerun: RerunSpec,
-    /// The file with the parameters of the human model, relative to the session file; none: those in [`Self::human`].
+    /// Path of a file with the parameters of the human model, relative to the session file; `None` for those in [`Self::human`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub human_model: Option<String>,
-    /// The parameters of the human model; in a recording those that were in force.
+    /// Parameters of the human model; in a recording, the parameters in use.
     #[serde(default)]
     pub human: HumanModel,
-    /// A study of many participants, with several trials each.
+    /// Study plan with several participants and trials.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plan: Option<PlanSpec>,
-    /// The place of a recording in its plan: written by the program, and in no session file.
+    /// Position of a recording in its plan; written by the program, not allowed in session files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub step: Option<StepSpec>,
 }
@@ -64,14 +64,14 @@ fn default_seed() -> u64 {
     1
 }
 
-/// No trial is longer, in seconds.
+/// Longest trial, in seconds.
 const MAX_TRIAL_S: f64 = 86_400.0;
 
 impl SessionSpec {
-    /// Checks what the types do not: ranges, the participant's code, and settings that exclude each other.
+    /// Checks ranges, the participant's code, and settings that exclude each other.
     ///
     /// # Errors
-    /// The first setting that cannot be.
+    /// The first invalid setting.
     pub fn check(&self) -> Result<(), SettingError> {
         let above_0 = |table: &str, key: &str, value: f64| match value.is_finite() && value > 0.0 {
             true => Ok(()),
@@ -139,7 +139,7 @@ impl SessionSpec {
 }
 
 impl SessionSpec {
-    /// Whether the assistant is asked: where it acts, and as a shadow beside whoever does.
+    /// Whether the assistant computes recommendations: in the assistant condition, and with `shadow = "on"`.
     pub fn asks_assistant(&self) -> bool {
         self.trial.condition == Condition::Assistant || self.assistant.shadow == Shadow::On
     }
@@ -149,7 +149,7 @@ impl SessionSpec {
         self.trial.condition == Condition::Wizard && self.wizard.kind == WizardKind::Scripted
     }
 
-    /// Who sends signals where no person is at the console: a wizard only if it is scripted.
+    /// The condition without a person at the console: the wizard condition needs a scripted wizard, else it is unassisted.
     pub fn unattended(&self, condition: Condition) -> Condition {
         match condition {
             Condition::Wizard if self.wizard.kind == WizardKind::Person => Condition::None,
@@ -158,15 +158,15 @@ impl SessionSpec {
     }
 }
 
-/// When a trial ends, and who sends signals in it.
+/// Condition and length of a trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TrialSpec {
     pub condition: Condition,
-    /// Presses of both agents; the default is the mean of the paper.
+    /// Largest number of presses of both agents; the default is the paper's mean.
     pub presses: u32,
     pub seconds: f64,
-    /// It ends when so many orders are served, too.
+    /// Number of served orders that also ends the trial, if set.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub orders: Option<u32>,
 }
@@ -181,11 +181,11 @@ impl Default for TrialSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SignalSpec {
-    /// How long a signal is shown, in seconds.
+    /// Duration of a signal on the display, in seconds.
     pub shown_s: f64,
     /// Whether the human's own hand may be highlighted.
     pub own_hand: bool,
-    /// From one signal of the wizard to the next there are at least so many seconds.
+    /// Least time between two signals of the wizard, in seconds.
     pub cool_down_s: f64,
 }
 

@@ -1,18 +1,18 @@
-//! What a session file asks of Rerun: the stream in which a session can be looked at.
+//! Settings of the Rerun stream in a session file.
 
 use serde::{Deserialize, Serialize};
 
 use super::setting_checks::SettingError;
 
-/// Whether a live session is streamed, and where viewers connect.
+/// Settings of the Rerun stream.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RerunSpec {
-    /// Viewers can connect while the session runs.
+    /// Whether viewers can connect while the session runs.
     pub live: bool,
-    /// The stream is written beside the log, as `recording.rrd`.
+    /// Whether the stream is written to `recording.rrd` beside the log.
     pub record: bool,
-    /// The address at which viewers connect; where its port is taken, one of the next is used.
+    /// Address at which viewers connect; if its port is taken, one of the next ports is used.
     pub address: String,
 }
 
@@ -23,7 +23,7 @@ impl Default for RerunSpec {
 }
 
 impl RerunSpec {
-    /// Whether anything is to be streamed.
+    /// Whether there is a stream at all.
     pub fn is_on(&self) -> bool {
         self.live || self.record
     }

@@ -1,4 +1,4 @@
-//! What the timeline of a session holds.
+//! Entries of a session's timeline.
 
 use super::event::SignalEnd;
 use super::phase::Phase;
@@ -14,7 +14,7 @@ pub struct TimelineEntry {
     pub what: TimelineEvent,
 }
 
-/// What an entry of the timeline is about.
+/// Content of a timeline entry.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TimelineEvent {
     Press {
@@ -35,7 +35,7 @@ pub enum TimelineEvent {
     },
     Marker(String),
     RobotStopped,
-    /// It stopped by itself; with the force that it felt, in newtons, or the joint at fault.
+    /// The arm stopped by itself, with the contact force in newtons or the number of the faulty joint.
     ArmStopped {
         mode: SafetyMode,
         force_n: Option<f64>,
@@ -55,6 +55,6 @@ pub enum TimelineEvent {
     Trial(Phase),
     Excluded(String),
     Included,
-    /// The terminal has the keyboard, or not.
+    /// The terminal gained or lost keyboard focus.
     Focus(bool),
 }

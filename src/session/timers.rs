@@ -1,11 +1,11 @@
-//! What is pending in a running session, by time.
+//! The queue of pending timers of a running session.
 
 use std::collections::BTreeSet;
 
 use super::apply::Timer;
 use crate::base::time::SessionTime;
 
-/// Timers in the order in which they are due; those due at the same time in the order in which they were set.
+/// Timers in the order in which they are due; ties in the order in which they were set.
 #[derive(Clone, Debug, Default)]
 pub struct TimerQueue {
     pending: BTreeSet<(SessionTime, u64, Timer)>,
@@ -18,7 +18,7 @@ impl TimerQueue {
         self.set_so_far += 1;
     }
 
-    /// Forgets every timer of this kind.
+    /// Removes all timers of this kind.
     pub fn cancel(&mut self, timer: Timer) {
         self.pending.retain(|(_, _, pending)| *pending != timer);
     }
@@ -27,18 +27,18 @@ impl TimerQueue {
         self.pending.clear();
     }
 
-    /// Everything that is pending comes later by so much.
+    /// Postpones all timers by a duration.
     pub fn postpone(&mut self, by: SessionTime) {
         let pending = std::mem::take(&mut self.pending);
         self.pending = pending.into_iter().map(|(time, serial, timer)| (time + by, serial, timer)).collect();
     }
 
-    /// When the first timer is due.
+    /// Time of the next timer.
     pub fn next_due(&self) -> Option<SessionTime> {
         self.pending.first().map(|(time, _, _)| *time)
     }
 
-    /// Takes the first timer out.
+    /// Removes and returns the next timer.
     pub fn take_first(&mut self) -> Option<Timer> {
         self.pending.pop_first().map(|(_, _, timer)| timer)
     }

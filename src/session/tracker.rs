@@ -1,5 +1,4 @@
-//! The eye tracker: its settings, and what it tells beside its samples: whether it is there, whether it sees the display,
-//! what of its stream could not be recorded, and the fixations and blinks that it found.
+//! The eye tracker: its settings, its connection, detection of the display, dropped input, fixations and blinks.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,21 +12,21 @@ use crate::gaze::surface::SurfaceMap;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TrackerSpec {
-    /// Where Pupil Capture runs, and the port of its Pupil Remote.
+    /// Address of Pupil Capture, and port of its Pupil Remote.
     pub address: String,
     pub port: u16,
-    /// The name of the surface that Capture defines by the tags on the wall display.
+    /// Name of the surface that Pupil Capture defines by the tags on the wall display.
     pub surface: String,
-    /// Where the corners of that surface are on the display, in fractions: top left, top right, bottom right, bottom left.
-    /// Without them it is the one that Capture makes by itself, the hull of the black corners of the tags.
+    /// Corners of that surface in fractions of the display: top left, top right, bottom right, bottom left. By default the surface
+    /// that Capture creates by itself, the hull of the tags' black squares.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corners: Option<[[f64; 2]; 4]>,
-    /// Whether Capture records along with every trial.
+    /// Whether Pupil Capture records every trial.
     pub record: bool,
-    /// The file that gaze is replayed from, relative to the session file.
+    /// Path of the file from which gaze is replayed, relative to the session file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-    /// From the participant's eyes to the wall display, in metres.
+    /// Distance from the participant's eyes to the wall display, in metres.
     pub distance_m: f64,
 }
 
@@ -73,21 +72,21 @@ impl TrackerSpec {
     }
 }
 
-/// Something about the tracker. All of it comes from outside.
+/// An event of the eye tracker. All of these come from outside.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum TrackerEvent {
-    /// Its program answers; `device` is what it calls itself.
+    /// The tracker's program responds; `device` is its name.
     Connected { device: String },
-    /// Its program does not answer any more; it is tried again for ever.
+    /// The tracker's program no longer responds; the connection is retried without limit.
     Lost { reason: String },
-    /// It sees the display by its tags.
+    /// The tracker detects the display by its tags.
     DisplayFound,
-    /// It does not, and so knows no gaze on it.
+    /// The tracker does not detect the display, so there is no gaze on it.
     DisplayLost,
-    /// What came and could not be recorded, since the session began; at most once a second.
+    /// Counts of input that could not be recorded since the session began; at most once per second.
     Dropped(DropCounts),
-    /// A fixation that is over, as the tracker finds them; its place in fractions of the display, if it was there.
+    /// A finished fixation, as detected by the tracker; its position in fractions of the display.
     Fixation {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         at: Option<[f64; 2]>,
@@ -95,17 +94,17 @@ pub enum TrackerEvent {
         dispersion_deg: f64,
         confidence: f64,
         device_ns: u64,
-        /// When it began.
+        /// Session time of its beginning.
         began_ns: SessionTime,
     },
-    /// Lids closed (onset) or opened (offset), as the tracker finds them.
+    /// Onset or offset of a blink, as detected by the tracker.
     Blink { closed: bool, confidence: f64, device_ns: u64, taken_ns: SessionTime },
 }
 
-/// Whether the tracker's program is there.
+/// State of the connection to the tracker's program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum TrackerConnection {
-    /// Nothing was heard of it.
+    /// No message received yet.
     #[default]
     Unknown,
     Connected {
@@ -117,13 +116,13 @@ pub enum TrackerConnection {
     },
 }
 
-/// What is known of the tracker.
+/// State of the eye tracker in a session.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrackerStatus {
     pub link: TrackerConnection,
-    /// Whether it sees the display; nothing: it has not said.
+    /// Whether it detects the display; `None` if it has not reported that.
     pub sees_display: Option<bool>,
-    /// How often it was lost.
+    /// Number of connection losses.
     pub losses: u64,
     pub dropped: DropCounts,
     pub fixations: u64,
@@ -131,7 +130,7 @@ pub struct TrackerStatus {
 }
 
 impl TrackerStatus {
-    /// Moves on by an event that was admitted.
+    /// Applies an admitted event.
     pub(super) fn apply(&mut self, now: SessionTime, event: &TrackerEvent) {
         match event {
             TrackerEvent::Connected { device } => self.link = TrackerConnection::Connected { device: device.clone() },
@@ -149,10 +148,10 @@ impl TrackerStatus {
     }
 }
 
-/// Whether the session takes the event.
+/// Whether the session accepts the event.
 ///
 /// # Errors
-/// The reason why it does not.
+/// The reason for the refusal.
 pub(super) fn admit(event: &TrackerEvent) -> Result<(), &'static str> {
     let numbers = match event {
         TrackerEvent::Fixation { at, duration_ms, dispersion_deg, confidence, .. } => {

@@ -1,5 +1,5 @@
-//! Who starts with which condition: permuted blocks (Pocock 1983, Clinical Trials, ch. 5), so that the groups are equal
-//! after every block, and nobody can foresee the next one.
+//! Assignment of participants to starting groups by permuted blocks (Pocock 1983, Clinical Trials, ch. 5): groups are equal
+//! after every block, and the next assignment is unpredictable.
 
 use rand::RngExt;
 
@@ -14,7 +14,7 @@ impl PlanSpec {
         let block = self.block.map_or(2 * orders.len(), |block| block as usize);
         let mut places: Vec<usize> = (0..block).map(|place| place % orders.len()).collect();
         let mut random = stream(seed, "groups", (participant / block) as u64);
-        // Fisher and Yates: every order of the block is as likely.
+        // Fisher-Yates shuffle: all orders of the block are equally likely.
         for last in (1..block).rev() {
             places.swap(last, random.random_range(0..=last));
         }

@@ -1,4 +1,4 @@
-//! The starting groups: the orders that the conditions can have.
+//! Starting groups: the possible orders of the conditions.
 
 use serde::Serialize;
 

@@ -1,5 +1,5 @@
-//! Trial plans: what the participants of a study go through, in which order, and with which orders of dishes. Everything
-//! here is a function of the plan and its seed; who comes first changes nothing.
+//! Study plans: the series of recordings of each participant, with conditions and dish orders. Everything here is a function of
+//! the plan and its seed, independent of the order in which participants come.
 //!
 //! The files from the ground up: `groups`, `plan_spec` (the `[plan]` of a session file), `assign` (who is in which group),
 //! `questionnaire`, `step` (one recording), `planned_study` (all of them), `progress` (how far it is).

@@ -6,34 +6,34 @@ use super::groups::groups;
 use crate::session::condition::Condition;
 use crate::session::setting_checks::{SettingError, is_code};
 
-/// More conditions give more orders than a study has participants.
+/// Largest number of conditions: more would have more orders than a study has participants.
 const MAX_CONDITIONS: usize = 4;
-/// No plan has more participants.
+/// Largest number of participants.
 const MAX_PARTICIPANTS: u32 = 9999;
 
-/// The `[plan]` of a session file: participants, conditions, and what is around the trials.
+/// The `[plan]` of a session file: participants, conditions, and the phases around the trials.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlanSpec {
-    /// Tells recordings of different plans apart.
+    /// Name of the plan, which identifies its recordings.
     pub name: String,
     pub participants: Participants,
-    /// Each participant has one trial in each; the order is counterbalanced.
+    /// Conditions; each participant has one trial in each, in counterbalanced order.
     pub conditions: Vec<Condition>,
-    /// Among so many participants in a row every order of the conditions comes equally often; by default twice.
+    /// Size of a permuted block, in participants; by default each order of the conditions occurs twice in a block.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub block: Option<u32>,
-    /// What a participant is asked to agree to, before anything is recorded.
+    /// Consent text, shown before anything is recorded.
     #[serde(default = "default_consent")]
     pub consent: String,
-    /// What the participant is told first, step by step.
+    /// Steps of the instruction.
     #[serde(default)]
     pub instruction: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub familiarisation: Option<FamiliarisationSpec>,
     #[serde(default)]
     pub questionnaire: Vec<QuestionnaireSpec>,
-    /// What the wizard goes through after the last trial.
+    /// Steps of the wizard's debriefing after the last trial.
     #[serde(default)]
     pub debriefing: Vec<String>,
 }
@@ -42,7 +42,7 @@ fn default_consent() -> String {
     "The participant was told what is recorded and for what it is used, and agrees to it.".to_string()
 }
 
-/// The participants of a plan: how many (P01, P02, …), or their codes.
+/// The participants of a plan: their number (P01, P02, …), or their codes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "a number of participants, or a list of their codes")]
 pub enum Participants {
@@ -56,12 +56,12 @@ pub enum Participants {
 pub struct FamiliarisationSpec {
     #[serde(default = "unassisted")]
     pub condition: Condition,
-    /// It ends after so many presses of both agents, or after so many seconds, or when the orders are served.
+    /// End of the practice: presses of both agents, unless time or orders end it earlier.
     pub presses: u32,
     pub seconds: f64,
-    /// The criterion: so many orders served,
+    /// Criterion: least number of served orders.
     pub orders: u32,
-    /// and at most this share of the human's presses errors.
+    /// Criterion: largest share of errors among the human's presses.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_rate: Option<f64>,
 }
@@ -70,19 +70,19 @@ fn unassisted() -> Condition {
     Condition::None
 }
 
-/// A questionnaire and when it is asked.
+/// A questionnaire with the trials after which it is asked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct QuestionnaireSpec {
     /// The file, relative to the session file.
     pub file: String,
-    /// After which trials, 1 the first; by default after each.
+    /// Numbers of the trials after which it is asked, from 1; by default after each.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<Vec<u32>>,
 }
 
 impl PlanSpec {
-    /// The codes of the participants, in the order of the plan.
+    /// Participant codes in the order of the plan.
     pub fn codes(&self) -> Vec<String> {
         match &self.participants {
             Participants::Count(count) => (1..=*count).map(|number| numbered(number, *count)).collect(),
@@ -90,7 +90,7 @@ impl PlanSpec {
         }
     }
 
-    /// The code of the participant at this place, from 0; empty beyond the last.
+    /// Code of the participant with this index; empty beyond the last.
     pub fn code(&self, participant: usize) -> String {
         match &self.participants {
             Participants::Count(count) if participant < *count as usize => numbered(participant as u32 + 1, *count),
@@ -99,10 +99,10 @@ impl PlanSpec {
         }
     }
 
-    /// Checks what the types do not.
+    /// Checks ranges and consistency.
     ///
     /// # Errors
-    /// The first setting that cannot be.
+    /// The first invalid setting.
     pub fn check(&self) -> Result<(), SettingError> {
         let wrong = |key: &'static str, found: String, remedy: &'static str| Err(SettingError::new(key, found, remedy));
         if !is_code(&self.name) {

@@ -1,4 +1,4 @@
-//! A plan with everything that is needed to run it, and the settings of each of its recordings.
+//! A study plan with its session settings and questionnaires, and the settings of each recording.
 
 use serde::Serialize;
 
@@ -10,44 +10,44 @@ use crate::base::rng::mix;
 use crate::session::condition::Condition;
 use crate::session::settings::SessionSpec;
 
-/// A place in a participant's series, to be filled by one recording that is complete.
+/// A slot in a participant's series: it needs one complete recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Slot {
-    /// The number of the trial; none: the familiarisation.
+    /// Number of the trial, from 1; `None` for the familiarisation.
     pub period: Option<u32>,
     pub condition: Condition,
 }
 
-/// A plan with everything that is needed to run it.
+/// A study plan with its session settings and questionnaires.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
     pub plan: PlanSpec,
-    /// In the order of the plan.
+    /// Questionnaires in the order of the plan.
     pub questionnaires: Vec<Questionnaire>,
-    /// The settings of every trial.
+    /// Session settings that all trials share.
     pub session: SessionSpec,
     pub digest: String,
 }
 
-/// Which recording of a study is wanted.
+/// Identifies one recording of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WantedRecording {
-    /// The participant's place in the plan, from 0.
+    /// Index of the participant in the plan.
     pub participant: usize,
-    /// The place in its series, from 0.
+    /// Index of the slot in its series.
     pub slot: usize,
-    /// 1 the first.
+    /// Number of the attempt, from 1.
     pub attempt: u32,
-    /// The participant was instructed already.
+    /// Whether the participant has completed the instruction.
     pub instructed: bool,
 }
 
 impl Study {
-    /// The study of a session file; `questionnaires` are the files that its plan names, in order. None without a plan.
+    /// The study of a session file, with the questionnaires of its plan in order; `None` without a plan.
     pub fn new(session: &SessionSpec, questionnaires: Vec<Questionnaire>) -> Option<Study> {
         let plan = session.plan.clone()?;
         let session = SessionSpec { plan: None, ..session.clone() };
-        // What is serialised has no maps with other keys than strings.
+        // All serialised maps have string keys.
         let text = serde_json::to_string(&(&plan, &questionnaires, &session.trial, session.seed)).unwrap_or_default();
         let digest = digest(&text);
         Some(Study { plan, questionnaires, session, digest })
@@ -92,8 +92,8 @@ impl Study {
         (spec, trial_number(wanted))
     }
 
-    /// The settings of a simulated trial, and its number. Nothing is explained, and nothing asked; and where the wizard is
-    /// a person, nobody is there to signal: it is an unassisted one.
+    /// The settings of a simulated trial, and its number. There is no instruction and no questionnaire; without a scripted wizard,
+    /// the wizard condition is unassisted.
     pub fn simulated(&self, participant: usize, period: u32) -> (SessionSpec, u64) {
         let slots = self.slots(participant);
         let slot = slots.iter().position(|slot| slot.period == Some(period)).unwrap_or(0);
@@ -128,12 +128,12 @@ impl Study {
     }
 }
 
-/// A number of its own for every recording of a plan, which says in decimals which one it is: participant, slot, attempt.
+/// A unique trial number for every recording of a plan; its decimal digits encode participant, slot and attempt.
 fn trial_number(wanted: WantedRecording) -> u64 {
     (wanted.participant as u64 + 1) * 1_000_000 + wanted.slot as u64 * 10_000 + u64::from(wanted.attempt)
 }
 
-/// A fingerprint of a text: sixteen hexadecimal digits.
+/// A digest of a text, as sixteen hexadecimal digits.
 fn digest(text: &str) -> String {
     let sum = text.bytes().fold(text.len() as u64, |sum, byte| mix(sum ^ u64::from(byte)));
     format!("{sum:016x}")

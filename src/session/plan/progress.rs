@@ -1,26 +1,25 @@
-//! How far a plan is, from what the recordings say of themselves, and from nothing else: whatever was killed when, the
-//! next step follows from what is there.
+//! Progress of a study plan, computed from the recordings alone, so that the next step is correct after a crash at any time.
 
 use serde::Serialize;
 
 use super::planned_study::{Slot, Study, WantedRecording};
 use super::step::StepSpec;
 
-/// How a recording ended.
+/// Outcome of a recording of a plan.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "is", rename_all = "snake_case")]
 pub enum RecordingOutcome {
-    /// Everything was done that it is for.
+    /// Complete: all its phases are done.
     Complete,
-    /// It was cut, or left before everything was done: it can be continued.
+    /// Unfinished: cut off or left early; it can be continued.
     Open,
-    /// It is over, is left out of the analysis, and is not done again: its place in the series was had.
+    /// Finished and excluded from the analysis, but not repeated.
     Excluded { reason: String },
-    /// It is over and does not count: it has to be done again.
+    /// Finished and invalid: it must be repeated.
     Void { reason: String },
 }
 
-/// What a recording of a plan says of itself, all its parts together.
+/// Facts about a recording of a plan, all its parts together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanRecording {
     /// The name of its last folder.
@@ -28,16 +27,16 @@ pub struct PlanRecording {
     /// The participant's code.
     pub code: String,
     pub step: StepSpec,
-    /// The participant agreed to be recorded.
+    /// Whether the participant consented.
     pub consent: bool,
-    /// The participant went through the instruction, if there is one.
+    /// Whether the participant completed the instruction, if there is one.
     pub instructed: bool,
     /// The presses of both agents in its trial.
     pub presses: u32,
     pub outcome: RecordingOutcome,
 }
 
-/// What comes next for a participant.
+/// The next recording of a participant.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "is", rename_all = "snake_case")]
 pub enum NextRecording {
@@ -46,7 +45,7 @@ pub enum NextRecording {
         slot: usize,
         attempt: u32,
     },
-    /// This recording is open: it is continued, or done again as this attempt.
+    /// An unfinished recording, which is continued or repeated as this attempt.
     Choose {
         recording: String,
         slot: usize,
@@ -56,7 +55,7 @@ pub enum NextRecording {
 }
 
 impl NextRecording {
-    /// The place in the series, from 0; after it, when everything is done.
+    /// Index of the slot; `None` when all slots are done.
     pub fn slot(&self) -> Option<usize> {
         match self {
             NextRecording::Begin { slot, .. } | NextRecording::Choose { slot, .. } => Some(*slot),
@@ -65,33 +64,33 @@ impl NextRecording {
     }
 }
 
-/// A place of the series with what was made for it.
+/// A slot of the series with its attempts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SlotProgress {
     #[serde(flatten)]
     pub slot: Slot,
     pub is_done: bool,
-    /// The attempts in turn: recording, and how it ended.
+    /// Attempts in order.
     pub recordings: Vec<Attempt>,
 }
 
-/// One attempt at a place of the series.
+/// One attempt at a slot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Attempt {
     pub recording: String,
-    /// 1 the first.
+    /// Number of the attempt, from 1.
     pub attempt: u32,
     pub presses: u32,
     pub outcome: RecordingOutcome,
-    /// It was recorded under another version of the plan.
+    /// Whether it was recorded under another version of the plan.
     pub other_version: bool,
 }
 
-/// How far a participant is.
+/// Progress of one participant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Progress {
     pub code: String,
-    /// The place in the plan, from 0.
+    /// Index of the participant in the plan.
     #[serde(skip)]
     pub participant: usize,
     pub group: String,
@@ -103,10 +102,10 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// The progress of a participant; `made` holds the recordings of the plan, in any order.
+    /// Progress of a participant; `made` holds all recordings of the plan in any order.
     ///
     /// # Errors
-    /// In words: a recording that this plan would not have asked for.
+    /// A recording that does not belong to this plan, in words.
     pub fn from_recordings(study: &Study, participant: usize, made: &[PlanRecording]) -> Result<Progress, String> {
         let code = study.plan.code(participant);
         let group = study.group(participant).name;
@@ -125,19 +124,19 @@ impl Progress {
         Ok(Progress { code, participant, group, consent, instructed, steps, next })
     }
 
-    /// The recording that is to be made anew at a place.
+    /// The recording that a new attempt at a slot needs.
     pub fn wanted(&self, slot: usize, attempt: u32) -> WantedRecording {
         WantedRecording { participant: self.participant, slot, attempt, instructed: self.instructed }
     }
 
-    /// What comes next is this place again, whatever was made for it.
+    /// Makes a slot the next one, even if it is done.
     pub fn redo(&mut self, slot: Option<usize>) {
         if let Some((slot, stand)) = slot.and_then(|slot| Some((slot, self.steps.get(slot)?))) {
             self.next = NextRecording::Begin { slot, attempt: stand.attempts() + 1 };
         }
     }
 
-    /// How many places of the series are filled.
+    /// Number of completed slots.
     pub fn done(&self) -> usize {
         self.steps.iter().filter(|stand| stand.is_done).count()
     }
@@ -155,7 +154,7 @@ impl SlotProgress {
             outcome: made.outcome.clone(),
             other_version: made.step.digest != study.digest,
         };
-        // A later attempt was asked for by somebody who knew the earlier ones.
+        // A later attempt replaces earlier ones, since the experimenter asked for it.
         let is_done = here
             .last()
             .is_some_and(|made| matches!(made.outcome, RecordingOutcome::Complete | RecordingOutcome::Excluded { .. }));
@@ -167,7 +166,7 @@ impl SlotProgress {
         self.recordings.last().map_or(0, |last| last.attempt)
     }
 
-    /// What has to be done here; nothing if it is done.
+    /// The recording that this slot still needs; `None` if it is done.
     fn next(&self, slot: usize) -> Option<NextRecording> {
         let attempt = self.attempts() + 1;
         match self.recordings.last() {

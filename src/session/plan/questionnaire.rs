@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 use crate::session::condition::Condition;
 use crate::session::setting_checks::{SettingError, is_code};
 
-/// A questionnaire, as its file says.
+/// A questionnaire file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Questionnaire {
     pub name: String,
-    /// What stands above the items.
+    /// Heading above the items.
     pub title: String,
     /// The language of the items, as in "en".
     pub language: String,
@@ -24,7 +24,7 @@ pub struct Questionnaire {
 #[serde(deny_unknown_fields)]
 pub struct Scale {
     pub points: u8,
-    /// What 1 means, and what `points` means.
+    /// Labels of the lowest and the highest point.
     pub low: String,
     pub high: String,
 }
@@ -33,37 +33,37 @@ pub struct Scale {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Item {
-    /// Stands for the item in the log and in tables.
+    /// Identifier of the item in logs and tables.
     pub id: String,
     pub text: String,
-    /// What it is about: items about the same are read together.
+    /// Construct that the item measures; items with the same construct form a scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub about: Option<String>,
-    /// Agreement speaks against what it is about.
+    /// Whether the item is reverse coded.
     #[serde(default)]
     pub reversed: bool,
-    /// Asked only after trials in these conditions; by default after all.
+    /// Conditions after which the item is asked; all by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub conditions: Option<Vec<Condition>>,
 }
 
 impl Questionnaire {
-    /// What is asked after a trial in this condition; nothing if no item is.
+    /// The questionnaire after a trial in this condition; `None` if it has no items.
     pub fn after(&self, condition: Condition) -> Option<Questionnaire> {
         let is_asked = |item: &&Item| item.conditions.as_ref().is_none_or(|only| only.contains(&condition));
         let items: Vec<Item> = self.items.iter().filter(is_asked).cloned().collect();
         (!items.is_empty()).then(|| Questionnaire { items, ..self.clone() })
     }
 
-    /// The place of an item.
+    /// Index of an item.
     pub fn position(&self, id: &str) -> Option<usize> {
         self.items.iter().position(|item| item.id == id)
     }
 
-    /// Checks what the types do not.
+    /// Checks ranges and consistency.
     ///
     /// # Errors
-    /// The first setting that cannot be.
+    /// The first invalid setting.
     pub fn check(&self) -> Result<(), SettingError> {
         let wrong = |key: &str, found, remedy| Err(SettingError::new(key, found, remedy));
         if !is_code(&self.name) {

@@ -1,38 +1,38 @@
-//! A step of a plan: one recording, with at most one trial and what is around it.
+//! A step of a plan: one recording with at most one trial and the phases around it.
 
 use serde::{Deserialize, Serialize};
 
 use super::questionnaire::Questionnaire;
 use crate::session::protocol_event::StudyPhase;
 
-/// Where a recording belongs in its plan, and what happens in it; part of the settings of every recording of a plan.
+/// Position of a recording in its plan, and its phases; part of the settings of every recording of a plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StepSpec {
     /// The name of the plan.
     pub plan: String,
-    /// Changes whenever something in plan, settings or questionnaires does.
+    /// Digest of plan, settings and questionnaires.
     pub digest: String,
     /// The participant's place in the plan, from 0.
     pub participant: u32,
     /// The starting group, as in "AB".
     pub group: String,
-    /// The number of the trial, 1 the first; none of the familiarisation.
+    /// Number of the trial, from 1; `None` for the familiarisation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<u32>,
-    /// How many trials there are.
+    /// Number of trials per participant.
     pub periods: u32,
-    /// 1, or more where it had to be done again.
+    /// Number of the attempt, from 1.
     pub attempt: u32,
-    /// Of the familiarisation.
+    /// Criterion of the familiarisation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub criterion: Option<Criterion>,
-    /// What happens, in this order.
+    /// Phases in order.
     #[serde(rename = "phase")]
     pub phases: Vec<PhaseSpec>,
 }
 
-/// When the familiarisation is over: so many orders served, at most this share of the human's presses errors.
+/// Criterion of the familiarisation: least number of served orders, largest share of errors among the human's presses.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Criterion {
@@ -42,14 +42,14 @@ pub struct Criterion {
 }
 
 impl Criterion {
-    /// Whether it is met by so many served orders and errors among so many presses of the human.
+    /// Whether these numbers of served orders, human presses and errors meet the criterion.
     pub fn is_met(&self, orders: u32, presses: u32, errors: u32) -> bool {
         let share = f64::from(errors) / f64::from(presses.max(1));
         orders >= self.orders && self.error_rate.is_none_or(|most| share <= most)
     }
 }
 
-/// A phase with what is shown in it.
+/// A phase with its content.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case", deny_unknown_fields)]
 pub enum PhaseSpec {
@@ -71,7 +71,7 @@ impl PhaseSpec {
         }
     }
 
-    /// The steps that are ticked in it.
+    /// The steps to be ticked in it.
     pub fn steps(&self) -> &[String] {
         match self {
             PhaseSpec::Instruction { steps } | PhaseSpec::Debriefing { steps } => steps,
@@ -81,7 +81,7 @@ impl PhaseSpec {
 }
 
 impl StepSpec {
-    /// "trial 1/2", "familiarisation": where it is in the participant's series.
+    /// Position in the participant's series: "trial 1/2", "familiarisation".
     pub fn label(&self) -> String {
         let again = if self.attempt > 1 { format!(", attempt {}", self.attempt) } else { String::new() };
         match self.period {

@@ -14,7 +14,7 @@ impl ButtonId {
     }
 }
 
-/// What a press does, if it is available.
+/// Action of a button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ButtonAction {
     /// Take this item from the own storage into the empty hand.
@@ -23,7 +23,7 @@ pub enum ButtonAction {
     Use(LocationId),
     /// Apply the process with this index: to the hand if it has no place, else to what lies there.
     Process(u8),
-    /// Throw away what the own hand holds.
+    /// Throw away the content of the own hand.
     Trash,
     /// Serve this order location from the plate.
     Serve(LocationId),

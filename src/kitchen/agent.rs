@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Who presses.
+/// An agent: human or robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Agent {

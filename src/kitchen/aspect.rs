@@ -1,4 +1,4 @@
-//! State aspects: what the human may be wrong about. One per location (its content), one per dish (its recipe).
+//! State aspects, about which the human can hold false beliefs: one per location (its content), one per dish (its recipe).
 
 use super::dish::DishId;
 use super::location::LocationId;
@@ -19,12 +19,12 @@ impl AspectId {
     }
 }
 
-/// What an aspect is about.
+/// Kind of a state aspect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AspectKind {
-    /// What the location holds; values are the bytes of [`super::State::code`].
+    /// The content of a location; values are the bytes of [`super::State::code`].
     Location(LocationId),
-    /// Which full stack the dish is; values are contents, the true one first.
+    /// The recipe of a dish; values are full stacks, the true one first.
     Recipe(DishId),
 }
 
@@ -36,7 +36,7 @@ pub struct Aspect {
     pub kind: AspectKind,
     /// The possible values, as codes (see [`AspectKind`]).
     pub values: Vec<u8>,
-    /// What a screen writes for each value.
+    /// Label of each value on screens.
     pub labels: Vec<String>,
 }
 

@@ -22,7 +22,7 @@ pub struct Press {
 /// What an applied event did to the kitchen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
-    /// The event does not concern the kitchen.
+    /// The event does not change the kitchen.
     None,
     /// The trial started with an empty kitchen.
     TrialStarted { before: State, after: State },

@@ -1,4 +1,4 @@
-//! The compiled kitchen, and what can be looked up in it.
+//! The compiled kitchen with its look-ups.
 
 use super::action::{Button, ButtonAction, ButtonId};
 use super::agent::Agent;
@@ -16,7 +16,7 @@ use crate::base::rng::mix;
 pub struct Kitchen {
     /// Identifier, from the layout file.
     pub name: String,
-    /// What the screen calls it.
+    /// Title on screens.
     pub title: String,
     /// Size of the wall display in metres, width and height.
     pub display_m: [f64; 2],
@@ -24,19 +24,19 @@ pub struct Kitchen {
     pub table_height_m: f64,
     /// How long an order shows `served`, in seconds.
     pub served_shown_s: f64,
-    /// From serving to the next order, in seconds.
+    /// Time from serving to the next order, in seconds.
     pub new_order_after_s: f64,
     /// Every content; index 0 is "empty", then the ingredient items, then the stacks by size.
     pub contents: Vec<Content>,
-    /// The locations that a person can be wrong about; orders first, in the order of the file.
+    /// The locations, order locations first, in the order of the file.
     pub locations: Vec<Location>,
     /// The buttons of the human and of the robot, indexed by [`Agent::index`] and [`ButtonId`].
     pub buttons: [Vec<Button>; 2],
-    /// Where the endless ingredients stand on the display.
+    /// The storages.
     pub storages: Vec<Storage>,
     /// The menu.
     pub dishes: Vec<Dish>,
-    /// What the human may believe: one aspect per location, one per recipe.
+    /// The state aspects: one per location, one per recipe.
     pub aspects: Vec<Aspect>,
     /// The processing steps: cutting, cooking and their like.
     pub processes: Vec<Process>,
@@ -52,12 +52,12 @@ pub struct Kitchen {
 }
 
 impl Kitchen {
-    /// The state of a kitchen where everything is empty and no order is present.
+    /// The state with empty locations and no orders.
     pub fn empty_state(&self) -> State {
         State::default()
     }
 
-    /// The recipes as they truly are.
+    /// The true recipes.
     pub fn true_recipes(&self) -> Recipes {
         let mut recipes = Recipes::default();
         for (index, dish) in self.dishes.iter().enumerate() {
@@ -71,7 +71,7 @@ impl Kitchen {
         self.aspects.iter().map(|aspect| aspect.values.len() as u128).product()
     }
 
-    /// The locations that hold something else in one state than in the other.
+    /// The locations whose contents differ between two states.
     pub fn changed(&self, before: State, after: State) -> impl Iterator<Item = LocationId> + use<> {
         let locations = (0..self.locations.len()).map(|index| LocationId(index as u8));
         locations.filter(move |&location| before.code(location) != after.code(location))
@@ -125,7 +125,7 @@ impl Kitchen {
         }
     }
 
-    /// A number that tells states apart in logs: equal states have equal marks.
+    /// A fingerprint of a state for logs: equal states have equal marks.
     pub fn state_mark(&self, state: State) -> u64 {
         let bytes = state.bits();
         mix(bytes as u64 ^ mix((bytes >> 64) as u64))
@@ -149,7 +149,7 @@ impl Kitchen {
         buttons.iter().position(|other| is_alike(other.action)).map(|index| ButtonId(index as u8))
     }
 
-    /// The index of the true value of an aspect; a place that shows what it cannot hold counts as its first value.
+    /// Index of the true value of an aspect; 0 if the location holds a content that it cannot hold.
     pub fn true_value(&self, state: State, aspect: AspectId) -> usize {
         let aspect = &self.aspects[aspect.index()];
         match aspect.kind {
@@ -158,7 +158,7 @@ impl Kitchen {
         }
     }
 
-    /// Gives an aspect one of its values, by index, in a state or in recipes.
+    /// Sets an aspect to the value with this index, in a state or in recipes.
     #[inline]
     pub fn set_value(&self, state: &mut State, recipes: &mut Recipes, aspect: AspectId, value: usize) {
         let aspect = &self.aspects[aspect.index()];

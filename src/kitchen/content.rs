@@ -1,4 +1,4 @@
-//! What can lie at a location: nothing, an ingredient item, or a stack of items.
+//! Contents of a location: empty, an ingredient item, or a stack of items.
 
 use super::look::Appearance;
 
@@ -36,7 +36,7 @@ pub struct Content {
 }
 
 impl Content {
-    /// Several items that are carried as one.
+    /// Whether it is a stack: several items that are carried as one.
     pub fn is_stack(&self) -> bool {
         self.items.len() > 1
     }

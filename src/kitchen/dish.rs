@@ -21,14 +21,14 @@ impl DishId {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dish {
     pub name: String,
-    /// What may be taken for its recipe: full stacks, the true one first.
+    /// Variants of its recipe that people may believe in: full stacks, the true one first.
     pub variants: Vec<ContentId>,
     /// How the display draws the final product, if its file says so.
     pub look: Option<Appearance>,
 }
 
 impl Dish {
-    /// The recipe as it truly is.
+    /// The true recipe.
     pub fn stack(&self) -> ContentId {
         self.variants[0]
     }

@@ -1,4 +1,4 @@
-//! The layout file: where things are on the wall display and on the table, what they accept, and which keys they have.
+//! The layout file: positions on the wall display and on the table, accepted contents, and keys.
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -50,7 +50,7 @@ impl LayoutSpec {
     }
 }
 
-/// Whether two characters are on the same key: capitals are on that of their small letters.
+/// Whether two characters are on the same key, ignoring case.
 pub fn is_same_key(a: char, b: char) -> bool {
     a.to_lowercase().eq(b.to_lowercase())
 }
@@ -117,7 +117,7 @@ pub struct PlaceSpec {
     #[serde(default)]
     pub signal: Option<Spanned<char>>,
     pub button: ButtonSpec,
-    /// How the display draws it, a shape and colours.
+    /// Appearance on the display, a shape and colours.
     #[serde(default)]
     pub look: Option<Spanned<String>>,
 }

@@ -1,4 +1,4 @@
-//! Locations and storages: where something can lie, and where it is on the wall display.
+//! Locations and storages, with their areas on the wall display.
 
 use serde::Deserialize;
 
@@ -50,10 +50,10 @@ impl DisplayArea {
     }
 }
 
-/// What kind of place a location is.
+/// Kind of a location.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LocationKind {
-    /// Shows the wanted dish.
+    /// Shows an ordered dish.
     Order,
     /// The hand of an agent.
     Hand(Agent),
@@ -81,7 +81,7 @@ impl Location {
     }
 }
 
-/// An endless array of one ingredient, within reach of one agent.
+/// An endless supply of one ingredient, within reach of one agent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Storage {
     pub agent: Agent,

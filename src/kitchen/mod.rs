@@ -1,4 +1,4 @@
-//! The kitchen: what can be where, which buttons there are, what a press does, and how far it is to the goal.
+//! The kitchen: contents, locations and buttons, the rules of a press, and the cost to go.
 //!
 //! Everything is computed from two files ([`layout::LayoutSpec`] and [`recipe::RecipesSpec`]); nothing here knows sushi.
 //!

@@ -7,10 +7,10 @@ use super::location::LocationId;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Process {
     pub name: String,
-    /// Where it happens; `None`: in the hand of the agent who presses.
+    /// Location of the process; `None` for the hand of the agent who presses.
     pub place: Option<LocationId>,
     /// Which agents can do it, indexed by [`super::Agent::index`].
     pub agents: [bool; 2],
-    /// From which item to which.
+    /// Pairs of input item and output item.
     pub steps: Vec<(ContentId, ContentId)>,
 }

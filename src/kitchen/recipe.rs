@@ -1,5 +1,5 @@
-//! The recipe file: ingredients with states and look-alikes, processing steps, the stacking rule, the menu, and how a
-//! memory of a recipe can deviate.
+//! The recipe file: ingredients with states and look-alikes, processing steps, the stacking rule, the menu, and possible deviations
+//! of a remembered recipe.
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -26,12 +26,12 @@ pub struct RecipesSpec {
 #[serde(deny_unknown_fields)]
 pub struct IngredientSpec {
     pub name: Spanned<String>,
-    /// The first one is what a storage gives; none: the ingredient has only one state.
+    /// States in order; a storage supplies the first. Empty for an ingredient with a single state.
     #[serde(default)]
     pub states: Vec<Spanned<String>>,
     #[serde(default)]
     pub looks_like: Vec<Spanned<String>>,
-    /// How the display draws it, a shape and colours for each state.
+    /// Appearance on the display, a shape and colours for each state.
     #[serde(default)]
     pub look: Vec<Spanned<String>>,
 }
@@ -72,7 +72,7 @@ pub struct GroupSpec {
 pub struct DishSpec {
     pub name: Spanned<String>,
     pub items: Spanned<Vec<Spanned<String>>>,
-    /// How the display draws the final product: it must not tell the recipe.
+    /// Appearance of the final product on the display; it must not reveal the recipe.
     #[serde(default)]
     pub look: Option<Spanned<String>>,
 }
@@ -80,7 +80,7 @@ pub struct DishSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeviationSpec {
-    /// Which dishes it is about: those with at least one of these items.
+    /// The rule applies to dishes with at least one of these items.
     pub dishes_with: Vec<Spanned<String>>,
     pub combine: DeviationCombination,
     pub slots: Vec<DeviationSlotSpec>,
@@ -93,7 +93,7 @@ pub struct DeviationSlotSpec {
     pub items: Vec<Spanned<String>>,
 }
 
-/// How deviations of several slots go together.
+/// Combination of deviations in several slots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum DeviationCombination {
     /// At most one slot deviates from the true recipe.

@@ -1,4 +1,4 @@
-//! What a press does: the transition of the task, as table look-ups.
+//! The rules of the task: the state transition of a press, by table look-ups.
 
 use super::action::{ButtonAction, ButtonId};
 use super::agent::Agent;
@@ -9,27 +9,27 @@ use super::location::{LocationId, LocationKind};
 use super::state::{OrderContent, Recipes, State};
 
 impl Kitchen {
-    /// Whether an empty `location` takes `content`.
+    /// Whether an empty `location` accepts `content`.
     #[inline]
     pub fn accepts(&self, location: LocationId, content: ContentId) -> bool {
         self.tables.accepts[location.index() * self.tables.width + content.index()]
     }
 
-    /// What two contents are when stacked; `None` where they do not stack.
+    /// The stack of two contents; `None` if they do not stack.
     #[inline]
     pub fn stacked(&self, below: ContentId, above: ContentId) -> Option<ContentId> {
         let stack = self.tables.stacks[below.index() * self.tables.width + above.index()];
         (!stack.is_empty()).then_some(stack)
     }
 
-    /// What a process makes of a content; `None` where it does nothing to it.
+    /// The result of a process; `None` if it does not apply to the content.
     #[inline]
     pub fn processed(&self, process: u8, content: ContentId) -> Option<ContentId> {
         let result = self.tables.becomes[usize::from(process) * self.tables.width + content.index()];
         (!result.is_empty()).then_some(result)
     }
 
-    /// The places whose contents decide what a press does; where items are moved, the place comes before the hand.
+    /// The locations whose contents determine the effect of a press; the place comes before the hand.
     pub fn involved(&self, agent: Agent, button: ButtonId) -> Vec<LocationId> {
         let hand = self.hands[agent.index()];
         match self.button(agent, button).action {
@@ -85,7 +85,7 @@ impl Kitchen {
         Some(next)
     }
 
-    /// What hand and location hold after the location's button: picked up, put down or stacked.
+    /// Contents of hand and location after the location's button: picked up, put down or stacked.
     #[inline]
     fn exchanged(&self, location: LocationId, held: ContentId, there: ContentId) -> Option<(ContentId, ContentId)> {
         match (held.is_empty(), there.is_empty()) {
@@ -99,7 +99,7 @@ impl Kitchen {
         }
     }
 
-    /// The dishes that are wanted now.
+    /// The ordered dishes with their order locations.
     pub fn wanted(&self, state: State) -> impl Iterator<Item = (LocationId, DishId)> + '_ {
         self.orders.iter().filter_map(move |&order| match state.order(order) {
             OrderContent::Dish(dish) => Some((order, dish)),

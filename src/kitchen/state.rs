@@ -1,32 +1,32 @@
-//! The task state and the recipes that someone takes for true, packed small: states are copied and hashed by the million.
+//! The task state, and believed recipes, in compact form: states are copied and hashed millions of times.
 
 use super::content::ContentId;
 use super::dish::DishId;
 use super::location::LocationId;
 
-/// At most so many locations in a kitchen.
+/// Largest number of locations in a kitchen.
 pub const MAX_LOCATIONS: usize = 16;
-/// At most so many dishes on a menu.
+/// Largest number of dishes on a menu.
 pub const MAX_DISHES: usize = 16;
 
-/// What every location holds, one byte a location: a [`ContentId`], or for an order an [`OrderContent`].
+/// Content of every location, one byte each: a [`ContentId`], or an [`OrderContent`] at an order location.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(align(16))]
 pub struct State([u8; MAX_LOCATIONS]);
 
-/// What an order location shows.
+/// Content of an order location.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum OrderContent {
     /// No order.
     None,
     /// The order was served a moment ago.
     Served,
-    /// A dish is wanted; only the final product is shown.
+    /// An order for a dish; only the final product is shown.
     Dish(DishId),
 }
 
 impl OrderContent {
-    /// The byte that stands for it in a [`State`].
+    /// Its byte in a [`State`].
     pub const fn code(self) -> u8 {
         match self {
             OrderContent::None => 0,
@@ -46,19 +46,19 @@ impl OrderContent {
 }
 
 impl State {
-    /// What lies at a location that is no order.
+    /// Content of a location that is not an order location.
     #[inline]
     pub fn content(self, location: LocationId) -> ContentId {
         ContentId(self.0[location.index() & (MAX_LOCATIONS - 1)])
     }
 
-    /// Puts `content` at a location that is no order.
+    /// Sets the content of a location that is not an order location.
     #[inline]
     pub fn set_content(&mut self, location: LocationId, content: ContentId) {
         self.0[location.index() & (MAX_LOCATIONS - 1)] = content.0;
     }
 
-    /// What an order location shows.
+    /// Content of an order location.
     #[inline]
     pub fn order(self, location: LocationId) -> OrderContent {
         OrderContent::from_code(self.code(location))
@@ -87,7 +87,7 @@ impl State {
     }
 }
 
-/// For every dish, the full stack that is taken for its recipe: the true one, or somebody's memory of it.
+/// For every dish, the full stack that somebody believes to be its recipe.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(align(16))]
 pub struct Recipes([u8; MAX_DISHES]);

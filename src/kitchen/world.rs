@@ -1,4 +1,4 @@
-//! Complete hypotheses of what is so, and weighted sets of them.
+//! Worlds (complete hypotheses of state and recipes) and weighted sets of them.
 
 use super::aspect::AspectId;
 use super::compiled::Kitchen;
@@ -30,12 +30,12 @@ impl World {
         World { state, recipes: kitchen.true_recipes() }
     }
 
-    /// The empty kitchen with the true recipes: what the values of a hypothesis are set in.
+    /// The empty kitchen with the true recipes, in which the values of a hypothesis are then set.
     pub fn empty(kitchen: &Kitchen) -> World {
         World::with_true_recipes(kitchen, kitchen.empty_state())
     }
 
-    /// Gives an aspect one of its values, by index.
+    /// Sets an aspect to the value with this index.
     #[inline]
     pub fn set_value(&mut self, kitchen: &Kitchen, aspect: AspectId, value: usize) {
         kitchen.set_value(&mut self.state, &mut self.recipes, aspect, value);
@@ -43,20 +43,20 @@ impl World {
 }
 
 impl WeightedWorlds {
-    /// One world that is certain.
+    /// A belief that is certain of one world.
     pub fn certain(world: World) -> WeightedWorlds {
         WeightedWorlds { all: vec![WeightedWorld { world, weight: 1.0 }] }
     }
 }
 
 impl WeightedWorlds<u32> {
-    /// Copies another set into this one's memory.
+    /// Copies another set, reusing this set's memory.
     pub fn copy_from(&mut self, other: &WeightedWorlds<u32>) {
         self.all.clear();
         self.all.extend_from_slice(&other.all);
     }
 
-    /// Adds draws of a world.
+    /// Adds a world with its number of draws.
     pub fn add(&mut self, world: World, draws: u32) {
         match self.all.iter_mut().find(|one| one.world == world) {
             Some(one) => one.weight += draws,
@@ -64,7 +64,7 @@ impl WeightedWorlds<u32> {
         }
     }
 
-    /// The number of all draws.
+    /// Total number of draws.
     pub fn draws(&self) -> u32 {
         self.all.iter().map(|one| one.weight).sum()
     }

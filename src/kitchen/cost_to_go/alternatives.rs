@@ -1,4 +1,4 @@
-//! All moves that might make room: what a second thought tries.
+//! All moves that can free a hand or a place: the alternatives that a deviation from the greedy plan tries.
 
 use super::moves::{ClearingMove, ClearingMoves};
 use super::needs::TargetNeeds;
@@ -6,7 +6,7 @@ use super::plan::PressPlan;
 use super::task::{AssemblyTask, STORAGE};
 
 impl PressPlan<'_> {
-    /// All moves that might make room for what the work on a target needs.
+    /// All moves that can free what the work on a target needs.
     pub(super) fn moves(&self, wants: &TargetNeeds) -> ClearingMoves {
         let mut moves = ClearingMoves::new();
         for agent in 0..2 {
@@ -20,7 +20,7 @@ impl PressPlan<'_> {
         moves
     }
 
-    /// The ways to empty an agent's hand.
+    /// Moves that empty an agent's hand.
     fn empty(&self, wants: &TargetNeeds, agent: usize, moves: &mut ClearingMoves) {
         let hand = self.ground.hands[agent];
         let wanted = wants.hand(agent);
@@ -43,7 +43,7 @@ impl PressPlan<'_> {
         }
     }
 
-    /// The ways to take away what lies at a place.
+    /// Moves that empty a place.
     fn take_away(&self, wants: &TargetNeeds, from: usize, moves: &mut ClearingMoves) {
         for hand in self.ground.hands.into_iter().filter(|&hand| self.state[hand] == 0) {
             let Some((task, _)) = self.task_at(from) else {
@@ -57,7 +57,7 @@ impl PressPlan<'_> {
         }
     }
 
-    /// The exchanges of two targets' items that take no more presses.
+    /// Exchanges of two targets' items that need no additional presses.
     fn exchange(&self, moves: &mut ClearingMoves) {
         let movable = |task: &AssemblyTask| task.bits.count_ones() == 1 && task.at != STORAGE && !self.is_ready(task);
         let way = |task: &AssemblyTask, at: u8| self.goal.way(&self.state, task, at).0;
@@ -71,8 +71,7 @@ impl PressPlan<'_> {
         }
     }
 
-    /// What could be taken from a storage and brought to a free place on its way, so that the hand that takes it is not
-    /// needed later.
+    /// Items that can be taken from a storage early and brought to a free place on their way, so that the hand is not needed later.
     fn fetch(&self, moves: &mut ClearingMoves) {
         let (ground, goal) = (self.ground, self.goal);
         for (task, of) in self.tasks().filter(|(_, task)| task.at == STORAGE) {

@@ -1,4 +1,4 @@
-//! Which item in the kitchen becomes which part of which target.
+//! Assignment of items in the kitchen to parts of targets.
 
 use super::classes::{ContentClasses, MAX_TARGETS, USELESS};
 use super::demand::PressDemand;
@@ -7,10 +7,10 @@ use super::ground::KitchenTables;
 use super::task::{AssemblyTask, STORAGE};
 use crate::base::bits::ones;
 
-/// At most so many parts of all targets together.
+/// Largest number of parts of all targets together.
 pub const MAX_TASKS: usize = 16;
 
-/// A choice of items for all targets, in the order in which the targets will be served.
+/// An assignment of items to all targets, in the order in which the targets will be served.
 #[derive(Clone, Copy, Debug)]
 pub struct Assignment {
     pub tasks: [AssemblyTask; MAX_TASKS],
@@ -18,12 +18,12 @@ pub struct Assignment {
     pub order: [usize; MAX_TARGETS],
     /// Locations whose content is used, one bit each.
     used: u32,
-    /// What the tasks take at least.
+    /// Requirements of the tasks, from which the lower bound follows.
     pub demand: PressDemand,
 }
 
 impl Assignment {
-    /// Chooses for one target after another what saves most presses against taking it from a storage.
+    /// Assigns items greedily, target by target, by the presses saved compared with fresh items from storages.
     pub fn choose(
         ground: &KitchenTables,
         goal: &ServingGoal,
@@ -90,9 +90,9 @@ impl Assignment {
         }
     }
 
-    /// Lets two targets exchange their items where that saves presses.
+    /// Exchanges items between two targets where that saves presses.
     fn exchange(&mut self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) {
-        // What lies somewhere can only be exchanged if both targets can use it.
+        // Only items that both targets can use can be exchanged.
         let (mut stored, mut shared) = (0u32, 0u32);
         for (index, task) in self.tasks[..self.count].iter().enumerate().filter(|(_, task)| task.bits.count_ones() == 1)
         {
@@ -111,7 +111,7 @@ impl Assignment {
         let wanted = ones(stored & is_first).fold(0, |wanted, index| wanted | needs(index)) & 3;
         let fits = |task: &AssemblyTask, at: u8| goal.fits(state, task, at);
         let presses = |task: &AssemblyTask, at: u8| u32::from(goal.way(state, task, at).0);
-        // Of two hands the one that the first target needs should be free first; what is on the board stays there.
+        // The hand that the first target needs should become free first; a stack on the board stays there.
         let frees = |at: u8| at != STORAGE && wanted & ground.journeys.bit[usize::from(at)] != 0;
         for first in ones((stored | shared) & is_first) {
             for second in ones((stored | shared) & !is_first) {
@@ -150,18 +150,18 @@ impl Assignment {
         complete.min_by_key(|&location| ground.last_presses(location))
     }
 
-    /// Which items of a target have to be taken from a storage, bit by bit.
+    /// Bit set of a target's items that have to be taken from a storage.
     pub fn stored(&self, target: usize) -> u8 {
         let tasks = self.tasks[..self.count].iter();
         tasks.filter(|task| usize::from(task.target) == target && task.at == STORAGE).map(|task| task.bits).sum()
     }
 
-    /// The same choice, the targets served the other way round.
+    /// The same assignment with the serving order reversed.
     pub fn reversed(&self) -> Assignment {
         Assignment { order: [self.order[1], self.order[0]], ..*self }
     }
 
-    /// All tasks, one bit each.
+    /// Bit set of all tasks.
     pub fn all(&self) -> u32 {
         (1 << self.count) - 1
     }

@@ -1,28 +1,28 @@
-//! Caches of fixed size. Whatever is forgotten is computed again, so a full cache costs time and never correctness.
+//! Caches of fixed size. Evicted values are recomputed, so a full cache costs time but never correctness.
 
 use crate::base::rng::mix;
 use crate::kitchen::State;
 
-/// At most so many buttons of one agent.
+/// Largest number of buttons of one agent.
 pub const MAX_BUTTONS: usize = 40;
 
-/// The lowest bits of a key tell kinds of values of the same state apart, which share a bucket.
+/// Number of low key bits for the kind of value; all kinds of one state share a bucket.
 pub const KIND_BITS: u32 = 2;
 
-/// No key is as high. It is written everywhere at first, so that the memory is there when a decision has to be quick.
+/// Marks an empty entry; larger than any key. It is written to all entries at creation, so that the memory is mapped before use.
 const EMPTY: u64 = u64::MAX;
 
-/// Keys, with the value in the lowest byte; or [`EMPTY`].
+/// Eight entries: key with the value in the lowest byte, or [`EMPTY`].
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Bucket([u64; 8]);
 
-/// Values of one byte by keys below 2^56 - 1, in buckets of eight, one cache line each.
+/// One-byte values by keys below 2^56 - 1, in buckets of eight entries, one cache line each.
 #[derive(Clone, Debug)]
 pub struct ValueCache {
     buckets: Vec<Bucket>,
     mask: u64,
-    /// Which entry of a full bucket goes next.
+    /// Counter that selects the entry to evict.
     turn: usize,
 }
 
@@ -38,8 +38,8 @@ impl ValueCache {
         (mix(key >> KIND_BITS) & self.mask) as usize
     }
 
-    /// Has the memory fetch what is kept under this key. Whoever asks for several keys does this for all of them first, and
-    /// waits once; what comes back is to be kept from the optimizer.
+    /// Prefetches the bucket of a key. Callers with several keys prefetch all of them first; the result must be passed to a black box
+    /// so that the compiler keeps the load.
     #[inline]
     pub fn fetch(&self, key: u64) -> u64 {
         self.buckets[self.bucket(key)].0[0]
@@ -64,20 +64,20 @@ impl ValueCache {
     }
 }
 
-/// The costs of one decision: of a state, and of those that each button of an agent leads to.
+/// Costs to go of one decision: of the state, and after each button of an agent.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct DecisionCosts {
     state: State,
-    /// Targets and agent; `u32::MAX`: an empty entry.
+    /// Hash of the request; `u32::MAX` for an empty entry.
     question: u32,
-    /// Presses until all orders are served if nothing is pressed now.
+    /// Cost to go of the state.
     pub here: u8,
-    /// The same after a press of each button, without that press; that of `here` where the press has no effect.
+    /// Cost to go after each button; equal to `here` where the press has no effect.
     pub after: [u8; MAX_BUTTONS],
 }
 
-/// Decisions by state and question, one cache line each; the newest of those that share a line stays.
+/// Cache of decisions by state and request, one cache line each; a new entry replaces the old one in its line.
 #[derive(Clone, Debug)]
 pub struct DecisionCache {
     lines: Vec<DecisionCosts>,
@@ -98,13 +98,13 @@ impl DecisionCache {
         (hash & self.mask) as usize
     }
 
-    /// Has the memory fetch the line of a decision; what comes back is to be kept from the optimizer.
+    /// Prefetches the line of a decision; the result must be passed to a black box so that the compiler keeps the load.
     #[inline]
     pub fn fetch(&self, state: State, question: u32) -> u32 {
         self.lines[self.index(state, question)].question
     }
 
-    /// Where the decision belongs, and whether it is there.
+    /// Index of a decision's line, and whether the decision is stored there.
     #[inline]
     pub fn find(&self, state: State, question: u32) -> (usize, bool) {
         let index = self.index(state, question);

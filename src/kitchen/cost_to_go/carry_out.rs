@@ -1,16 +1,15 @@
-//! Carrying a plan out: one target after another, and what is in the way is cleared.
+//! Execution of a plan: one target after another, with obstacles cleared on the way.
 
 use super::classes::ContentClasses;
 use super::demand::PressDemand;
 use super::plan::{BLOCKED, PressPlan};
 
-/// Steps of a plan, at most: a guard against moving things in circles.
+/// Largest number of steps of a plan, a guard against endless loops.
 const MAX_STEPS: usize = 40;
 
 impl PressPlan<'_> {
-    /// The presses of the whole plan, [`BLOCKED`] if it comes to a standstill or takes more than `limit`. Room is made in the
-    /// way that mostly is best; with a second thought, once in any other way that there is: a search of one discrepancy
-    /// (Harvey and Ginsberg 1995, Limited Discrepancy Search).
+    /// Length of the whole plan in presses; [`BLOCKED`] if it gets stuck or exceeds `limit`. Obstacles are cleared greedily; with
+    /// `second_thought`, one deviation from the greedy choice is tried (Harvey and Ginsberg 1995, Limited Discrepancy Search).
     pub fn carry_out(mut self, limit: u32, second_thought: bool) -> u32 {
         if limit < BLOCKED && self.choice.demand.bound(self.ground, &self.state) > limit {
             return BLOCKED;
@@ -31,7 +30,7 @@ impl PressPlan<'_> {
             if self.steps == MAX_STEPS {
                 return best;
             }
-            // A part that is brought takes what was reckoned with; only what makes room takes more.
+            // Bringing a part costs the expected presses; only clearing costs more.
             if self.bring_part(target) {
                 continue;
             }
@@ -84,7 +83,7 @@ impl PressPlan<'_> {
         }
     }
 
-    /// Decides for a target where the board could be for more than one: the presses and the state after bringing a part.
+    /// Commits the board to a target: presses and state after bringing its first part.
     pub fn begin(mut self, target: usize) -> Option<(u32, ContentClasses)> {
         let begins = self.begun().is_none() && self.bring_part(target);
         begins.then_some((self.presses, self.state))

@@ -1,10 +1,9 @@
-//! Classes of contents: for the cost to go only the worth of a content for a goal matters, and all contents that are of no use
-//! are one class.
+//! Classes of contents: contents with the same use for a goal are one class, and all useless contents are one class.
 
-/// At most so many targets, see [`crate::kitchen::compile::MAX_ORDERS`].
+/// Largest number of targets, see [`crate::kitchen::compile::MAX_ORDERS`].
 pub const MAX_TARGETS: usize = 2;
-/// Class 0 is empty, class 1 is of no use.
+/// Class of useless contents; class 0 is empty.
 pub const USELESS: u8 = 1;
 
-/// Classes of the physical locations, by location index.
+/// A state as classes of the contents of the physical locations, by location index.
 pub type ContentClasses = [u8; 16];

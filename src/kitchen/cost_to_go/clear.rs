@@ -1,11 +1,11 @@
-//! Making room in the way that mostly is best: throws away, picks up, puts aside.
+//! The greedy choice of a move that clears an obstacle: throw away, pick up, or put aside.
 
 use super::moves::ClearingMove;
 use super::needs::TargetNeeds;
 use super::plan::PressPlan;
 
 impl PressPlan<'_> {
-    /// Makes room for the work on a target in the way that mostly is best: one press or two. Whether there is a way.
+    /// Clears an obstacle to the work on a target by the move that is usually best (one or two presses); returns whether there is one.
     pub(super) fn clear(&mut self, wants: &TargetNeeds) -> bool {
         let best = self
             .put_down(wants)
@@ -19,7 +19,7 @@ impl PressPlan<'_> {
         best.is_some()
     }
 
-    /// Puts down what a wanted hand holds where it has to go anyway.
+    /// Puts the content of a needed hand down at a place on its way.
     fn put_down(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let wanted = (0..2).filter(|&agent| wants.hand(agent));
         wanted.into_iter().find_map(|agent| {
@@ -31,18 +31,18 @@ impl PressPlan<'_> {
         })
     }
 
-    /// Throws away what is of no use from a hand that is needed, or from one of two full ones.
+    /// Throws away a useless content of a needed hand, or of one of two full hands.
     fn throw_away(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let hands = self.ground.hands;
         let useless = |agent: usize| self.state[hands[agent]] != 0 && self.task_at(hands[agent]).is_none();
         let needed = (0..2).find(|&agent| wants.needs & (1 << agent) != 0 && useless(agent));
-        // A hand that will be needed later rather than one that may hold it to the end.
+        // A hand that is needed later comes first; the other may keep its content to the end.
         let full = (0..2).filter(|&agent| wants.hands_full && useless(agent));
         let full = full.max_by_key(|&agent| (wants.later & (1 << agent) != 0, agent == 0));
         needed.or(full).map(|agent| ClearingMove::Throw { hand: hands[agent] })
     }
 
-    /// Takes away what lies where the target's parts have to go, if a hand is free for it.
+    /// Removes a content that blocks the target's parts, if a hand is free.
     fn empty_place(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let ground = self.ground;
         let [human, robot] = ground.hands;
@@ -54,7 +54,7 @@ impl PressPlan<'_> {
             (true, true) => robot,
         };
         let blocking = ground.places().filter(|&location| self.blocks(wants, location));
-        // First what goes on its own way, then what is of no use, then what has to be put elsewhere.
+        // Order: contents that move along their own way, useless contents, contents that have to be put aside.
         let ranked = blocking.filter_map(|from| match self.task_at(from) {
             None => Some((1, ClearingMove::PickUp { from, hand })),
             Some((task, _)) => {
@@ -65,12 +65,11 @@ impl PressPlan<'_> {
         ranked.min_by_key(|&(rank, _)| rank).map(|(_, made)| made)
     }
 
-    /// Moves a part out of the way: along its own way, or into a hand that can hold it, or somewhere else. With the presses
-    /// that this costs extra.
+    /// Moves a part out of the way: along its own way, into a hand, or to another place; with the additional presses.
     fn put_aside(&self, wants: &TargetNeeds, task: usize, hand: usize) -> Option<(u32, ClearingMove)> {
         let of = self.choice.tasks[task];
         let from = usize::from(of.at);
-        // What lies on its target's board as it cannot stay there comes back at once.
+        // A part on its own target's board that cannot stay there would come back at once.
         let returns =
             usize::from(of.target) == wants.target && from == self.ground.board && self.leads(task, from, hand);
         if returns {
@@ -84,7 +83,7 @@ impl PressPlan<'_> {
         }
     }
 
-    /// Takes away what lies where the item in a needed hand has to go anyway.
+    /// Removes a content at the place to which the item in a needed hand has to go.
     fn make_way(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let ground = self.ground;
         let needed = (0..2).filter(|&agent| !wants.hands_full && wants.needs & (1 << agent) != 0);
@@ -102,7 +101,7 @@ impl PressPlan<'_> {
         })
     }
 
-    /// Puts down what a wanted hand holds, or throws it away if there is no place.
+    /// Puts down the content of a needed hand, or throws it away if there is no place.
     fn empty_hand(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let mut best: Option<(u32, ClearingMove)> = None;
         let mut consider = |rest: u32, made: ClearingMove| {
@@ -117,7 +116,7 @@ impl PressPlan<'_> {
             }
             if of.bits.count_ones() == 1 {
                 let (fresh, _) = self.goal.fresh[usize::from(of.target)][of.bits.trailing_zeros() as usize];
-                // Thrown away with one press, taken anew with those of a fresh one.
+                // One press to throw it away, plus the presses of a fresh item.
                 consider((u32::from(fresh) + 1).saturating_sub(self.least(&of)), ClearingMove::Discard { task });
             }
         }

@@ -1,7 +1,7 @@
-//! Decisions: the cost to go of a state together with that of every state that a button leads to.
+//! Decisions: the cost to go of a state together with the costs to go after every button.
 //!
-//! What a press leads to is at most one press nearer; if it can be taken back by one press, it is at most one further away.
-//! Together with the bound that settles most buttons without a plan.
+//! A press lowers the cost to go by at most 1; a press that another press can undo raises it by at most 1. Together with the lower
+//! bound this decides most buttons without a plan.
 
 use super::cache::{DecisionCosts, MAX_BUTTONS};
 use super::classes::MAX_TARGETS;
@@ -10,15 +10,13 @@ use super::store::{CacheSlot, CostToGo, SLOT_BITS, SuccessorState, UNREACHABLE};
 use crate::kitchen::{Agent, ButtonAction, ContentId, LocationId, Recipes, State};
 
 impl CostToGo {
-    /// C of the state and of every state that a button of `agent` leads to, in one look-up where it was asked before: what
-    /// decisions, inference and rollouts need.
+    /// Cost to go of the state and after every button of `agent`: one cache look-up if it was computed before.
     #[inline]
     pub fn decision(&mut self, state: State, recipes: &Recipes, agent: Agent) -> &DecisionCosts {
         self.decision_with(Fidelity::Exact, state, recipes, agent)
     }
 
-    /// The same at a given fidelity. What is known at one fidelity is not used for another, so that a value never depends on
-    /// what was asked before.
+    /// The same at a given fidelity. Values of other fidelities are not reused, so that a result never depends on earlier requests.
     #[inline]
     pub fn decision_with(
         &mut self,
@@ -42,14 +40,14 @@ impl CostToGo {
         self.decisions.get(index)
     }
 
-    /// Prefetches the cache line of a decision that is asked for soon.
+    /// Prefetches the cache line of a decision that will be requested soon.
     #[inline]
     pub fn prefetch(&self, fidelity: Fidelity, state: State, recipes: &Recipes, agent: Agent) {
         let question = question(&self.targets(state, recipes).0, fidelity, agent);
         std::hint::black_box(self.decisions.fetch(state, question));
     }
 
-    /// The buttons of `agent` that bring the goal nearer, one bit each.
+    /// Bit set of the buttons of `agent` that lower the cost to go.
     pub fn nearer(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes, agent: Agent) -> u64 {
         if fidelity != Fidelity::Exact {
             let buttons = self.kitchen.buttons[agent.index()].len();
@@ -68,8 +66,8 @@ impl CostToGo {
         nearer
     }
 
-    /// The state in which contents of no use are put by others that are pressed about in the same ways: its decisions are
-    /// the same, and strange states have few of them.
+    /// An equivalent state in which useless contents are replaced by a representative with the same possible presses: its decisions
+    /// are the same, and fewer distinct states remain.
     fn stand_in(&mut self, state: State, targets: &mut [ContentId]) -> State {
         targets.sort_unstable();
         if targets.is_empty() {
@@ -86,7 +84,7 @@ impl CostToGo {
         alike
     }
 
-    /// Puts a decision together and keeps it.
+    /// Computes a decision and stores it in the cache.
     fn decide(
         &mut self,
         index: usize,
@@ -105,7 +103,7 @@ impl CostToGo {
         self.decisions.set(index, state, question, here, after);
     }
 
-    /// The values one by one.
+    /// Computes all values one by one.
     fn each(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
         let kept = self.kept(state, recipes);
         let nexts = self.nexts(state, kept, recipes, agent);
@@ -118,7 +116,7 @@ impl CostToGo {
         (here, after)
     }
 
-    /// What follows from bounds and plans.
+    /// Computes all values from bounds and plans.
     fn close(&mut self, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
         let kept = self.kept(state, recipes);
         let mut nexts = self.nexts(state, kept, recipes, agent);
@@ -144,8 +142,8 @@ impl CostToGo {
         (here as u8, after)
     }
 
-    /// The states that the agent's buttons lead to from a state and where it is kept; give the room back when it is done
-    /// with. What is kept of all of them is fetched at once, so that memory is waited for once.
+    /// The states after the agent's buttons with their cache slots. All cache lines are prefetched together. The caller must return
+    /// the buffer after use.
     fn nexts(&mut self, state: State, here: CacheSlot, recipes: &Recipes, agent: Agent) -> Vec<SuccessorState> {
         let kitchen = self.kitchen.clone();
         let mut nexts = std::mem::take(&mut self.nexts);
@@ -167,7 +165,7 @@ impl CostToGo {
         nexts
     }
 
-    /// The key of a state from that of another one with the same orders.
+    /// The key of a state, computed incrementally from that of another state with the same orders.
     #[inline]
     fn moved(&self, slot: usize, key: u64, from: State, to: State) -> u64 {
         let Some(goal) = &self.goals[slot] else { return key };
@@ -183,7 +181,7 @@ impl CostToGo {
         moved
     }
 
-    /// Whether one press of the agent leads back from where an action of it leads.
+    /// Whether one press of the agent can undo an action.
     fn can_be_undone(&self, state: State, agent: Agent, action: ButtonAction) -> bool {
         let held = state.content(self.kitchen.hands[agent.index()]);
         match action {
@@ -191,7 +189,7 @@ impl CostToGo {
             ButtonAction::Trash => self.takes[agent.index()][held.index()],
             ButtonAction::Use(location) => {
                 let there = state.content(location);
-                // What is stacked stays so; what was picked up can be put down where it is accepted.
+                // Stacking cannot be undone; a pick-up can, if the place accepts the item.
                 there.is_empty() || held.is_empty() && self.kitchen.accepts(location, there)
             }
             ButtonAction::Process(_) | ButtonAction::Serve(_) => false,
@@ -199,7 +197,7 @@ impl CostToGo {
     }
 }
 
-/// What is asked about a state, in the order of its orders.
+/// Hash of a request: targets in the order of the orders, fidelity, agent.
 #[inline]
 fn question(targets: &[ContentId; MAX_TARGETS], fidelity: Fidelity, agent: Agent) -> u32 {
     u32::from(targets[0].0) | u32::from(targets[1].0) << 8 | (agent as u32) << 16 | (fidelity as u32) << 17

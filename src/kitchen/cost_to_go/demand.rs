@@ -1,4 +1,4 @@
-//! What tasks take at least: the presses of their journeys, and those that clear what is in their way.
+//! The lower bound: least number of presses for a set of tasks, from their journeys and from clearing obstacles.
 
 use super::classes::ContentClasses;
 use super::goal::ServingGoal;
@@ -6,25 +6,25 @@ use super::ground::KitchenTables;
 use super::journeys::JourneyNeeds;
 use super::task::{AssemblyTask, STORAGE};
 
-/// What tasks take at least.
+/// Requirements of a set of tasks: presses, places, targets.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PressDemand {
-    /// Presses if nothing were ever in the way.
+    /// Presses without any obstacle.
     presses: u32,
-    /// Locations whose content is used, one bit each.
+    /// Bit set of the locations whose content is used.
     used: u32,
-    /// What the journeys cannot do without.
+    /// Free hands and places that the journeys require.
     needs: JourneyNeeds,
-    /// The same for those journeys that cannot do without a station, by station.
+    /// By station, the same for the journeys that require this station.
     station_needs: [JourneyNeeds; 8],
-    /// The targets that have to be assembled on the board, one bit each.
+    /// Bit set of the targets that have to be assembled on the board.
     assembled: u32,
     /// Whether anything but the last press is left.
     is_busy: bool,
 }
 
 impl PressDemand {
-    /// Of these tasks as their items lie now.
+    /// The requirements of these tasks with their items at their present places.
     pub fn from_tasks(
         ground: &KitchenTables,
         goal: &ServingGoal,
@@ -64,12 +64,11 @@ impl PressDemand {
         }
     }
 
-    /// Presses that are needed at least: those of the journeys, and those that clear what is in their way.
+    /// Lower bound of the number of presses: journeys plus clearing of obstacles.
     pub fn bound(&self, ground: &KitchenTables, state: &ContentClasses) -> u32 {
         let unused = |location: usize| state[location] != 0 && self.used & (1 << location) == 0;
         let mut in_the_way = 0;
-        // Everything of no use that is in a hand or picked up has to be thrown away, but what a hand holds to the end that
-        // is not needed any more.
+        // Every useless content in a hand has to be thrown away, except in a hand that is not needed any more.
         let mut kept = false;
         if unused(ground.plate) {
             in_the_way += 1;

@@ -1,6 +1,6 @@
-//! A goal: the full stacks that are still to be served, and what every content is worth for them.
+//! A goal: the full stacks that are still to be served, with tables of the use of every content for them.
 //!
-//! For the cost to go only the worth of a content matters: all contents that are of no use are one class, "in the way".
+//! Only the use of a content for the goal matters for the cost to go: all useless contents are one class, obstacles.
 
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, State};
 
@@ -9,19 +9,18 @@ use super::ground::KitchenTables;
 use super::journeys::{JourneyNeeds, JourneyTables, NEVER};
 use super::task::{AssemblyTask, STORAGE};
 
-/// What an item is worth where it is, for one target. Of two offers the greater one is better: it gains more, or as much
-/// and its location comes first. One number, so that the best of many is found without branches.
+/// Value of an item at its place for one target, packed into one number so that the maximum of many is found without branches:
+/// a larger gain is better, ties go to the first location.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ItemValue(u32);
 
 impl ItemValue {
-    /// `gain`: presses saved by taking it rather than what is in a storage, and what it is worth that its location becomes
-    /// free, in half presses.
+    /// `gain`, in half presses: presses saved compared with a fresh item from a storage, plus the value of freeing its location.
     fn new(gain: u16, location: u8, fills: u8) -> ItemValue {
         ItemValue(u32::from_be_bytes([(gain >> 8) as u8, gain as u8, !location, fills]))
     }
 
-    /// Bit j if it can become the j-th item of the target; 0 if a storage is nearer.
+    /// Bit set of the target's items that it can become; 0 if a storage is nearer.
     #[inline]
     pub fn fills(self) -> u8 {
         self.0 as u8
@@ -33,28 +32,28 @@ impl ItemValue {
     }
 }
 
-/// One set of targets with its tables over classes.
+/// A set of targets with its tables over classes.
 #[derive(Clone, Debug)]
 pub struct ServingGoal {
-    /// The full stacks that are wanted, in ascending order.
+    /// The target stacks, in ascending order.
     pub targets: Vec<ContentId>,
     /// The class of each content.
     pub class_of: Vec<u8>,
     /// A content of each class.
     pub content: Vec<ContentId>,
-    /// For each content the first one that can stand for it: of the same class, and pressed about in the same ways.
+    /// Representative of each content: the first content of the same class with the same possible presses.
     pub stands_for: Vec<ContentId>,
     /// `[target][class]`: bit j if the class can become the j-th item of the target, or has it.
     pub fills: [Vec<u8>; MAX_TARGETS],
-    /// `[target][class]`: the same for those that can be stacked as they are.
+    /// `[target][class]`: the same for classes that can be stacked as they are.
     pub ready: [Vec<u8>; MAX_TARGETS],
-    /// `[target][location * classes + class]`: presses that bring it onto the board if nothing is in the way.
+    /// `[target][location * classes + class]`: presses that bring it onto the board without obstacles.
     pub near: [Vec<u8>; MAX_TARGETS],
-    /// The same index: what that cannot do without.
+    /// Same index: free hands and places required for that.
     pub near_needs: [Vec<JourneyNeeds>; MAX_TARGETS],
-    /// The same index: what it would be taken for.
+    /// Same index: value of the item.
     pub offers: [Vec<ItemValue>; MAX_TARGETS],
-    /// `[target][j]`: presses for the j-th item from a storage, and what that cannot do without.
+    /// `[target][j]`: presses for the j-th item from a storage, and free hands and places required for that.
     pub fresh: [Vec<(u8, JourneyNeeds)>; MAX_TARGETS],
     /// For each target the component index of its j-th item.
     pub components: [Vec<usize>; MAX_TARGETS],
@@ -66,7 +65,7 @@ pub struct ServingGoal {
     pub part_class: [Vec<u8>; MAX_TARGETS],
     /// By class, whether more than one target can use it.
     pub is_shared: Vec<bool>,
-    /// What can be taken from storages: by agent, classes.
+    /// Classes of the items in the storages, by agent.
     pub takes: [Vec<u8>; 2],
     /// `[process][class]`: the useful result, else 0.
     pub becomes: Vec<Vec<u8>>,
@@ -158,7 +157,7 @@ impl ServingGoal {
         matches!(self.targets[..], [first, second] if first != second)
     }
 
-    /// Presses of a part, and what they cannot do without, if its item lies at `at`.
+    /// Presses of a task if its item is at `at`, and free hands and places required for that.
     #[inline]
     pub fn way(&self, state: &ContentClasses, task: &AssemblyTask, at: u8) -> (u8, JourneyNeeds) {
         let target = usize::from(task.target);
@@ -169,19 +168,19 @@ impl ServingGoal {
         (self.near[target][index], self.near_needs[target][index])
     }
 
-    /// Presses that bring an item of a class from a location onto the board for a target if nothing is in the way.
+    /// Presses that bring an item of a class from a location onto the board for a target, without obstacles.
     #[inline]
     pub fn presses_from(&self, target: u8, location: usize, class: u8) -> u8 {
         self.near[usize::from(target)][location * self.content.len() + usize::from(class)]
     }
 
-    /// Whether what lies at `at` is the item of a task, or can become it.
+    /// Whether the content at `at` is the item of a task or can become it.
     #[inline]
     pub fn fits(&self, state: &ContentClasses, task: &AssemblyTask, at: u8) -> bool {
         at == STORAGE || self.fills[usize::from(task.target)][usize::from(state[usize::from(at)])] == task.bits
     }
 
-    /// Whether a task's item lies on the board as it has to be.
+    /// Whether a task's item is on the board in its final form.
     #[inline]
     pub fn is_ready(&self, ground: &KitchenTables, state: &ContentClasses, task: &AssemblyTask) -> bool {
         let at = usize::from(task.at);
@@ -259,7 +258,7 @@ impl ServingGoal {
         }
     }
 
-    /// A number that tells states apart as far as this goal is concerned.
+    /// Key of a state: equal for states that are equivalent for this goal.
     #[inline]
     pub fn key_of_state(&self, state: State) -> u64 {
         let contents = self.class_of.len();
@@ -267,13 +266,13 @@ impl ServingGoal {
         rows.map(|(row, parts)| parts[state.content(LocationId((self.first + row) as u8)).index()]).sum()
     }
 
-    /// What a content at a physical location adds to it.
+    /// Contribution of a content at a physical location to the key.
     #[inline]
     pub fn key_part(&self, location: LocationId, content: ContentId) -> u64 {
         self.key_by_content[(location.index() - self.first) * self.class_of.len() + content.index()]
     }
 
-    /// The same for a state of classes.
+    /// Key of a state given by classes.
     #[inline]
     pub fn key_of_classes(&self, state: &ContentClasses) -> u64 {
         let rows = self.key_by_class.chunks_exact(self.content.len());
@@ -296,7 +295,7 @@ impl ServingGoal {
     }
 }
 
-/// Which items of the target a content has or can become: bit j for the j-th.
+/// Bit set of the target's items that a content has or can become.
 fn worth(kitchen: &Kitchen, journeys: &JourneyTables, target: ContentId, content: usize) -> u8 {
     let candidate = &kitchen.contents[content];
     if candidate.is_stack() {
@@ -311,15 +310,15 @@ fn worth(kitchen: &Kitchen, journeys: &JourneyTables, target: ContentId, content
     bits.sum()
 }
 
-/// Which items of the target a content consists of; 0 if it has others too.
+/// Bit set of the target's items in a content; 0 if it also has other items.
 fn ready(kitchen: &Kitchen, target: ContentId, content: ContentId) -> u8 {
     let wanted = &kitchen.content(target).items;
     let bit = |item: &ContentId| wanted.iter().position(|other| other == item).map(|bit| 1 << bit);
     kitchen.content(content).items.iter().map(bit).sum::<Option<u8>>().unwrap_or(0)
 }
 
-/// For each content the first one of the same class that every location accepts, every process changes and every other
-/// content stacks with alike. Then all presses lead to the same classes, and so do all costs to go after them.
+/// For each content, the first content of the same class that locations accept, processes change and contents stack with in the
+/// same way. All presses then lead to the same classes and costs to go.
 fn stands_for(kitchen: &Kitchen, class_of: &[u8]) -> Vec<ContentId> {
     let contents = || (0..kitchen.contents.len()).map(|index| ContentId(index as u8));
     let locations = || (kitchen.orders.len()..kitchen.locations.len()).map(|index| LocationId(index as u8));

@@ -1,4 +1,4 @@
-//! What is fixed for one kitchen.
+//! Tables of one kitchen that do not depend on goals.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId};
 use super::classes::ContentClasses;
 use super::journeys::{FreeMask, JourneyTables};
 
-/// What is fixed for one kitchen.
+/// Tables of one kitchen that do not depend on goals.
 #[derive(Clone, Debug)]
 pub struct KitchenTables {
     pub journeys: JourneyTables,
@@ -17,19 +17,19 @@ pub struct KitchenTables {
     pub hands: [usize; 2],
     pub board: usize,
     pub plate: usize,
-    /// Places where anything can be put for a moment.
+    /// Places where any content can be put temporarily.
     spare: Vec<usize>,
-    /// How much it is worth, in half presses, that a location becomes free.
+    /// Value of freeing each location, in half presses.
     pub in_the_way: Vec<u16>,
-    /// The presses other than taking and serving, once each.
+    /// All actions other than taking and serving, once each.
     pub moves: Vec<(Agent, ButtonAction)>,
-    /// Where each process happens; none: in the hand.
+    /// Location of each process; `None` for the hand.
     pub process_place: Vec<Option<usize>>,
     /// `[location * contents + content]`.
     accepts: Vec<bool>,
     contents: usize,
     is_hand: Vec<bool>,
-    /// Presses that serve a complete stack from each location if nothing is in the way.
+    /// Presses that serve a complete stack from each location, without obstacles.
     last_presses: Vec<u32>,
 }
 
@@ -92,7 +92,7 @@ impl KitchenTables {
         self.is_hand[location]
     }
 
-    /// Whether `location` takes `content` when it is empty.
+    /// Whether an empty `location` accepts `content`.
     #[inline]
     pub fn accepts(&self, location: usize, content: ContentId) -> bool {
         self.accepts[location * self.contents + content.index()]
@@ -103,7 +103,7 @@ impl KitchenTables {
         self.last_presses[location]
     }
 
-    /// What is free in a state.
+    /// Mask of the free hands and places in a state.
     #[inline]
     pub fn free(&self, state: &ContentClasses) -> FreeMask {
         let mut free = 0;
@@ -119,7 +119,7 @@ impl KitchenTables {
     }
 }
 
-/// The presses other than taking and serving, each once: what happens at a place is the same whoever presses.
+/// All actions other than taking and serving, each once: an action at a place has the same effect for both agents.
 fn moves(kitchen: &Kitchen) -> Vec<(Agent, ButtonAction)> {
     let mut moves: Vec<(Agent, ButtonAction)> = Vec::new();
     for agent in Agent::BOTH {

@@ -1,21 +1,21 @@
-//! Journeys: the presses that bring one item from where it is to the board in the form that a recipe needs, for every
-//! combination of what is free on the way. One breadth-first search per component and combination, at start-up.
+//! Journeys: number of presses that bring one item from its place to the board in the form that a recipe needs, for every
+//! combination of free hands and places. One breadth-first search per component and combination, when a kitchen is loaded.
 
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind};
 
-/// No way.
+/// Marks an impossible journey.
 pub const NEVER: u8 = u8::MAX;
 
-/// What is free: bit 0 the human's hand, bit 1 the robot's hand, then one bit per processing place, and at last one bit
-/// for "some place where anything can be put for a moment".
+/// Bit mask of what is free: bit 0 the human's hand, bit 1 the robot's hand, then one bit per processing place, and a last bit for
+/// any place where an item can be put temporarily.
 pub type FreeMask = usize;
 
-/// Tables over (what is free, component, place, content).
+/// Tables of journey lengths over (free mask, component, location, content).
 #[derive(Clone, Debug)]
 pub struct JourneyTables {
     /// Places where something is processed, in the order of their mask bits from bit 2 on.
     pub stations: Vec<LocationId>,
-    /// The mask bit of each location, 0 for those that are no step of any journey.
+    /// Mask bit of each location; 0 for locations that are on no journey.
     pub bit: Vec<FreeMask>,
     /// The bit for a spare place.
     pub spare_bit: FreeMask,
@@ -31,7 +31,7 @@ pub struct JourneyTables {
     storage_presses: Vec<u8>,
 }
 
-/// What a journey cannot do without.
+/// Free hands and places that a journey requires.
 pub type JourneyNeeds = u16;
 
 impl JourneyTables {
@@ -75,8 +75,7 @@ impl JourneyTables {
         self.components.iter().position(|&component| component == item)
     }
 
-    /// Presses until `content`, now at `location`, lies on the board as this component. The bits of `free` must include
-    /// the item's own place.
+    /// Presses until `content`, now at `location`, is on the board as this component. `free` must include the item's own place.
     #[inline]
     pub fn presses(&self, free: FreeMask, component: usize, location: usize, content: u8) -> u8 {
         let row = (free * self.components.len() + component) * self.locations + location;
@@ -89,7 +88,7 @@ impl JourneyTables {
         self.storage_presses[free * self.components.len() + component]
     }
 
-    /// Which single bits of the free mask such a journey cannot do without.
+    /// The single bits of the free mask without which such a journey is impossible.
     pub fn needs(&self, component: usize, location: usize, content: u8) -> JourneyNeeds {
         self.indispensable(|free| self.presses(free | self.bit[location], component, location, content))
     }
@@ -131,7 +130,7 @@ impl JourneyTables {
         for hand in kitchen.hands {
             presses[hand.index()][component.index()] = 1;
         }
-        // Journeys are short, so relaxing all edges until nothing changes is simple and fast enough.
+        // Journeys are short, so relaxing all edges until nothing changes is fast enough.
         loop {
             let mut changed = false;
             for location in 0..=self.locations {
@@ -154,7 +153,7 @@ impl JourneyTables {
         presses
     }
 
-    /// Where one press can bring an item that is at `location`.
+    /// Locations to which one press can bring an item from `location`.
     fn successors<'a>(
         &'a self,
         kitchen: &'a Kitchen,

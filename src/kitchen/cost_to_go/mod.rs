@@ -1,12 +1,11 @@
-//! Cost to go: the least number of presses, of both agents one after another, until the orders are served.
+//! Cost to go: the least number of presses of both agents, one after another, until the orders are served.
 //!
-//! It is computed backwards from the goal. For every part of the wanted stacks the tables of `journeys` say how many presses
-//! it is away from the board, from every place and for everything that may be in the way. An `assign::Assignment` chooses
-//! which item becomes which part, which gives a lower bound; a `plan::PressPlan` carries it out, press by press, and clears what
-//! is in the way, which gives an upper bound. Where they agree, the value is settled; where they do not, a bounded
-//! `search` over single presses decides. What was found is kept by state classes (see `goal`: all that is of no use is
-//! one class), and whole decisions are kept by state. A value depends on the state and the recipes alone, never on what was
-//! asked before.
+//! It is computed backwards from the goal. The tables of `journeys` give, for every part of the target stacks, the number of presses
+//! to the board from every place and for every combination of free hands and places. An `assign::Assignment` chooses which item
+//! becomes which part, which gives a lower bound. A `plan::PressPlan` executes the assignment press by press and clears
+//! obstacles, which gives an upper bound. Where the bounds differ, a bounded `search` over single presses decides. Values are cached
+//! by state classes (see `goal`: all useless contents are one class), whole decisions by state. A value depends on the state and the
+//! recipes only, never on earlier requests.
 //!
 //! The files from the ground up; each imports only from those before it:
 //!

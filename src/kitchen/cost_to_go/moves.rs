@@ -1,29 +1,29 @@
-//! The moves that make room.
+//! Moves of a plan that free a hand or a place.
 
 use super::plan::PressPlan;
 use super::task::STORAGE;
 
-/// At most so many moves are thought of at once.
+/// Largest number of alternative moves.
 const MAX_MOVES: usize = 32;
 
-/// One press or two that make room.
+/// A move of one or two presses that frees a hand or a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClearingMove {
-    /// Throws away what is of no use in this hand.
+    /// Throws away a useless content of this hand.
     Throw { hand: usize },
-    /// Picks up what is of no use.
+    /// Picks up a useless content.
     PickUp { from: usize, hand: usize },
     /// Brings the item of a task to a place or into a hand.
     Bring { task: usize, to: usize },
     /// Throws away an item that can be taken anew.
     Discard { task: usize },
-    /// Takes an item, of this class, from a storage already, and brings it to a place on its way.
+    /// Takes an item of this class from a storage early and brings it to a place on its way.
     Fetch { task: usize, class: u8, hand: usize, to: usize },
-    /// No press: two tasks exchange their items.
+    /// Two tasks exchange their items, without a press.
     Exchange { tasks: [usize; 2] },
 }
 
-/// Moves, each once.
+/// A set of distinct moves.
 #[derive(Clone, Copy, Debug)]
 pub struct ClearingMoves {
     all: [ClearingMove; MAX_MOVES],
@@ -48,13 +48,13 @@ impl ClearingMoves {
 }
 
 impl PressPlan<'_> {
-    /// Makes a move.
+    /// Applies a move to the plan.
     pub(super) fn make(&mut self, made: ClearingMove) {
         let ground = self.ground;
         self.presses += match made {
             ClearingMove::Throw { .. } | ClearingMove::PickUp { .. } | ClearingMove::Discard { .. } => 1,
             ClearingMove::Bring { task, to } => {
-                // From one place to another it takes a hand.
+                // Moving an item between two places needs a hand.
                 let from = usize::from(self.choice.tasks[task].at);
                 if ground.is_hand(from) || ground.is_hand(to) { 1 } else { 2 }
             }

@@ -1,17 +1,17 @@
-//! What the work on a target needs, what is in its way, and where that could be put.
+//! Requirements of the work on a target, its obstacles, and places for them.
 
 use super::journeys::FreeMask;
 use super::plan::PressPlan;
 
-/// What the work on a target needs.
+/// Requirements of the work on a target.
 #[derive(Clone, Copy, Debug)]
 pub struct TargetNeeds {
     pub target: usize,
     /// Whether parts have to come onto the board.
     pub assembling: bool,
-    /// What the target's parts cannot do without.
+    /// Free hands and places that the target's parts require.
     pub needs: FreeMask,
-    /// The same for all that is to come.
+    /// Free hands and places that all remaining tasks require.
     pub later: FreeMask,
     pub hands_full: bool,
 }
@@ -24,7 +24,7 @@ impl TargetNeeds {
 }
 
 impl PressPlan<'_> {
-    /// What the work on a target needs now.
+    /// Present requirements of the work on a target.
     pub(super) fn wants(&self, target: usize) -> TargetNeeds {
         let of_target = || self.tasks().filter(move |(_, task)| usize::from(task.target) == target);
         let complete = self.goal.complete[target];
@@ -36,7 +36,7 @@ impl PressPlan<'_> {
         TargetNeeds { target, assembling, needs, later, hands_full }
     }
 
-    /// Whether what lies at a location is where the target's parts have to go.
+    /// Whether the content of a location blocks the target's parts.
     pub(super) fn blocks(&self, wants: &TargetNeeds, location: usize) -> bool {
         let ground = self.ground;
         match location {
@@ -47,7 +47,7 @@ impl PressPlan<'_> {
         }
     }
 
-    /// Where to put a part down so that its way becomes longer by as little as possible: (presses that it costs extra, place).
+    /// The place for putting a part down with the least additional presses: (additional presses, place).
     pub(super) fn best_place(&self, index: usize, needs: FreeMask, through: bool) -> Option<(u32, usize)> {
         let ground = self.ground;
         let task = self.choice.tasks[index];
@@ -80,7 +80,7 @@ impl PressPlan<'_> {
         best.map(|(detour, _, place)| (detour, place))
     }
 
-    /// The occupied place where a single item has to be put next.
+    /// The occupied place to which a single item has to go next.
     pub(super) fn blocked_by(&self, task: usize) -> Option<usize> {
         let ground = self.ground;
         let from = usize::from(self.choice.tasks[task].at);
@@ -90,7 +90,7 @@ impl PressPlan<'_> {
         blocked.find(|&place| self.leads(task, from, place))
     }
 
-    /// Whether one press from one location to another brings a single item nearer.
+    /// Whether moving a single item from one location to another shortens its journey.
     pub(super) fn leads(&self, task: usize, from: usize, to: usize) -> bool {
         let of = self.choice.tasks[task];
         let class = self.state[usize::from(of.at)];

@@ -1,4 +1,4 @@
-//! A plan in the making: where the items of its tasks lie, and the presses that bring, process and serve them.
+//! A plan under construction: places of its tasks' items, and the presses that bring, process and serve them.
 
 use super::assign::Assignment;
 use super::classes::ContentClasses;
@@ -7,19 +7,19 @@ use super::ground::KitchenTables;
 use super::journeys::{FreeMask, NEVER};
 use super::task::{AssemblyTask, STORAGE};
 
-/// No plan found.
+/// Length of a plan that got stuck.
 pub const BLOCKED: u32 = 1000;
 
-/// A plan in the making.
+/// A plan under construction.
 pub struct PressPlan<'a> {
     pub(super) ground: &'a KitchenTables,
     pub(super) goal: &'a ServingGoal,
     pub(super) state: ContentClasses,
     pub(super) choice: Assignment,
-    /// Tasks that are not done, one bit each.
+    /// Bit set of the remaining tasks.
     pub(super) open: u32,
     pub(super) presses: u32,
-    /// How many targets are served, and how many steps were taken.
+    /// Number of served targets.
     pub(super) served: usize,
     pub(super) steps: usize,
 }
@@ -34,7 +34,7 @@ impl<'a> PressPlan<'a> {
         PressPlan { ground, goal, state: *state, choice: *choice, open: choice.all(), presses: 0, served: 0, steps: 0 }
     }
 
-    /// Does to all parts what can be done to them where they are.
+    /// Processes all parts at their present places as far as possible.
     pub(super) fn process_all(&mut self) {
         for index in 0..self.choice.count {
             let at = self.choice.tasks[index].at;
@@ -44,7 +44,7 @@ impl<'a> PressPlan<'a> {
         }
     }
 
-    /// The target that the board is certain to be for: the only one, or the only one that can use what is on it.
+    /// The target to which the board is committed: the only target, or the only one that can use the stack on it.
     pub(super) fn begun(&self) -> Option<usize> {
         let class = usize::from(self.state[self.ground.board]);
         let mut can_be = (0..self.goal.targets.len()).filter(|&target| self.goal.ready[target][class] != 0);
@@ -68,7 +68,7 @@ impl<'a> PressPlan<'a> {
         })
     }
 
-    /// A task of the target; the only one if its stack is complete.
+    /// The first remaining task of a target.
     fn first_of(&self, target: usize) -> Option<(usize, AssemblyTask)> {
         self.tasks().find(|(_, task)| usize::from(task.target) == target)
     }
@@ -97,12 +97,12 @@ impl<'a> PressPlan<'a> {
         can
     }
 
-    /// Whether a task's item lies on the board as it has to be.
+    /// Whether a task's item is on the board in its final form.
     pub(super) fn is_ready(&self, task: &AssemblyTask) -> bool {
         self.goal.is_ready(self.ground, &self.state, task)
     }
 
-    /// Whether the board is free for parts of this target: empty, or started for it.
+    /// Whether the board can take parts of this target: it is empty or holds a part of it.
     pub(super) fn board_is_open(&self, target: usize) -> bool {
         let board = self.ground.board;
         if self.state[board] == 0 {
@@ -112,8 +112,8 @@ impl<'a> PressPlan<'a> {
         self.tasks().any(ours)
     }
 
-    /// When the plate is not free: lifts the complete stack off the board, so that the next target's parts, one of which may
-    /// be what lies on the plate, can come onto it meanwhile.
+    /// Lifts a complete stack off the board while the plate is occupied, so that parts of the next target (possibly the content of the
+    /// plate) can be brought onto the board.
     pub(super) fn lift(&mut self, target: usize, next: usize) -> bool {
         let ground = self.ground;
         let Some((index, task)) = self.first_of(target) else { return false };
@@ -175,7 +175,7 @@ impl<'a> PressPlan<'a> {
         true
     }
 
-    /// The part is on the board now: it and what was there become one.
+    /// Merges a part with the stack on the board.
     fn take_in(&mut self, target: usize, index: usize) {
         let board = self.ground.board;
         let task = self.choice.tasks[index];
@@ -196,7 +196,7 @@ impl<'a> PressPlan<'a> {
         self.state[board] = self.goal.part_class[target][usize::from(bits)];
     }
 
-    /// Presses of a task now.
+    /// Presses of a task with these hands and places free.
     pub(super) fn bring(&self, task: &AssemblyTask, free: FreeMask) -> u8 {
         let (ground, goal) = (self.ground, self.goal);
         let target = usize::from(task.target);
@@ -216,22 +216,22 @@ impl<'a> PressPlan<'a> {
         ground.journeys.presses(free | ground.journeys.bit[at], component, at, content)
     }
 
-    /// Presses of a task if nothing were in the way.
+    /// Presses of a task without obstacles.
     pub(super) fn least(&self, task: &AssemblyTask) -> u32 {
         u32::from(self.goal.way(&self.state, task, task.at).0)
     }
 
-    /// What the rest of a task cannot do without.
+    /// Free hands and places that the rest of a task requires.
     pub(super) fn needs(&self, task: &AssemblyTask) -> FreeMask {
         usize::from(self.goal.way(&self.state, task, task.at).1)
     }
 
-    /// The task whose item lies at a location.
+    /// The task whose item is at a location.
     pub(super) fn task_at(&self, location: usize) -> Option<(usize, AssemblyTask)> {
         self.tasks().find(|(_, task)| usize::from(task.at) == location)
     }
 
-    /// The item of a task lies at another place from now on, and is processed there; a press to get there is not counted.
+    /// Moves the item of a task to another place and processes it there; the moving press is not counted.
     pub(super) fn relocate(&mut self, index: usize, place: usize) {
         let from = usize::from(self.choice.tasks[index].at);
         self.state[place] = std::mem::take(&mut self.state[from]);
@@ -239,7 +239,7 @@ impl<'a> PressPlan<'a> {
         self.process(index, place);
     }
 
-    /// Does to a part what can be done to it where it is.
+    /// Processes a part at its place as far as possible.
     pub(super) fn process(&mut self, index: usize, place: usize) {
         let task = self.choice.tasks[index];
         if task.bits.count_ones() != 1 || self.ground.is_hand(place) {

@@ -1,4 +1,4 @@
-//! What a state is at least and at most worth, without a search.
+//! Lower and upper bound of a state's cost to go, without a search.
 
 use super::assign::Assignment;
 use super::classes::{ContentClasses, MAX_TARGETS};
@@ -6,7 +6,7 @@ use super::goal::ServingGoal;
 use super::ground::KitchenTables;
 use super::plan::{BLOCKED, PressPlan};
 
-/// The assignments for both orders of serving, the one with the lower bound first.
+/// The assignments for both serving orders, the one with the smaller lower bound first.
 pub struct AssignmentRating {
     choices: [Assignment; 2],
     count: usize,
@@ -45,7 +45,7 @@ impl AssignmentRating {
         &self.choices[0]
     }
 
-    /// What the targets that may be served first want from the storages: for each target, bits of its items.
+    /// Items that the targets which may be served first need from the storages: a bit set of items for each target.
     pub fn wanted(&self) -> [u8; MAX_TARGETS] {
         let mut wanted = [0; MAX_TARGETS];
         for choice in self.choices() {
@@ -55,12 +55,12 @@ impl AssignmentRating {
         wanted
     }
 
-    /// The presses of the best plan, [`BLOCKED`] if none comes to an end with at most `most`.
+    /// Length of the best plan; [`BLOCKED`] if no plan ends within `most` presses.
     pub fn upper(&self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses, most: u32) -> u32 {
         self.best_plan(ground, goal, state, most, false)
     }
 
-    /// The same, with second thoughts where the plans do not reach the bound.
+    /// Length of the best plan, with one deviation (discrepancy) tried where plans do not reach the lower bound.
     pub fn close_upper(&self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> u32 {
         let upper = self.upper(ground, goal, state, BLOCKED);
         if upper <= self.lower {
@@ -93,7 +93,7 @@ impl AssignmentRating {
     }
 }
 
-/// Whether it may make a difference which of the targets chooses first.
+/// Whether the order in which the targets choose their items can matter.
 fn order_counts(goal: &ServingGoal, state: &ContentClasses) -> bool {
     goal.targets_differ() && state.iter().any(|&class| goal.is_shared[usize::from(class)])
 }

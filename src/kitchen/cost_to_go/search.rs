@@ -1,5 +1,5 @@
-//! The bounded search behind a state that neither bounds nor plans settle: best first over single presses. It stops where
-//! something is known of a state, and wherever a plan reaches the bound.
+//! The bounded best-first search over single presses, for states that bounds and plans do not decide. It stops at states with a
+//! known value and wherever a plan reaches the lower bound.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -15,33 +15,33 @@ use super::store::{CostToGo, UNREACHABLE};
 use super::successors::successors;
 use crate::kitchen::{ContentId, State};
 
-/// How far a search goes.
+/// Limits of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SearchLimits {
-    /// States that are expanded, at most.
+    /// Largest number of expanded states.
     expansions: usize,
-    /// Whether items may be taken from a storage before they can be brought all the way to the board.
+    /// Whether items may be taken from a storage before their way to the board is free.
     takes: bool,
 }
 
-/// Enough for 99 % of the states met in sessions and 95 % of those after random presses.
+/// First limits: sufficient for 99 % of the states met in sessions and 95 % of those after random presses.
 pub const NEAR: SearchLimits = SearchLimits { expansions: 48, takes: false };
-/// For what is left two presses or more above the bound.
+/// Second limits, for states whose result is still two or more presses above the lower bound.
 pub const FAR: SearchLimits = SearchLimits { expansions: 24, takes: true };
 
-/// Most searches meet fewer states than this.
+/// Initial capacity: most searches meet fewer states.
 const ROOM: usize = 200;
 
-/// A state that was not looked at closely yet.
+/// Marks a state without a plan yet.
 const UNSEEN: u32 = u32::MAX;
 
-/// A state that the search may go on from.
+/// An open state of the search.
 struct Open {
-    /// Presses so far and at least to come.
+    /// Presses so far plus lower bound of the rest.
     bound: u32,
-    /// How many presses its plan is above the bound, or [`UNSEEN`].
+    /// Presses by which its plan exceeds the lower bound, or [`UNSEEN`].
     gap: u32,
-    /// The number of the state, in the order in which they were met.
+    /// Number of the state in order of discovery.
     met: usize,
     /// Presses so far.
     presses: u32,
@@ -49,7 +49,7 @@ struct Open {
 }
 
 impl Open {
-    /// The least bound goes first; of several the one whose plan is nearest to it, and that was met last.
+    /// Order of expansion: smallest bound first, then smallest gap of the plan, then latest discovery.
     fn rank(&self) -> (Reverse<u32>, Reverse<u32>, usize) {
         (Reverse(self.bound), Reverse(self.gap), self.met)
     }
@@ -80,21 +80,20 @@ pub struct BestFirstSearch<'a> {
     costs: &'a mut CostToGo,
     slot: usize,
     goal: &'a ServingGoal,
-    /// The least presses of a whole way found so far.
+    /// Length of the best solution so far.
     best: u32,
     open: BinaryHeap<Open>,
-    /// How many states were kept as open so far.
+    /// Number of states added so far.
     met: usize,
-    /// The least presses with which each state was met, by its key.
+    /// Least number of presses to each state, by key.
     seen: FxHashMap<u64, u32>,
     reach: SearchLimits,
-    /// Whether any way below `best` will do.
+    /// Whether the first solution below `best` ends the search.
     any: bool,
 }
 
 impl<'a> BestFirstSearch<'a> {
-    /// The presses of the best way from `start` that the search finds, `best` if it finds none better; it need not look for
-    /// any below `lower`.
+    /// Length of the best solution from `start`, or `best` if none is better; the search stops once `lower` is reached.
     pub fn run(
         costs: &'a mut CostToGo,
         slot: usize,
@@ -107,7 +106,7 @@ impl<'a> BestFirstSearch<'a> {
         BestFirstSearch::new(costs, slot, goal, best, reach, false).best(start, lower)
     }
 
-    /// Whether there is a way of less than `limit` presses from `start`.
+    /// Whether a solution with fewer than `limit` presses exists from `start`, as far as the search finds one.
     pub fn finds(
         costs: &'a mut CostToGo,
         slot: usize,
@@ -131,7 +130,7 @@ impl<'a> BestFirstSearch<'a> {
         BestFirstSearch { costs, slot, goal, best, open: BinaryHeap::new(), met: 0, seen, reach, any }
     }
 
-    /// The presses of the best way that is found; none below `lower` is looked for.
+    /// Runs the search; it stops once `lower` is reached.
     fn best(mut self, start: &ContentClasses, lower: u32) -> u32 {
         let rating = AssignmentRating::new(&self.costs.ground, self.goal, start);
         self.fidelity(start, rating, 0, lower);
@@ -181,7 +180,7 @@ impl<'a> BestFirstSearch<'a> {
         }
     }
 
-    /// Whether the state of this key was not met with as few presses before.
+    /// Whether the state with this key is reached with fewer presses than before.
     fn is_new(&mut self, key: u64, presses: u32) -> bool {
         if self.seen.get(&key).is_some_and(|&seen| seen <= presses) {
             return false;
@@ -190,7 +189,7 @@ impl<'a> BestFirstSearch<'a> {
         true
     }
 
-    /// A state met after `presses`.
+    /// Handles a state that is reached after `presses` presses.
     fn meet(&mut self, state: &ContentClasses, presses: u32, bound: u32) {
         let key = self.costs.key(self.slot, self.goal, state);
         if !self.is_new(key, presses) {
@@ -207,7 +206,7 @@ impl<'a> BestFirstSearch<'a> {
         if lower >= self.best {
             return;
         }
-        // Such as are not on a best way may never be wanted; a closer look can wait.
+        // States off the best path may never be expanded, so their plans are computed later.
         if lower > bound {
             return self.keep(lower, UNSEEN, presses, state);
         }
@@ -215,7 +214,7 @@ impl<'a> BestFirstSearch<'a> {
         self.fidelity(state, rating, presses, bound);
     }
 
-    /// A closer look at a state: does what is certain to be right, and plans from there.
+    /// Computes a state's plan after all certainly optimal presses.
     fn fidelity(&mut self, state: &ContentClasses, mut rating: AssignmentRating, presses: u32, bound: u32) {
         let goal = self.goal;
         let plan = PressPlan::new(&self.costs.ground, goal, state, rating.best_choice());
@@ -278,14 +277,14 @@ impl CostToGo {
         }
         self.counts.searches += 1;
         let best = BestFirstSearch::run(self, slot, goal, state, rating.lower, upper, NEAR);
-        // One press above the bound is common with two targets, and then mostly exact.
+        // With two targets a plan one press above the bound is common and mostly exact.
         match best < rating.lower + goal.targets.len() as u32 {
             true => best,
             false => BestFirstSearch::run(self, slot, goal, state, rating.lower, best, FAR),
         }
     }
 
-    /// The value of a state of classes without one of its targets, which has just been served.
+    /// Value of a state after one of its targets has been served.
     fn without(&mut self, goal: &ServingGoal, state: &ContentClasses, served: usize) -> u32 {
         let rest = goal.targets.iter().enumerate().filter(|(index, _)| *index != served);
         let rest: Vec<ContentId> = rest.map(|(_, &target)| target).collect();

@@ -1,4 +1,4 @@
-//! What a [`CostToGo`] holds: tables of the kitchen, goals, and what was found, by the keys of states.
+//! The data of a [`CostToGo`]: tables of the kitchen, goals, and caches by state keys.
 
 use std::sync::Arc;
 
@@ -11,58 +11,58 @@ use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, OrderC
 
 /// The value of states from which the goal cannot be reached.
 pub const UNREACHABLE: u32 = 255;
-/// 2^18 values and 2^15 decisions, 2 MiB each: larger ones would be asked as rarely twice, and answer more slowly.
+/// Cache sizes: 2^18 values and 2^15 decisions, 2 MiB each. Larger caches were slower without more hits.
 const CACHE_BITS: u32 = 18;
 const DECISION_BITS: u32 = 15;
-/// Keys leave so many bits for the goal and the kind of value.
+/// Number of key bits for the goal and the kind of value.
 pub(super) const SLOT_BITS: u32 = 16 + KIND_BITS;
 
-/// Computes costs to go and remembers them.
+/// Computes costs to go, with caches.
 #[derive(Clone, Debug)]
 pub struct CostToGo {
     pub(super) kitchen: Arc<Kitchen>,
     pub(super) ground: KitchenTables,
-    /// `[first target * contents + second target]`, made when first wanted; no second target: 0.
+    /// Goals by `[first target * contents + second target]` (0 for no second target), created on demand.
     pub(super) goals: Vec<Option<Arc<ServingGoal>>>,
     pub(super) cache: ValueCache,
     pub(super) decisions: DecisionCache,
-    /// Room for the states around a decision.
+    /// Reused buffer for the successor states of a decision.
     pub(super) nexts: Vec<SuccessorState>,
     pub(super) counts: EvaluationCounts,
-    /// `[agent][content]`: what an agent that has thrown it away can take again.
+    /// `[agent][content]`: whether an agent can take the content again after throwing it away.
     pub(super) takes: [Vec<bool>; 2],
-    /// By agent, whether it can throw away what it has taken.
+    /// By agent, whether it has a trash button.
     pub(super) trashes: [bool; 2],
 }
 
-/// How often what was done since the start.
+/// Counters of look-ups and computations since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EvaluationCounts {
-    /// Decisions that had to be put together, button by button.
+    /// Number of decisions that were not in the cache.
     pub decisions_missed: u64,
-    /// Single values asked for, and those that had to be computed.
+    /// Number of requested single values.
     pub values: u64,
     pub values_missed: u64,
-    /// Those for which bound and plans did not agree.
+    /// Number of values for which bounds and plans differed.
     pub searches: u64,
 }
 
-/// Where the value of a state is kept.
+/// Cache slot of a state's value.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum CacheSlot {
     /// Under its goal's slot and its key.
     At(usize, u64),
-    /// Nowhere: without orders, or with one that cannot be made, it is always the same.
+    /// No slot: the value is constant without orders, or if an order cannot be served.
     Always(u32),
 }
 
-/// A state that a button leads to.
+/// State after a button, with its bounds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SuccessorState {
     pub(super) button: usize,
     pub(super) state: State,
     pub(super) kept: CacheSlot,
-    /// Its bound and, where that was wanted, what its best plan takes.
+    /// Its lower bound and, where requested, the length of its best plan.
     pub(super) bracket: (u32, Option<u32>),
 }
 
@@ -89,12 +89,12 @@ impl CostToGo {
         }
     }
 
-    /// How much was looked up and how much computed since the start.
+    /// Counters since the start.
     pub fn counts(&self) -> EvaluationCounts {
         self.counts
     }
 
-    /// The stacks that the present orders want, in the order of the orders, and their number.
+    /// Target stacks of the present orders, in their order, and their number.
     #[inline]
     pub(super) fn targets(&self, state: State, recipes: &Recipes) -> ([ContentId; MAX_TARGETS], usize) {
         let mut targets = [ContentId::EMPTY; MAX_TARGETS];
@@ -108,7 +108,7 @@ impl CostToGo {
         (targets, count)
     }
 
-    /// A state's key together with these targets (at least one), and their slot.
+    /// Slot of the targets (at least one) and key of the state.
     #[inline]
     pub(super) fn key_of_state(&mut self, state: State, targets: &mut [ContentId]) -> Option<(usize, u64)> {
         targets.sort_unstable();
@@ -118,7 +118,7 @@ impl CostToGo {
         Some((slot, goal.key_of_state(state) << SLOT_BITS | (slot << KIND_BITS) as u64))
     }
 
-    /// The key of its exact value.
+    /// Cache key of a state's exact value.
     pub(super) fn key(&self, slot: usize, goal: &ServingGoal, state: &ContentClasses) -> u64 {
         goal.key_of_classes(state) << SLOT_BITS | (slot << KIND_BITS) as u64
     }

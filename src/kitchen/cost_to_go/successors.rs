@@ -1,4 +1,4 @@
-//! The single presses over classes: where one press can lead.
+//! Successor states of single presses, over classes.
 
 use crate::kitchen::{Agent, ButtonAction};
 
@@ -6,8 +6,8 @@ use super::classes::{ContentClasses, MAX_TARGETS, USELESS};
 use super::goal::ServingGoal;
 use super::ground::KitchenTables;
 
-/// Calls `visit` with every state that one press can lead to, but presses that can never help. Only what `wanted` says is
-/// taken from a storage: for each target, bits of its items.
+/// Calls `visit` with every state after one press, without presses that can never help. Only items in `wanted` (a bit set of items
+/// for each target) are taken from a storage.
 pub fn successors(
     ground: &KitchenTables,
     goal: &ServingGoal,
@@ -38,7 +38,7 @@ pub fn successors(
                 match (held, there) {
                     (0, 0) => continue,
                     (0, _) => (next[hand], next[location]) = (there, 0),
-                    // What is of no use is thrown away rather than put down.
+                    // Useless contents are thrown away rather than put down.
                     (USELESS, _) => continue,
                     (_, 0) => {
                         if !ground.accepts(location, goal.content[usize::from(held)]) {

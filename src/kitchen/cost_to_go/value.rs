@@ -1,5 +1,5 @@
-//! Single values: the presses until all orders or one of them are served, and whether that is below a limit, which is mostly
-//! settled by bounds.
+//! Single values: number of presses until all orders or one order are served, and whether it is below a limit, which bounds
+//! mostly decide.
 
 use super::fidelity::Fidelity;
 use super::plan::BLOCKED;
@@ -9,13 +9,13 @@ use super::store::{CacheSlot, CostToGo, UNREACHABLE};
 use crate::kitchen::{ContentId, LocationId, OrderContent, Recipes, State};
 
 impl CostToGo {
-    /// C(s, recipes): presses until all present orders are served; 0 if there is none, [`UNREACHABLE`] if they never can be.
+    /// C(s, recipes): presses until all present orders are served; 0 without orders, [`UNREACHABLE`] if they cannot be served.
     pub fn all_orders(&mut self, state: State, recipes: &Recipes) -> u32 {
         let (mut targets, count) = self.targets(state, recipes);
         self.cost(Fidelity::Exact, state, &mut targets[..count])
     }
 
-    /// C_k(s, recipes): presses until the order at this location is served; 0 if it wants nothing.
+    /// C_k(s, recipes): presses until the order at this location is served; 0 without an order.
     pub fn order(&mut self, state: State, recipes: &Recipes, order: LocationId) -> u32 {
         self.order_with(Fidelity::Exact, state, recipes, order)
     }
@@ -28,7 +28,7 @@ impl CostToGo {
         }
     }
 
-    /// Whether the order's value is below `limit`, which is at most one press above it; cheaper than the value.
+    /// Whether the order's value is below `limit`, where `limit` is at most one press above the value; cheaper than the value.
     pub fn order_is_below(
         &mut self,
         fidelity: Fidelity,
@@ -66,7 +66,7 @@ impl CostToGo {
         }
     }
 
-    /// The bound of a state and, if that is not above `most`, what its best plan takes.
+    /// The lower bound of a state and, if that is at most `most`, the length of its best plan.
     pub(super) fn bracket(&mut self, state: State, kept: CacheSlot, most: u32) -> (u32, Option<u32>) {
         let (slot, key) = match kept {
             CacheSlot::At(slot, key) => (slot, key),
@@ -107,7 +107,7 @@ impl CostToGo {
         }
     }
 
-    /// Whether a search finds a way of less than `limit` presses.
+    /// Whether a search finds a solution with fewer than `limit` presses.
     fn has_way(&mut self, slot: usize, state: State, lower: u32, limit: u32) -> bool {
         let Some(goal) = self.goals[slot].clone() else { return false };
         let classes = self.classes(&goal, state);

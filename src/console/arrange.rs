@@ -1,14 +1,14 @@
-//! Where the things of a kitchen stand on the console, computed from their areas on the wall display.
+//! The kitchen map of the console, computed from the areas on the wall display.
 //!
-//! The display is cut along lines that cross no area: the strip of the orders, then columns, then rows. The cells of the
-//! panel are dealt out along the same cuts, so that every kitchen gets boxes that can be read, and every cell of the
-//! panel has its point on the display and back: the pointer can stand for the gaze, and the gaze for a mark.
+//! The display is divided along lines that cross no area: the strip of the orders, then columns, then rows. The cells of the panel
+//! are divided in the same way, so that the boxes of every kitchen are readable. Every cell maps to a point of the display and back,
+//! which places the gaze mark and lets the mouse pointer serve as gaze.
 
 use ratatui::layout::Rect;
 
 use crate::kitchen::{Agent, DisplayArea, Kitchen, LocationId, LocationKind};
 
-/// What stands at a place.
+/// An element of the kitchen map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapElement {
     Location(LocationId),
@@ -16,33 +16,33 @@ pub enum MapElement {
     Storage(usize),
 }
 
-/// A thing with its box on the screen.
+/// An element with its box on the screen.
 #[derive(Clone, Debug)]
 pub struct MapBox {
     pub thing: MapElement,
     pub cells: Rect,
     area: DisplayArea,
-    /// The part of the display, and of the screen, that belongs to it: together they cover everything.
+    /// Region of the display, and of the screen, that belongs to the element; the regions cover everything.
     display: Bounds,
     screen: Bounds,
 }
 
-/// Columns of the kitchen that belong to one agent, or to both.
+/// Columns of the map that belong to one agent, or to both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AgentZone {
     pub owner: Option<Agent>,
     pub cells: Rect,
 }
 
-/// The whole arrangement.
+/// The kitchen map.
 #[derive(Clone, Debug)]
 pub struct KitchenMap {
     pub spots: Vec<MapBox>,
-    /// The line above the columns where the agents' names stand.
+    /// Zones of the agents, whose names stand above the columns.
     pub zones: Vec<AgentZone>,
 }
 
-/// A rectangle as low and high end along each axis: 0 is x, 1 is y.
+/// A rectangle as lower and upper end along each axis (0 is x, 1 is y).
 #[derive(Clone, Copy, Debug)]
 struct Bounds([[f64; 2]; 2]);
 
@@ -57,7 +57,7 @@ const MIN_CARD: u16 = 12;
 const MAX_ORDER: u16 = 44;
 
 impl KitchenMap {
-    /// Arranges a kitchen in these cells, with room for the keys of the human's storage where somebody has them.
+    /// Computes the map of a kitchen in these cells; `with_keys` reserves room for the keys of the human's storage.
     pub fn new(kitchen: &Kitchen, cells: Rect, with_keys: bool) -> KitchenMap {
         let items = items(kitchen, with_keys);
         let (strip, body): (Vec<&Item>, Vec<&Item>) = items.iter().partition(|item| is_order(kitchen, item.thing));
@@ -69,7 +69,7 @@ impl KitchenMap {
             let all: Vec<&Item> = items.iter().collect();
             return KitchenMap::columns(&all, cells, [0.0, 1.0]);
         }
-        // An order is one line where there is little room; else name, dish, recipe, and air.
+        // An order takes one line on small screens, else lines for name, dish and recipe.
         let strip_rows = if cells.height >= 18 { 4 } else { 1 };
         let (strip_cells, body_cells) = match above {
             true => split_rows(cells, strip_rows),
@@ -88,7 +88,7 @@ impl KitchenMap {
         plan
     }
 
-    /// Items in columns that share rows; the line of the zones goes on top.
+    /// Arranges items in columns with common rows below the line of the zones.
     fn columns(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> KitchenMap {
         let (line, cells) = split_rows(cells, 1);
         let columns = clusters(items, 0);
@@ -143,7 +143,7 @@ impl KitchenMap {
         (x >= 0.0 && y >= 0.0).then_some((x as u16, y as u16))
     }
 
-    /// The spot whose bounds hold the point, or the nearest to it.
+    /// The box whose bounds contain the point, or the nearest box.
     fn nearest(&self, point: [f64; 2], bounds: impl Fn(&MapBox) -> Bounds) -> Option<&MapBox> {
         let distance = |spot: &MapBox| {
             let outside = |axis: usize| {
@@ -173,7 +173,7 @@ impl MapBox {
     }
 }
 
-/// Maps a value along a line through four knots, continued at both ends with the slope of the middle piece.
+/// Piecewise linear map through four knots, continued at both ends with the slope of the middle piece.
 fn along(value: f64, knots: &[(f64, f64); 4], order: impl Fn((f64, f64)) -> (f64, f64)) -> f64 {
     let knots = knots.map(order);
     let piece = |a: (f64, f64), b: (f64, f64)| match b.0 - a.0 {
@@ -274,7 +274,7 @@ fn ends(groups: &[Vec<&Item>], index: usize, axis: usize, whole: [f64; 2]) -> [f
     [from, to.max(from)]
 }
 
-/// The widths of the columns: what they need, and the rest among those with locations.
+/// Widths of the columns: their needs first, then the rest divided among columns with locations.
 fn widths(columns: &[Vec<&Item>], total: u16) -> Vec<u16> {
     let need: Vec<u16> = columns.iter().map(|c| c.iter().map(|item| item.min_columns).max().unwrap_or(0)).collect();
     let grows = |column: &[&Item]| column.iter().any(|item| matches!(item.thing, MapElement::Location(_)));
@@ -291,7 +291,7 @@ fn widths(columns: &[Vec<&Item>], total: u16) -> Vec<u16> {
         }
         widths.push(width);
     }
-    // What is missing is taken from the widest columns.
+    // A deficit is taken from the widest columns.
     for _ in total..sum {
         if let Some(widest) = widths.iter_mut().max() {
             *widest -= 1;
@@ -349,7 +349,7 @@ fn row_of_orders(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Vec<MapBo
     groups.iter().enumerate().map(place).collect()
 }
 
-/// Lets nothing end before it begins, whatever a layout says.
+/// Corrects boxes whose end lies before their beginning.
 fn cover(mut spots: Vec<MapBox>) -> Vec<MapBox> {
     for spot in &mut spots {
         for axis in 0..2 {

@@ -1,10 +1,10 @@
-//! A key, its name in key files, and its short name on the screen.
+//! A key with its names in key files and on the screen.
 
 use std::fmt;
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-/// Keys with a name of their own: the name in key files, and the one on the screen.
+/// Special keys: name in key files, and name on the screen.
 const NAMED: [(&str, &str, KeyCode); 16] = [
     ("space", "space", KeyCode::Char(' ')),
     ("tab", "tab", KeyCode::Tab),
@@ -24,10 +24,10 @@ const NAMED: [(&str, &str, KeyCode); 16] = [
     ("end", "end", KeyCode::End),
 ];
 
-/// With ctrl these letters are other keys in most terminals.
+/// Letters that with ctrl arrive as other keys in most terminals.
 const SENT_AS: [(char, &str); 4] = [('h', "backspace"), ('i', "tab"), ('j', "enter"), ('m', "enter")];
 
-/// What a key file may name.
+/// Description of a valid key name.
 const REMEDY: &str = "a character such as \"k\", a letter with ctrl such as \"ctrl+k\", f1 to f12, or one of space, \
                           tab, backtab, enter, backspace, esc, insert, delete, left, right, up, down, pgup, pgdn, home, end";
 
@@ -53,7 +53,7 @@ impl KeyChord {
         KeyChord { code: KeyCode::Char(key), ctrl: true }
     }
 
-    /// The chord of a key event. Capitals count as their small letters, so that caps lock does no harm.
+    /// The chord of a key event; capitals count as small letters, so that caps lock has no effect.
     pub fn from_event(key: &KeyEvent) -> KeyChord {
         let code = match key.code {
             KeyCode::Char(letter) => KeyCode::Char(small(letter)),
@@ -67,10 +67,10 @@ impl KeyChord {
         KeyChord::char(small(letter))
     }
 
-    /// Reads a name as key files have it.
+    /// Parses a key name of a key file.
     ///
     /// # Errors
-    /// What was found and what would be right.
+    /// The text found, and a description of a valid one.
     pub fn parse(name: &str) -> Result<KeyChord, (String, String)> {
         let wrong = |found: String| Err((found, REMEDY.to_string()));
         if let Some(rest) = name.strip_prefix("ctrl+") {

@@ -1,5 +1,5 @@
-//! What is on the screen around a trial: steps to be ticked, items to be answered, a criterion that was not met. Arrows,
-//! digits and the key that goes on work it; everything that they do is an event.
+//! Forms around a trial: steps to tick, questionnaire items, and an unmet criterion. Arrows, digits and the advance key operate
+//! them; every change is an event.
 
 use crossterm::event::KeyCode;
 
@@ -11,25 +11,25 @@ use crate::session::plan::{PhaseSpec, Questionnaire};
 use crate::session::protocol::{Protocol, ProtocolEvent};
 use crate::session::{Event, Session};
 
-/// Why a participant may go on who did not meet the criterion: short, so that no text has to be typed.
+/// Preset reasons for waiving the criterion of the practice.
 pub const WAIVERS: [&str; 4] =
     ["knows the task all the same", "no time for more practice", "trouble with a device", "other, see the notes"];
 
-/// What stands on the sheet in front of the console.
+/// Content of the form sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SheetContent<'a> {
-    /// Steps to be ticked one after another.
+    /// Steps to tick in order.
     Steps {
         title: &'static str,
         steps: &'a [String],
     },
     Questions(&'a Questionnaire),
-    /// The criterion was not met: again, or go on all the same.
+    /// The criterion was not met: repeat the practice, or waive it.
     Failed,
 }
 
 impl SheetContent<'_> {
-    /// As it stands in the log, where it says what the wizard sees.
+    /// Name in the log, as part of the wizard's visible screen.
     pub fn name(&self) -> &'static str {
         match self {
             SheetContent::Steps { .. } => "steps",
@@ -56,16 +56,16 @@ pub fn sheet(session: &Session) -> Option<SheetContent<'_>> {
     }
 }
 
-/// What a key on the sheet asks for.
+/// A key of the sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SheetKey {
-    /// On: the next step, item or phase.
+    /// Advance to the next step, item or phase.
     On,
     Back,
     Digit(u8),
 }
 
-/// What a key means on a sheet, if it means anything there; `advances`: it is the key that starts and pauses trials.
+/// The meaning of a key on a sheet, if any; `advances` marks the key that starts and pauses trials.
 pub(super) fn stroke(code: KeyCode, advances: bool) -> Option<SheetKey> {
     match code {
         _ if advances => Some(SheetKey::On),
@@ -76,7 +76,7 @@ pub(super) fn stroke(code: KeyCode, advances: bool) -> Option<SheetKey> {
     }
 }
 
-/// Does what the key on the sheet asks for.
+/// Carries out a key of the sheet.
 pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKey) -> Option<ConsoleCommand> {
     let (sheet, protocol) = (sheet(session)?, session.protocol.as_ref()?);
     match (sheet, stroke) {
@@ -130,7 +130,7 @@ fn ask(
     }
 }
 
-/// From a phase that is done to the next one, or to the next recording.
+/// Goes from a finished phase to the next one, or to the next recording.
 pub(super) fn leave(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     if session.protocol.is_some() && session.aborted.is_some() {
         return Some(ConsoleCommand::Redo);

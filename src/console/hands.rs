@@ -1,4 +1,4 @@
-//! The experimenter's hands at the console: keys that correct the kitchen and the robot, and the lists that they open.
+//! Manual interventions at the console: keys that correct the kitchen and the robot, and the lists that they open.
 
 use super::key_action::ManualAction;
 use super::message::ConsoleCommand;
@@ -13,7 +13,7 @@ use crate::kitchen::Agent;
 use crate::session::{Event, Phase, Session};
 use crossterm::event::KeyCode;
 
-/// Does what a key of the hands says, or asks.
+/// Carries out an intervention, or opens its list.
 pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualAction) -> Option<ConsoleCommand> {
     let by = Sender::Wizard;
     match hand {

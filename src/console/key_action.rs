@@ -1,4 +1,4 @@
-//! What keys do, and the lines of the table of keys.
+//! Actions of keys, and the entries of the key table.
 
 use std::fmt;
 use std::ops::Range;
@@ -10,22 +10,22 @@ use crate::communication::Signal;
 use crate::kitchen::{ButtonId, LocationId};
 use crate::measures::coding::CauseKind;
 
-/// Which hand plays: the wizard's keys, or the buttons of a person who plays the participant.
+/// Key layer: the wizard's keys, or the buttons of a person who plays the participant at this keyboard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyLayer {
     Wizard,
     Participant,
 }
 
-/// What a key does.
+/// Action of a key.
 #[derive(Clone, Debug, PartialEq)]
 pub enum KeyAction {
     Signal(LocationId, Signal),
     Press(ButtonId),
-    /// Send the signal that is recommended most.
+    /// Send the recommended signal.
     Accept,
     TakeBack,
-    /// A marker with this note of the session's.
+    /// Set a marker with this preset note.
     Note(usize),
     /// Start, pause or resume the trial.
     Advance,
@@ -36,24 +36,24 @@ pub enum KeyAction {
     Hand(ManualAction),
     Move(ReplayKey),
     Look(PanelKey),
-    /// One aspect of the belief over time, then the next one.
+    /// Show the belief about one aspect over time; again for the next aspect.
     Belief,
-    /// Where wizard and assistant differ.
+    /// A key of the comparison of wizard and assistant.
     Differ(ComparisonKey),
-    /// Code an error.
+    /// A key of the rater, to code an error.
     Rate(RaterKey),
     Help,
     Quit,
 }
 
-/// What a key of the hands does.
+/// A manual intervention of the experimenter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ManualAction {
-    /// Say what really lies at a location.
+    /// Correct the content of a location.
     Correct,
     /// Hold the robot before its next press, or release it.
     HoldRobot,
-    /// The robot gives up its press and decides anew.
+    /// Skip the robot's ongoing press.
     SkipPress,
     /// Choose the robot's next press.
     DriveRobot,
@@ -61,52 +61,52 @@ pub enum ManualAction {
     Abort,
     /// Do a trial again that was aborted or excluded.
     Redo,
-    /// Show what is ready for the trial, and what is not.
+    /// Show the preflight checks.
     Preflight,
-    /// Check the calibration of the eye tracker.
+    /// Start a gaze accuracy check.
     Calibrate,
-    /// Write a note in words.
+    /// Write a free text note.
     NoteInWords,
-    /// Leave the trial out of the analysis, for a reason; or take that back.
+    /// Exclude the trial from the analysis for a reason, or take that back.
     Exclude,
 }
 
-/// What a key asks of the screen.
+/// A navigation key of the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PanelKey {
-    /// The next panel alone; after the last all of them.
+    /// Show the next panel at full size; after the last one, all panels.
     Next,
     Last,
     All,
-    /// Further back in time, and forward again.
+    /// Scroll back in time.
     Back,
     Forward,
 }
 
-/// What a key asks of a rater's console.
+/// A key of the rater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RaterKey {
-    /// To the next error, or the one before.
+    /// Go to the next error.
     Next,
     Last,
-    /// The participant believed something wrong about this place, or the order there and the recipe of its dish.
+    /// Code a false belief about this location, or about the order and the recipe of its dish.
     Belief(LocationId),
-    /// Another cause.
+    /// Code another cause.
     Cause(CauseKind),
-    /// Nothing is said about the error after all.
+    /// Remove the code of the error.
     Clear,
 }
 
-/// The tables of a key file.
+/// A table of a key file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeySection {
-    /// What the console of a live session does.
+    /// Keys of the live console.
     Console,
-    /// What the console over a recording does.
+    /// Keys of the replay console.
     Replay,
-    /// The signals, by location.
+    /// Keys of signals, by location.
     Signals,
-    /// The participant's buttons, by name.
+    /// Keys of the participant's buttons, by name.
     Buttons,
 }
 
@@ -122,31 +122,31 @@ impl fmt::Display for KeySection {
     }
 }
 
-/// One line of the table.
+/// An entry of the key table.
 #[derive(Clone, Debug)]
 pub struct KeyBinding {
-    /// Where it stands in a key file, and its name there.
+    /// Table of the key file that contains the entry.
     pub section: KeySection,
     pub name: String,
-    /// Its keys; the first is the one that is shown.
+    /// Its keys; the first one is shown on the screen.
     pub chords: Vec<KeyChord>,
     pub action: KeyAction,
-    /// The heading that it stands under in the help.
+    /// Heading in the help.
     pub group: &'static str,
     pub help: String,
-    /// What the footer says, if it is in the footer.
+    /// Label in the footer, if it is shown there.
     pub footer: Option<&'static str>,
-    /// The layer that it works in; `None`: in every layer.
+    /// Key layer of the entry; `None` for all layers.
     pub layer: Option<KeyLayer>,
 }
 
 impl KeyBinding {
-    /// Whether two lines can act at the same time, so that they need different keys.
+    /// Whether two entries can be active at the same time and so need different keys.
     pub(super) fn meets(&self, other: &KeyBinding) -> bool {
         self.layer.is_none() || other.layer.is_none() || self.layer == other.layer
     }
 
-    /// Its first key, where that is a letter.
+    /// Its first key, if that is a letter.
     pub(super) fn letter(&self) -> Option<char> {
         match self.chords.first()?.code {
             crossterm::event::KeyCode::Char(letter) => Some(letter),
@@ -155,16 +155,16 @@ impl KeyBinding {
     }
 }
 
-/// Where a wrong key stands.
+/// Source of an invalid key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KeyPlace {
-    /// In the key file, at these bytes.
+    /// The key file, at this byte range.
     File(Range<usize>),
-    /// In the layout, as the key of a signal (the wizard's) or of a button (the participant's).
+    /// The layout, as the key of a signal (wizard) or of a button (participant).
     Layout(KeyLayer, char),
 }
 
-/// A key that cannot be.
+/// An invalid key.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{found}")]
 pub struct KeyError {

@@ -1,4 +1,4 @@
-//! The key file: what it may say, what it changes in the table, and how the whole table looks as such a file.
+//! The key file: its format, its application to the key table, and its output.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};
@@ -11,7 +11,7 @@ use toml::Spanned;
 use super::chord::KeyChord;
 use super::key_action::{KeyAction, KeyBinding, KeyError, KeyPlace, KeySection};
 
-/// A key file as it is written: for each table, names with their keys. What is not there stays as it is.
+/// A parsed key file: for each table, action names with their keys. Missing actions keep their keys.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct KeyMap {
@@ -23,7 +23,7 @@ pub struct KeyMap {
 
 type Table = BTreeMap<Spanned<String>, Spanned<Names>>;
 
-/// The keys of one line: `"q"`, `["q", "ctrl+c"]`, or none: `[]`.
+/// The keys of one action: `"q"`, `["q", "ctrl+c"]`, or none: `[]`.
 #[derive(Clone, Debug, Default)]
 struct Names(Vec<String>);
 
@@ -67,12 +67,12 @@ impl KeyMap {
         self.table(line.section).iter().find(|(name, _)| *name.get_ref() == line.name)
     }
 
-    /// Where the file says something about this line.
+    /// Byte range of an entry in the file.
     pub(super) fn place(&self, line: &KeyBinding) -> Option<Range<usize>> {
         self.entry(line).map(|(name, keys)| name.span().start..keys.span().end)
     }
 
-    /// Gives the lines of the live console and of the replay the keys of this file.
+    /// Applies the file to the key tables of the live console and of the replay.
     pub(super) fn apply(&self, live: &mut [KeyBinding], replay: &mut [KeyBinding]) -> Result<(), KeyError> {
         for section in [KeySection::Console, KeySection::Replay, KeySection::Signals, KeySection::Buttons] {
             let known = || live.iter().chain(replay.iter()).filter(move |line| line.section == section);
@@ -96,7 +96,7 @@ impl KeyMap {
     }
 }
 
-/// The keys that the file gives a line.
+/// The keys that the file assigns to an entry.
 fn chords(line: &KeyBinding, names: &Spanned<Names>) -> Result<Vec<KeyChord>, KeyError> {
     let wrong = |found: String, remedy: &str| {
         let place = KeyPlace::File(names.span());
@@ -128,7 +128,7 @@ fn chords(line: &KeyBinding, names: &Spanned<Names>) -> Result<Vec<KeyChord>, Ke
     }
 }
 
-/// The whole table as a key file, with a comment for each line: what it reads back to is the table again.
+/// The whole key table as a key file with a comment for each entry; reading it back gives the same table.
 pub fn write(lines: &[KeyBinding]) -> String {
     let mut text = String::from(
         "# The keys of tomcom's console, ready to be changed. A session file names this file (relative to itself):\n\

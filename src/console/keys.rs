@@ -1,7 +1,7 @@
-//! The one table of keys: it makes the bindings, the footer, the help and the badges at the things in the kitchen.
+//! The key table, the single source of key bindings, footer, help and key badges.
 //!
-//! Letters of signals and buttons stand in the layout, all other keys in `super::table`; a key file
-//! ([`super::keymap`]) may change both. The space bar is the robot stop in every view and layer, whatever a file says.
+//! Keys of signals and buttons come from the layout, all other keys from `super::table`; a key file ([`super::keymap`]) can
+//! change both. The space bar always stops the robot, in every view and layer.
 
 use super::chord::KeyChord;
 use super::key_action::{KeyAction, KeyBinding, KeyError, KeyLayer, KeyPlace, KeySection, RaterKey};
@@ -10,23 +10,23 @@ use super::table;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, LocationKind};
 use crate::session::settings::{ParticipantKind, SessionSpec};
 
-/// The table.
+/// The key table.
 #[derive(Clone, Debug)]
 pub struct KeyBindings {
     pub bindings: Vec<KeyBinding>,
-    /// How the signal about each location is written in the timeline: its key.
+    /// Key of the signal about each location, as the timeline shows it.
     marks: Vec<Option<KeyChord>>,
-    /// The lines that act only where wizard and assistant are compared.
+    /// Entries that are active only in a comparison of wizard and assistant.
     comparing: Vec<KeyBinding>,
-    /// The lines that act only where errors are coded.
+    /// Entries that are active only while errors are coded.
     coding: Vec<KeyBinding>,
 }
 
 impl KeyBindings {
-    /// The table of a live session.
+    /// The key table of a live session.
     ///
     /// # Errors
-    /// A key with two meanings, or a line of the key file that cannot be.
+    /// A key with two meanings, or an invalid entry of the key file.
     pub fn live(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyMap) -> Result<KeyBindings, KeyError> {
         let Consoles { comparing, mut bindings, .. } =
             Consoles::from_bindings(lines(kitchen, map)?, KeySection::Console);
@@ -50,7 +50,7 @@ impl KeyBindings {
         Ok(KeyBindings { bindings, marks, comparing, coding: Vec::new() })
     }
 
-    /// The table of a training: the signals, and what the console itself needs.
+    /// The key table of a training: signals, and keys of the console itself.
     ///
     /// # Errors
     /// As of [`KeyBindings::live`].
@@ -65,7 +65,7 @@ impl KeyBindings {
         Ok(keys)
     }
 
-    /// The table of a replay.
+    /// The key table of a replay.
     ///
     /// # Errors
     /// As of [`KeyBindings::live`].
@@ -77,13 +77,13 @@ impl KeyBindings {
         Ok(KeyBindings { bindings, marks, comparing, coding })
     }
 
-    /// The same with the keys of the comparison.
+    /// Adds the keys of the comparison.
     pub fn with_comparison(mut self) -> KeyBindings {
         self.bindings.append(&mut self.comparing);
         self
     }
 
-    /// The same with the keys of a rater: the letters of the signals say what was believed wrong, and so no letter quits.
+    /// Adds the keys of a rater: letters of signals then code false beliefs, so no letter quits the program.
     pub fn with_coding(mut self, kitchen: &Kitchen) -> KeyBindings {
         for line in &mut self.bindings {
             let marks = &self.marks;
@@ -95,7 +95,7 @@ impl KeyBindings {
         self
     }
 
-    /// What a key means in a layer.
+    /// The entry of a key in a layer.
     pub fn find(&self, layer: KeyLayer, chord: KeyChord) -> Option<&KeyBinding> {
         let acts = |line: &&KeyBinding| line.chords.contains(&chord) && line.layer.is_none_or(|only| only == layer);
         self.bindings.iter().find(acts)
@@ -107,12 +107,12 @@ impl KeyBindings {
         self.bindings.iter().find(is_it).and_then(|line| line.chords.first().copied())
     }
 
-    /// The key with which a rater says that something was believed wrong about a location.
+    /// The key with which a rater codes a false belief about a location.
     pub fn of_belief(&self, location: LocationId) -> Option<KeyChord> {
         self.chord_for(&KeyAction::Rate(RaterKey::Belief(location)))
     }
 
-    /// How the signal about a location is written in the timeline, also in a replay, where no key sends it.
+    /// Key of the signal about a location as the timeline shows it, also in a replay.
     pub fn mark(&self, location: LocationId) -> Option<KeyChord> {
         self.marks.get(location.index()).copied().flatten()
     }
@@ -128,7 +128,7 @@ impl KeyBindings {
     }
 }
 
-/// The lines of a console: those that compare, those that code errors, and all the others.
+/// Entries of a console: comparison, coding, and all others.
 struct Consoles {
     comparing: Vec<KeyBinding>,
     coding: Vec<KeyBinding>,
@@ -148,17 +148,16 @@ impl Consoles {
     }
 }
 
-/// Every line of both consoles for a kitchen, with the keys of a key file; no key has two meanings, whatever the
-/// session's settings are.
+/// All entries of both consoles for a kitchen, with the keys of a key file. No key has two meanings under any settings.
 ///
 /// # Errors
-/// A key with two meanings, or a line of the key file that cannot be.
+/// A key with two meanings, or an invalid entry of the key file.
 pub fn lines(kitchen: &Kitchen, map: &KeyMap) -> Result<Vec<KeyBinding>, KeyError> {
     let mut live = table::live(kitchen);
     let mut replay = table::replay();
     map.apply(&mut live, &mut replay)?;
     for lines in [&live, &replay] {
-        // The keys of the layout are checked last, so that they are what a message is about.
+        // The keys of the layout are checked last, so that an error message is about them.
         let (ours, letters): (Vec<&KeyBinding>, Vec<&KeyBinding>) =
             lines.iter().partition(|line| matches!(line.section, KeySection::Console | KeySection::Replay));
         let ordered: Vec<&KeyBinding> = ours.into_iter().chain(letters).collect();
@@ -174,7 +173,7 @@ pub fn lines(kitchen: &Kitchen, map: &KeyMap) -> Result<Vec<KeyBinding>, KeyErro
     Ok(live)
 }
 
-/// The message about a key with two meanings, at the line of the key file that is to blame, or else of the layout.
+/// The error about a key with two meanings, located in the key file or else in the layout.
 fn clash(map: &KeyMap, earlier: &KeyBinding, line: &KeyBinding, chord: KeyChord) -> KeyError {
     let (name, layer) = (chord.name(), line.layer.unwrap_or(KeyLayer::Wizard));
     let in_file = map.place(line).map(|place| (place, line, earlier));

@@ -1,40 +1,40 @@
-//! What reaches the console, and what it asks for.
+//! Messages to the console, and commands from it.
 
 use crossterm::event::KeyEvent;
 
 use super::playback::ReplayKey;
 use crate::session::Event;
 
-/// Something that the console has to know.
+/// An input to the console.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConsoleMessage {
     Key(KeyEvent),
-    /// The mouse pointer is over this cell, column and row.
+    /// The mouse pointer moved to this cell (column, row).
     Pointer(u16, u16),
     /// The mouse was clicked on this cell.
     Click(u16, u16),
-    /// The wheel was turned over this cell, by so many steps away from the hand.
+    /// The mouse wheel turned over this cell, by this number of steps upwards.
     Wheel(u16, u16, i8),
-    /// The terminal has this size now, columns and rows.
+    /// The terminal was resized to these columns and rows.
     Resized(u16, u16),
-    /// The terminal window gained or lost the keyboard.
+    /// The terminal gained or lost keyboard focus.
     Focus(bool),
 }
 
-/// What the console asks of whoever runs it.
+/// A command of the console to the shell that runs it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConsoleCommand {
     /// An input of the session.
     Input(Event),
-    /// Record what was found before the trial, and start it.
+    /// Record the preflight results and start the trial.
     Start(Event),
-    /// Another place in a recording.
+    /// Seek in a recording.
     Move(ReplayKey),
-    /// What the rater says has changed: it is to be kept.
+    /// Save the rater's codes.
     Code,
-    /// Close this recording and do its trial again in another one.
+    /// Close this recording and repeat its trial in another one.
     Redo,
-    /// This recording is done: close it and go on to the next one of the series.
+    /// Close this finished recording and continue with the next one of the series.
     Next,
     /// Close the console; in a live run the session ends.
     Quit,

@@ -1,5 +1,5 @@
-//! The wizard's console, as in the Elm architecture: `key -> Message -> update -> Option<Command>`, and a
-//! [`view()`] that only reads. What affects participant, robot or analysis leaves as an event; the rest stays in the [`ConsoleModel`].
+//! The wizard's console in the Elm architecture: `key -> Message -> update -> Option<Command>`, and a [`view()`] that only reads.
+//! Whatever affects participant, robot or analysis becomes an event; everything else stays in the [`ConsoleModel`].
 
 pub mod arrange;
 pub mod calibration;

@@ -1,4 +1,4 @@
-//! What the console knows beside the session: which keys are active, what is open, what was said last.
+//! The state of the console besides the session: active keys, open dialog, last notice.
 
 use std::collections::VecDeque;
 
@@ -23,10 +23,10 @@ use crate::kitchen::{Agent, AspectId};
 use crate::session::settings::GazeSource;
 use crate::session::{TimelineEntry, TimelineEvent};
 
-/// How many gaze samples the trail of the gaze map keeps.
+/// Number of gaze samples in the trail of the gaze map.
 const TRAIL: usize = 240;
 
-/// What is open above the panels.
+/// An open dialog.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Dialog {
     Help,
@@ -34,30 +34,30 @@ pub enum Dialog {
     Quit,
     /// Asks whether to end the trial.
     EndTrial,
-    /// A list to choose from.
+    /// A list to choose an entry from.
     Pick(Picker),
-    /// What was found before the trial.
+    /// The preflight checks.
     Preflight,
-    /// Targets are looked at, or what came of it is shown.
+    /// The gaze accuracy check: targets, then the result.
     Calibration,
-    /// A line for a note in words.
+    /// Input of a free text note.
     Note(TextInput),
-    /// What each knew where wizard and assistant differ, in lines.
+    /// Details of a difference between wizard and assistant, as lines of text.
     Difference(Vec<String>),
-    /// What came of a training, in lines; it stays until enter.
+    /// Report of a training, as lines of text; closed with enter.
     Report(Vec<String>),
 }
 
-/// A line to the wizard.
+/// A message to the wizard.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
     pub text: String,
     pub level: NoticeLevel,
-    /// On [`ConsoleModel::clock`].
+    /// Time on [`ConsoleModel::clock`].
     pub at: SessionTime,
 }
 
-/// Whether what happens is kept.
+/// State of the recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RecordingStatus {
     /// Nothing is recorded.
@@ -68,32 +68,32 @@ pub enum RecordingStatus {
     Lost,
 }
 
-/// How the stream to Rerun's viewers fares.
+/// State of the stream to Rerun viewers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ViewerStreamStatus {
-    /// Where they connect; none: the stream is only written to its file.
+    /// Address at which viewers connect; `None` if the stream is only written to its file.
     pub address: Option<String>,
-    /// Rows that were written, and that were dropped because it was too slow.
+    /// Number of rows written.
     pub written: u64,
     pub dropped: u64,
 }
 
-/// A key that went down, with times on [`ConsoleModel::clock`].
+/// A key that is held down, with times on [`ConsoleModel::clock`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PressedKey {
     pub code: KeyCode,
-    /// When the terminal reported it last.
+    /// Time of the last report by the terminal.
     pub reported: SessionTime,
-    /// When it was last taken for a press.
+    /// Time at which it last counted as a press.
     pub counted: SessionTime,
 }
 
-/// Everything that only concerns the screen and the hands at the keyboard.
+/// State of the console: everything that concerns only the screen and the keyboard.
 #[derive(Clone, Debug)]
 pub struct ConsoleModel {
-    /// The moment that is drawn.
+    /// Session time that is drawn.
     pub now: SessionTime,
-    /// A clock that always runs, also while a replay stands or races: for keys and notices.
+    /// A clock for keys and notices that also runs while a replay is paused.
     pub clock: SessionTime,
     /// Columns and rows of the terminal.
     pub size: (u16, u16),
@@ -105,40 +105,40 @@ pub struct ConsoleModel {
     pub recording: RecordingStatus,
     /// The stream to Rerun's viewers, if there is one.
     pub viewers: Option<ViewerStreamStatus>,
-    /// Bytes that are free where the recording is; none: not known.
+    /// Free disk space of the recording's folder in bytes; `None` if unknown.
     pub free_bytes: Option<u64>,
-    /// The panel that is shown alone, if one is.
+    /// The panel that is shown at full size, if any.
     pub alone: Option<Panel>,
-    /// The first column of the help, or the first line of a report, that is shown.
+    /// First visible column of the help, or first visible line of a report.
     pub help_from: usize,
-    /// How far back events (in entries) and timeline (in seconds) are looked at.
+    /// Scroll position of the list of events, in entries.
     pub events_back: usize,
     pub timeline_back_s: u32,
-    /// The terminal window has the keyboard.
+    /// Whether the terminal has keyboard focus.
     pub focused: bool,
-    /// The cell under the mouse pointer, as a display point (fractions; outside of 0..1 beside the kitchen).
+    /// Display point under the mouse pointer, in fractions; outside 0 to 1 beside the kitchen.
     pub pointer: Option<[f64; 2]>,
-    /// The newest gaze samples with their times, oldest first, for the gaze map.
+    /// Latest gaze samples with their times, the oldest first, for the gaze map.
     pub trail: VecDeque<(SessionTime, GazeSample)>,
-    /// The participant's display, if there is one.
+    /// State of the participant's display, if there is one.
     pub display: Option<DisplayHealth>,
-    /// The times of the human presses that were errors, in order.
+    /// Times of the human's errors, in order.
     pub errors: Vec<SessionTime>,
-    /// What is estimated of the participant's belief.
+    /// History of the belief estimate.
     pub belief: BeliefHistory,
-    /// The aspect whose belief is shown over time.
+    /// Aspect whose belief is shown over time.
     pub belief_focus: Option<AspectId>,
-    /// Wizard and assistants side by side, where that is asked for.
+    /// Comparison of wizard and assistants, if it is shown.
     pub comparison: Option<ComparisonView>,
-    /// Set when a wizard is trained.
+    /// Training panel, in a wizard training.
     pub lesson: Option<TrainingPanel>,
-    /// Set when the errors of a recording are coded.
+    /// Rater session, while the errors of a recording are coded.
     pub coding: Option<RaterSession>,
-    /// Set when a recording is replayed.
+    /// Playback position, in a replay.
     pub playback: Option<Playback>,
-    /// The terminal tells key repeat from key press.
+    /// Whether the terminal distinguishes key repeat from key press.
     pub(super) exact_keys: bool,
-    /// The key that was pressed last: against key repeat.
+    /// The last pressed key, to detect key repeat.
     pub(super) pressed: Option<PressedKey>,
 }
 
@@ -177,12 +177,12 @@ impl ConsoleModel {
         }
     }
 
-    /// Says something to the wizard.
+    /// Shows a notice.
     pub fn say(&mut self, level: NoticeLevel, text: impl Into<String>) {
         self.notice = Some(Notice { text: text.into(), level, at: self.clock });
     }
 
-    /// Remembers a gaze sample for the gaze map.
+    /// Adds a gaze sample to the trail of the gaze map.
     pub fn see(&mut self, at: SessionTime, sample: GazeSample) {
         if self.trail.len() == TRAIL {
             self.trail.pop_front();
@@ -190,7 +190,7 @@ impl ConsoleModel {
         self.trail.push_back((at, sample));
     }
 
-    /// Shows the belief in the aspect that follows in this order over time; after the last one that of none.
+    /// Selects the next aspect in this order for the belief chart; after the last one, none.
     pub fn focus_next_belief(&mut self, ranked: &[usize]) {
         let at = self.belief_focus.and_then(|focus| ranked.iter().position(|&aspect| aspect == focus.index()));
         let next = match (self.belief_focus, at) {
@@ -200,13 +200,13 @@ impl ConsoleModel {
         self.belief_focus = next.map(|&aspect| AspectId(aspect as u8));
     }
 
-    /// Whether this entry of the timeline is a press of the human that was an error.
+    /// Whether a timeline entry is an error of the human.
     pub fn is_error(&self, entry: &TimelineEntry) -> bool {
         matches!(entry.what, TimelineEvent::Press { agent: Agent::Human, .. })
             && self.errors.binary_search(&entry.time).is_ok()
     }
 
-    /// The words for a source of gaze.
+    /// Name of a gaze source on the screen.
     pub fn gaze_label(source: GazeSource) -> &'static str {
         match source {
             GazeSource::Simulated => "simulated",

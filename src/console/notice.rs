@@ -1,12 +1,12 @@
-//! How much a line to the wizard matters.
+//! Severity of a message to the wizard.
 
-/// How much a notice matters.
+/// Severity of a notice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoticeLevel {
-    /// Something was done.
+    /// Information: an action was carried out.
     Done,
-    /// Something was not done.
+    /// Warning: an action was refused.
     Refused,
-    /// Something is wrong until it is mended.
+    /// Alarm: a fault that lasts until it is fixed.
     Alarm,
 }

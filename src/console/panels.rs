@@ -1,5 +1,5 @@
-//! Looking at one panel alone, and further back than fits: by keys or with the mouse. Nothing here reaches the
-//! participant; what was on the wizard's screen is recorded by [`super::screen`].
+//! Panel navigation by keys and mouse: a single panel at full size, and scrolling back in time. It does not affect the participant;
+//! [`super::screen`] records what the wizard's screen shows.
 
 use super::arrange::{KitchenMap, MapElement};
 use super::key_action::KeyLayer;
@@ -13,10 +13,10 @@ use crate::kitchen::{Agent, ButtonAction as Use, ButtonId, LocationId};
 use crate::session::Session;
 use crate::session::settings::ParticipantKind;
 
-/// How far one step goes back in the timeline, in seconds, and in the list of events, in lines.
+/// One scroll step: in the timeline in seconds, in the list of events in lines.
 const STEP: (u32, usize) = (5, 1);
 
-/// Looks at what a key asks for.
+/// Carries out a panel key.
 pub fn look(model: &mut ConsoleModel, session: &Session, look: PanelKey) {
     let visibility = session.spec.console.visibility;
     let may_be_seen = |panel: &Panel| panel.may_be_seen(visibility, model.comparison.is_some());
@@ -34,7 +34,7 @@ pub fn look(model: &mut ConsoleModel, session: &Session, look: PanelKey) {
     }
 }
 
-/// Leafs through the help.
+/// Turns the pages of the help.
 pub fn leaf(model: &mut ConsoleModel, look: PanelKey) {
     let is_forward = matches!(look, PanelKey::Next | PanelKey::Forward);
     model.help_from = match is_forward {
@@ -43,8 +43,7 @@ pub fn leaf(model: &mut ConsoleModel, look: PanelKey) {
     };
 }
 
-/// Goes further back: the time of a panel that has an axis of it, or else the list of events, unless another panel alone
-/// hides that.
+/// Scrolls a panel with a time axis, or else the list of events if it is visible.
 fn scroll(model: &mut ConsoleModel, session: &Session, panel: Option<Panel>, steps: i64) {
     if matches!(panel, Some(Panel::Timeline | Panel::Comparison)) {
         let back_s = i64::from(model.timeline_back_s) + steps * i64::from(STEP.0);
@@ -56,7 +55,7 @@ fn scroll(model: &mut ConsoleModel, session: &Session, panel: Option<Panel>, ste
     }
 }
 
-/// The wheel was turned over a cell.
+/// Handles the mouse wheel over a cell.
 pub fn wheel(model: &mut ConsoleModel, session: &Session, cell: (u16, u16), steps: i64) {
     if model.dialog == Some(Dialog::Help) {
         leaf(model, if steps > 0 { PanelKey::Back } else { PanelKey::Forward });
@@ -66,8 +65,8 @@ pub fn wheel(model: &mut ConsoleModel, session: &Session, cell: (u16, u16), step
     scroll(model, session, panel_at(&regions, cell), steps);
 }
 
-/// A click tells what a place's key does, since a signal sent by mistake cannot be unseen; beside the places it shows the
-/// panel alone, or all of them again.
+/// Handles a click: on a place it explains the place's key (a click never sends a signal), elsewhere it shows the panel at full
+/// size, or all panels again.
 pub fn click(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) {
     if model.dialog.is_some() {
         return;
@@ -87,7 +86,7 @@ pub fn click(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) {
     }
 }
 
-/// Says which key is about a location, and what it does.
+/// Shows the key of a location and its meaning.
 fn tell(model: &mut ConsoleModel, session: &Session, location: LocationId) {
     let is_main = |action| matches!(action, Use::Use(at) | Use::Serve(at) if at == location);
     let buttons = &session.kitchen.buttons[Agent::Human.index()];

@@ -1,58 +1,58 @@
-//! Where a replay stands: position, speed, and how a key moves it.
+//! State of a replay: position, speed, and its keys.
 
 use crate::base::time::SessionTime;
 use crate::history::landmark::ReplayLandmark;
 
-/// The speeds of a replay, as multiples of real time; infinity is as fast as it goes.
+/// Speeds of a replay as multiples of real time; infinity for as fast as possible.
 pub const SPEEDS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, f64::INFINITY];
 
-/// What a key asks of a replay.
+/// A key of the replay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReplayKey {
     PlayPause,
-    /// To the next or the last event that is no gaze sample.
+    /// Go to the next or previous event that is not a gaze sample.
     StepForward,
     StepBack,
-    /// To the next or the last moment of this kind.
+    /// Go to the next or previous landmark of this kind.
     On(ReplayLandmark),
     BackTo(ReplayLandmark),
-    /// Ten seconds on or back.
+    /// Go ten seconds forward or back.
     SeekForward,
     SeekBack,
     Faster,
     Slower,
     ToStart,
-    /// Behind the event of this number.
+    /// Go to the position after the event with this sequence number.
     ToEvent(u64),
-    /// To the end; a followed recording stays at its growing end.
+    /// Go to the end; a followed recording stays at its growing end.
     ToEnd,
 }
 
-/// Where a replay stands.
+/// State of a replay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Playback {
-    /// What is replayed, for the head line.
+    /// Name of the recording, for the head line.
     pub name: String,
     pub playing: bool,
     /// An index into [`SPEEDS`].
     pub speed: usize,
-    /// The time of the last event that is known.
+    /// Time of the last known event.
     pub length: SessionTime,
-    /// Events applied so far, and known in all.
+    /// Number of events applied so far.
     pub event: usize,
     pub events: usize,
-    /// The recording grows: it is watched while it is made.
+    /// Whether the recording is followed while it is made.
     pub follows: bool,
-    /// The recording ends without its end event.
+    /// Whether the recording was cut off (no end event).
     pub cut: bool,
-    /// Somebody still writes it, and it is not followed.
+    /// Whether the recording is still being written but not followed.
     pub running: bool,
-    /// It was left out of the analysis after it was closed.
+    /// Whether the recording was excluded from the analysis after it was closed.
     pub excluded: bool,
 }
 
 impl Playback {
-    /// A replay that stands at its beginning.
+    /// A replay at its beginning.
     pub fn new(name: String) -> Playback {
         Playback {
             name,

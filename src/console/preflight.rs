@@ -1,5 +1,5 @@
-//! Before a trial starts: everything is looked at. If all is ok the trial starts at once; else a list says what is not and
-//! how to mend it, and the wizard mends it or starts all the same. What was found is recorded.
+//! Preflight checks at the console. If all are ok the trial starts at once; else a list shows the problems with remedies, and the
+//! wizard fixes them or overrides them. The results are recorded.
 
 use crossterm::event::KeyCode;
 
@@ -13,10 +13,10 @@ use crate::session::admit::admit;
 use crate::session::preflight::{PreflightCheck, PreflightVerdict, participant, space};
 use crate::session::{Event, Session};
 
-/// The key that starts a trial although not all is ok.
+/// The key that overrides failed checks and starts the trial.
 pub const OVERRIDE: char = 'o';
 
-/// Looks at everything.
+/// Runs all preflight checks.
 pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     let mut checks = participant(session, model.now, &key(model, &KeyAction::Hand(ManualAction::Calibrate)));
     checks.extend(model.display.as_ref().map(DisplayHealth::check));
@@ -25,7 +25,7 @@ pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     checks
 }
 
-/// Whether all is as it should be.
+/// Whether all checks are ok.
 pub fn all_ok(checks: &[PreflightCheck]) -> bool {
     checks.iter().all(|check| check.verdict == PreflightVerdict::Ok)
 }
@@ -90,7 +90,7 @@ fn keyboard(model: &ConsoleModel) -> PreflightCheck {
     }
 }
 
-/// Starts the trial if all is ok; else shows what is not.
+/// Starts the trial if all checks are ok; else opens the list.
 pub(super) fn start(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     match all_ok(&checks(session, model)) {
         true => go(model, session, false),
@@ -117,7 +117,7 @@ fn go(model: &mut ConsoleModel, session: &Session, overridden: bool) -> Option<C
     Some(ConsoleCommand::Start(Event::Preflight { checks, overridden }))
 }
 
-/// A key while the list is open.
+/// Handles a key while the list is open.
 pub(super) fn answer(
     model: &mut ConsoleModel,
     session: &Session,
@@ -131,13 +131,13 @@ pub(super) fn answer(
             model.dialog = None;
             None
         }
-        // What mends it works here, too.
+        // Keys that fix a problem also work in the list.
         (_, Some(KeyAction::ResumeRobot)) => super::sending::resume_robot(model, session),
         (_, Some(KeyAction::Hand(ManualAction::HoldRobot))) if is_press => {
             super::hands::act(model, session, ManualAction::HoldRobot)
         }
         (_, Some(KeyAction::Advance)) if is_press && is_ok => go(model, session, false),
-        // What was wrong may have been mended a moment ago.
+        // A problem may have been fixed in the meantime.
         (KeyCode::Char(OVERRIDE), _) if is_press => go(model, session, !is_ok),
         _ => None,
     }

@@ -1,4 +1,4 @@
-//! A question before a recording begins, when there is no session yet that could be drawn.
+//! A question before a recording begins, while there is no session to draw.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
@@ -8,21 +8,21 @@ pub struct QuestionPage {
     pub title: String,
     /// Paragraphs.
     pub text: Vec<String>,
-    /// The first has the key 1.
+    /// Answers; key 1 selects the first.
     pub answers: Vec<String>,
 }
 
-/// What a key answers.
+/// Reply to a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum QuestionReply {
-    /// The place of the answer, from 0.
+    /// Index of the chosen answer.
     Answer(usize),
-    /// The program is left.
+    /// Quit the program.
     Leave,
 }
 
 impl QuestionPage {
-    /// What this key answers; nothing, if it means nothing here or is only held down.
+    /// The reply of a key; `None` for other keys and for key repeat.
     pub fn reply(&self, key: &KeyEvent) -> Option<QuestionReply> {
         if key.kind != KeyEventKind::Press {
             return None;

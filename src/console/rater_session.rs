@@ -1,24 +1,24 @@
-//! What a rater has said about the errors of a recording.
+//! A rater's codes of the errors in a recording.
 
 use crate::kitchen::Kitchen;
 use crate::measures::coding::{Code, Codes};
 
-/// What one rater has said about a recording so far.
+/// The codes of one rater for a recording so far.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RaterSession {
     pub rater: String,
-    /// The numbers of the presses that were errors, in order.
+    /// Sequence numbers of the errors, in order.
     pub errors: Vec<u64>,
     pub codes: Codes,
 }
 
 impl RaterSession {
-    /// The error at which a replay stands that has applied so many events: the last one until then.
+    /// Index of the last error among the first `events` events, where the replay stands.
     pub fn at(&self, events: usize) -> Option<usize> {
         self.errors.partition_point(|&press| press < events as u64).checked_sub(1)
     }
 
-    /// Where the rater stands, in words; `press` is the last error until then, in words too.
+    /// Position and code of the current error in words; `press` describes the error.
     pub fn describe(&self, kitchen: &Kitchen, events: usize, press: &str) -> String {
         let (all, coded) = (self.errors.len(), self.codes.0.len());
         let here = match self.at(events) {

@@ -1,4 +1,4 @@
-//! What the wizard can see now, for the record.
+//! The visible content of the wizard's screen, for the log.
 
 use super::form::sheet;
 use super::model::{ConsoleModel, Dialog};
@@ -7,7 +7,7 @@ use super::view::regions::{LEAST, Regions, ScreenSize};
 use crate::session::Session;
 use crate::session::screen::VisibleScreen;
 
-/// What is on the screen.
+/// The visible content of the screen.
 pub fn screen(session: &Session, model: &ConsoleModel) -> VisibleScreen {
     let visibility = session.spec.console.visibility;
     let fits = model.size.0 >= LEAST.0 && model.size.1 >= LEAST.1;

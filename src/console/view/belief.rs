@@ -1,4 +1,4 @@
-//! What the participant is estimated to believe: false beliefs first, with the truth beside them and since when.
+//! The belief panel: estimated beliefs, false ones first, with the truth and their duration.
 
 use ratatui::layout::Rect;
 
@@ -12,18 +12,18 @@ use crate::history::belief_track::{self, AspectSnapshot, BeliefSnapshot};
 use crate::kitchen::{AspectId, AspectKind, Kitchen};
 use crate::session::{Phase, Session};
 
-/// The chart of one aspect goes back so far, in seconds; the small ones beside each aspect half as far.
+/// Period of the belief chart, in seconds; the small curves cover half of it.
 const COURSE_S: f64 = belief_track::SHOWN_S;
-/// From so many columns on, an aspect with all that is told of it takes one line, and from so many its course too.
+/// Number of columns from which an aspect fits into one line.
 const ONE_LINE: u16 = 66;
 const WITH_COURSE: u16 = 72;
 const COURSE: u16 = 10;
-/// Rows of the chart with its title, at least and at most.
+/// Least and largest height of the chart with its title.
 const CHART_ROWS: [u16; 2] = [3, 10];
-/// Below so many rows there is no frame.
+/// Number of rows below which the panel has no frame.
 const FRAMED: u16 = 5;
 
-/// What is drawn of the belief.
+/// Drawing context of the belief panel.
 struct Panel<'a> {
     session: &'a Session,
     now: SessionTime,
@@ -95,7 +95,7 @@ impl Panel<'_> {
         for (index, &aspect) in ranked.iter().enumerate() {
             let rows = rows_of(aspect);
             let left = ranked.len() - index;
-            // The last line says how many have no room.
+            // The last line shows the number of aspects without room.
             if y + rows > bottom || (y + rows == bottom && left > 1) {
                 let wrong = ranked[index..].iter().filter(|&&aspect| self.held[aspect].is_false()).count();
                 let more = match wrong {
@@ -116,7 +116,7 @@ impl Panel<'_> {
         }
     }
 
-    /// What the columns of [`Panel::row`] are.
+    /// Draws the column headings of [`Panel::row`].
     fn headings(&self, brush: &mut Painter, x: u16, y: u16, columns: u16) {
         let Widths { name, word, bar } = self.widths(columns);
         let quiet = brush.style(TextRole::Quiet);
@@ -130,7 +130,7 @@ impl Panel<'_> {
         }
     }
 
-    /// An aspect in one line: name, what is believed, how surely, the truth, since when it is wrong, its course.
+    /// Draws an aspect in one line: name, believed value, probability, true value, duration of the false belief, curve.
     fn row(&self, brush: &mut Painter, aspect: usize, x: u16, y: u16, columns: u16) {
         let with_course = columns >= WITH_COURSE;
         let Widths { name, word, bar } = self.widths(columns);
@@ -154,7 +154,7 @@ impl Panel<'_> {
         }
     }
 
-    /// What is wrong, in lines below the name: the believed and the true value have one each where they do not fit into one.
+    /// Lines about a false belief below the name: believed and true value, on separate lines if they do not fit into one.
     fn told(&self, aspect: usize, columns: u16) -> Vec<String> {
         let whole = self.against_truth(aspect);
         let room = columns.saturating_sub(2);
@@ -164,7 +164,7 @@ impl Panel<'_> {
         }
     }
 
-    /// An aspect where there is little room: what is wrong in lines below its name, all else in one.
+    /// Draws an aspect in a narrow panel: a false belief in lines below its name, a right belief in one line.
     fn narrow(&self, brush: &mut Painter, aspect: usize, x: u16, y: u16, columns: u16) {
         let held = self.held[aspect];
         let role = self.role(aspect);
@@ -176,14 +176,14 @@ impl Panel<'_> {
         self.since(brush, aspect, bar + 9, y);
         let (name, believed) = (self.name(aspect), self.label(aspect, usize::from(held.believes)));
         let mut room = columns.saturating_sub(16);
-        // Names come before the bar: the figure beside it says the same.
+        // Names have priority over the bar, since the number shows the same.
         if held.is_false() || width(&name) + 1 + width(believed) <= room {
             brush.bar(bar, y, 4, f64::from(held.p), role);
         } else {
             room += 5;
         }
         if !held.is_false() {
-            // Which it is comes before what it holds: that is as it should be.
+            // The name has priority over the value of a right belief.
             let name = fit(&name, room.saturating_sub(6), brush.theme.signs().ellipsis);
             let end = brush.text(x, y, room, &name, quiet) + 1;
             brush.text(end, y, (x + room).saturating_sub(end), believed, style);
@@ -196,7 +196,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Since when it is wrong, or that the gaze has just been there.
+    /// Duration of the false belief, or a mark that the gaze has just been there.
     fn since(&self, brush: &mut Painter, aspect: usize, x: u16, y: u16) {
         if belief_track::read_at(self.moments, aspect, self.now).is_some() {
             let style = brush.style(TextRole::Gaze);

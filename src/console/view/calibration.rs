@@ -1,4 +1,4 @@
-//! The check of the calibration: the target in the kitchen, and what came of it.
+//! The gaze accuracy check: the target in the kitchen panel, and the result.
 
 use ratatui::layout::Rect;
 
@@ -11,17 +11,17 @@ use crate::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
 use crate::session::Session;
 
 const COLUMNS: u16 = 76;
-/// Where values begin.
+/// Column of the values.
 const VALUE: u16 = 15;
 
-/// Draws the target that is to be looked at, where it is on the display.
+/// Draws the target at its position on the display.
 pub fn target(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Session) {
     let Some(check) = &session.calibration else { return };
     let Some(((index, _), point)) = check.shown.zip(check.target()) else { return };
     let Some((x, y)) = plan.cell(point) else { return };
     let text = format!(" + look here: {} of {} ", index + 1, check.targets.len());
     let columns = super::paint::width(&text).min(panel.width);
-    // The cross stands on the target, the words beside it, or before it where there is no room.
+    // The cross is on the target; the words are after it, or before it without room.
     let before = if x + columns < panel.right() { 1 } else { columns.saturating_sub(2) };
     let text = if before == 1 { text } else { format!(" look here: {} of {} + ", index + 1, check.targets.len()) };
     let badge = brush.theme.badge(TextRole::Gaze);
@@ -29,7 +29,7 @@ pub fn target(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Ses
     brush.text(x, y, columns, &text, badge);
 }
 
-/// Draws what came of the check; nothing while targets are shown.
+/// Draws the result of the check, once all targets have been shown.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session) {
     let Some(outcome) = session.calibration.as_ref().and_then(|check| check.result.as_ref()) else { return };
     let inside = open(brush, screen, (COLUMNS, 13), "Calibration check", "space stops the robot");
@@ -99,7 +99,7 @@ fn verdict(accuracy_deg: f64) -> (&'static str, TextRole) {
     }
 }
 
-/// The accuracy at every target, in degrees.
+/// Accuracy at every target, in degrees.
 fn targets(found: &GazeAccuracy) -> String {
     let one = |target: &crate::gaze::calibration::TargetAccuracy| match target.accuracy_deg {
         Some(deg) => format!("{deg:.1}"),

@@ -1,5 +1,4 @@
-//! Wizard and assistants side by side: a lane each on one axis of time, matched communications joined, the figures, and where
-//! they differ.
+//! The comparison of wizard and assistants: lanes on one time axis, joined matches, statistics, and differences.
 
 use ratatui::layout::Rect;
 
@@ -14,15 +13,15 @@ use crate::console::model::ConsoleModel;
 use crate::history::comparison::{Communication, CommunicationContent, LaneComparison, UnmatchedCommunication};
 use crate::session::Session;
 
-/// The width of a column in seconds.
+/// Duration of a column, in seconds.
 const COLUMN_S: f64 = 1.0;
 const LABELS: u16 = 10;
 
 const TITLE: &str = "Wizard and assistant";
-/// Columns of what the title line says at its right.
+/// Width of the remark at the right of the title line.
 const REMARK: u16 = 32;
 
-/// Where there is room for a line in the comparison's title.
+/// Free area in the comparison's title line.
 pub(super) fn title_room(regions: &Regions) -> Option<Rect> {
     let area = regions.comparison;
     if regions.room == ScreenSize::Small || area.area() == 0 {
@@ -52,7 +51,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     axis(brush, plot, model.timeline_back_s, COLUMN_S);
     let chosen = compared.chosen().map(|(at, seen)| (at, seen.differences[at]));
     let assistants = seen.pairs.len() as u16;
-    // Matches are drawn where there are rows for them.
+    // Matches are drawn only if there are rows for them.
     let joined = inside.height >= 4 + 2 * assistants;
     let view = View { session, model, plot, seen, chosen: chosen.map(|(_, chosen)| chosen) };
     let mut y = inside.y + 1;
@@ -84,7 +83,7 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    /// The column of a moment, if it is in view.
+    /// Column of a time, if it is visible.
     fn column(&self, time: SessionTime) -> Option<u16> {
         let column = |time: SessionTime| (time.as_secs_f64() / COLUMN_S) as i64;
         let now = column(until(self.session, self.model)) - (f64::from(self.model.timeline_back_s) / COLUMN_S) as i64;
@@ -115,7 +114,7 @@ impl View<'_> {
         location.and_then(|id| self.model.keys.mark(id)).map_or("!".to_string(), |chord| chord.to_string())
     }
 
-    /// Lines from what the first lane said, above, to its match in this lane, below.
+    /// Draws lines from communications of the first lane to their matches in this lane.
     fn matches(&self, brush: &mut Painter, lane: usize, y: u16) {
         if y >= self.plot.bottom() {
             return;
@@ -139,7 +138,7 @@ impl View<'_> {
     }
 }
 
-/// How alike the first lane and this one are.
+/// Draws the similarity of the first lane and this lane.
 fn figures_line(brush: &mut Painter, inside: Rect, y: u16, seen: &LaneComparison, lane: usize) {
     let name = format!("{:<9}", seen.lanes[lane].name);
     if seen.lanes[0].spoken.is_empty() {
@@ -163,7 +162,7 @@ fn figures_line(brush: &mut Painter, inside: Rect, y: u16, seen: &LaneComparison
     brush.parts(inside.x + 1, y, inside.width - 1, &[(&name, TextRole::Strong), (&text, TextRole::Text)]);
 }
 
-/// The differences up to the chosen one, the last in the last row.
+/// Draws the list of differences around the chosen one.
 fn differences(
     brush: &mut Painter,
     area: Rect,
@@ -179,7 +178,7 @@ fn differences(
         return;
     };
     let rows = usize::from(area.height);
-    // The chosen one is in the middle, unless the list ends there.
+    // The chosen difference is in the middle, except at the ends of the list.
     let from = at.saturating_sub(rows / 2).min(seen.differences.len().saturating_sub(rows));
     for (row, (index, difference)) in seen.differences.iter().enumerate().skip(from).take(rows).enumerate() {
         let y = area.y + row as u16;

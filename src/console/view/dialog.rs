@@ -1,4 +1,4 @@
-//! What opens above the panels: the help, made from the table of keys, and the questions before something ends.
+//! Dialogs above the panels: the help, generated from the key table, and confirmations.
 
 use ratatui::layout::Rect;
 
@@ -43,7 +43,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     }
 }
 
-/// A question, and the keys that say yes.
+/// Draws a question with the keys that confirm it.
 fn ask(brush: &mut Painter, screen: Rect, title: &str, lines: &[&str], yes: &str) {
     let inside = open(brush, screen, (46, lines.len() as u16 + 5), title, "");
     for (row, line) in lines.iter().enumerate() {
@@ -59,7 +59,7 @@ fn ask(brush: &mut Painter, screen: Rect, title: &str, lines: &[&str], yes: &str
     brush.parts(inside.x + 2, y, inside.width - 3, &parts);
 }
 
-/// What each knew where they differ.
+/// Draws the details of a difference between wizard and assistant.
 fn difference(brush: &mut Painter, screen: Rect, lines: &[String]) {
     let columns = (screen.width - 4).min(100);
     let wrapped: Vec<(bool, String)> = lines
@@ -75,7 +75,7 @@ fn difference(brush: &mut Painter, screen: Rect, lines: &[String]) {
     }
 }
 
-/// The lines of a report as they are broken on a screen of this size, and how many of them fit.
+/// Width, wrapped lines, and number of visible lines of a report on a screen of this size.
 fn report_lines(lines: &[String], size: (u16, u16)) -> (u16, Vec<String>, usize) {
     let columns = size.0.saturating_sub(4).min(110);
     let broken = lines.iter().flat_map(|line| {
@@ -87,14 +87,14 @@ fn report_lines(lines: &[String], size: (u16, u16)) -> (u16, Vec<String>, usize)
     (columns, broken.collect(), usize::from(size.1.saturating_sub(6)))
 }
 
-/// How many lines of the open report are below those that fit.
+/// Number of lines of the open report below the visible ones.
 pub fn report_rest(model: &ConsoleModel) -> usize {
     let Some(Dialog::Report(lines)) = &model.dialog else { return 0 };
     let (_, lines, rows) = report_lines(lines, model.size);
     lines.len().saturating_sub(rows)
 }
 
-/// What came of a training.
+/// Draws the report of a training.
 fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleModel) {
     let (columns, lines, rows) = report_lines(lines, (screen.width, screen.height));
     let rest = lines.len().saturating_sub(rows);
@@ -110,23 +110,23 @@ fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleMo
     brush.parts(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 2, &parts);
 }
 
-/// The columns of a line of the help, with its key, at least.
+/// Least width of a help column.
 const HELP_COLUMNS: u16 = 39;
-/// Where a line of the help says what a key does.
+/// Indent of the description in a help line.
 const HELP_INDENT: u16 = 7;
 
-/// A line of the help: a heading, a key with what it does, or a sign with what it means.
+/// A line of the help: a heading, a key with its action, or a sign with its meaning.
 #[derive(Clone, Copy)]
 enum Line<'a> {
     Heading(&'a str),
     Key(&'a KeyBinding),
-    /// A sign of the panels, with what it means.
+    /// A sign of the panels with its meaning.
     Sign(&'static str, &'static str),
     Space,
 }
 
 impl Line<'_> {
-    /// The columns that it takes.
+    /// Width of the line.
     fn columns(&self) -> u16 {
         match self {
             Line::Heading(text) => width(text),
@@ -137,7 +137,7 @@ impl Line<'_> {
     }
 }
 
-/// What the signs mean that explain themselves nowhere else.
+/// Legend of the signs.
 fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
     let meanings = [
         (signs.gaze, "the gaze; in the belief: it was just there"),
@@ -166,7 +166,7 @@ fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
     meanings.map(|(sign, meaning)| Line::Sign(sign, meaning)).to_vec()
 }
 
-/// What the help says, in columns, and how many of them fit side by side.
+/// Columns of the help, and number of columns that fit side by side.
 fn help_columns<'a>(keys: &'a KeyBindings, theme: &Theme, size: (u16, u16)) -> (Vec<Vec<Line<'a>>>, usize) {
     let mut groups: Vec<(&str, Vec<Line>)> = Vec::new();
     for binding in &keys.bindings {
@@ -181,7 +181,7 @@ fn help_columns<'a>(keys: &'a KeyBindings, theme: &Theme, size: (u16, u16)) -> (
     (columns, fits)
 }
 
-/// How many pages the help has beyond the first.
+/// Number of pages of the help after the first.
 pub fn help_pages(model: &ConsoleModel) -> usize {
     let (columns, fits) = help_columns(&model.keys, &model.theme, model.size);
     columns.len() - fits
@@ -196,7 +196,7 @@ fn help(brush: &mut Painter, screen: Rect, model: &ConsoleModel) {
         0 => "any key closes".to_string(),
         more => format!("arrows: page {} of {}, other keys close", from + 1, more + 1),
     };
-    // As wide as the longest line, if there is room for it.
+    // As wide as the longest line, if it fits.
     let longest = columns.iter().flatten().map(Line::columns).max().unwrap_or(0).max(HELP_COLUMNS);
     let column_width = (screen.width.saturating_sub(4) / fits as u16).min(longest + 2);
     let inside = open(brush, screen, (column_width * fits as u16 + 4, tallest + 2), "Keys", &remark);
@@ -234,13 +234,13 @@ fn help_line(brush: &mut Painter, x: u16, y: u16, columns: u16, line: &Line) {
     }
 }
 
-/// The groups in as few columns as hold them: each in the first column that has room, one that is longer than a column
-/// goes on in the next.
+/// Distributes the groups over as few columns as possible: each goes into the first column with room, and continues in the next
+/// column if it is too long.
 fn columns<'a>(groups: &[(&'a str, Vec<Line<'a>>)], rows: usize) -> Vec<Vec<Line<'a>>> {
     let rows = rows.max(4);
     let mut columns: Vec<Vec<Line>> = vec![Vec::new()];
     for (group, members) in groups {
-        // A heading, and a line between it and what is above.
+        // A heading with an empty line above.
         let fits = |column: &Vec<Line>| column.is_empty() || column.len() + members.len() + 2 <= rows;
         let mut index = columns.iter().position(fits).unwrap_or(columns.len());
         if index == columns.len() {

@@ -1,4 +1,4 @@
-//! What happened, in words, the newest on top: where the terminal is large.
+//! The list of events in words, the newest on top, on large terminals.
 
 use super::paint::Painter;
 use super::regions::Regions;
@@ -8,7 +8,7 @@ use crate::history::wording;
 use crate::kitchen::Agent;
 use crate::session::{Session, TimelineEvent};
 
-/// Columns of who did it, the longest of which is "assistant".
+/// Width of the agent column; the longest name is "assistant".
 const WHO: u16 = 10;
 
 /// Draws the list of events.

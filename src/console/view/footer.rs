@@ -1,4 +1,4 @@
-//! The key line: which layer is active, what the keys do now, and what was said last.
+//! The footer: active key layer, keys that are possible now, and the last notice.
 
 use ratatui::style::Style;
 
@@ -21,7 +21,7 @@ use crate::session::protocol::StudyPhase;
 use crate::session::settings::{ParticipantKind, Visibility};
 use crate::session::{Phase, Session};
 
-/// How long a notice stays, in seconds.
+/// Display time of a notice, in seconds.
 const NOTICE_S: f64 = 4.0;
 
 /// Draws the key line.
@@ -44,19 +44,19 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
     let notice = model.notice.as_ref().filter(|notice| model.clock.secs_since(notice.at) < NOTICE_S);
     let notice = notice.filter(|notice| !above(brush, regions, session, model, notice));
-    // An alarm may take the place of the keys.
+    // An alarm may replace the key hints.
     let most =
         if notice.is_some_and(|notice| notice.level == NoticeLevel::Alarm) { area.width } else { area.width / 2 };
     let said = notice.map_or(0, |notice| width(&notice.text) + 3).min(most);
     let end = area.right().saturating_sub(said);
-    // The end of the trial is rare, and gives its room to the others; after it only leaving is left to do.
+    // Ending the trial is rare, so its hint is dropped first; after the trial only quitting remains.
     let is_over = is_over(session, model);
     let is_late = |binding: &&KeyBinding| match is_over {
         true => !matches!(binding.action, KeyAction::Advance | KeyAction::Quit | KeyAction::Hand(ManualAction::Redo)),
         false => matches!(binding.action, KeyAction::EndTrial | KeyAction::Look(PanelKey::Next)),
     };
     let (late, mut first): (Vec<&KeyBinding>, Vec<&KeyBinding>) = model.keys.bindings.iter().partition(is_late);
-    // The robot stop is always first; the way back to all panels is next, where one is alone.
+    // The robot stop comes first, then the key back to all panels if one panel is at full size.
     first.sort_by_key(|binding| match binding.action {
         KeyAction::StopRobot => 0,
         KeyAction::Look(PanelKey::All) => 1,
@@ -69,7 +69,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
             KeyAction::Note(_) if session.spec.console.notes.len() > 1 => {
                 format!("1-{}", session.spec.console.notes.len())
             }
-            // One label for the keys of both directions.
+            // The keys of both directions share one label.
             KeyAction::Rate(RaterKey::Belief(_)) => "letters".to_string(),
             KeyAction::Move(ReplayKey::StepForward) => "left/right".to_string(),
             KeyAction::Move(ReplayKey::SeekForward) => "pgup/pgdn".to_string(),
@@ -89,7 +89,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
-/// Says it in a title line above, where that has room for it, so that it takes no key its place; whether it did.
+/// Shows the notice in a title line if there is room, so that no key hint is replaced; returns whether it did.
 fn above(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel, notice: &Notice) -> bool {
     let room = timeline::title_room(brush, regions, session, model).or_else(|| comparison::title_room(regions));
     let Some(room) = room.filter(|room| width(&notice.text) + 4 <= room.width) else { return false };
@@ -111,7 +111,7 @@ fn is_over(session: &Session, model: &ConsoleModel) -> bool {
     model.playback.is_none() && matches!(session.phase, Phase::Over(_) | Phase::Closed)
 }
 
-/// What comes after the trial, in a plan.
+/// The next step after the trial, in a plan.
 fn onward(session: &Session) -> Option<&'static str> {
     session.protocol.as_ref().filter(|_| session.phase != Phase::Closed)?;
     Some(match session.next_phase() {
@@ -122,10 +122,10 @@ fn onward(session: &Session) -> Option<&'static str> {
     })
 }
 
-/// What the footer says of a key, if it does something now.
+/// Label of a key in the footer, if the key is possible now.
 fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -> Option<&'a str> {
     match &model.dialog {
-        // It types a space there.
+        // In text input the space bar types a space.
         Some(Dialog::Note(_)) => return None,
         Some(_) if binding.action != KeyAction::StopRobot => return None,
         _ => {}
@@ -139,7 +139,7 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
         return None;
     }
     if model.playback.is_none() && sheet(session).is_some() {
-        // The sheet says itself what its keys do.
+        // The sheet shows its own key hints.
         return matches!(binding.action, KeyAction::Quit | KeyAction::Help | KeyAction::StopRobot).then_some(label);
     }
     let runs = matches!(session.phase, Phase::Running | Phase::Paused);
@@ -183,7 +183,7 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
     }
 }
 
-/// Whether there can be something that the wizard accepts.
+/// Whether a recommendation can be accepted in this session.
 fn can_accept(session: &Session) -> bool {
     let recommends = matches!(session.spec.assistant.concept, ConceptName::TomCom | ConceptName::Tom);
     let is_shown = session.spec.console.visibility == Visibility::Recommendation;

@@ -1,4 +1,4 @@
-//! The gaze: where, how old, how good; and the gaze map.
+//! The gaze panel (location, age, quality), and the gaze map.
 
 use ratatui::layout::Rect;
 
@@ -11,7 +11,7 @@ use crate::kitchen::LocationId;
 use crate::session::Session;
 use crate::session::gaze_samples::faults;
 
-/// How long the trail of the gaze map is, in seconds.
+/// Length of the trail on the gaze map, in seconds.
 const TRAIL_S: f64 = 2.0;
 
 /// Draws the gaze panel.
@@ -27,7 +27,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         return;
     }
     let source = ConsoleModel::gaze_label(session.spec.participant.gaze);
-    // The most frequent fault; all of them are in the list before a trial and in the figures.
+    // Only the most frequent fault is shown; the preflight list and the summaries show all.
     let worst = faults(session).into_iter().max_by_key(|(count, _)| *count);
     let remark = match worst {
         None => source.to_string(),
@@ -80,7 +80,7 @@ fn quality(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session,
     brush.parts(x, y, columns, &[(&text, TextRole::Quiet)]);
 }
 
-/// Draws the display to scale with the trail of the gaze, and when each place was looked at last.
+/// Draws the display to scale with the trail of the gaze and the age of the last look at each place.
 pub fn draw_map(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     if regions.gaze_map.area() == 0 {
         return;

@@ -1,4 +1,4 @@
-//! The list before a trial starts, and the line for a note in words.
+//! The list of preflight checks, and the input line of a note.
 
 use ratatui::layout::Rect;
 
@@ -13,16 +13,16 @@ use crate::session::preflight::{PreflightCheck, PreflightVerdict};
 use crate::session::{Phase, Session};
 
 const COLUMNS: u16 = 76;
-/// Before a remedy.
+/// Label before a remedy.
 const MEND: &str = "mend: ";
-/// Where what was found begins.
+/// Column of the finding.
 const FOUND: u16 = 23;
 
-/// Draws what was found before a trial.
+/// Draws the preflight checks.
 pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
     let checks = checks(session, model);
     let columns = (COLUMNS + 24).min(screen.width);
-    // Inside the frame, behind the names.
+    // Inside the frame, after the names.
     let room = columns.saturating_sub(2 + FOUND + 1);
     let remedies: Vec<Vec<String>> = checks
         .iter()
@@ -66,7 +66,7 @@ fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) {
     brush.parts(x, y, inside.right().saturating_sub(x + 1), &[(&check.found, role)]);
 }
 
-/// Draws the line for a note.
+/// Draws the input line of a note.
 pub fn note(brush: &mut Painter, screen: Rect, text: &TextInput) {
     let says = "The trial is paused and the robot stands: only here the space bar types a space.";
     let lines = wrap(says, COLUMNS - 4);

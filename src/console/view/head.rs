@@ -1,4 +1,4 @@
-//! The head line: where are we, and is everything alive.
+//! The head line: phase, clock, condition, and state of all devices.
 
 use super::paint::{Painter, width};
 use super::regions::{ROOMY_COLUMNS, Regions, ScreenSize};
@@ -13,11 +13,11 @@ use crate::session::{Phase, Session};
 /// Draws the head line.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.head;
-    // One panel alone is drawn in full, but the head line is as long as it is.
+    // The head line has its full width even if one panel is at full size.
     let room = if area.width < ROOMY_COLUMNS { ScreenSize::Small } else { ScreenSize::Medium };
     let gap = if room == ScreenSize::Small { 1 } else { 3 };
     let strong = brush.style(TextRole::Strong);
-    // A small replay, and one of a plan, need the room of the name.
+    // Small replays, and recordings of a plan, omit the name.
     let is_tight = (model.playback.is_some() || session.step().is_some()) && room == ScreenSize::Small;
     let name = if is_tight { "" } else { "tomcom" };
     let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
@@ -37,7 +37,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
     let mut healths = healths(session, model, room);
     let needed = |healths: &[(String, TextRole)]| healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
-    // Where not all fits, what is as it should be goes first.
+    // If not everything fits, normal states are dropped first.
     while needed(&healths) > area.right().saturating_sub(x)
         && let Some(fine) = healths.iter().position(|(_, role)| matches!(role, TextRole::Text | TextRole::Quiet))
     {
@@ -79,13 +79,13 @@ fn condition(session: &Session) -> &'static str {
     }
 }
 
-/// Where a recording is in its participant's series: "P07 trial 2/2 wizard".
+/// Position in the participant's series: "P07 trial 2/2 wizard".
 fn series(session: &Session) -> Option<String> {
     let (step, _) = session.step()?;
     Some(format!("{} {} {}", session.spec.participant.code, step.label(), condition(session)))
 }
 
-/// What stays the same during a trial, the most important first.
+/// Facts that do not change during a trial, the most important first.
 fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
     let condition = condition(session);
     let served = format!("{} served", session.served.len());
@@ -102,7 +102,7 @@ fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
     facts
 }
 
-/// Recording, gaze, stream and robot: each with its state in words.
+/// States of recording, gaze, stream and robot in words.
 fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize) -> Vec<(String, TextRole)> {
     let mut healths = Vec::new();
     if !model.focused && model.playback.is_none() {
@@ -152,7 +152,7 @@ fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize) -> Vec<(St
     healths
 }
 
-/// How the robot is stopped: by the wizard, or by its arm itself.
+/// Kind of the robot's stop: by the wizard, or by the arm itself.
 fn stopped(session: &Session) -> &'static str {
     match session.robot.arm.mode {
         SafetyMode::ProtectiveStop => "PROTECTIVE STOP",
@@ -161,7 +161,7 @@ fn stopped(session: &Session) -> &'static str {
     }
 }
 
-/// Where Rerun's viewers connect, as long as they and the stream's file get everything.
+/// Address for Rerun viewers, while nothing of the stream is lost.
 fn streamed(model: &ConsoleModel) -> Option<String> {
     let viewers = model.viewers.as_ref().filter(|viewers| viewers.dropped == 0)?;
     let port = viewers.address.as_ref().and_then(|address| address.rsplit(':').next());

@@ -1,5 +1,5 @@
-//! The kitchen: robot left, shared places in the centre, human right, as on the wall display, with what is everywhere,
-//! what just changed, the key of every signal (or button) at its thing, and where the participant looks.
+//! The kitchen panel, arranged like the wall display (robot left, shared places in the centre, human right): contents, recent
+//! changes, keys of signals and buttons, and the gaze.
 
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
@@ -16,12 +16,12 @@ use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, Locatio
 use crate::session::Session;
 use crate::session::settings::{Condition, ParticipantKind};
 
-/// How long a change is told, in seconds.
+/// Time for which a change is marked, in seconds.
 const FRESH_S: f64 = 5.0;
-/// How long it is told loudly, and how long in bold.
+/// Time for which a change is highlighted, and time for which it is bold, in seconds.
 const LOUD_S: f64 = 1.2;
 const FADING_S: f64 = 3.0;
-/// How long the last gaze is drawn.
+/// Time for which the last gaze sample is drawn, in seconds.
 const GAZE_S: f64 = 3.0;
 
 /// Draws the kitchen panel.
@@ -92,7 +92,7 @@ fn badge(brush: &mut Painter, x: u16, cells: Rect, key: &str, role: TextRole) ->
     brush.text(x, cells.y, cells.right().saturating_sub(x), &label, style)
 }
 
-/// The participant's key of the first of its buttons that `is_it`, while the keys are the participant's.
+/// The participant's key of the first button that satisfies `is_it`, in the participant's key layer.
 fn participant_key(
     session: &Session,
     model: &ConsoleModel,
@@ -114,18 +114,18 @@ fn agent_role(agent: Option<Agent>) -> TextRole {
     }
 }
 
-/// A location's card: a rule at its left that says at a glance how it is, then key and name, then what lies there.
+/// The card of a location: a rule at its left that shows its state, key and name, and its content.
 struct Place<'a> {
     session: &'a Session,
     model: &'a ConsoleModel,
     id: LocationId,
     kitchen: &'a Kitchen,
-    /// What lies there, and whether it is nothing.
+    /// Content, and whether it is empty.
     content: String,
     is_empty: bool,
-    /// Seconds since it changed, if that is not long ago, and who did it.
+    /// Seconds since a recent change, and its agent.
     fresh: Option<(f64, Option<Agent>)>,
-    /// The participant is shown this place.
+    /// Whether a signal highlights this place.
     is_shown: bool,
 }
 
@@ -172,7 +172,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// The line at the left: heavy where the participant is shown the place, in the colour of who changed it just now.
+    /// Draws the rule: heavy while a signal highlights the place, in the colour of the agent of a recent change.
     fn rule(&self, brush: &mut Painter, cells: Rect) {
         let signs = brush.theme.signs();
         let (sign, role) = match (self.is_shown, self.fresh) {
@@ -186,7 +186,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Key and name; where they end.
+    /// Draws key and name; returns the next column.
     fn title(&self, brush: &mut Painter, cells: Rect) -> u16 {
         let label = self.kitchen.location(self.id).label();
         let mut x = cells.x + 1;
@@ -205,7 +205,7 @@ impl<'a> Place<'a> {
         brush.text(x, cells.y, room, &squeeze(&label, room), style)
     }
 
-    /// The key that acts here, in the active layer.
+    /// The key of this place in the active layer.
     fn key(&self) -> Option<(String, TextRole)> {
         match self.model.layer {
             KeyLayer::Wizard => {
@@ -231,7 +231,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// What lies there; how many lines that takes.
+    /// Draws the content; returns the number of lines.
     fn contents(&self, brush: &mut Painter, room: Rect) -> u16 {
         let style = self.content_style(brush);
         let mut lines = wrap(&self.content, room.width);
@@ -247,7 +247,7 @@ impl<'a> Place<'a> {
         lines.len() as u16
     }
 
-    /// An order: what is wanted, since when, and, while it is shown, the recipe.
+    /// Draws an order: dish, age, and the recipe while it is shown.
     fn order(&self, brush: &mut Painter, room: Rect) {
         let style = self.content_style(brush);
         let is_wanted = matches!(self.session.state.order(self.id), OrderContent::Dish(_));
@@ -274,7 +274,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Below what lies there, or at the right of its last line: what the robot is about to do here, and what just changed.
+    /// Draws the robot's next action here and a recent change, below the content or at the end of its last line.
     fn news(&self, brush: &mut Painter, room: Rect, lines: u16) {
         let signs = brush.theme.signs();
         let mut news: Vec<(String, TextRole)> = Vec::new();
@@ -292,7 +292,7 @@ impl<'a> Place<'a> {
         }
         let y = room.y + lines.min(room.height - 1);
         let needed = news.iter().map(|(text, _)| width(text) + 1).sum::<u16>();
-        // With no line of its own it takes the end of the last one, if that is free.
+        // Without a free line it uses the free end of the last line.
         let ends = match lines < room.height {
             true => 0,
             false => (0..room.width).filter(|x| brush.is_written(room.x + x, y)).max().map_or(0, |x| x + 1),
@@ -308,7 +308,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// The participant's buttons that act here beside the main one, processes and the hand's bin: key and name.
+    /// Further buttons of the participant at this place (processes, trash): key and name.
     fn other_buttons(&self) -> Vec<(String, String)> {
         if self.model.layer != KeyLayer::Participant {
             return Vec::new();
@@ -330,7 +330,7 @@ impl<'a> Place<'a> {
     }
 }
 
-/// One button a line, from the lower edge of the card upwards; where it is too low for that, all in its last line.
+/// Draws one button per line from the lower edge of the card upwards, or all in the last line if the card is too low.
 fn draw_buttons(brush: &mut Painter, room: Rect, buttons: &[(String, String)]) {
     let style = brush.style(TextRole::Human).add_modifier(Modifier::BOLD);
     let count = buttons.len() as u16;
@@ -345,7 +345,7 @@ fn draw_buttons(brush: &mut Painter, room: Rect, buttons: &[(String, String)]) {
     }
 }
 
-/// A name in a single line: first the spaces go, then the ends of the longest words.
+/// Shortens a name to a width: removes spaces first, then the ends of the longest words.
 pub fn squeeze(name: &str, columns: u16) -> String {
     let mut words: Vec<String> = name.replace(" + ", " +").split(' ').map(str::to_string).collect();
     if width(name) <= columns {
@@ -377,7 +377,7 @@ fn gaze_mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Sess
         brush.text(x, y, 1, sign, style);
         return;
     }
-    // A word under the gaze stays readable: its letter is marked, and the sign goes beside the card's name.
+    // Text under the gaze stays readable: its letter is marked, and the gaze sign is drawn beside the card's name.
     brush.buffer.set_style(Rect::new(x, y, 1, 1), style.add_modifier(Modifier::REVERSED));
     if let Some(spot) = plan.spots.iter().find(|spot| spot.cells.contains((x, y).into())) {
         brush.text(spot.cells.right(), spot.cells.y, 1, sign, style);

@@ -1,4 +1,4 @@
-//! A wizard's training: the task, and then what each signal was, the newest on top.
+//! The training panel: the task, then feedback on signals, the newest on top.
 
 use super::paint::{Painter, wrap};
 use super::regions::{Regions, ScreenSize};
@@ -7,10 +7,10 @@ use crate::console::lesson::{TrainingFeedback, TrainingPanel};
 use crate::console::model::ConsoleModel;
 use crate::console::notice::NoticeLevel;
 
-/// Columns of the clock before what is said.
+/// Width of the clock column.
 const CLOCK: u16 = 6;
 
-/// Draws what the training says.
+/// Draws the training panel.
 pub fn draw(brush: &mut Painter, regions: &Regions, model: &ConsoleModel) {
     let area = regions.lesson;
     let Some(lesson) = model.lesson.as_ref().filter(|_| area.area() > 0) else { return };
@@ -37,7 +37,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, model: &ConsoleModel) {
     }
 }
 
-/// What is said, each with the trial's clock, or without one.
+/// Lines of text, each with or without a time on the trial's clock.
 fn lines(lesson: &TrainingPanel) -> Vec<(String, String, TextRole)> {
     if lesson.feedback.is_empty() {
         return lesson.task.iter().map(|text| (String::new(), text.clone(), TextRole::Text)).collect();

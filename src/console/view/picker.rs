@@ -1,4 +1,4 @@
-//! A list to choose from, above the panels.
+//! A list dialog above the panels.
 
 use ratatui::layout::Rect;
 
@@ -8,15 +8,15 @@ use super::theme::TextRole;
 use crate::console::picker::{Picker, PickerEntry};
 use crate::session::Session;
 
-/// No list is wider, or higher.
+/// Largest size of the list: columns and rows.
 const MOST: (u16, u16) = (64, 26);
-/// Frame, search line, a line between, and the keys.
+/// Rows around the list: frame, search line, separator, key hints.
 const AROUND: u16 = 6;
 
 /// Draws an open list.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, picker: &Picker) {
     let choices = picker.choices(session);
-    // The height does not change while somebody types.
+    // The height stays the same while the filter changes.
     let all = Picker::new(picker.question).choices(session).len() as u16;
     let size = (MOST.0.min(screen.width), (all + AROUND).min(MOST.1).min(screen.height));
     let inside = open(brush, screen, size, &picker.title(session), "space stops the robot");

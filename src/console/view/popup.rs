@@ -1,4 +1,4 @@
-//! The frame of what is drawn in front of the console.
+//! The frame of dialogs.
 
 use ratatui::layout::Rect;
 
@@ -6,7 +6,7 @@ use super::paint::Painter;
 use super::regions::inside;
 use super::theme::TextRole;
 
-/// Clears the middle of the screen and frames it.
+/// Clears and frames an area in the middle of the screen; returns the area inside.
 pub(super) fn open(brush: &mut Painter, screen: Rect, size: (u16, u16), title: &str, remark: &str) -> Rect {
     let (columns, rows) = (size.0.min(screen.width), size.1.min(screen.height));
     let area = Rect {

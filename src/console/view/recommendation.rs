@@ -1,4 +1,4 @@
-//! What one could tell the participant: the signals by what they are worth, against what a signal costs, and why.
+//! The recommendation panel: signals ranked by net benefit, the cost of communication, and the reason.
 
 use ratatui::layout::Rect;
 
@@ -15,14 +15,14 @@ use crate::history::wording;
 use crate::session::Session;
 use crate::session::admit::may_send;
 
-/// Columns of a gauge; each stands for half a press that is saved, of ToM for a twelfth of a whole belief.
+/// Width of a gauge in columns; a column is half a saved press, or for ToM a twelfth of the deviation.
 const GAUGE: u16 = 12;
 const PRESSES_A_COLUMN: f64 = 0.5;
-/// What would be shown as 0.0 ±0.0 is not listed.
+/// Options with a smaller benefit and standard error are not listed, since they would be shown as 0.0 ±0.0.
 const NOTHING: f64 = 0.05;
-/// "[a] highlight assembly board": there is a bar only where so much has room beside it.
+/// Width reserved for the signal ("[a] highlight assembly board"); a gauge is drawn only beside it.
 const LONGEST_SIGNAL: u16 = 28;
-/// With fewer columns the line of the cost is said shorter.
+/// Number of columns below which the cost line is abbreviated.
 const NARROW: u16 = 46;
 
 /// Draws the recommendation panel.
@@ -42,7 +42,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         }
         return;
     };
-    // The line between what is worth a signal and what is not is always there; what stands above it gives way.
+    // The cost line is always visible; options above it are dropped if there is no room.
     let above = Rect { height: inside.height.saturating_sub(1), ..inside };
     let mut y = proposal(brush, above, advice);
     let (worth_it, not_worth_it): (Vec<&SignalOption>, Vec<&SignalOption>) =
@@ -76,7 +76,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
-/// What decides, and what its figures are; without what decides where there are few columns.
+/// Remark in the title: the concept and the unit of its numbers.
 fn remark(session: &Session, columns: u16) -> &'static str {
     let is_narrow = columns < NARROW;
     match session.spec.assistant.concept {
@@ -90,7 +90,7 @@ fn remark(session: &Session, columns: u16) -> &'static str {
     }
 }
 
-/// The presses that are proposed, and that only words can tell them to the participant; returns the row below.
+/// Draws the proposed presses; returns the row below.
 fn proposal(brush: &mut Painter, inside: Rect, advice: &Recommendation) -> u16 {
     let Some(proposal) = &advice.proposal else { return inside.y };
     let lines = wrap(&proposed(proposal), inside.width);
@@ -106,7 +106,7 @@ fn proposed(proposal: &Proposal) -> String {
     format!("error: next would be good {} (no signal says so)", presses.join(", then "))
 }
 
-/// Why there is no advice.
+/// Reason why there is no recommendation.
 fn silence(session: &Session) -> &'static str {
     match (session.spec.asks_assistant(), session.is_running()) {
         (false, _) => "None: nobody asks the assistant in this session (shadow = \"off\"). The signals are yours.",
@@ -115,7 +115,7 @@ fn silence(session: &Session) -> &'static str {
     }
 }
 
-/// The best advice in one line.
+/// Draws the best option in one line.
 fn line(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel) {
     let mut parts = vec![(" advice   ".to_string(), TextRole::Quiet)];
     match session.advice.as_ref().map(|advice| (advice, advice.best.as_ref().and(advice.top()))) {
@@ -145,7 +145,7 @@ fn line(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel
     brush.text_right(area.right().saturating_sub(1), area.y, area.width, &age, style);
 }
 
-/// What it means that nothing is recommended: nothing was worth it, or what was recommended has been sent.
+/// Text without a recommended signal: no signal is worth its cost, or the recommended signal has been sent.
 fn nothing(session: &Session, advice: &Recommendation) -> &'static str {
     match session.signalled_at.is_some_and(|sent| sent >= advice.for_ns) {
         true => "sent",
@@ -153,12 +153,12 @@ fn nothing(session: &Session, advice: &Recommendation) -> &'static str {
     }
 }
 
-/// How old the advice is.
+/// Age of the recommendation.
 fn age(session: &Session, advice: &Recommendation, model: &ConsoleModel) -> String {
     format!("  {:.1} s old", session.age(advice.for_ns, model.now).as_secs_f64())
 }
 
-/// What an option is worth beyond its price, in the concept's unit.
+/// Net benefit of an option in the concept's unit.
 fn worth(option: &SignalOption, session: &Session) -> String {
     match session.spec.assistant.concept {
         ConceptName::Tom => format!("{:+.2} ", option.net),
@@ -188,7 +188,7 @@ fn option_line(
     let worth = worth(option, session);
     let mut x = brush.parts(inside.x, y, inside.width, &[(worth.as_str(), role)]);
     let (key, words) = (key(option, session, model), wording::signal(&option.signal));
-    // What a signal says comes before how it looks as a bar.
+    // The words of a signal have priority over its gauge.
     if inside.right().saturating_sub(x) >= GAUGE + 1 + LONGEST_SIGNAL {
         x = gauge(brush, x, y, option, session, role);
     }
@@ -196,7 +196,7 @@ fn option_line(
     y + 1
 }
 
-/// The benefit as a bar: full up to one standard error below it, open to one above; a line where the cost is.
+/// Draws the benefit as a bar: solid up to one standard error below, open up to one above, with a line at the cost.
 fn gauge(brush: &mut Painter, x: u16, y: u16, option: &SignalOption, session: &Session, role: TextRole) -> u16 {
     let signs = brush.theme.signs();
     let (cost, of_tom) = (session.spec.assistant.price(), session.spec.assistant.concept == ConceptName::Tom);
@@ -218,7 +218,7 @@ fn gauge(brush: &mut Painter, x: u16, y: u16, option: &SignalOption, session: &S
     x + GAUGE + 1
 }
 
-/// Why the best option would help, as long as there is room for it, and shorter where there is not.
+/// Draws the reason for the best option, shortened to the available room; returns the row below.
 fn reason(brush: &mut Painter, inside: Rect, y: u16, advice: &Recommendation, session: &Session) -> u16 {
     let (Some(reason), Some(option)) = (&advice.reason, advice.top()) else { return y };
     let saves = match session.spec.assistant.concept {
@@ -229,7 +229,7 @@ fn reason(brush: &mut Painter, inside: Rect, y: u16, advice: &Recommendation, se
     let said = [reason.words() + &saves, reason.words(), reason.taken() + &saves, reason.taken()];
     let mut lines = said.iter().map(|words| wrap(words, columns)).find(|lines| lines.len() <= rows);
     if lines.is_none() {
-        // Not even the shortest has room: its last line says that it goes on.
+        // If even the shortest text does not fit, its last visible line is marked as continued.
         let all = wrap(&said[3], columns);
         lines = rows.checked_sub(1).map(|last| [&all[..last], &[all[last..].join(" ")]].concat());
     }
@@ -241,7 +241,7 @@ fn reason(brush: &mut Painter, inside: Rect, y: u16, advice: &Recommendation, se
     y + lines.len() as u16
 }
 
-/// What a signal costs, and how old the advice is.
+/// Draws the cost of communication and the age of the recommendation.
 fn cost_line(
     brush: &mut Painter,
     inside: Rect,

@@ -1,4 +1,4 @@
-//! Which panel is where, for the size of the terminal.
+//! The layout of panels for the size of the terminal.
 
 use ratatui::layout::Rect;
 
@@ -8,24 +8,24 @@ use crate::console::panel::Panel;
 use crate::session::Session;
 use crate::session::settings::Visibility;
 
-/// Below this nothing can be drawn that helps.
+/// Smallest usable terminal: columns and rows.
 pub const LEAST: (u16, u16) = (72, 22);
 
-/// From so many columns on there is room for panels beside each other.
+/// Number of columns from which panels are placed side by side.
 pub const ROOMY_COLUMNS: u16 = 112;
 
-/// How much room there is.
+/// Size class of the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ScreenSize {
-    /// Panels shrink to lines; down to 80x24.
+    /// Panels shrink to lines (80x24).
     Small,
-    /// Everything at once: 120x40.
+    /// All panels (120x40).
     Medium,
-    /// With the events in words beside: 200x60.
+    /// All panels plus the list of events (200x60).
     Large,
 }
 
-/// The places of the panels; an empty one is not drawn.
+/// Areas of the panels; a panel with an empty area is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Regions {
     pub room: ScreenSize,
@@ -33,28 +33,28 @@ pub struct Regions {
     pub kitchen: Rect,
     pub belief: Rect,
     pub recommendation: Rect,
-    /// The gaze map, in the room of the two above where the wizard may not see them.
+    /// Gaze map, which replaces belief and recommendations where the wizard may not see those.
     pub gaze_map: Rect,
-    /// The participant's side: what the display shows, and where the gaze is; two lines where there is little room.
+    /// The participant's side: signal on the display, and gaze.
     pub shown: Rect,
     pub gaze: Rect,
     pub robot: Rect,
     pub events: Rect,
     pub timeline: Rect,
-    /// Wizard and assistants side by side, in the place of the timeline.
+    /// Comparison of wizard and assistants, which replaces the timeline.
     pub comparison: Rect,
-    /// What a training says, in the room of what the wizard may not see.
+    /// Training panel.
     pub lesson: Rect,
     pub footer: Rect,
 }
 
-/// The least columns of the kitchen panel in which names of the usual length are written out.
+/// Least width of the kitchen panel for unabbreviated names of usual length.
 const KITCHEN_COLUMNS: u16 = 81;
-/// Rows of the timeline with its title.
+/// Height of the timeline with its title.
 const TIMELINE_ROWS: u16 = 7;
 
 impl Regions {
-    /// Deals out a terminal of `size` columns and rows to what this console shows.
+    /// Computes the layout of a terminal with `size` columns and rows for this console.
     pub fn showing(size: (u16, u16), session: &Session, model: &ConsoleModel) -> Regions {
         let assistants = |compared: &ComparisonView| compared.seen.as_ref().map_or(1, |seen| seen.pairs.len()) as u16;
         let compared = model.comparison.as_ref().map(assistants);
@@ -62,7 +62,7 @@ impl Regions {
         if model.lesson.is_some() { regions.teaching() } else { regions }
     }
 
-    /// Makes room for what a training says: below the gaze map, or else above the timeline.
+    /// Adds the training panel below the gaze map, or else above the timeline.
     fn teaching(self) -> Regions {
         match self.gaze_map.area() {
             0 if self.kitchen.area() == 0 => self,
@@ -77,12 +77,12 @@ impl Regions {
         }
     }
 
-    /// Deals it out to all panels but the comparison, or to one alone.
+    /// Computes the layout of all panels without the comparison, or of one panel at full size.
     pub fn new(size: (u16, u16), visibility: Visibility, alone: Option<Panel>) -> Regions {
         Regions::with(size, visibility, alone, None)
     }
 
-    /// With a comparison of a wizard with so many assistants, if there is one.
+    /// Computes the layout with a comparison of this number of assistants, if there is one.
     fn with(size: (u16, u16), visibility: Visibility, alone: Option<Panel>, assistants: Option<u16>) -> Regions {
         let room = match size {
             (columns, rows) if columns >= 168 && rows >= 46 => ScreenSize::Large,
@@ -135,7 +135,7 @@ impl Regions {
         regions
     }
 
-    /// Where a panel is.
+    /// Area of a panel.
     pub fn panel_area(&self, panel: Panel) -> Rect {
         match panel {
             Panel::Kitchen => self.kitchen,
@@ -148,12 +148,12 @@ impl Regions {
         }
     }
 
-    /// The comparison has the timeline's place.
+    /// Height of the timeline or of the comparison in its place.
     fn timeline_rows(&self, rows: u16) -> u16 {
         if self.comparison.area() > 0 { 0 } else { rows }
     }
 
-    /// The panels as lines below the kitchen, the three worst beliefs among them.
+    /// Small layout: panels as lines below the kitchen, with the three worst beliefs.
     fn small(self, visibility: Visibility) -> Regions {
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(4));
         let (rest, recommendation) = bottom(rest, u16::from(visibility == Visibility::Recommendation));
@@ -165,7 +165,7 @@ impl Regions {
         Regions { kitchen, robot, shown, gaze, belief, recommendation, timeline, ..self }
     }
 
-    /// The kitchen at the left; at the right from what is believed over what could be said to who does what.
+    /// Medium layout: the kitchen at the left; beliefs, recommendations and agents at the right.
     fn medium(self, visibility: Visibility) -> Regions {
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(TIMELINE_ROWS));
         let (kitchen, side) = left(rest, (rest.width * 13 / 20).max(KITCHEN_COLUMNS));
@@ -175,7 +175,7 @@ impl Regions {
         Regions { kitchen, shown, robot, gaze, timeline, ..self }.judge(side, visibility)
     }
 
-    /// Three columns: what is, what is believed and could be said, what happened.
+    /// Large layout in three columns: state, beliefs with recommendations, events.
     fn large(self, visibility: Visibility) -> Regions {
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(TIMELINE_ROWS));
         let (rest, events) = right(rest, 36);
@@ -191,7 +191,7 @@ impl Regions {
         }
     }
 
-    /// Gives this area to what the wizard may see beside the state.
+    /// Divides an area among the panels that the visibility setting allows.
     fn judge(self, side: Rect, visibility: Visibility) -> Regions {
         match visibility {
             Visibility::State => Regions { gaze_map: side, ..self },
@@ -203,7 +203,7 @@ impl Regions {
         }
     }
 
-    /// The names of the panels that have room.
+    /// Names of the visible panels.
     pub fn panels(&self) -> Vec<&'static str> {
         let panels = [
             ("kitchen", self.kitchen),
@@ -220,7 +220,7 @@ impl Regions {
         panels.into_iter().filter(|(_, area)| area.area() > 0).map(|(name, _)| name).collect()
     }
 
-    /// The cells of the kitchen panel without its title, where the display points are.
+    /// The kitchen panel without its title, which shows the area of the display.
     pub fn kitchen_inside(&self) -> Rect {
         match self.room {
             ScreenSize::Small => self.kitchen,
@@ -229,23 +229,23 @@ impl Regions {
     }
 }
 
-/// Rows of the comparison: axis and first lane, for each assistant its lane, its matches and its figures, and the
-/// differences; with a title where there is room.
+/// Height of the comparison: axis, first lane, three rows for each assistant (lane, matches, statistics), differences, and a title
+/// if there is room.
 fn comparison_rows(room: ScreenSize, assistants: u16) -> u16 {
     match room {
-        // Figures of the first assistant alone.
+        // Only the first assistant has a row of statistics.
         ScreenSize::Small => 4 + if assistants == 1 { 2 } else { assistants },
         ScreenSize::Medium => 4 + 3 * assistants,
         ScreenSize::Large => 7 + 3 * assistants,
     }
 }
 
-/// What is left inside of a frame.
+/// Area inside a frame.
 pub fn inside(area: Rect) -> Rect {
     Rect { x: area.x + 1, y: area.y + 1, width: area.width.saturating_sub(2), height: area.height.saturating_sub(2) }
 }
 
-/// What is left below the title of a panel, with a margin at both sides.
+/// Area below the title of a panel, with margins at both sides.
 pub fn below_title(area: Rect) -> Rect {
     Rect { x: area.x + 1, y: area.y + 1, width: area.width.saturating_sub(2), height: area.height.saturating_sub(1) }
 }

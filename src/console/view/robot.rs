@@ -1,4 +1,4 @@
-//! The robot: what it is about to press, how far the arm is, and why it does nothing; and how its arm stands.
+//! The robot panel: ongoing press, progress of the arm, reason for being idle, and pose of the arm.
 
 use std::f64::consts::TAU;
 
@@ -49,7 +49,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let inside = brush.panel_with(area, title, &parts);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
-    // Where there is little room, how the arm stands matters more than what the kitchen shows, too.
+    // On small screens the pose of the arm has priority over what the kitchen panel also shows.
     match session.robot.arm.last {
         Some((_, moment)) if inside.height < 4 => arm(brush, x, inside.y + 1, columns, session, &moment),
         Some((_, moment)) => {
@@ -61,7 +61,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
-/// What the robot holds, and how often it has pressed.
+/// Draws the content of the robot's hand and its number of presses.
 fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
     let held = session.kitchen.content_label(session.state, session.kitchen.hands[Agent::Robot.index()]);
     let presses = count(u64::from(session.presses[Agent::Robot.index()]), "press", "presses");
@@ -70,7 +70,7 @@ fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
     brush.text_right(x + columns, y, columns / 2, &presses, quiet);
 }
 
-/// How the arm stands: what it does, its joints, how far the hand is, and what it feels.
+/// Draws phase, joints, distance of the hand, and contact force of the arm.
 fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, moment: &ArmSample) {
     let signs = brush.theme.signs();
     let bar = |angle: &f64| signs.levels[((angle / TAU + 0.5) * 8.0).clamp(0.0, 7.0) as usize];
@@ -97,7 +97,7 @@ fn joints(brush: &mut Painter, x: u16, y: u16, columns: u16, moment: &ArmSample)
     brush.parts(x, y, columns, &[("joints", TextRole::Quiet), (&angles, TextRole::Text), (" deg", TextRole::Quiet)]);
 }
 
-/// That the robot is stopped, why, and the key that lets it go on.
+/// Draws the stop of the robot with its reason and the key that resumes it.
 fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
     let arm = &session.robot.arm;
     let (label, goes_on) = match arm.mode {
@@ -112,7 +112,7 @@ fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session,
     brush.parts(end, y, (x + columns).saturating_sub(end), &[(&force, TextRole::Alarm), (&resume, TextRole::Text)]);
 }
 
-/// How much a safety mode is to be seen.
+/// Style of a safety mode.
 fn mode_role(mode: SafetyMode) -> TextRole {
     match mode {
         SafetyMode::Normal => TextRole::Quiet,
@@ -162,12 +162,12 @@ fn release(model: &ConsoleModel) -> String {
         .unwrap_or_default()
 }
 
-/// Says that the robot is held; where the line goes on, and how much room is left.
+/// Draws that the robot is held; returns the next column and the remaining width.
 fn held(brush: &mut Painter, x: u16, y: u16, columns: u16, model: &ConsoleModel) -> (u16, u16) {
     badge(brush, x, y, columns, " HELD ", &format!(" {} ", release(model)))
 }
 
-/// A badge, with more words where there is room for them; where the line goes on, and how much room is left.
+/// Draws a badge, with more words if there is room; returns the next column and the remaining width.
 fn badge(brush: &mut Painter, x: u16, y: u16, columns: u16, label: &str, words: &str) -> (u16, u16) {
     let badge = brush.theme.badge(TextRole::Strong);
     let end = brush.text(x, y, columns, label, badge);

@@ -1,5 +1,4 @@
-//! What lies in front of the console around a trial: instruction, questionnaire, debriefing, and the questions before a
-//! recording.
+//! Sheets around a trial: instruction, questionnaire, debriefing, and questions before a recording.
 
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -14,21 +13,21 @@ use crate::session::Session;
 use crate::session::plan::Questionnaire;
 use crate::session::protocol::{ItemAnswer, Protocol};
 
-/// Longer lines are hard to read.
+/// Largest line width, for readability.
 const WIDEST: u16 = 84;
 
-/// What a sheet is drawn with.
+/// Drawing context of a sheet.
 struct Pen<'a, 'b> {
     brush: &'a mut Painter<'b>,
     with_keys: bool,
 }
 
-/// Lines of a sheet: each with its indent, and how it is drawn.
+/// Lines of a sheet with indent and style.
 #[derive(Default)]
 struct Page {
     columns: u16,
     lines: Vec<(u16, String, TextRole)>,
-    /// The line that has to be seen.
+    /// Index of the line that must be visible.
     focus: usize,
 }
 
@@ -42,7 +41,7 @@ impl Page {
         self.lines.extend(lines.into_iter().map(|line| (indent, line, role)));
     }
 
-    /// A text behind a mark that stands before its first line.
+    /// Adds a text with a mark before its first line.
     fn marked(&mut self, mark: &str, text: &str, role: TextRole) {
         let first = self.lines.len();
         self.text(width(mark) + 1, text, role);
@@ -55,7 +54,7 @@ impl Page {
         self.lines.push((0, String::new(), TextRole::Text));
     }
 
-    /// Draws it, as much as there is room for, with its focus, and what the keys do on the last line.
+    /// Draws the visible part of the page around its focus, with key hints on the last line.
     fn draw(self, pen: &mut Pen, screen: Rect, title: &str, remark: &str, keys: &[(&str, TextRole)]) {
         let rows = (self.lines.len() as u16 + 5).min(screen.height.saturating_sub(2));
         let brush = &mut *pen.brush;
@@ -77,7 +76,7 @@ impl Page {
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
     let (Some(sheet), Some((step, protocol))) = (sheet(session), session.step()) else { return };
     let where_ = format!("{}  {}", session.spec.participant.code, step.label());
-    // Over a recording the keys do something else.
+    // In a replay the keys have other meanings.
     let pen = &mut Pen { brush, with_keys: model.playback.is_none() };
     match sheet {
         SheetContent::Steps { title, steps } => draw_steps(pen, screen, (title, &where_), steps, protocol, session),
@@ -88,7 +87,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     }
 }
 
-/// What the key that goes on leads to.
+/// Label of the advance key: the next phase.
 fn onward(session: &Session) -> String {
     match session.next_phase() {
         Some(phase) => format!(" on to the {}", phase.name()),
@@ -181,7 +180,7 @@ fn draw_questions(
     page.draw(pen, screen, &questionnaire.title, where_, &keys);
 }
 
-/// The points of the scale, the given one marked, with what its ends mean.
+/// Draws the scale with its end labels and the given answer marked.
 fn scale(page: &mut Page, questionnaire: &Questionnaire, given: Option<ItemAnswer>) {
     let point = |point: u8| match given == Some(ItemAnswer::Rated(point)) {
         true => format!("[{point}]"),
@@ -224,7 +223,7 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session) {
     page.draw(pen, screen, "The criterion is not met", where_, &keys);
 }
 
-/// Draws a question before a recording begins: nothing else is on the screen.
+/// Draws a question before a recording, on an otherwise empty screen.
 pub fn draw_question(question: &QuestionPage, theme: Theme, frame: &mut Frame) {
     let screen = frame.area();
     let mut brush = Painter { buffer: frame.buffer_mut(), theme };

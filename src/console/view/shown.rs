@@ -1,4 +1,4 @@
-//! The participant's side: the signal that is on the display now, with what it says and how long it stays.
+//! The participant's side: the signal on the display, its content and its remaining time.
 
 use super::paint::{Painter, width, wrap};
 use super::regions::{Regions, ScreenSize};
@@ -9,7 +9,7 @@ use crate::console::model::ConsoleModel;
 use crate::history::wording;
 use crate::session::{Phase, Session, ShownSignal};
 
-/// Draws what the participant is shown.
+/// Draws the signal on the display.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.shown;
     if area.area() == 0 {
@@ -62,14 +62,14 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
 }
 
-/// Seconds that it stays, and their share of the whole.
+/// Remaining time in seconds, and as a share of its duration.
 fn left(session: &Session, shown: &ShownSignal, model: &ConsoleModel) -> (f64, f64) {
     let now = if session.is_running() { model.now } else { session.paused_at };
     let left_s = shown.until.secs_since(now);
     (left_s, left_s / shown.until.secs_since(shown.since).max(1e-3))
 }
 
-/// What the signal tells the participant.
+/// Content of the signal in words.
 fn says(session: &Session, signal: &Signal) -> String {
     let kitchen = &session.kitchen;
     let Some(location) = kitchen.location_named(signal.target()) else { return String::new() };

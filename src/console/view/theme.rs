@@ -1,27 +1,27 @@
-//! Colours with meaning and signs with a fallback. Every meaning has a sign or a letter too, so that nothing is lost
-//! without colour. The colours are fixed ones of the 256, one set for dark and one for light terminals, each chosen so
-//! that text keeps a contrast of at least 4.5 to the usual backgrounds (WCAG 2.1, success criterion 1.4.3).
+//! Colours and signs of the console, with ASCII fallback. Every meaning of a colour also has a sign or a letter. Colours come from
+//! the 256 colours of xterm, one set for dark and one for light terminals, with a contrast of at least 4.5 to the usual
+//! backgrounds (WCAG 2.1, success criterion 1.4.3).
 
 use ratatui::style::{Color, Modifier, Style};
 
-/// What something on the screen is, not how it looks.
+/// Role of a text on the screen, from which its style follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextRole {
     Text,
-    /// Labels, and what is as it should be.
+    /// Labels and normal states.
     Quiet,
-    /// Lines around and between.
+    /// Frames and separators.
     Frame,
-    /// Titles and what is there.
+    /// Titles and contents.
     Strong,
     Human,
     Robot,
-    /// The wizard's keys, and what they show to the participant.
+    /// Keys of the wizard, and signals.
     Signal,
     Gaze,
-    /// Stopped, lost, wrong: has to be seen at once.
+    /// Alarms: stopped, lost, failed.
     Alarm,
-    /// False beliefs, and nothing else.
+    /// False beliefs only.
     FalseBelief,
 }
 
@@ -32,7 +32,7 @@ pub enum TerminalBackground {
     Light,
 }
 
-/// How the console is drawn.
+/// Colours and signs of the console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Theme {
     pub colour: bool,
@@ -45,7 +45,7 @@ pub struct Theme {
 pub struct Glyphs {
     /// Corners top left, top right, bottom left, bottom right, then horizontal and vertical line.
     pub frame: [&'static str; 6],
-    /// The rule of a card: as it is, changed just now, shown to the participant.
+    /// Rules of a card: normal, just changed, highlighted by a signal.
     pub rules: [&'static str; 3],
     pub bar_full: &'static str,
     pub bar_empty: &'static str,
@@ -57,16 +57,16 @@ pub struct Glyphs {
     pub served: &'static str,
     pub taken_back: &'static str,
     pub stopped: &'static str,
-    /// Somebody touched the arm.
+    /// Contact with the arm.
     pub touched: &'static str,
-    /// Done by the experimenter's hand.
+    /// Manual intervention of the experimenter.
     pub by_hand: &'static str,
     pub to: &'static str,
     pub changed: &'static str,
     pub recording: &'static str,
     pub pause: &'static str,
     pub ellipsis: &'static str,
-    /// From low to full, for curves.
+    /// Bars from low to full, for curves.
     pub levels: [&'static str; 8],
     pub dash: &'static str,
 }
@@ -143,7 +143,7 @@ impl Theme {
     pub fn style(&self, role: TextRole) -> Style {
         let modifier = match role {
             TextRole::Text | TextRole::Human | TextRole::Robot => Modifier::empty(),
-            // A grey of its own is darker or brighter by as much as it should be; where there is none, dim has to do.
+            // Without colours, dim text replaces grey.
             TextRole::Quiet | TextRole::Frame if self.colour => Modifier::empty(),
             TextRole::Quiet | TextRole::Frame => Modifier::DIM,
             TextRole::Strong | TextRole::Signal | TextRole::Gaze | TextRole::Alarm | TextRole::FalseBelief => {
@@ -157,7 +157,7 @@ impl Theme {
         }
     }
 
-    /// The same as a filled badge.
+    /// Style of a filled badge.
     pub fn badge(&self, role: TextRole) -> Style {
         self.style(role).remove_modifier(Modifier::DIM).add_modifier(Modifier::REVERSED | Modifier::BOLD)
     }

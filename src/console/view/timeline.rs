@@ -1,4 +1,4 @@
-//! The last minute, one row per kind of event, in columns of half a second; now is at the right edge.
+//! The timeline: one row per kind of event, columns of half a second, the present at the right edge.
 
 use ratatui::layout::Rect;
 
@@ -13,7 +13,7 @@ use crate::kitchen::Agent;
 use crate::session::event::SignalEnd;
 use crate::session::{Phase, Session, TimelineEntry, TimelineEvent};
 
-/// The width of a column in seconds.
+/// Duration of a column, in seconds.
 const COLUMN_S: f64 = 0.5;
 const LABELS: u16 = 10;
 const TITLE: &str = "Timeline";
@@ -58,12 +58,12 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
-/// Its title, with where a rater stands.
+/// Title, with the rater's position.
 fn title(session: &Session, model: &ConsoleModel) -> String {
     coding(session, model).map_or(TITLE.to_string(), |words| format!("{TITLE}: {words}"))
 }
 
-/// Where a rater stands, where errors are coded.
+/// The rater's position, while errors are coded.
 fn coding(session: &Session, model: &ConsoleModel) -> Option<String> {
     let (coding, playback) = (model.coding.as_ref()?, model.playback.as_ref()?);
     let error = session.timeline.iter().rev().find(|entry| model.is_error(entry));
@@ -71,7 +71,7 @@ fn coding(session: &Session, model: &ConsoleModel) -> Option<String> {
     Some(coding.describe(&session.kitchen, playback.event, &press))
 }
 
-/// What stands at the right edge: now; in a pause the last that happened, since that is when one looks back.
+/// Time at the right edge: the present, or the last event during a pause.
 pub(super) fn until(session: &Session, model: &ConsoleModel) -> SessionTime {
     let last = session.timeline.last().map_or(session.paused_at, |entry| entry.time.max(session.paused_at));
     if session.phase == Phase::Paused { last.min(model.now) } else { model.now }
@@ -85,8 +85,8 @@ struct Mark {
     role: TextRole,
 }
 
-/// Writes the signs, the newest first. Of presses in one column one stands for all; everything else is never lost: what
-/// finds its cell taken moves to the next free one, towards the past.
+/// Draws the signs, the newest first. Several presses in one column share a sign; any other sign whose cell is taken moves to the
+/// next free cell towards the past.
 fn place(brush: &mut Painter, plot: Rect, marks: &[Mark]) {
     let signs = brush.theme.signs();
     let rank = |mark: &Mark| match mark.sign.as_str() {
@@ -112,7 +112,7 @@ fn place(brush: &mut Painter, plot: Rect, marks: &[Mark]) {
     }
 }
 
-/// Where there is room for a line in the timeline's title, between its name and what its signs mean.
+/// Free area in the timeline's title line, between title and legend.
 pub(super) fn title_room(brush: &Painter, regions: &Regions, session: &Session, model: &ConsoleModel) -> Option<Rect> {
     let area = regions.timeline;
     if regions.room == ScreenSize::Small || area.area() == 0 {
@@ -132,7 +132,7 @@ fn column(time: SessionTime) -> i64 {
     (time.as_secs_f64() / COLUMN_S) as i64
 }
 
-/// Draws the axis of time in the first row, in columns of so many seconds, with now, or so long ago, at its right end.
+/// Draws the time axis in the first row; the right end is the present or `back_s` seconds ago.
 pub(super) fn axis(brush: &mut Painter, plot: Rect, back_s: u32, column_s: f64) {
     let quiet = brush.style(TextRole::Quiet);
     let every = (10.0 / column_s) as u16;
@@ -198,7 +198,7 @@ fn mark(
     })
 }
 
-/// The key of the signal, as it stands in the kitchen.
+/// The key of the signal, as shown in the kitchen.
 fn signal_sign(session: &Session, model: &ConsoleModel, signal: &Signal) -> String {
     let location = session.kitchen.location_named(signal.target());
     location.and_then(|id| model.keys.mark(id)).map_or("!".to_string(), |chord| chord.to_string())

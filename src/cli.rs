@@ -46,12 +46,12 @@ const FAILED: u8 = 1;
 /// Exit code: wrong arguments or files.
 const WRONG: u8 = 2;
 
-/// How often a running session is looked at for new events.
+/// Period of polling a running session for new events.
 const FOLLOW_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Runs the command of the arguments. Exit codes: 0 done, 1 failed, 2 wrong arguments or files.
 pub fn main() -> ExitCode {
-    // Lines are not wrapped, so that file and line can be searched for; a hook that is set already is as good.
+    // Messages are not wrapped, so that file and line can be searched for; an existing hook is kept.
     let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build())));
     let cli = Cli::parse();
     let command = cli.command.unwrap_or(CliCommand::Operate(operate::OperateArgs {
@@ -157,7 +157,7 @@ fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
 
 fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
     let ruling = log::rule(&args.recording, !args.back, args.reason.as_deref().unwrap_or_default())?;
-    // Only who counts a recording again has to know what else is in its log.
+    // Including a recording again reports other reasons in its log that still exclude it.
     let aborted = if ruling.excluded { None } else { standing::aborted(&args.recording)? };
     let words = match (ruling.excluded, aborted) {
         (true, _) => "is left out of the analysis".to_string(),

@@ -1,4 +1,4 @@
-//! What can be typed: commands and their arguments.
+//! Commands and their arguments.
 
 use std::path::PathBuf;
 
@@ -49,7 +49,7 @@ pub(super) enum CliCommand {
     Man(ManArgs),
 }
 
-/// Shows a recording at the console, prints it, or verifies it.
+/// Shows, prints or verifies a recording.
 ///
 /// In a terminal it opens the console over the recording; through a pipe it prints what happened, line by line.
 #[derive(Debug, Args)]
@@ -58,48 +58,48 @@ pub(super) struct ReplayArgs {
     /// The folder of a recording, or its events.jsonl; several only with --check-beliefs and --accuracy.
     #[arg(required = true, value_name = "RECORDING")]
     pub(super) recordings: Vec<PathBuf>,
-    /// Run the session again from the recording's header and its inputs; every line must come out the same.
+    /// Run the session again from the recording's header and inputs; every line must be identical.
     #[arg(long, conflicts_with = "follow")]
     pub(super) verify: bool,
-    /// Hold what was estimated before each press against what simulated participants believed, and what they pressed.
+    /// Compare the estimates before each press with the recorded beliefs of simulated participants, and with the presses.
     #[arg(long, conflicts_with_all = ["verify", "follow"])]
     pub(super) check_beliefs: bool,
-    /// Take the time of the inference, event by event.
+    /// Measure computing times of inference and planning.
     #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs"])]
     pub(super) timing: bool,
-    /// Hold the planner's answers against those with 64 times the rollouts, and against its plain reference. Takes long.
+    /// Compare the planner's answers with those from 64 times as many rollouts, and with the plain reference. Takes long.
     #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs", "timing"])]
     pub(super) accuracy: bool,
-    /// With --accuracy: at most so many steps, spread evenly over the recordings.
+    /// With --accuracy: largest number of steps, spread evenly over the recordings.
     #[arg(long, default_value_t = 500, requires = "accuracy", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(super) steps: u64,
-    /// With --accuracy: at most so many of them for the plain reference; 0: none.
+    /// With --accuracy: largest number of steps for the plain reference; 0 for none.
     #[arg(long, default_value_t = 30, requires = "accuracy", value_parser = clap::value_parser!(u64).range(0..=100_000))]
     pub(super) reference_steps: u64,
     /// Watch a session that is still running, until it ends.
     #[arg(long)]
     pub(super) follow: bool,
-    /// Code the errors of the recording as this rater (a code, never a name), without any estimate in view: letters say
-    /// what was believed wrong, 1 a slip, 2 a race, 3 another cause. It is kept beside the log.
+    /// Code the errors of the recording as this rater (a code, never a name), without any estimate in view: letters code
+    /// false beliefs, 1 a slip, 2 a race, 3 another cause. Codes are saved beside the log.
     #[arg(long, value_name = "CODE", conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy", "format"])]
     pub(super) rater: Option<String>,
-    /// How to print the result.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: OutputFormat,
 }
 
-/// Prints how far a study is.
+/// Prints the progress of a study.
 ///
-/// Participants, their groups, what is done and what comes next, from the recordings on the disk.
+/// Participants, groups, finished and next recordings, from the recordings on the disk.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom plan sessions/study.toml --out sessions\nMore: docs/study.md")]
 pub(super) struct PlanArgs {
     /// The session file with the plan.
     pub(super) session: PathBuf,
-    /// Where the recordings are.
+    /// Folder of the recordings.
     #[arg(long, default_value = "sessions")]
     pub(super) out: PathBuf,
-    /// How to print it.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: OutputFormat,
 }
@@ -115,49 +115,47 @@ pub(super) struct PlanArgs {
 pub(super) struct SimulateArgs {
     /// The session file.
     pub(super) session: PathBuf,
-    /// How many trials; each has orders and a participant of its own and does not depend on how many there are. Of a
-    /// session with a plan, the first so many of its trials, participant by participant. By default 1, or the whole plan.
+    /// Number of trials; each has its own orders and participant and does not depend on their number. With a plan: the first
+    /// trials of the plan, participant by participant. Default: 1, or the whole plan.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(super) trials: Option<u64>,
-    /// Only a part of the trials, "2/8" the second of eight, so that a job array makes them all: the parts have no trial in
-    /// common, and together they are the whole.
+    /// Simulate one shard of the trials, such as "2/8", the second of eight disjoint shards, for job arrays.
     #[arg(long, value_name = "PART/PARTS", default_value = "1/1", hide_default_value = true)]
     pub(super) shard: Shard,
-    /// Everything random follows from it; by default the session file's.
+    /// Seed of all random numbers; by default that of the session file.
     #[arg(long)]
     pub(super) seed: Option<u64>,
-    /// Who sends signals: by default nobody, and with --sweep the assistant; of a session with a plan, the plan says it.
+    /// Who sends signals: by default nobody, with --sweep the assistant, with a plan as the plan says.
     #[arg(long, value_enum)]
     pub(super) condition: Option<SimulatedCondition>,
-    /// By what the assistant decides, instead of the session file's concept.
+    /// Communication concept of the assistant, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) concept: Option<ConceptArg>,
-    /// How the robot's presses come about, instead of the session file's arm; "timed" is quicker to simulate.
+    /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
     #[arg(long, value_enum)]
     pub(super) arm: Option<ArmArg>,
-    /// Simulate the trials for every value of a setting, and without signals, and print what matters how much: cost=0.5,1.5,
-    /// threshold (of tom), horizon, rollouts, tau, radius, gaze=on,off. Several make a grid. The assistant sends the
-    /// signals, unless --condition says otherwise; of a session with a plan its settings count, and each trial is of
-    /// another participant.
+    /// Simulate the trials for every value of a setting and without signals, and print the effects: cost=0.5,1.5, threshold
+    /// (of tom), horizon, rollouts, tau, radius, gaze=on,off. Several settings make a grid. The assistant sends the signals
+    /// unless --condition says otherwise. With a plan, its settings apply, and every trial has another participant.
     #[arg(long, value_name = "SETTING=VALUES", conflicts_with_all = ["shadow", "rerun"])]
     pub(super) sweep: Vec<SweepAxis>,
-    /// Let the assistant advise in unassisted trials too; its advice is recorded and shown to nobody.
+    /// Compute the assistant's recommendations in unassisted trials too; they are recorded and shown to nobody.
     #[arg(long)]
     pub(super) shadow: bool,
-    /// Write the stream for Rerun's viewer beside every log, too, as recording.rrd.
+    /// Also write a stream for the Rerun viewer beside every log, as recording.rrd.
     #[arg(long)]
     pub(super) rerun: bool,
-    /// Where the recordings go, one folder a trial.
+    /// Folder for the recordings, one folder per trial.
     #[arg(long, default_value = "sessions/simulated")]
     pub(super) out: PathBuf,
-    /// How to print the figures.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: OutputFormat,
 }
 
 /// Fits the human model to recordings.
 ///
-/// Finds the parameters under which the recorded presses are likeliest, with standard errors.
+/// Maximum likelihood estimates of parameters from recorded presses, with standard errors.
 #[derive(Debug, Args)]
 #[command(
     after_help = "A session uses the file with human_model = \"FILE\".\nExample: tomcom fit recordings/* --out sessions/human.toml\nMore: docs/human-model.md"
@@ -166,20 +164,20 @@ pub(super) struct FitArgs {
     /// The folders of recordings of one kitchen, or their events.jsonl.
     #[arg(required = true, value_name = "RECORDING")]
     pub(super) recordings: Vec<PathBuf>,
-    /// Which parameters, with commas between them.
+    /// Parameters to fit, separated by commas.
     #[arg(long, value_enum, value_delimiter = ',', default_value = FitParameter::USUAL)]
     pub(super) parameters: Vec<FitParameter>,
-    /// Where to begin, a parameter file; what is not fitted stays as it is there. By default the parameters that stand in
-    /// the recordings.
+    /// Parameter file to start from; parameters that are not fitted keep its values. By default the parameters in the
+    /// recordings.
     #[arg(long, value_name = "FILE")]
     pub(super) start: Option<PathBuf>,
-    /// The search for the best parameters ends after so many tries.
+    /// Largest number of likelihood evaluations.
     #[arg(long, default_value_t = 600, value_parser = clap::value_parser!(u64).range(10..=100_000))]
     pub(super) tries: u64,
-    /// Where to write the parameter file.
+    /// Write the fitted parameters to this file.
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
-    /// How to print the figures.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: OutputFormat,
 }
@@ -187,17 +185,17 @@ pub(super) struct FitArgs {
 /// A parameter of the human model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum FitParameter {
-    /// How strictly fewer expected presses are preferred.
+    /// Rationality of choices (softmax over the expected cost to go).
     Tau,
-    /// The share of presses that slip.
+    /// Share of presses that are slips.
     Lapse,
     /// Radius of the area around the fixation.
     Radius,
-    /// Readings a second.
+    /// Reading rate per second.
     Reading,
-    /// Half-life of what is remembered of recipes.
+    /// Half-life of recipe memory.
     HalfLife,
-    /// The share of the robot's unseen presses that the human thinks through.
+    /// Share of the robot's unseen presses whose consequences the human infers.
     Foresight,
 }
 
@@ -224,7 +222,7 @@ impl FitParameter {
 pub(super) struct KitchenArgs {
     /// The layout file.
     pub(super) layout: PathBuf,
-    /// How to print it.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: OutputFormat,
 }
@@ -235,11 +233,11 @@ pub(super) struct KitchenArgs {
     after_help = "Example: tomcom keys sessions/default.toml > sessions/keys.toml\nMore: docs/running-a-session.md"
 )]
 pub(super) struct KeysArgs {
-    /// The session file whose kitchen and key file it is about; by default the one of tomcom operate.
+    /// Session file with the kitchen and the key file; by default that of tomcom operate.
     pub(super) session: Option<PathBuf>,
 }
 
-/// Leaves a recording out of the analysis, or takes that back.
+/// Excludes a recording from the analysis, or takes that back.
 ///
 /// The recording must be closed. Its log stays as it is.
 #[derive(Debug, Args)]
@@ -249,33 +247,33 @@ pub(super) struct KeysArgs {
 pub(super) struct ExcludeArgs {
     /// The folder of a recording.
     pub(super) recording: PathBuf,
-    /// Why.
+    /// Reason for the exclusion.
     #[arg(long, required_unless_present = "back")]
     pub(super) reason: Option<String>,
-    /// It counts again.
+    /// Include the recording again.
     #[arg(long)]
     pub(super) back: bool,
-    /// How to print what holds now.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: OutputFormat,
 }
 
-/// Checks whether this machine is fit for a session.
+/// Checks whether this machine is ready for a session.
 ///
-/// Terminal, place for recordings, clocks, the port of the wall display, Rerun's viewer, and where gaze comes from; says how
-/// to mend what is not as it should be.
+/// Checks terminal, disk space, clocks, the port of the wall display, the Rerun viewer and the gaze source, and gives a remedy
+/// for each problem.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Exit code 0: the session works here. 1: something is broken.\nExamples: tomcom doctor --out recordings\n          \
                   tomcom doctor sessions/study.toml\nMore: docs/troubleshooting.md"
 )]
 pub(super) struct DoctorArgs {
-    /// The session file whose settings hold; by default sessions/default.toml, or the one that the program carries.
+    /// Session file with the settings; by default sessions/default.toml, or the built-in one.
     pub(super) session: Option<PathBuf>,
-    /// Where the recordings would go.
+    /// Folder for recordings.
     #[arg(long, default_value = "sessions")]
     pub(super) out: PathBuf,
-    /// How to print what was found.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: OutputFormat,
 }

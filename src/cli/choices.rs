@@ -1,4 +1,4 @@
-//! Settings of a session file as the command line says them.
+//! Values of command line options for session settings.
 
 use clap::ValueEnum;
 
@@ -7,23 +7,23 @@ use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum ParticipantArg {
-    /// A simulated person.
+    /// A simulated participant.
     Simulated,
-    /// Somebody at this keyboard: tab switches between the wizard's and the participant's keys.
+    /// A person at this keyboard: tab switches between the wizard's and the participant's keys.
     Keyboard,
-    /// Somebody at the wall display: a page in a browser, with keys, gamepad or touch.
+    /// A person at the wall display: a page in a browser, with keys, gamepad or touch.
     Display,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum GazeArg {
-    /// The simulated person's.
+    /// The simulated participant's gaze.
     Simulated,
     /// The mouse pointer over the kitchen, at the console or on the wall display.
     Mouse,
     /// Pupil Core, through Pupil Capture.
     Pupil,
-    /// What was recorded before: see --gaze-file.
+    /// Recorded gaze: see --gaze-file.
     File,
     /// Lines of JSON over TCP or UDP on localhost.
     Json,
@@ -33,9 +33,9 @@ pub(super) enum GazeArg {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum ArmArg {
-    /// By a simulated UR5 that presses the buttons, slows near the hand, and stops when it touches it.
+    /// A simulated UR5 that presses the buttons, slows near the hand, and stops when it touches the hand.
     Physics,
-    /// By the clock: a while by chance.
+    /// A timed arm: every press takes a random duration.
     Timed,
 }
 
@@ -50,24 +50,24 @@ impl From<ArmArg> for ArmKind {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum ConditionArg {
-    /// Nobody.
+    /// Nobody sends signals.
     None,
-    /// The wizard.
+    /// The wizard sends signals.
     Wizard,
-    /// The assistant, by itself.
+    /// The assistant sends signals by itself.
     Assistant,
 }
 
-/// By what an assistant decides what to say.
+/// Communication concept of the assistant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum ConceptArg {
-    /// What saves more presses than a signal costs.
+    /// Signals that save more presses than they cost (ToM-Com).
     TomCom,
-    /// What is believed wrong surely enough.
+    /// Signals about sufficiently certain false beliefs (ToM).
     Tom,
-    /// After an error, the next good presses; they are advice, since no signal says them.
+    /// Proposals of the next good presses after an error (DEV); shown at the console only, since there is no signal for them.
     Dev,
-    /// Nothing is said.
+    /// No signals.
     None,
 }
 
@@ -125,13 +125,13 @@ impl From<SimulatedCondition> for Condition {
     }
 }
 
-/// Who sends signals in simulated trials.
+/// Condition of simulated trials.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum SimulatedCondition {
-    /// Nobody.
+    /// Nobody sends signals.
     None,
-    /// The wizard, where the session scripts one.
+    /// The scripted wizard of the session sends signals.
     Wizard,
-    /// The assistant, by itself.
+    /// The assistant sends signals by itself.
     Assistant,
 }

@@ -14,9 +14,9 @@ use crate::run::codes::{self, CodedRecording, CodesSummary};
 use crate::run::review;
 use crate::session::settings::is_code;
 
-/// Prints how raters coded errors, and how far they agree.
+/// Prints raters' codes of errors, and their agreement.
 ///
-/// Takes codes from a table, or writes one.
+/// Can import codes from a table, or export them.
 #[derive(Debug, Args)]
 #[command(after_help = "tomcom replay RECORDING --rater R1 is where errors are coded.\n\
                   Examples: tomcom codes sessions/2026-03-14-P07-1\n          \
@@ -25,13 +25,13 @@ pub(super) struct CodesArgs {
     /// The folders of recordings, or their events.jsonl.
     #[arg(required = true, value_name = "RECORDING")]
     recordings: Vec<PathBuf>,
-    /// Take codes from this table, with the columns recording, rater, press, cause, aspect.
+    /// Import codes from this table, with the columns recording, rater, press, cause, aspect.
     #[arg(long, value_name = "FILE")]
     import: Option<PathBuf>,
-    /// Write all codes into such a table.
+    /// Export all codes to such a table.
     #[arg(long, value_name = "FILE")]
     export: Option<PathBuf>,
-    /// How to print the figures.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     format: OutputFormat,
 }

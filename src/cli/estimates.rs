@@ -1,4 +1,4 @@
-//! Commands that look at how good the estimates are: of beliefs, of what signals are worth, of the human model's parameters.
+//! Commands that check estimates: beliefs, benefits of signals, parameters of the human model.
 
 use super::args::{FitArgs, ReplayArgs};
 use super::failure::Failure;

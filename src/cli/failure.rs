@@ -1,4 +1,4 @@
-//! Why a command did not do what was asked, and what of it is printed.
+//! Failures of commands, and their messages.
 
 use std::path::Path;
 
@@ -8,16 +8,16 @@ use crate::edge::log::{ExclusionError, WriteError};
 use crate::run::error::{LiveError, ReviewError, RunError};
 use crate::session::settings::SettingError;
 
-/// Why a command did not do what was asked.
+/// Failure of a command.
 #[derive(Debug)]
 pub(super) enum Failure {
     /// Wrong arguments or files.
     Wrong(miette::Report),
-    /// Something failed on the way.
+    /// An operation failed.
     Failed(miette::Report),
-    /// It was done, and the answer is no; it was printed already.
+    /// The command ran and its answer is negative; the answer has been printed.
     No,
-    /// Whoever read the output has read enough, as `head` does.
+    /// The reader of the output closed the pipe, as `head` does.
     Unread,
 }
 
@@ -86,12 +86,12 @@ impl From<std::io::Error> for Failure {
     }
 }
 
-/// A setting that cannot be, of the command line.
+/// An invalid setting of the command line.
 pub(super) fn wrong_setting(error: SettingError) -> Failure {
     Failure::Wrong(miette::miette!(help = error.remedy, "found {}", error.found))
 }
 
-/// An argument that cannot be, of this file.
+/// An argument that is invalid for this file.
 pub(super) fn wrong_argument(path: &Path, found: String, remedy: &str) -> Failure {
     Failure::Wrong(miette::miette!(help = remedy.to_string(), "{}: found {found}", path.display()))
 }

@@ -23,9 +23,9 @@ use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
                   tomcom operate sessions/study.toml --code P07\nMore: docs/running-a-session.md"
 )]
 pub(super) struct OperateArgs {
-    /// The session file; by default sessions/default.toml, or the one that the program carries.
+    /// The session file; by default sessions/default.toml, or the built-in one.
     pub(super) session: Option<PathBuf>,
-    /// Take up this recording, which was cut, in a new part beside it; its session is the same, a running trial is paused.
+    /// Continue a recording that was cut off, in a new part beside it; a running trial is paused.
     #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "gaze_file", "arm", "listen", "condition", "concept", "seed", "rerun_listen", "out"])]
     pub(super) recording: Option<PathBuf>,
     #[command(flatten)]
@@ -34,38 +34,38 @@ pub(super) struct OperateArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct OperateFlags {
-    /// The participant's code, never a name; where the session file has a plan, the next step of this participant is run.
+    /// The participant's code, never a name; with a plan, the participant's next recording is made.
     #[arg(long)]
     pub(super) code: Option<String>,
-    /// Who plays the human's part, instead of the session file's.
+    /// Who plays the human, instead of the session file's setting.
     #[arg(long, value_enum)]
     pub(super) participant: Option<ParticipantArg>,
-    /// Where gaze samples come from, instead of the session file's.
+    /// Gaze source, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) gaze: Option<GazeArg>,
     /// Replay gaze from this file: Pupil Player's gaze_positions_on_surface_NAME.csv, or the folder of a recording.
     #[arg(long, value_name = "PATH")]
     pub(super) gaze_file: Option<PathBuf>,
-    /// How the robot's presses come about, instead of the session file's arm.
+    /// Kind of the robot's arm, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) arm: Option<ArmArg>,
-    /// Who sends signals, instead of the session file's.
+    /// Who sends signals, instead of the session file's condition.
     #[arg(long, value_enum)]
     pub(super) condition: Option<ConditionArg>,
-    /// By what the assistant decides, instead of the session file's concept.
+    /// Communication concept of the assistant, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) concept: Option<ConceptArg>,
-    /// Serve the wall display at this address of this machine, not on localhost alone; the page then asks for the code that
-    /// the console shows.
+    /// Serve the wall display at this address instead of localhost; the page then asks for the pairing code that the console
+    /// shows.
     #[arg(long, value_name = "ADDRESS")]
     pub(super) listen: Option<IpAddr>,
-    /// Everything random follows from it; by default the session file's.
+    /// Seed of all random numbers; by default that of the session file.
     #[arg(long)]
     pub(super) seed: Option<u64>,
-    /// Where Rerun viewers connect, instead of the session file's address: 0.0.0.0:9876 for other machines.
+    /// Address at which Rerun viewers connect, instead of the session file's.
     #[arg(long, value_name = "ADDRESS")]
     pub(super) rerun_listen: Option<String>,
-    /// Where the recording's folder is made. Not with --continue: a further part goes beside the recording.
+    /// Folder in which the recording's folder is created. Not with --continue: a further part is created beside the recording.
     #[arg(long, default_value = "sessions")]
     pub(super) out: PathBuf,
 }
@@ -78,7 +78,7 @@ pub(super) fn operate(args: &OperateArgs) -> Result<(), Failure> {
     Ok(write!(std::io::stdout(), "{}", series::describe(&done))?)
 }
 
-/// Runs a session of this file; with wizard and assistants side by side, where that is asked for.
+/// Runs a session of a file, optionally with a comparison of wizard and assistants.
 pub(super) fn new_session(
     session: Option<&Path>,
     flags: &OperateFlags,

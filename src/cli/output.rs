@@ -1,4 +1,4 @@
-//! What commands print: figures, and how far they are.
+//! Output of commands: summaries and progress bars.
 
 use std::io::{IsTerminal, Write};
 
@@ -8,16 +8,16 @@ use serde::Serialize;
 
 use super::failure::Failure;
 
-/// How figures are printed.
+/// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum OutputFormat {
-    /// For people.
+    /// Text.
     Text,
     /// One JSON object.
     Json,
 }
 
-/// Prints figures as one JSON object, or their text.
+/// Prints a summary as one JSON object or as text.
 pub(super) fn print(
     format: OutputFormat,
     figures: &impl Serialize,
@@ -33,7 +33,7 @@ pub(super) fn print(
     Ok(out.flush()?)
 }
 
-/// A bar on stderr that counts so many of something; nothing to be seen where that is no terminal.
+/// A progress bar on stderr; hidden if stderr is not a terminal.
 pub(super) fn progress(of: u64, what: &str) -> ProgressBar {
     let bar = ProgressBar::new(of);
     if std::io::stderr().is_terminal()

@@ -1,4 +1,4 @@
-//! Recordings in Rerun: what its viewers are shown, and what is told of it.
+//! Opening recordings in Rerun, and messages about it.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -26,8 +26,8 @@ pub(super) fn save_all(recordings: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Opens recordings in a viewer, at this moment of the trial's clock; or writes their stream to a file. `web`: in a browser,
-/// even if there is another viewer.
+/// Opens recordings in a viewer at a time on the trial's clock, or writes their stream to a file. `web` uses a browser even if a
+/// native viewer is installed.
 pub(super) fn open(
     recordings: Vec<PathBuf>,
     save: Option<Option<PathBuf>>,
@@ -57,7 +57,7 @@ pub(super) fn open(
     Ok(())
 }
 
-/// Why a file that was there had to be made anew.
+/// Reason why an existing file was rebuilt.
 fn because(file: &SavedStream) -> String {
     file.because.map_or(String::new(), |because| format!(", anew: {because}"))
 }

@@ -9,9 +9,9 @@ use super::rerun::open;
 use crate::base::features::Feature;
 use crate::base::time::SessionTime;
 
-/// Opens recordings in Rerun's viewer.
+/// Opens recordings in the Rerun viewer.
 ///
-/// Kitchen, arm, beliefs, signals and events, over time.
+/// Shows kitchen, arm, beliefs, signals and events over time.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Without a viewer of Rerun in PATH it is served for a browser. Several recordings stand side by side, by the \
@@ -22,18 +22,18 @@ pub(super) struct ReviewArgs {
     /// The folders of recordings, or their events.jsonl.
     #[arg(required = true, value_name = "RECORDING")]
     recordings: Vec<PathBuf>,
-    /// Only write the file: recording.rrd beside the log, or FILE. Several recordings need a FILE.
+    /// Only write the stream file: recording.rrd beside the log, or FILE. Several recordings need a FILE.
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     save: Option<Option<PathBuf>>,
-    /// Serve the viewer for a browser, even if there is another one.
+    /// Serve the web viewer, even if a native viewer is installed.
     #[arg(long, conflicts_with = "save")]
     web: bool,
-    /// Open at this moment of the trial's clock, as the console shows it: 1:34, or seconds.
+    /// Open at this time on the trial's clock, as the console shows it: 1:34, or seconds.
     #[arg(long, value_name = "TIME", value_parser = moment, conflicts_with = "save")]
     at: Option<SessionTime>,
 }
 
-/// A moment as the console shows it, or in seconds.
+/// Parses a time as the console shows it, or in seconds.
 fn moment(text: &str) -> Result<SessionTime, String> {
     let wrong = || "minutes and seconds, as 1:34, or seconds, as 94.6".to_string();
     let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite() && *number >= 0.0);

@@ -1,4 +1,4 @@
-//! Whole trials without anybody at the console: what is simulated, and by which of the options.
+//! `tomcom simulate`: checks of its options.
 
 use super::args::SimulateArgs;
 use super::failure::{Failure, wrong_argument};
@@ -41,7 +41,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     };
     check_condition(args, files.spec.plan.is_some())?;
     tell_unused(args, &files.spec);
-    // With a plan it says the conditions.
+    // With a plan, the plan defines the conditions.
     files.spec.trial.condition = match args.condition {
         None if !args.sweep.is_empty() => Condition::Assistant,
         None => Condition::None,
@@ -71,8 +71,8 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     print(args.format, &figures, || simulate::describe(&figures))
 }
 
-/// Tells what the session file says of the assistant for sessions at the console alone: trials are simulated without it,
-/// unless options ask for it.
+/// Reports assistant settings of the session file that only apply at the console: simulated trials ignore them unless options ask
+/// for the assistant.
 fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
     if spec.plan.is_some() || !args.sweep.is_empty() {
         return;
@@ -86,7 +86,7 @@ fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
     }
 }
 
-/// Options that have no effect beside who sends signals.
+/// Refuses options that have no effect in the given condition.
 fn check_condition(args: &SimulateArgs, is_planned: bool) -> Result<(), Failure> {
     let condition = args.condition.map(Condition::from);
     let is_silent = matches!(condition, None | Some(Condition::None));

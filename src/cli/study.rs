@@ -11,8 +11,8 @@ use crate::run::study::{self, AnalysisRequest, NamedRecordings, StudyError};
 
 /// Analyses the recordings of a study: report and tables.
 ///
-/// Errors and their causes, the effect of assistance, wizard and assistant, communication concepts. Writes a report to look
-/// at in a browser, and tables as CSV.
+/// Errors and their causes, effect of assistance, similarity of wizard and assistant, comparison of concepts. Writes a report
+/// (HTML) and tables (CSV).
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples: tomcom study recordings\n          tomcom study shards/* --out results --format json\nMore: docs/study.md, docs/analysis.md"
@@ -21,23 +21,23 @@ pub(super) struct StudyArgs {
     /// Folders with recordings in them, or recordings, of one kitchen.
     #[arg(required = true, value_name = "DIR")]
     paths: Vec<PathBuf>,
-    /// Where report.html and the tables go; by default the folder "study" in the first DIR.
+    /// Folder for report.html and the tables; by default the folder "study" in the first DIR.
     #[arg(long)]
     out: Option<PathBuf>,
-    /// What to leave out, with commas between.
+    /// Parts to skip, separated by commas.
     #[arg(long, value_enum, value_delimiter = ',')]
     skip: Vec<Skip>,
-    /// How to print the figures.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     format: OutputFormat,
 }
 
-/// What takes time or room.
+/// Parts of the analysis that can be skipped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Skip {
-    /// What assistants would have said: it has to be planned at every press.
+    /// The comparison of concepts, which plans at every press.
     Concepts,
-    /// Rows of the tables actions, communications, beliefs and gaze.
+    /// Rows of the large tables actions, communications, beliefs and gaze.
     Events,
 }
 

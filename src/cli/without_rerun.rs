@@ -1,4 +1,4 @@
-//! Recordings in Rerun, in a build without it: refused.
+//! Commands on recordings in Rerun, refused in a build without Rerun.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! The commands that are about the wizard: beside assistants, and in training.
+//! Commands about the wizard: comparison with assistants, and training.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -22,9 +22,9 @@ use crate::run::train::{self, TrainingRequest};
 use crate::run::{review, series, simulate};
 use crate::session::settings::is_code;
 
-/// Compares what a wizard sent with what assistants would have sent.
+/// Compares a wizard's signals with those that assistants would have sent.
 ///
-/// What each sent, what of it matches, and what each knew where they differ; over recordings, or live.
+/// Signals of both, matches, and the context of differences; over recordings or live.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples: tomcom compare sessions/2026-03-14-P07-1 --with tom,dev\n          tomcom compare sessions/2026-03-14-P07-* --only tom\n          tomcom compare sessions/2026-03-14-P07-1 --follow\n          tomcom compare sessions/default.toml\nMore: docs/analysis.md"
@@ -34,31 +34,31 @@ pub(super) struct CompareArgs {
     /// sessions/default.toml). That unblinds the wizard, and the recording says so.
     #[arg(value_name = "RECORDING|SESSION")]
     paths: Vec<PathBuf>,
-    /// Open the console over a session that is still running, and read along from this terminal.
+    /// Open the console over a session that is still running, read-only from this terminal.
     #[arg(long)]
     follow: bool,
-    /// Further concepts beside the session's own, with commas between them.
+    /// Further concepts besides the session's own, separated by commas.
     #[arg(long, value_enum, value_delimiter = ',')]
     with: Vec<ConceptArg>,
-    /// Show only what is about these concepts, and about no others; each is asked, as by --with.
+    /// Show these concepts only; each is asked, as with --with.
     #[arg(long, value_enum, value_delimiter = ',', conflicts_with = "follow")]
     only: Vec<ConceptArg>,
-    /// Communications match within so many presses of the human.
+    /// Window of a match, in presses of the human.
     #[arg(long, default_value_t = WINDOW, value_parser = clap::value_parser!(u32).range(0..=100))]
     window: u32,
-    /// The figures for every window from 0 to 10.
+    /// Print the statistics for every window from 0 to 10.
     #[arg(long, conflicts_with_all = ["open", "window"])]
     sweep: bool,
-    /// What each knew at the difference with this number.
+    /// Print the context of the difference with this number.
     #[arg(long, value_name = "NUMBER", conflicts_with = "format")]
     open: Option<usize>,
-    /// The wizard's code: with the figures of the training.
+    /// The wizard's code, to add the results of training.
     #[arg(long)]
     wizard: Option<String>,
-    /// Where tomcom train has recorded it.
+    /// Folder of the training records.
     #[arg(long, default_value = "sessions/training")]
     training: PathBuf,
-    /// How to print the figures.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     format: OutputFormat,
     #[command(flatten, next_help_heading = "To operate a session")]
@@ -67,24 +67,24 @@ pub(super) struct CompareArgs {
 
 /// Trains a wizard on simulated recordings.
 ///
-/// Recordings in which the participant's beliefs are known are watched and answered with the keys of a session, with
-/// feedback at once and a score.
+/// The wizard watches recordings with known beliefs, sends signals with the usual keys, and gets immediate feedback and a
+/// score.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom train --wizard W1 --hits 0.6 --wrong 0.4\nMore: docs/training.md")]
 pub(super) struct TrainArgs {
     /// Recordings of simulated participants without signals; by default one is simulated.
     #[arg(value_name = "RECORDING")]
     recordings: Vec<PathBuf>,
-    /// The wizard's code, never a name. Who watches a recording again is held against oneself.
+    /// The wizard's code, never a name. A repeated recording is compared with the wizard's earlier signals.
     #[arg(long, default_value = "W1")]
     wizard: String,
-    /// The criterion: at least this share of the false beliefs that lead to errors are hit …
+    /// Criterion: least share of hits among the false beliefs that lead to errors.
     #[arg(long, default_value_t = 0.6)]
     hits: f64,
-    /// … and at most this share of the signals are wrong.
+    /// Criterion: largest share of wrong signals.
     #[arg(long, default_value_t = 0.4)]
     wrong: f64,
-    /// How fast it is played, as in a replay.
+    /// Speed of the replay.
     #[arg(long, value_parser = ["0.25", "0.5", "1", "2", "4", "16", "64"], default_value = "1")]
     speed: String,
     /// The seed of the recording that is simulated; its length in seconds is that of --seconds.
@@ -92,7 +92,7 @@ pub(super) struct TrainArgs {
     seed: u64,
     #[arg(long, default_value_t = 300.0)]
     seconds: f64,
-    /// Where the result goes.
+    /// Folder for the result.
     #[arg(long, default_value = "sessions/training")]
     out: PathBuf,
 }
@@ -140,7 +140,7 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     }
 }
 
-/// Flags that have no meaning for what is compared.
+/// Refuses options that have no effect in this comparison.
 fn check_flags(args: &CompareArgs, is_session: bool) -> Result<(), Failure> {
     let flags = &args.flags;
     let of_session = [

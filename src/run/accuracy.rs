@@ -1,5 +1,4 @@
-//! `tomcom replay RECORDING... --accuracy`: reads recordings, and lets planners answer for
-//! [`crate::analysis::planner_accuracy`].
+//! `tomcom replay RECORDING... --accuracy`: reads recordings and runs the planners for [`crate::analysis::planner_accuracy`].
 
 use std::path::PathBuf;
 
@@ -9,16 +8,16 @@ use super::timing::monotonic_ns;
 use crate::analysis::planner_accuracy::{AccuracyStep, AccuracySummary, BenchPlanner, PlannerBench, RecordedQuestions};
 use crate::edge::file_error::FileResult;
 
-/// How many steps are looked at.
+/// Number of steps to check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AccuracySample {
-    /// By the converged planner.
+    /// Steps of the converged planner.
     pub steps: usize,
-    /// By the plain reference, among them.
+    /// Steps of the plain reference, a subset.
     pub reference_steps: usize,
 }
 
-/// Holds the planner's answers against better ones. `done` is called after each step of each planner.
+/// Compares the planner's answers with more precise ones. `done` is called after each step of each planner.
 ///
 /// # Errors
 /// A recording that cannot be read or applied, or one of another kitchen.
@@ -38,7 +37,7 @@ pub fn measure(recordings: &[PathBuf], extent: AccuracySample, done: impl Fn() +
     Ok(bench.summary(&steps))
 }
 
-/// The questions that the assistant is asked after presses.
+/// The requests for advice after presses.
 fn ask(replay: &mut Replay) -> FileResult<RecordedQuestions> {
     let session = replay.log().session();
     let mut questions = Vec::new();

@@ -1,4 +1,4 @@
-//! The assistant of a live session, on a thread of its own, where the newest question goes first.
+//! The assistant of a live session on its own thread, which always answers the latest request.
 
 use std::sync::mpsc::{Sender, channel};
 use std::thread;
@@ -9,13 +9,13 @@ use crate::analysis::advisor::{AdviceRequest, Advisor};
 use crate::communication::recommendation::Recommendation;
 
 impl Advisor {
-    /// Answers on a thread of its own, which ends with the desk that asks.
+    /// Starts the advisor's thread, which ends when the desk is dropped.
     pub fn on_thread(mut self) -> AdvisorDesk {
         let (ask, questions) = channel::<AdviceRequest>();
         let (answer, answers) = unbounded_channel();
         thread::spawn(move || {
             while let Ok(question) = questions.recv() {
-                // What was asked meanwhile is newer.
+                // A newer request replaces this one.
                 let newest = questions.try_iter().last().unwrap_or(question);
                 if answer.send(self.answer(&newest)).is_err() {
                     return;
@@ -26,7 +26,7 @@ impl Advisor {
     }
 }
 
-/// Where a live session asks, and where the answers come.
+/// The session's connection to the advisor's thread.
 #[derive(Debug)]
 pub struct AdvisorDesk {
     ask: Sender<AdviceRequest>,
@@ -34,14 +34,14 @@ pub struct AdvisorDesk {
 }
 
 impl AdvisorDesk {
-    /// Asks; the answer comes when it is there, or is overtaken by a newer question.
+    /// Sends a request; a newer request replaces one that has not been answered.
     pub fn ask(&self, question: AdviceRequest) {
-        // A thread that is gone answers nothing more, and the session goes on without advice.
+        // If the thread has ended, the session continues without recommendations.
         let _ = self.ask.send(question);
     }
 }
 
-/// The assistant's next answer; never, if nobody asks it.
+/// Waits for the next recommendation; forever if there is no advisor.
 pub async fn next_advice(advisor: &mut Option<AdvisorDesk>) -> Option<Recommendation> {
     match advisor {
         Some(desk) => desk.answers.recv().await,

@@ -11,7 +11,7 @@ use crate::kitchen::Kitchen;
 use crate::measures::beliefs::TrialView;
 use crate::measures::flags::Thresholds;
 
-/// Checks recordings of one kitchen, all together. `done` is called after each is read.
+/// Checks the pooled recordings of one kitchen. `done` is called after each recording.
 ///
 /// # Errors
 /// A recording that cannot be read or applied, or one of another kitchen.
@@ -28,14 +28,14 @@ pub fn check(
 #[derive(Clone, Debug)]
 pub struct BeliefCheckTrials {
     pub kitchen: Arc<Kitchen>,
-    /// In the order of the recordings.
+    /// Trials in the order of the recordings.
     pub trials: Vec<TrialView>,
 }
 
-/// Replays recordings on all processors and looks at each of their presses. `done` is called after each.
+/// Replays recordings on all processors and collects their presses. `done` is called after each recording.
 ///
 /// # Errors
-/// Those of [`check`].
+/// Errors of [`check`].
 pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheckTrials> {
     each_once(recordings)?;
     let results = parallel::each(recordings, |recording| view(recording), done);

@@ -1,4 +1,4 @@
-//! `tomcom codes`: what raters say about the errors of recordings, and how far they agree.
+//! `tomcom codes`: raters' codes of errors, and the agreement between raters.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -13,14 +13,14 @@ use crate::edge::log::codes;
 use crate::measures::coding::{Agreement, AgreementTable, Codable, Codes};
 use crate::session::settings::{ParticipantKind, is_code};
 
-/// A recording with what was said about its errors.
+/// A recording with the codes of its errors.
 #[derive(Clone, Debug)]
 pub struct CodedRecording {
     pub folder: PathBuf,
     pub codable: Codable,
-    /// By rater.
+    /// Codes by rater.
     pub codes: BTreeMap<String, Codes>,
-    /// Of a simulated participant: what is true.
+    /// True causes, for a simulated participant.
     pub known: Option<Codes>,
 }
 
@@ -28,7 +28,7 @@ impl CodedRecording {
     /// Reads a recording and the codes beside it.
     ///
     /// # Errors
-    /// It cannot be read, or a file with codes is broken.
+    /// The recording cannot be read, or a file with codes is damaged.
     pub fn open(recording: &Path) -> FileResult<CodedRecording> {
         let mut replay = Replay::open(recording)?;
         if replay.session().spec.participant.kind != ParticipantKind::Simulated {
@@ -55,26 +55,26 @@ impl CodedRecording {
     }
 }
 
-/// The figures of `tomcom codes`.
+/// Output of `tomcom codes`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CodesSummary {
     pub recordings: Vec<CodedRecordingSummary>,
-    /// Each pair of raters who have coded the same errors.
+    /// Agreement of each pair of raters with common errors.
     pub agreements: Vec<RaterPairSummary>,
-    /// Each rater against what simulated participants believed.
+    /// Agreement of each rater with the true causes of simulated participants.
     pub known: Vec<RaterPairSummary>,
 }
 
-/// One recording.
+/// Summary of one recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CodedRecordingSummary {
     pub recording: String,
     pub errors: u64,
-    /// How many of them each rater has coded.
+    /// Number of errors coded by each rater.
     pub coded: BTreeMap<String, u64>,
 }
 
-/// Two raters.
+/// Agreement of two raters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RaterPairSummary {
     pub of: String,
@@ -84,7 +84,7 @@ pub struct RaterPairSummary {
 }
 
 impl CodesSummary {
-    /// Sums up recordings.
+    /// Summary of recordings.
     pub fn from_recordings(recordings: &[CodedRecording]) -> CodesSummary {
         let mut pairs: BTreeMap<(String, String), AgreementTable> = BTreeMap::new();
         let mut known: BTreeMap<String, AgreementTable> = BTreeMap::new();
@@ -116,10 +116,10 @@ impl CodesSummary {
     }
 }
 
-/// Takes the rows of a file over into the recordings, beside what was there. Nothing is written if a row is wrong.
+/// Imports the rows of a file into the recordings, in addition to existing codes. Nothing is written if a row is invalid.
 ///
 /// # Errors
-/// The file cannot be read, or a row is about no error of these recordings; or a folder cannot be written to.
+/// The file cannot be read, a row does not refer to an error of these recordings, or a folder is not writable.
 pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, RunError> {
     let (text, rows) = codes::read_export(file)?;
     let mut changed = vec![Vec::new(); recordings.len()];
@@ -155,7 +155,7 @@ pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, Run
 /// Writes all codes of the recordings into a file.
 ///
 /// # Errors
-/// It cannot be written.
+/// The file cannot be written.
 pub fn export(recordings: &[CodedRecording], file: &Path) -> Result<u64, RunError> {
     let mut rows = Vec::new();
     for one in recordings {
@@ -173,7 +173,7 @@ pub fn export(recordings: &[CodedRecording], file: &Path) -> Result<u64, RunErro
     Ok(rows.len() as u64)
 }
 
-/// The figures for people.
+/// The summary as text.
 pub fn describe(figures: &CodesSummary) -> String {
     let mut text = String::new();
     for one in &figures.recordings {

@@ -1,5 +1,5 @@
-//! The desk at which a wizard sits: terminal, keys, tracker, the participant's display, and the signals that ask the program
-//! to end. It is taken once, and every recording of a series is made or looked at there.
+//! The wizard's desk: terminal, eye tracker, the participant's display, and termination signals. It is opened once for all
+//! recordings of a series.
 
 use std::io;
 use std::path::Path;
@@ -26,9 +26,9 @@ use crate::session::SessionSpec;
 use crate::session::calibration::AcceptedGazeCheck;
 use crate::session::settings::{ConsoleSpec, GazeSource};
 
-/// So many news are taken at once at most: keys come before them.
+/// Largest number of tracker messages that are processed together, so that keys are not delayed.
 const PACKET: usize = 32;
-/// So long Capture may take for what it was told last.
+/// Longest wait for Pupil Capture to finish its last request.
 const SETTLE: Duration = Duration::from_secs(1);
 
 #[cfg(feature = "display")]
@@ -40,43 +40,43 @@ mod wall;
 pub(super) use wall::PageInput;
 use wall::WallDisplay;
 
-/// What the recordings of a series share.
+/// Devices and terminal that the recordings of a series share.
 pub(super) struct OperatorDesk {
     pub screen: TerminalScreen,
-    /// What questions look like.
+    /// Theme of questions.
     pub theme: Theme,
     pub seat: OperatorInput,
     pub tracker: GazeTracker,
     pub wall: WallDisplay,
 }
 
-/// Whoever sits there, and what asks the program to end.
+/// Input of the wizard, and termination signals.
 pub(super) struct OperatorInput {
     hands: TerminalInput,
     end: Pin<Box<dyn Future<Output = io::Result<()>>>>,
 }
 
-/// Where the gaze comes from, if it comes from outside.
+/// The external gaze source.
 #[derive(Default)]
 pub(super) struct GazeTracker {
     news: Option<Receiver<GazeNews>>,
-    /// Where Pupil Capture takes orders.
+    /// Channel for requests to Pupil Capture.
     orders: Option<Sender<CaptureRequest>>,
     file: Option<Arc<GazeFile>>,
-    /// What is known of the tracker: a recording that begins later was not told.
+    /// Latest state of the tracker, for recordings that begin later.
     link: Option<GazeNews>,
     sees_display: Option<GazeNews>,
-    /// The check of the calibration that was accepted last.
+    /// Last accepted gaze accuracy check.
     calibrated: Option<AcceptedGazeCheck>,
 }
 
 impl GazeTracker {
-    /// What is known of the gaze, for the next recording.
+    /// Keeps the accepted gaze check for the next recording.
     pub fn keep(&mut self, calibrated: Option<AcceptedGazeCheck>) {
         self.calibrated = calibrated;
     }
 
-    /// What was accepted in the recording before.
+    /// The gaze check that was accepted in the previous recording.
     pub fn calibrated(&self) -> Option<&AcceptedGazeCheck> {
         self.calibrated.as_ref()
     }
@@ -86,7 +86,7 @@ impl OperatorDesk {
     /// Opens the devices that these settings need, and takes the terminal.
     ///
     /// # Errors
-    /// There is no terminal, nothing can listen for gaze, a file with gaze cannot be read, or the tags have no room.
+    /// There is no terminal, the gaze port cannot be opened, a gaze file cannot be read, or the tags do not fit on the display.
     pub async fn take(spec: &SessionSpec, kitchen: &Kitchen) -> Result<OperatorDesk, LiveError> {
         outlive_file_limits().map_err(TerminalError)?;
         let tracker = GazeTracker::open(spec, kitchen).await?;
@@ -94,7 +94,7 @@ impl OperatorDesk {
         Ok(OperatorDesk { tracker, wall, ..OperatorDesk::without_devices(&spec.console)? })
     }
 
-    /// Takes the terminal; there are no devices.
+    /// Takes the terminal, without devices.
     ///
     /// # Errors
     /// There is no terminal.
@@ -107,7 +107,7 @@ impl OperatorDesk {
 }
 
 impl OperatorInput {
-    /// What comes in next; nothing if the program has to end, because it is asked to or because the terminal is gone.
+    /// The next input; `None` if the program has to end, because of a signal or because the terminal was closed.
     pub async fn next(&mut self) -> Option<ConsoleMessage> {
         tokio::select! {
             biased;
@@ -149,11 +149,11 @@ impl GazeTracker {
         }
     }
 
-    /// The next news of the tracker with those that came with them, since samples come in packets; never, if there are none.
+    /// Waits for the next tracker messages (samples arrive in packets); forever if there is no tracker.
     pub async fn next(&mut self) -> Option<Vec<GazeNews>> {
         let Some(news) = &mut self.news else { return std::future::pending().await };
         let mut packet = Vec::new();
-        // All of it is received in one go, so none is lost where something else comes first.
+        // All messages are received at once, so none is lost if another branch is selected.
         news.recv_many(&mut packet, PACKET).await;
         packet.iter().for_each(|news| self.know(news));
         (!packet.is_empty()).then_some(packet)
@@ -168,7 +168,7 @@ impl GazeTracker {
         }
     }
 
-    /// What a recording has to be told that begins now.
+    /// Messages with the present tracker state, for a recording that begins now.
     pub fn known(&self) -> impl Iterator<Item = GazeNews> {
         self.link.iter().chain(&self.sees_display).cloned().collect::<Vec<_>>().into_iter()
     }
@@ -181,14 +181,14 @@ impl GazeTracker {
         self.orders.clone()
     }
 
-    /// Waits for Capture to have done what it was told, not for long.
+    /// Waits briefly until Pupil Capture has finished its requests.
     pub async fn settle(&self) {
         let Some(orders) = self.orders.as_ref().filter(|_| matches!(self.link, Some(GazeNews::Connected(_)))) else {
             return;
         };
         let (sender, done) = oneshot::channel();
         if orders.try_send(CaptureRequest::Report(sender)).is_ok() {
-            // It may just be gone.
+            // Capture may have been closed.
             let _ = timeout(SETTLE, done).await;
         }
     }

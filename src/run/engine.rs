@@ -1,8 +1,7 @@
-//! The engine: a session that runs. It raises the session's own events when they are due, takes events from outside, and
-//! hands out every event once, stamped and in order, for the log.
+//! The engine: a running session. It raises the session's own events when they are due, accepts events from outside, and returns
+//! every event once, stamped and in order, for the log.
 //!
-//! It has no clock: whoever runs it says what time it is, so that real time, virtual time and the check of a recording
-//! go through the same code.
+//! It has no clock: the caller passes the time, so that live sessions, simulations and verifications use the same code.
 
 mod agents;
 mod informing;
@@ -40,28 +39,28 @@ pub struct Engine {
     orders: OrderList,
     robot: Robot,
     participant: Option<SimulatedParticipant>,
-    /// Who sends signals by a script.
+    /// The scripted wizard, if there is one.
     wizard: Option<ScriptedWizard>,
     next_seq: u64,
-    /// Stamped events that were not handed out yet.
+    /// Stamped events that have not been returned yet.
     out: Vec<Stamped>,
-    /// The newest event after which the assistant is to be asked, when everything that follows from it has happened.
+    /// The latest event after which advice is requested, once its immediate consequences have been applied.
     to_ask: Option<(u64, SessionTime)>,
-    /// Questions that were not handed out yet.
+    /// Requests for advice that have not been returned yet.
     questions: Vec<AdviceRequest>,
 }
 
-/// What came of an input.
+/// Result of an input.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use = "the events belong into the log, also when the input was refused"]
 pub struct InputResult {
-    /// What happened until then and because of it, in order.
+    /// Events until the input and because of it, in order.
     pub events: Vec<Stamped>,
-    /// Why the input was not taken, in words for the wizard.
+    /// Reason for refusing the input, in words for the wizard.
     pub refused: Option<String>,
 }
 
-/// Who is next to act by himself; of those due at the same time, the first one here.
+/// Source of the next internal event; ties go to the first variant.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Source {
     Timer,
@@ -90,50 +89,49 @@ impl Engine {
         Engine { follower, timers, orders, robot, participant, wizard, next_seq: 0, out, to_ask: None, questions }
     }
 
-    /// The assistant of this session; its answers come back as [`Event::Advised`].
+    /// The advisor of this session; its recommendations return as [`Event::Advised`].
     pub fn advisor(&self) -> Advisor {
         Advisor::new(self.session(), self.follower.cost.clone())
     }
 
-    /// What the assistant is asked since this was called last, oldest first.
+    /// New requests for advice since the last call, the oldest first.
     pub fn take_questions(&mut self) -> Vec<AdviceRequest> {
         std::mem::take(&mut self.questions)
     }
 
-    /// The same engine without looking for the causes of errors, which takes longer than a running session can wait.
+    /// The same engine without attribution of errors, which takes too long for a running session.
     pub fn without_causes(self) -> Engine {
         Engine { follower: self.follower.without_causes(), ..self }
     }
 
-    /// The estimate of what the human believes now.
+    /// The present belief estimate.
     pub fn belief(&self) -> &DirichletBelief {
         self.follower.filter.belief()
     }
 
-    /// The session as it is now.
+    /// The present state of the session.
     pub fn session(&self) -> &Session {
         &self.follower.session
     }
 
-    /// Every press of the human so far, with what it was worth.
+    /// The judged presses of the human so far.
     pub fn judged(&self) -> &[JudgedPress] {
         &self.follower.judged
     }
 
-    /// When something happens next by itself; nothing does while the trial is not running.
+    /// Time of the next internal event; `None` while the trial is not running.
     pub fn next_due(&self) -> Option<SessionTime> {
         self.next_source().map(|(time, _)| time)
     }
 
-    /// Lets the earliest thing happen that happens by itself, stamped with the time at which it is due, and what follows
-    /// from it at that time.
+    /// Raises the next internal event at its due time, with its immediate consequences.
     pub fn fire(&mut self) -> Vec<Stamped> {
         self.fire_next();
         std::mem::take(&mut self.out)
     }
 
-    /// Takes an event from outside (wizard, participant, tracker) at `time`; what is due until then happens first. A
-    /// time before the last event counts as that of the last event.
+    /// Applies an event from outside (wizard, participant, tracker) at `time`, after all internal events due before. A time before the
+    /// last event is replaced by that of the last event.
     pub fn input(&mut self, time: SessionTime, event: Event) -> InputResult {
         while self.next_due().is_some_and(|due| due <= time) {
             self.fire_next();
@@ -146,7 +144,7 @@ impl Engine {
         InputResult { events: std::mem::take(&mut self.out), refused: taken.err() }
     }
 
-    /// The session with what was derived from it, when nothing more is to happen.
+    /// The follower of the session, after its end.
     pub fn into_follower(self) -> Follower {
         self.follower
     }
@@ -159,7 +157,7 @@ impl Engine {
         let participant = self.participant.as_ref().and_then(SimulatedParticipant::next_due);
         let sources = [
             (self.timers.next_due(), Source::Timer),
-            // An arm that was held is due since a while, and nothing happens before what has happened.
+            // A held arm has been due for a while; its event must not precede events that have happened.
             (self.robot.next_due().map(|due| due.max(self.session().time)), Source::Robot),
             (participant, Source::Participant),
             (self.wizard.as_ref().and_then(ScriptedWizard::next_due), Source::Wizard),
@@ -191,7 +189,7 @@ impl Engine {
             Some(ParticipantAction::Gaze(sample)) if self.session().spec.participant.simulates_gaze() => {
                 self.record_own(now, Event::Gaze(sample));
             }
-            // A tracker tells where somebody else looks.
+            // With an external tracker, the simulated gaze is not used.
             Some(ParticipantAction::Gaze(_)) | None => {}
             Some(ParticipantAction::Press { button, belief }) => {
                 let button = self.session().kitchen.button(Agent::Human, button).name.clone();
@@ -230,7 +228,7 @@ impl Engine {
         self.record_own(now, event);
     }
 
-    /// What follows at once, and then the question to the assistant.
+    /// Applies immediate consequences, then requests advice.
     fn settle(&mut self, now: SessionTime) {
         self.let_follow(now);
         if let Some((seq, time)) = self.to_ask.take().filter(|_| self.session().is_running()) {
@@ -238,7 +236,7 @@ impl Engine {
         }
     }
 
-    /// Timers that are due now, then what the robot makes of the state.
+    /// Applies due timers, then the robot's reaction to the state.
     fn let_follow(&mut self, now: SessionTime) {
         while self.session().is_running() {
             if self.timers.next_due().is_some_and(|due| due <= now) {
@@ -259,7 +257,7 @@ impl Engine {
         self.record(now, event).expect("an engine's own events fit its session");
     }
 
-    /// Stamps and applies an event, does what it asks for, tells robot and participant, and keeps it for the caller.
+    /// Stamps and applies an event, performs its effects, informs robot and participant, and queues the event for the caller.
     fn record(&mut self, now: SessionTime, event: Event) -> Result<(), ApplyError> {
         let event = match event {
             Event::Gaze(sample) => Event::Gaze(sample.rounded()),
@@ -296,7 +294,7 @@ impl Engine {
         Ok(())
     }
 
-    /// When a familiarisation is over: whether the participant may go on to the first trial.
+    /// Evaluates the criterion at the end of a familiarisation.
     fn check_criterion(&mut self, now: SessionTime) {
         let session = self.session();
         let Some((step, protocol)) = session.step() else { return };
@@ -310,7 +308,7 @@ impl Engine {
         self.record_own(now, Event::Protocol(ProtocolEvent::CriterionChecked { met, orders, presses, errors }));
     }
 
-    /// What the samples say when the last target of a check was shown.
+    /// Measures the gaze accuracy after the last target of a check.
     fn measure_calibration(&mut self, now: SessionTime) {
         let session = self.session();
         let event = session.calibration.as_ref().and_then(|check| check.to_measure(&session.viewing()));
@@ -319,7 +317,7 @@ impl Engine {
         }
     }
 
-    /// What the assistant does about its own advice, if it can and may.
+    /// The signal that the assistant sends because of its recommendation, if it is allowed.
     fn acted_on(&self, advice: &Recommendation) -> Option<Event> {
         let signal = advice.best.clone()?;
         let event = Event::SignalShown { by: Sender::Assistant, signal, accepted: None };

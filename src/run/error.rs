@@ -1,4 +1,4 @@
-//! Why something could not be done with recordings, and why a console could not be run.
+//! Errors of commands on recordings, and of running a console.
 
 use std::io;
 use std::net::IpAddr;
@@ -10,7 +10,7 @@ use crate::edge::file_error::FileError;
 use crate::edge::log::WriteError;
 use crate::gaze::tags::TagError;
 
-/// What is needed cannot be read, or what comes of it cannot be written.
+/// A file cannot be read, or a result cannot be written.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum RunError {
     #[error(transparent)]
@@ -27,12 +27,12 @@ impl From<FileError> for RunError {
     }
 }
 
-/// There is no terminal, or it is gone, or what a console needs of the operating system beside it is not there.
+/// There is no terminal, it was closed, or the operating system lacks something that the console needs.
 #[derive(Debug, thiserror::Error)]
 #[error("the console cannot be opened: {0}")]
 pub struct TerminalError(pub io::Error);
 
-/// Why a live session could not be run, or not to its end.
+/// Error of a live session.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum LiveError {
     #[error(transparent)]
@@ -72,7 +72,7 @@ impl From<FileError> for LiveError {
     }
 }
 
-/// Why a recording could not be shown.
+/// Error of showing a recording.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ReviewError {
     #[error(transparent)]

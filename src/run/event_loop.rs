@@ -1,7 +1,7 @@
 //! The event loop of every console: live session, review, training, and the questions before a recording.
 //!
-//! It waits for whatever comes next, hands that to the shell as a [`LoopEvent`], and draws. A shell is what a console is
-//! about: it says when something of its own is due, takes events, and says what is to be seen.
+//! It waits for the next event, passes it to the shell as a [`LoopEvent`], and draws. A shell is one kind of console: it gives its
+//! deadlines, handles events, and provides the view.
 
 use std::time::Duration;
 
@@ -17,108 +17,107 @@ use crate::edge::gaze_input::GazeNews;
 use crate::edge::terminal::TerminalScreen;
 use crate::session::Session;
 
-/// At most 30 frames a second.
+/// Least time between frames (30 frames per second).
 pub(super) const FRAME: Duration = Duration::from_millis(33);
-/// The pointer is sampled as a tracker of 60 Hz.
+/// Sampling period of the mouse pointer as gaze (60 Hz).
 const POINTER: Duration = Duration::from_nanos(16_666_667);
 /// The period of [`LoopEvent::FileTick`].
 const FILES: Duration = Duration::from_millis(50);
 /// The period of [`LoopEvent::WatchTick`].
 const WATCH: Duration = Duration::from_millis(250);
 
-/// What can come next. Of several that are there at once, the first one here comes first.
+/// An event of the loop. Several pending events are handled in the order of the variants.
 pub(super) enum LoopEvent {
-    /// The program is asked to end by a signal, or the terminal is gone.
+    /// A termination signal arrived, or the terminal was closed.
     EndRequest,
-    /// A key, the mouse, the size or the focus of the terminal.
+    /// An input of the terminal: key, mouse, size, focus.
     Terminal(ConsoleMessage),
-    /// Something happens in the session by itself.
+    /// An internal event of the session is due.
     EngineDue,
-    /// The next target of a gaze check is to be shown, or the last one to be hidden.
+    /// A step of a gaze accuracy check is due.
     TargetDue,
-    /// The participant's page says something.
+    /// An input of the participant's page.
     Page(PageInput),
-    /// The assistant has answered.
+    /// A recommendation of the assistant.
     Advice(Recommendation),
-    /// The mouse pointer is to be sampled.
+    /// Time to sample the mouse pointer.
     PointerTick,
-    /// Files that grow are to be written or read on.
+    /// Time to flush or read growing files.
     FileTick,
-    /// It is to be looked whether all is still as it should be.
+    /// Time to check the state of recording and devices.
     WatchTick,
-    /// A frame is to be drawn.
+    /// Time to draw a frame.
     FrameDue,
     /// The next sample of a file of gaze is due.
     FileGazeDue,
-    /// News of the tracker, in the order in which they came. They are last: a tracker that sends more than can be read
-    /// delays itself, and neither robot, log nor screen.
+    /// Tracker messages in order of arrival. They come last, so that a tracker that sends too much delays only itself.
     Gaze(Vec<GazeNews>),
 }
 
-/// When a shell wants to be called; none: not at all.
+/// Deadlines of a shell; `None` for no deadline.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ShellDeadlines {
     pub engine: Option<Instant>,
     pub target: Option<Instant>,
     pub file_gaze: Option<Instant>,
-    /// The time from the last frame to the next.
+    /// Time from the last frame to the next.
     pub frame_after: Duration,
 }
 
 impl Default for ShellDeadlines {
-    /// Only frames, as many as there may be.
+    /// Only frames, at the highest rate.
     fn default() -> ShellDeadlines {
         ShellDeadlines { engine: None, target: None, file_gaze: None, frame_after: FRAME }
     }
 }
 
-/// What a shell shows.
+/// Content that a shell shows.
 pub(super) enum ShellView<'a> {
     Console(&'a Session, &'a ConsoleModel),
-    /// A question that stands alone.
+    /// A question without a session.
     Question(&'a QuestionPage, Theme),
 }
 
-/// What a console is about.
+/// One kind of console: live session, review, training, or question.
 pub(super) trait ConsoleShell {
-    /// How it is left.
+    /// Result with which the shell is left.
     type Outcome;
     type Error: From<TerminalError>;
 
-    /// When it wants to be called; asked before each wait.
+    /// The shell's deadlines, asked before each wait.
     fn deadlines(&mut self) -> ShellDeadlines {
         ShellDeadlines::default()
     }
 
-    /// Whether the mouse pointer stands for the gaze.
+    /// Whether the mouse pointer serves as gaze.
     fn samples_pointer(&self) -> bool {
         false
     }
 
-    /// The assistant's next answer; never, if nobody asks one.
+    /// Waits for the next recommendation; forever without an advisor.
     async fn advice(&mut self) -> Option<Recommendation> {
         std::future::pending().await
     }
 
-    /// Takes what came; how it is left, if that follows from it.
+    /// Handles an event; returns the result if the shell is left.
     fn take(&mut self, event: LoopEvent) -> Result<Option<Self::Outcome>, Self::Error>;
 
-    /// Moves on to now before a frame; whether there is anything to be drawn.
+    /// Advances to the present before a frame; returns whether a frame is needed.
     fn advance(&mut self) -> bool {
         true
     }
 
-    /// Makes up what the frame that is drawn now shows.
+    /// Prepares the frame that is drawn next.
     fn prepare(&mut self) {}
 
-    /// What it shows.
+    /// The present content.
     fn view(&self) -> ShellView<'_>;
 
-    /// The frame was handed to the terminal.
+    /// Notes that the frame was passed to the terminal.
     fn drawn(&mut self) {}
 }
 
-/// Runs a shell at a desk until it is left; none: the program has to end, or the terminal is gone.
+/// Runs a shell at a desk until it is left; `None` if the program has to end or the terminal was closed.
 pub(super) async fn run<S: ConsoleShell>(
     shell: &mut S,
     desk: &mut OperatorDesk,
@@ -141,12 +140,12 @@ pub(super) async fn run<S: ConsoleShell>(
     Ok(None)
 }
 
-/// What comes at regular times.
+/// Periodic deadlines of the loop.
 struct LoopTicks {
     pointer: Interval,
     files: Interval,
     watch: Interval,
-    /// When the last frame was drawn.
+    /// Time of the last frame.
     frame: Option<Instant>,
 }
 
@@ -161,7 +160,7 @@ impl LoopTicks {
     }
 }
 
-/// Waits for what comes next.
+/// Waits for the next event.
 async fn next_event<S: ConsoleShell>(shell: &mut S, desk: &mut OperatorDesk, ticks: &mut LoopTicks) -> LoopEvent {
     let (due, with_pointer) = (shell.deadlines(), shell.samples_pointer());
     let frame = ticks.frame.map_or_else(Instant::now, |last| last + due.frame_after);
@@ -188,7 +187,7 @@ async fn until(due: Option<Instant>) {
     }
 }
 
-/// Draws what the shell shows. A terminal that is still busy with the last frame gets a later one.
+/// Draws the shell's content, unless the terminal is still busy with the last frame.
 fn draw<S: ConsoleShell>(shell: &mut S, screen: &mut TerminalScreen) -> Result<(), S::Error> {
     if !shell.advance() || !screen.is_ready() {
         return Ok(());

@@ -14,15 +14,15 @@ use crate::mind::fitting::{Likelihood, likelihood};
 use crate::mind::model::HumanModel;
 use crate::mind::observation::Observation;
 
-/// The trials of one kitchen.
+/// The trials of a fit, all of one kitchen.
 #[derive(Clone, Debug)]
 pub struct FitTrials {
     pub kitchen: Arc<Kitchen>,
-    /// The parameters of the human model that stand in the first recording.
+    /// Human model in the header of the first recording.
     pub model: HumanModel,
-    /// Whether others stand in another one.
+    /// Whether another recording has a different human model.
     pub differ: bool,
-    /// The seed of the filter, and what was observed.
+    /// Seed of the filter and observations of each trial.
     pub observations: Vec<(u64, Vec<Observation>)>,
 }
 
@@ -46,16 +46,16 @@ impl FitTrials {
     }
 }
 
-/// Fits the parameters of a plan to trials. `tried` is called after each try.
+/// Fits the parameters of a plan to trials. `tried` is called after each evaluation.
 pub fn fit(trials: &FitTrials, plan: &FitPlan, tried: impl Fn()) -> FitSummary {
     let kitchen = &trials.kitchen;
-    // What threads remember of costs to go lasts from try to try.
+    // The threads' caches of costs to go are kept between evaluations.
     let pool = WorkerPool::new(|| CostToGo::new(kitchen.clone()));
     let of_all = |model: &HumanModel| {
         let of_trial = |cost: &mut CostToGo, (seed, observations): &(u64, Vec<Observation>)| {
             likelihood(kitchen, model, *seed, observations, cost)
         };
-        // In the order of the trials: the sum does not depend on how many threads there are.
+        // Summed in the order of the trials, so the sum does not depend on the number of threads.
         let found = pool.each(&trials.observations, of_trial, || {});
         found.into_iter().fold(Likelihood::default(), |sum, one| Likelihood {
             presses: sum.presses + one.presses,

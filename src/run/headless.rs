@@ -1,15 +1,14 @@
-//! Runs a session in virtual time: as fast as it goes, from one due event to the next.
+//! Runs a session in virtual time, from one due event to the next, as fast as possible.
 
 use super::engine::Engine;
 use crate::base::time::SessionTime;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::{Event, Phase, Stamped};
 
-/// Nobody is at the console, so the run stands in for who would be there: so long after the arm stopped by itself it
-/// lets it go on, in seconds.
+/// Delay after which the run resumes an arm that stopped by itself, in seconds, in place of a wizard.
 const LOOKS_S: f64 = 3.0;
 
-/// Runs a whole session of one trial, from its start to its end, and gives every event to `record`.
+/// Runs a whole session of one trial and passes every event to `record`.
 ///
 /// # Errors
 /// The first error of `record`; the session stops there.
@@ -21,7 +20,7 @@ pub fn run<E>(engine: &mut Engine, mut record: impl FnMut(&Stamped) -> Result<()
     }
     engine.input(SessionTime::ZERO, Event::TrialStarted).events.iter().try_for_each(&mut record)?;
     let mut stopped: Option<SessionTime> = None;
-    // The trial's time is always pending while it runs, so there is a next event until it is over.
+    // The end of the trial's time is always pending, so there is a next event until the trial ends.
     while engine.session().phase == Phase::Running {
         for question in engine.take_questions() {
             if let Some(advisor) = &mut advisor {

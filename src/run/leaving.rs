@@ -1,4 +1,4 @@
-//! How a live session was left, and what came of it.
+//! How a live session was left, and its result.
 
 use std::path::PathBuf;
 
@@ -7,18 +7,18 @@ use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::base::words::count;
 
-/// How the wizard left a recording.
+/// The wizard's way of leaving a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeavingReason {
     /// The program ends.
     Quit,
-    /// What comes next in the series begins.
+    /// Continue with the next recording of the series.
     Next,
-    /// The trial is done again, in another recording.
+    /// Repeat the trial in another recording.
     Redo,
 }
 
-/// What came of a live session.
+/// Result of a live session.
 #[derive(Clone, Debug)]
 pub struct LiveOutcome {
     /// The folder of the recording.
@@ -26,12 +26,12 @@ pub struct LiveOutcome {
     pub leaving: LeavingReason,
     pub figures: TrialSummary,
     pub standing: ExclusionStatus,
-    /// What its trial is done again with, if that was asked for.
+    /// Start of the repeated trial, if requested.
     pub again: Option<SessionStart>,
 }
 
 impl LiveOutcome {
-    /// What came of it, for people.
+    /// The result as text.
     pub fn describe(&self) -> String {
         let folder = self.folder.display();
         let presses = count(self.figures.human_actions + self.figures.robot_actions, "press", "presses");

@@ -1,4 +1,4 @@
-//! The composers: they bring session, robot, participant, files and clock together. Nothing else does.
+//! The shells: they combine session, robot, participant, files and clock. No other room does.
 
 #[cfg(feature = "cli")]
 pub mod accuracy;

@@ -1,4 +1,4 @@
-//! What `tomcom operate` is asked for, and what the command line changes in a session file.
+//! Requests of `tomcom operate`, and overrides of session settings by the command line.
 
 use std::net::IpAddr;
 use std::path::{Path, PathBuf};
@@ -13,39 +13,39 @@ use crate::session::Header;
 use crate::session::plan::PlanSpec;
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, SettingError};
 
-/// What `tomcom operate` is asked for.
+/// Start of a session.
 #[derive(Clone, Debug)]
 pub enum SessionStart {
-    /// A trial that is done again, in another recording in `out`: the header of that, and the kitchen that it describes.
+    /// A repeated trial in another recording in `out`: its header and kitchen.
     Again { header: Box<Header>, kitchen: Arc<Kitchen>, out: PathBuf },
-    /// A new session with these settings, recorded in a folder in `out`; `trial` tells it from others with the same seed.
+    /// A new session with these settings, recorded in `out`; `trial` distinguishes sessions with the same seed.
     New { files: Box<SessionFiles>, trial: u64, out: PathBuf },
-    /// The session of this recording, which was cut.
+    /// The session of a recording that was cut off.
     Continued(PathBuf),
 }
 
-/// What is still to be done by a participant of a plan.
+/// The remaining recordings of a participant of a plan.
 #[derive(Clone, Debug)]
 pub struct TrialSeries {
     /// The settings with the plan.
     pub files: SessionFiles,
-    /// The participant's place in the plan, from 0.
+    /// Index of the participant in the plan.
     pub participant: usize,
-    /// Where its recordings are and come.
+    /// Folder of its recordings.
     pub out: PathBuf,
-    /// Wizard and assistants are compared at the console.
+    /// Comparison of wizard and assistants, if it is shown.
     pub compare: Option<CompareRequest>,
 }
 
-/// Settings of the session file that arguments replace.
+/// Session settings that the command line overrides.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SettingOverrides {
     pub participant: Option<ParticipantKind>,
     pub arm: Option<ArmKind>,
     pub gaze: Option<GazeSource>,
-    /// Where the display is served.
+    /// Address of the display's server.
     pub listen: Option<IpAddr>,
-    /// The file that gaze is replayed from.
+    /// File from which gaze is replayed.
     pub gaze_file: Option<PathBuf>,
     pub condition: Option<Condition>,
     pub concept: Option<ConceptName>,
@@ -55,8 +55,8 @@ pub struct SettingOverrides {
 }
 
 impl SettingOverrides {
-    /// Replaces the settings. Where a person takes the simulated participant's place and nothing is said about the gaze,
-    /// the mouse pointer stands for it.
+    /// Applies the overrides. If a person replaces the simulated participant and no gaze source is given, the mouse pointer serves
+    /// as gaze.
     ///
     /// # Errors
     /// Settings that exclude each other.
@@ -95,10 +95,10 @@ impl SettingOverrides {
     }
 }
 
-/// The place of the participant with this code in a plan.
+/// Index of the participant with this code in a plan.
 ///
 /// # Errors
-/// No code, or one that is not in the plan.
+/// The code is missing or not in the plan.
 pub fn participant_of_plan(plan: &PlanSpec, code: Option<&str>) -> Result<usize, SettingError> {
     let remedy = "--code with one of the codes that tomcom plan SESSION lists";
     let wrong = |found: String| SettingError::new("code", found, remedy);
@@ -107,10 +107,10 @@ pub fn participant_of_plan(plan: &PlanSpec, code: Option<&str>) -> Result<usize,
     place.ok_or_else(|| wrong(format!("--code {code}, who is not in the plan \"{}\"", plan.name)))
 }
 
-/// The session file that was named; else `sessions/default.toml` if it is there; else the one that the program carries.
+/// Reads the given session file, else `sessions/default.toml` if it exists, else the built-in default session.
 ///
 /// # Errors
-/// Those of [`files::read_session`].
+/// Errors of [`files::read_session`].
 pub fn session_or_default(path: Option<&Path>) -> FileResult<SessionFiles> {
     let default = Path::new("sessions/default.toml");
     match path {

@@ -1,15 +1,15 @@
-//! Independent work on all processors.
+//! Parallel processing of independent items.
 
 use std::sync::{Mutex, MutexGuard};
 
 use rayon::prelude::*;
 
-/// Does the same with every item on all processors; the results have the order of the items. `done` is called after each.
+/// Processes all items on all processors; results keep the order of the items. `done` is called after each item.
 pub fn each<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync, done: impl Fn() + Sync) -> Vec<R> {
     each_with(items, || (), |(), item| work(item), done)
 }
 
-/// The same, where every thread has something of its own from item to item.
+/// The same, with a worker state per thread that is kept from item to item.
 pub fn each_with<T: Sync, R: Send, W: Send>(
     items: &[T],
     own: impl Fn() -> W + Sync,
@@ -19,16 +19,15 @@ pub fn each_with<T: Sync, R: Send, W: Send>(
     WorkerPool::new(own).each(items, work, done)
 }
 
-/// Threads with something of their own that lasts: a cache, say, which changes the time that work takes, and not what comes
-/// of it.
+/// A pool of worker states (such as caches) that are kept between calls. They change computing time, never results.
 pub struct WorkerPool<W, F: Fn() -> W> {
     own: F,
-    /// What nobody works with at the moment.
+    /// Idle worker states.
     idle: Mutex<Vec<W>>,
 }
 
 impl<W: Send, F: Fn() -> W + Sync> WorkerPool<W, F> {
-    /// Workers who make what they need with `own`, at most once for each thread.
+    /// A pool whose worker states are created by `own`, at most once per thread.
     pub fn new(own: F) -> WorkerPool<W, F> {
         WorkerPool { own, idle: Mutex::new(Vec::new()) }
     }
@@ -48,7 +47,7 @@ impl<W: Send, F: Fn() -> W + Sync> WorkerPool<W, F> {
             done();
             result
         };
-        // Items take long and differ, so each is given out by itself.
+        // Items take long and differ in length, so they are distributed one by one.
         items.par_iter().with_max_len(1).map(one).collect()
     }
 

@@ -1,4 +1,4 @@
-//! `tomcom plan`: who takes part in which group, what is done, and what comes next.
+//! `tomcom plan`: participants, groups, progress and next recordings of a study.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,23 +10,23 @@ use super::series::{slot_name, stands};
 use crate::edge::recordings;
 use crate::session::plan::{Progress, RecordingOutcome, Study};
 
-/// What `tomcom plan SESSION` prints.
+/// Output of `tomcom plan SESSION`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyPlanSummary {
     pub plan: String,
     pub digest: String,
     pub seed: u64,
-    /// How many participants there are, and how many are through.
+    /// Number of participants, and number of finished participants.
     pub planned: usize,
     pub finished: usize,
     pub participants: Vec<Progress>,
 }
 
 impl StudyPlanSummary {
-    /// How far a study is, from the recordings in `out`.
+    /// Progress of a study, from the recordings in `out`.
     ///
     /// # Errors
-    /// Recordings that cannot be read, or that the plan would not have asked for.
+    /// A recording cannot be read or does not belong to the plan.
     pub fn from_study(study: &Study, out: &Path) -> Result<StudyPlanSummary, LiveError> {
         let made = recordings::of_plan(out, &study.plan.name)?;
         let codes = study.plan.codes();
@@ -47,7 +47,7 @@ impl StudyPlanSummary {
     }
 }
 
-/// The plan for people.
+/// The plan as text.
 pub fn describe(figures: &StudyPlanSummary) -> String {
     let mut sizes = BTreeMap::new();
     for one in &figures.participants {
@@ -75,7 +75,7 @@ pub fn describe(figures: &StudyPlanSummary) -> String {
     head + &figures.participants.iter().map(one).collect::<String>()
 }
 
-/// What has to be known of a participant's recordings: those that do not count, and those of another version of the plan.
+/// Remarks on a participant's recordings: invalid ones, and those of another version of the plan.
 fn attempts(progress: &Progress) -> String {
     let mut lines = String::new();
     for (slot, stand) in progress.steps.iter().enumerate() {

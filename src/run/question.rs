@@ -9,10 +9,10 @@ use crate::console::ConsoleMessage;
 use crate::console::question::{QuestionPage, QuestionReply};
 use crate::console::view::theme::Theme;
 
-/// A question is drawn so often.
+/// Period of redrawing a question.
 const REDRAW: Duration = Duration::from_millis(100);
 
-/// Asks; the place of the answer, none if the program is to be left.
+/// Asks a question; returns the index of the answer, or `None` to quit the program.
 ///
 /// # Errors
 /// The terminal is gone.
@@ -25,11 +25,11 @@ pub(super) async fn ask(desk: &mut OperatorDesk, question: &QuestionPage) -> Res
     })
 }
 
-/// A question that is not answered yet.
+/// A question without an answer yet.
 struct OpenQuestion<'a> {
     question: &'a QuestionPage,
     theme: Theme,
-    /// The terminal changed since the last frame.
+    /// Whether the screen must be redrawn.
     dirty: bool,
 }
 
@@ -41,7 +41,7 @@ impl ConsoleShell for OpenQuestion<'_> {
         ShellDeadlines { frame_after: if self.dirty { FRAME } else { REDRAW }, ..ShellDeadlines::default() }
     }
 
-    /// Gaze and what the page says are taken all the same, or they would be read later as if they had just come.
+    /// Gaze and page inputs are consumed during a question; otherwise they would be processed later as if they were new.
     fn take(&mut self, event: LoopEvent) -> Result<Option<QuestionReply>, LiveError> {
         let LoopEvent::Terminal(message) = event else { return Ok(None) };
         self.dirty = true;

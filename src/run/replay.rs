@@ -1,4 +1,4 @@
-//! Replays a recording: feeds its events through the same [`apply`](crate::session::apply()) as the live session.
+//! Replays a recording: applies its events with the same [`apply`](crate::session::apply()) as the live session.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -13,14 +13,14 @@ use crate::kitchen::{Change, Kitchen};
 use crate::mind::observation::Observation;
 use crate::session::{Event, Session, Stamped};
 
-/// A recording and the session at the point up to which it was replayed.
+/// A recording with the session at the present position of the replay.
 #[derive(Debug)]
 pub struct Replay {
     log: LogReader,
     pub follower: Follower,
 }
 
-/// An event of a recording that was just applied, and what it changed in the kitchen.
+/// An applied event with its change of the kitchen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReplayedEvent {
     pub stamped: Stamped,
@@ -31,28 +31,28 @@ impl Replay {
     /// Opens a recording, before its first event.
     ///
     /// # Errors
-    /// Those of [`LogReader::open`].
+    /// Errors of [`LogReader::open`].
     pub fn open(recording: &Path) -> FileResult<Replay> {
         let log = LogReader::open(recording)?;
         let cost = CostToGo::new(log.kitchen.clone());
         Ok(Replay::over(log, cost))
     }
 
-    /// A replay of this log; `cost` is for its kitchen, and may have been used before.
+    /// A replay of a log; `cost` must be for its kitchen and can be reused from other replays.
     pub fn over(log: LogReader, cost: CostToGo) -> Replay {
         let follower = Follower::new(log.session(), cost);
         Replay { log, follower }
     }
 
-    /// The same without looking for the causes of errors.
+    /// The same without attribution of errors.
     pub fn without_causes(self) -> Replay {
         Replay { follower: self.follower.without_causes(), ..self }
     }
 
-    /// Applies the next event and hands it out; `None` where the log ends for now.
+    /// Applies and returns the next event; `None` at the present end of the log.
     ///
     /// # Errors
-    /// A line that is no event, or an event that cannot be at this point.
+    /// A line is not an event, or its event is not possible now.
     pub fn step(&mut self) -> FileResult<Option<ReplayedEvent>> {
         let Some(line) = self.log.next_line()? else { return Ok(None) };
         let applied = self
@@ -62,19 +62,19 @@ impl Replay {
         Ok(Some(ReplayedEvent { stamped: line.stamped, change: applied.change }))
     }
 
-    /// Applies everything that is there.
+    /// Applies all remaining events.
     ///
     /// # Errors
-    /// Those of [`Replay::step`].
+    /// Errors of [`Replay::step`].
     pub fn run(&mut self) -> FileResult<()> {
         while self.step()?.is_some() {}
         Ok(())
     }
 
-    /// Applies everything that is there, and hands out what it tells of the human's belief.
+    /// Applies all remaining events and returns their observations for the belief filter.
     ///
     /// # Errors
-    /// Those of [`Replay::step`].
+    /// Errors of [`Replay::step`].
     pub fn observations(&mut self) -> FileResult<Vec<Observation>> {
         let mut observations = Vec::new();
         loop {
@@ -85,17 +85,17 @@ impl Replay {
         }
     }
 
-    /// Replays on to the next question that the assistant is asked after a press; `None` where the log ends for now.
+    /// Replays up to the next request for advice after a press; `None` at the present end of the log.
     ///
     /// # Errors
-    /// Those of [`Replay::step`].
+    /// Errors of [`Replay::step`].
     pub fn next_question(&mut self) -> FileResult<Option<AdviceRequest>> {
         let mut pressed = None;
         while let Some(ReplayedEvent { stamped, change }) = self.step()? {
             if change.press().is_some() {
                 pressed = Some(stamped.seq);
             }
-            // By the next gaze sample the robot has chosen its press.
+            // At the next gaze sample the robot has chosen its press.
             if let (Event::Gaze(_), Some(seq)) = (stamped.event, pressed) {
                 return Ok(Some(AdviceRequest::from_follower(&self.follower, seq, stamped.time)));
             }
@@ -113,15 +113,15 @@ impl Replay {
     }
 }
 
-/// Recordings that are summed up count once each.
+/// Checks that no recording is given twice.
 ///
 /// # Errors
-/// One is named twice, by whatever path.
+/// A recording is given twice, possibly by different paths.
 pub fn each_once(recordings: &[PathBuf]) -> FileResult<()> {
     let mut known = BTreeSet::new();
     for recording in recordings {
         let log = if recording.is_dir() { recording.join(LOG_NAME) } else { recording.clone() };
-        // What is not there is told when it is opened.
+        // A missing recording is reported when it is opened.
         if !known.insert(log.canonicalize().unwrap_or(log)) {
             let remedy = "each recording once".to_string();
             return Err(FileError::from_finding(recording, "the same recording twice".to_string(), remedy));
@@ -130,17 +130,17 @@ pub fn each_once(recordings: &[PathBuf]) -> FileResult<()> {
     Ok(())
 }
 
-/// Recordings that are looked at together must be of one kitchen.
+/// Checks that all recordings are of one kitchen.
 #[derive(Debug, Default)]
 pub struct SameKitchen {
     first: Option<(PathBuf, Arc<Kitchen>)>,
 }
 
 impl SameKitchen {
-    /// Takes note of a recording's kitchen.
+    /// Adds the kitchen of a recording.
     ///
     /// # Errors
-    /// It is another one than that of the first recording.
+    /// The kitchen differs from that of the first recording.
     pub fn admit(&mut self, recording: &Path, kitchen: &Arc<Kitchen>) -> FileResult<()> {
         let (path, first) = self.first.get_or_insert_with(|| (recording.to_path_buf(), kitchen.clone()));
         if first.aspects == kitchen.aspects && first.buttons == kitchen.buttons {

@@ -1,4 +1,4 @@
-//! `tomcom review`: recordings in Rerun's viewer, from the stream beside their log, or made from the log.
+//! `tomcom review`: opens recordings in the Rerun viewer, from the stream file beside the log or rebuilt from the log.
 
 use std::fs;
 use std::io;
@@ -19,7 +19,7 @@ use crate::scene::shown::slug;
 use crate::scene::{DerivedData, SessionScene};
 use crate::session::Stamped;
 
-/// Where the server and the viewer for browsers are looked for, and the ports after.
+/// First ports of the server and of the web viewer.
 const SERVER_PORT: u16 = 9878;
 const WEB_PORT: u16 = 9090;
 
@@ -49,40 +49,40 @@ impl From<FileError> for RerunError {
     }
 }
 
-/// What `tomcom review` is asked for.
+/// Request of `tomcom review`.
 #[derive(Clone, Debug)]
 pub struct ReviewRequest {
     pub recordings: Vec<PathBuf>,
-    /// Only the file is written: beside the log, or here.
+    /// Write the file only: beside the log, or to this path.
     pub save: Option<Option<PathBuf>>,
-    /// The viewer is served for a browser, whether there is another one or not.
+    /// Serve the web viewer even if a native viewer is installed.
     pub web: bool,
-    /// The moment to open at, by the trial's clock.
+    /// Time on the trial's clock at which the viewer opens.
     pub at: Option<SessionTime>,
 }
 
-/// A file of a stream, and how it came about.
+/// A stream file with its origin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SavedStream {
     pub path: PathBuf,
-    /// It was made from the log just now.
+    /// Whether it was just rebuilt from the log.
     pub made: bool,
-    /// Why the one that was there did not do.
+    /// Reason why the existing file was not used.
     pub because: Option<&'static str>,
 }
 
-/// A recording that somebody still writes.
+/// A recording that is still being written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OngoingRecording {
     pub recording: PathBuf,
-    /// Where viewers can look on, if they can.
+    /// Address for live viewers, if there is one.
     pub viewers: Option<String>,
 }
 
-/// Which of these recordings are of sessions that still run: what is shown of them ends now.
+/// The recordings whose sessions are still running; the review shows them up to now.
 ///
 /// # Errors
-/// One that cannot be read.
+/// A recording cannot be read.
 pub fn running(recordings: &[PathBuf]) -> FileResult<Vec<OngoingRecording>> {
     let mut running = Vec::new();
     for recording in recordings {
@@ -93,9 +93,9 @@ pub fn running(recordings: &[PathBuf]) -> FileResult<Vec<OngoingRecording>> {
     Ok(running)
 }
 
-/// What came of it.
+/// Result of a review.
 pub enum ReviewOutcome {
-    /// The file is there.
+    /// The file was written.
     Saved(SavedStream),
     /// The viewer was opened on the file.
     Opened(SavedStream),
@@ -129,16 +129,16 @@ pub fn review(asked: &ReviewRequest) -> Result<ReviewOutcome, RerunError> {
     }
 }
 
-/// Waits until the program is asked to end.
+/// Waits for a termination signal.
 ///
 /// # Errors
-/// The system does not tell.
+/// The operating system does not deliver signals.
 pub fn until_asked_to_end() -> io::Result<()> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     runtime.block_on(asked_to_end())
 }
 
-/// The file of the stream of a recording: that beside its log where it shows this log, else made from it.
+/// The stream file of a recording: the file beside its log if it is up to date, else rebuilt from the log.
 ///
 /// # Errors
 /// The recording cannot be read, or the file not be written.
@@ -157,9 +157,8 @@ fn serve(recordings: &[PathBuf], at: Option<SessionTime>, because: &'static str)
     Ok(ReviewOutcome::Served { url, because, _serving: Box::new((writer, viewer)) })
 }
 
-/// The first port that is free for a stream, with that of the viewer's page, which is served already. They go in pairs: of
-/// two programs that look at the same moment only one gets the page, and a server of Rerun does not say that its port was
-/// taken meanwhile.
+/// The first free pair of ports for stream and web viewer; the web viewer is served at once. Ports are taken in pairs, because
+/// Rerun's server does not report that another program took its port in the meantime.
 fn ports() -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
     let mut failed = io::Error::from(io::ErrorKind::AddrInUse);
     for nth in 0..=PORTS {
@@ -172,7 +171,7 @@ fn ports() -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
     Err(failed)
 }
 
-/// The file of the stream of these recordings: that beside the log where it shows this log, else made from it.
+/// The stream file of these recordings: the file beside the log if it is up to date, else rebuilt from the logs.
 fn saved(recordings: &[PathBuf], place: Option<&Path>) -> Result<SavedStream, RerunError> {
     let (mut locked, mut because, mut logs) = (None, None, None);
     let path = match (place, recordings) {
@@ -185,7 +184,7 @@ fn saved(recordings: &[PathBuf], place: Option<&Path>) -> Result<SavedStream, Re
             if state == RrdState::Whole {
                 return Ok(SavedStream { path, made: false, because: None });
             }
-            // Nobody else may be writing it: then, or where nothing can be written, it goes elsewhere.
+            // If another program writes the file, or the folder is not writable, the stream goes to a temporary file.
             locked = RecordingLock::take(&folder).ok();
             if locked.is_some() {
                 (because, logs) = (state.reason(), Some(parts));
@@ -204,8 +203,8 @@ fn saved(recordings: &[PathBuf], place: Option<&Path>) -> Result<SavedStream, Re
     }
 }
 
-/// Makes the file of the stream of these recordings. What was there stays until all of the new one is: a log that turns out
-/// to be damaged costs nothing.
+/// Builds the stream file of these recordings. An existing file is replaced only when the new one is complete, so a damaged log
+/// loses nothing.
 fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunError> {
     let mut begun = path.as_os_str().to_os_string();
     begun.push(".new");
@@ -215,14 +214,14 @@ fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunError
     match written {
         Ok(Ok(_)) => Ok(fs::rename(&begun, path)),
         failed => {
-            // Left behind it does no harm.
+            // A leftover temporary file is harmless.
             let _ = fs::remove_file(&begun);
             failed.map(|written| written.map(|_| ()))
         }
     }
 }
 
-/// A file for what cannot stand beside a log.
+/// Path of a temporary stream file.
 fn elsewhere(recordings: &[PathBuf]) -> PathBuf {
     let names: Vec<String> = recordings.iter().map(|recording| name(recording)).collect();
     std::env::temp_dir().join(format!("tomcom-{}-{}.rrd", names.join("-and-"), std::process::id()))
@@ -234,7 +233,7 @@ fn name(recording: &Path) -> String {
     folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Recordings on their way into a stream: one as it is; several below their names, each with its participant and condition.
+/// Prepares recordings for one stream: a single one at the root, several below their names with participant and condition.
 fn playing(recordings: &[PathBuf]) -> FileResult<Vec<Playing>> {
     let one = |(nth, recording): (usize, &PathBuf)| {
         let playing = Playing::open(recording)?;
@@ -249,7 +248,7 @@ fn playing(recordings: &[PathBuf]) -> FileResult<Vec<Playing>> {
     recordings.iter().enumerate().map(one).collect()
 }
 
-/// Writes recordings to these outlets, one after the other; the outer error is theirs, the inner one of the outlets.
+/// Writes recordings to outlets one after another; the outer error is of the recordings, the inner one of the outlets.
 fn write(
     playing: Vec<Playing>,
     recordings: &[PathBuf],
@@ -270,7 +269,7 @@ fn write(
     Ok(Ok(writer))
 }
 
-/// A recording on its way into a stream.
+/// A recording that is being streamed.
 struct Playing {
     replay: Replay,
     scene: SessionScene,
@@ -284,13 +283,13 @@ impl Playing {
         Ok(Playing { replay, scene, lane: StreamLane::default() })
     }
 
-    /// What tells it from other recordings of the same name.
+    /// Identifies it among recordings of the same name.
     fn began(&self) -> String {
         let header = &self.replay.log().header;
         header.started.clone().unwrap_or_else(|| format!("seed {} trial {}", header.session.seed, header.trial))
     }
 
-    /// Writes everything that the recording holds; the number of rows.
+    /// Writes the whole recording; returns the number of rows.
     fn write(mut self, writer: &RerunWriter) -> FileResult<u64> {
         writer.fixed(&self.lane, &self.scene.fixed());
         let mut rows = writer.moment(&self.lane, &self.scene.opening());
@@ -298,7 +297,7 @@ impl Playing {
         loop {
             let next = self.replay.step()?;
             if let Some((stamped, belief)) = held.take() {
-                // An estimate is shown when everything of its time has happened.
+                // An estimate is shown after all events of its time.
                 let is_last = next.as_ref().is_none_or(|next| next.stamped.time > stamped.time);
                 let judged = &self.replay.follower.judged;
                 let derived = DerivedData { judged, belief: belief.as_ref().filter(|_| is_last) };

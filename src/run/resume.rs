@@ -1,4 +1,4 @@
-//! Takes up a recording that was cut: the session is run again to where it was cut, and goes on from there in a new part.
+//! Continues a recording that was cut off: the session is run again up to the cut and continues in a new part.
 
 use std::path::{Path, PathBuf};
 
@@ -36,27 +36,27 @@ impl From<FileError> for ResumeError {
     }
 }
 
-/// A session that was taken up again.
+/// A continued session.
 #[derive(Debug)]
 pub struct ResumedSession {
     pub engine: Engine,
-    /// The first events of the new part: what the cut took off, and the pause of a trial that was running.
+    /// First events of the new part: events lost by the cut, and the pause of a running trial.
     pub first: Vec<Stamped>,
-    /// Of the new part.
+    /// Header of the new part.
     pub header: Header,
-    /// When it goes on.
+    /// Session time at which it continues.
     pub time: SessionTime,
-    /// The folder of the part before, which nobody else may continue or write meanwhile.
+    /// Lock on the folder of the previous part.
     pub folder: PathBuf,
     pub lock: RecordingLock,
 }
 
-/// Runs a cut recording again to its end. A trial that was running is paused there: who takes part has to come back.
+/// Runs a cut recording again to its end. A running trial is paused there until the participant is back.
 ///
 /// # Errors
-/// It cannot be read, is being written, was not cut, or does not come out the same again.
+/// The recording cannot be read, is being written, was not cut off, or does not verify.
 pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
-    // Resolved, since the part goes beside it and names it.
+    // Resolved, since the new part is created beside it and refers to it by name.
     let there = recording.canonicalize();
     let there = there.map_err(|reason| FileError::unreadable(recording, reason, "the folder of a cut recording"))?;
     let folder = if there.is_dir() { there } else { there.parent().unwrap_or(Path::new("/")).to_path_buf() };

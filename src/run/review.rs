@@ -1,4 +1,4 @@
-//! The console over a recording, or over a session that is still running: pause, step, seek, speed.
+//! The review console over a recording or over a session that is still running: pause, step, seek, speed.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -22,13 +22,13 @@ use crate::history::landmark::ReplayLandmark;
 use crate::measures::coding::Codable;
 use crate::session::Event;
 
-/// At full speed, so much of every frame goes into applying events.
+/// Time per frame for applying events at full speed.
 const WORK: Duration = Duration::from_millis(20);
-/// How far a seek goes.
+/// Length of a seek step.
 const SEEK: SessionTime = SessionTime(10_000_000_000);
 
-/// Opens the console over a recording; with `follow`, at the growing end of a running session; with a comparison of wizard
-/// and assistants, where that is asked for.
+/// Opens the console over a recording; with `follow`, at the growing end of a running session; optionally with a comparison of
+/// wizard and assistants.
 ///
 /// # Errors
 /// The recording cannot be read, or there is no terminal.
@@ -37,8 +37,8 @@ pub fn review(recording: &Path, follow: bool, compare: Option<&CompareRequest>) 
     at_desk(film, recording, follow, compare, None)
 }
 
-/// Opens the console over a recording for a rater, who codes its errors and sees what a wizard without estimates sees; what
-/// was said is kept beside the log after every key.
+/// Opens the console over a recording for a rater, who codes its errors without seeing estimates; codes are saved beside the log
+/// after every key.
 ///
 /// # Errors
 /// The recording or its codes cannot be read, or there is no terminal.
@@ -71,14 +71,14 @@ struct Review {
     film: SeekableReplay,
     model: ConsoleModel,
     opened: Instant,
-    /// The moment that is shown, and when it was reached.
+    /// Shown session time, and the instant at which it was reached.
     now: SessionTime,
     at: Instant,
-    /// When the newest event of a growing recording was read.
+    /// Instant at which the latest event of a growing recording was read.
     read_at: Instant,
     grows: bool,
     dirty: bool,
-    /// Who compares wizard and assistants.
+    /// The comparison of wizard and assistants.
     comparison: Option<ComparisonDesk>,
 }
 
@@ -120,7 +120,7 @@ impl Review {
             comparison,
         };
         review.tell(0);
-        // Who codes goes from error to error.
+        // A rater starts at the first error.
         let plays = review.model.coding.is_none();
         review.playback(|playback| playback.playing = plays);
         if follow {
@@ -129,7 +129,7 @@ impl Review {
         Ok(review)
     }
 
-    /// Takes a message of the terminal; whether somebody has quit.
+    /// Handles a terminal message; returns whether the review is left.
     fn take_message(&mut self, message: ConsoleMessage) -> bool {
         self.dirty = true;
         self.tick();
@@ -143,7 +143,7 @@ impl Review {
         false
     }
 
-    /// Keeps what the rater says.
+    /// Saves the rater's codes.
     fn keep(&mut self) {
         let Some(coding) = &self.model.coding else { return };
         if let Err(error) = codes::write(self.film.replay.log().folder(), &coding.rater, &coding.codes) {
@@ -151,7 +151,7 @@ impl Review {
         }
     }
 
-    /// Moves the clock on that also runs while the replay stands.
+    /// Advances the clock that also runs while the replay is paused.
     fn tick(&mut self) {
         self.model.clock = SessionTime(self.opened.elapsed().as_nanos() as u64);
     }
@@ -207,7 +207,7 @@ impl Review {
         self.playback(|playback| playback.playing = false);
     }
 
-    /// Stands at the next or the last moment of this kind; where there is none it stays.
+    /// Moves to the next or previous landmark of this kind, if there is one.
     fn look_for(&mut self, what: ReplayLandmark, forward: bool) {
         match self.film.landmark(what, forward) {
             Some(position) => self.stand_at(position),
@@ -234,14 +234,14 @@ impl Review {
         self.film.wind(position);
     }
 
-    /// Tells whoever compares what was read from the event with this place on.
+    /// Passes events from this position on to the comparison.
     fn tell(&self, from: usize) {
         if let Some(comparison) = &self.comparison {
             self.film.events[from..].iter().for_each(|stamped| comparison.tell(stamped));
         }
     }
 
-    /// Reads on in a growing recording.
+    /// Reads new events of a growing recording.
     fn look(&mut self) -> Result<(), ReviewError> {
         let (_, known) = self.film.length();
         if self.film.read()? {
@@ -254,13 +254,13 @@ impl Review {
         Ok(())
     }
 
-    /// Moves on by the time that has passed.
+    /// Advances the replay by the elapsed time.
     fn play(&mut self) {
         let passed = self.at.elapsed();
         self.at = Instant::now();
         let (length, events) = self.film.length();
         if self.is(|playback| playback.follows) {
-            // Between two events of the running session its clock goes on.
+            // The clock of a running session advances between events.
             let ahead = if self.grows { self.read_at.elapsed().as_nanos() as u64 } else { 0 };
             self.now = self.now.max(length + SessionTime(ahead));
         } else if self.is(|playback| playback.playing) {

@@ -1,5 +1,5 @@
-//! A recording that is read once, with every press judged, and shown as a session of its own that the same events are
-//! applied to. Sessions kept on the way make steps back cheap.
+//! A seekable replay: the recording is read once with all presses judged; the shown session applies the same events. Snapshots
+//! make steps back cheap.
 
 use std::path::Path;
 
@@ -13,31 +13,31 @@ use crate::history::landmark::ReplayLandmark;
 use crate::session::settings::Visibility;
 use crate::session::{Event, Session, Stamped, apply};
 
-/// A session is kept every so many events.
+/// Number of events between snapshots.
 const KEEP_EVERY: usize = 4096;
 
-/// A recording that can be wound forward and back.
+/// A recording that can be moved to any position.
 #[derive(Debug)]
 pub struct SeekableReplay {
     pub(super) replay: Replay,
     pub(super) events: Vec<Stamped>,
-    /// Times of the presses that were errors.
+    /// Times of errors.
     pub errors: Vec<SessionTime>,
     judged: usize,
-    /// What was estimated of the participant's belief.
+    /// History of the belief estimate.
     pub beliefs: BeliefHistory,
-    /// The session after the first `position` events.
+    /// Session after the first `position` events.
     pub session: Session,
     pub position: usize,
-    /// Sessions after every [`KEEP_EVERY`] events, the first before any.
+    /// Snapshots after every [`KEEP_EVERY`] events, starting before the first.
     kept: Vec<Session>,
 }
 
 impl SeekableReplay {
-    /// Reads a recording to its end, and winds it to its beginning.
+    /// Reads a recording to its end and moves to its beginning.
     ///
     /// # Errors
-    /// Those of [`Replay::step`].
+    /// Errors of [`Replay::step`].
     pub fn open(recording: &Path) -> FileResult<SeekableReplay> {
         let replay = Replay::open(recording)?;
         let session = replay.session().clone();
@@ -56,7 +56,7 @@ impl SeekableReplay {
         Ok(film)
     }
 
-    /// Shows no estimate from now on: to whoever is to judge for oneself. Before anything is wound.
+    /// Hides the estimate, for raters. Must be called before the replay is moved.
     pub fn blinded(mut self) -> SeekableReplay {
         for session in self.kept.iter_mut().chain([&mut self.session]) {
             session.spec.console.visibility = Visibility::State;
@@ -64,10 +64,10 @@ impl SeekableReplay {
         self
     }
 
-    /// Reads what was added since; whether anything was.
+    /// Reads appended events; returns whether there were any.
     ///
     /// # Errors
-    /// Those of [`Replay::step`].
+    /// Errors of [`Replay::step`].
     pub fn read(&mut self) -> FileResult<bool> {
         let before = self.events.len();
         while let Some(event) = self.replay.step()? {
@@ -89,15 +89,15 @@ impl SeekableReplay {
         Ok(self.events.len() > before)
     }
 
-    /// Whether the session's end is missing.
+    /// Whether the recording has no end event.
     pub fn is_cut(&self) -> bool {
         self.replay.log().is_cut()
     }
 
-    /// Whether it counts.
+    /// Whether the recording is excluded.
     ///
     /// # Errors
-    /// Those of [`exclusion_status`].
+    /// Errors of [`exclusion_status`].
     pub fn standing(&self) -> FileResult<ExclusionStatus> {
         exclusion_status(self.replay.session(), self.replay.log())
     }
@@ -107,7 +107,7 @@ impl SeekableReplay {
         (self.events.last().map_or(SessionTime::ZERO, |stamped| stamped.time), self.events.len())
     }
 
-    /// Applies the next event and hands it out.
+    /// Applies and returns the next event.
     pub fn forward(&mut self) -> Option<&Stamped> {
         let stamped = self.events.get(self.position)?;
         apply(&mut self.session, stamped).expect("it was applied when it was read");
@@ -118,7 +118,7 @@ impl SeekableReplay {
         Some(stamped)
     }
 
-    /// Winds to the place after the first `position` events.
+    /// Moves to the position after the first `position` events.
     pub fn wind(&mut self, position: usize) {
         if position < self.position {
             let index = (position / KEEP_EVERY).min(self.kept.len() - 1);
@@ -128,25 +128,25 @@ impl SeekableReplay {
         while self.position < position && self.forward().is_some() {}
     }
 
-    /// The number of events until and with this time.
+    /// Number of events up to and including a time.
     pub fn until(&self, time: SessionTime) -> usize {
         self.events.partition_point(|stamped| stamped.time <= time)
     }
 
-    /// The place after the next event that is no gaze sample.
+    /// Position after the next event that is not a gaze sample.
     pub fn next_step(&self) -> usize {
         let rest = self.events[self.position..].iter();
         self.position + rest.take_while(|stamped| stamped.event.is_sample()).count() + 1
     }
 
-    /// The place after the last event but one that is no gaze sample.
+    /// Position after the previous event that is not a gaze sample.
     pub fn last_step(&self) -> usize {
         let steps = |end: usize| self.events[..end].iter().rposition(|stamped| !stamped.event.is_sample());
         let last = steps(self.position).unwrap_or(0);
         steps(last).map_or(0, |index| index + 1)
     }
 
-    /// The place after everything of the next moment of this kind, or of the last one before.
+    /// Position after all events at the time of the next or previous landmark.
     pub fn landmark(&self, what: ReplayLandmark, forward: bool) -> Option<usize> {
         let now = self.time();
         let is_it = |event: &Event| match what {

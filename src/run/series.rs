@@ -1,5 +1,5 @@
-//! The loop over recordings: one recording is one run of at most one trial, and what a participant goes through is a
-//! series of them, made at the same desk without leaving the console.
+//! The loop over recordings: each recording has at most one trial; the series of a participant is recorded without leaving the
+//! console.
 
 use super::desk::OperatorDesk;
 use super::error::{LiveError, TerminalError};
@@ -14,11 +14,11 @@ use crate::edge::files::SessionFiles;
 use crate::edge::recordings;
 use crate::session::plan::{NextRecording, Progress, Study};
 
-/// What came of one session or a series.
+/// Result of a session or of a series.
 #[derive(Clone, Debug)]
 pub struct SeriesOutcome {
     pub done: Vec<LiveOutcome>,
-    /// How the participant stands, for people.
+    /// Progress of the participant, as text.
     pub remark: Option<String>,
 }
 
@@ -29,7 +29,7 @@ pub struct SeriesOutcome {
 /// There is no terminal, the session cannot be recorded, or the gaze input cannot be opened.
 pub fn operate(beginning: SessionStart, compare: Option<CompareRequest>) -> Result<SeriesOutcome, LiveError> {
     in_runtime(async {
-        // Before the terminal is taken and a recording is made: a session that cannot start leaves nothing behind.
+        // Checked before the terminal is taken and a recording is created, so that a session that cannot start leaves nothing behind.
         let mut begun = PreparedSession::new(beginning)?.comparing(compare.clone());
         let mut desk = OperatorDesk::take(begun.spec(), begun.kitchen()).await?;
         let mut done = Vec::new();
@@ -53,27 +53,27 @@ pub fn operate_series(series: TrialSeries) -> Result<SeriesOutcome, LiveError> {
     in_runtime(async { Planned::new(series)?.run().await })
 }
 
-/// Signals and sockets belong to a runtime.
+/// Runs work in a tokio runtime, for signals and sockets.
 fn in_runtime(work: impl Future<Output = Result<SeriesOutcome, LiveError>>) -> Result<SeriesOutcome, LiveError> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
     runtime.block_on(work)
 }
 
-/// What came of it, for people.
+/// The result as text.
 pub fn describe(sitting: &SeriesOutcome) -> String {
     let ends: String = sitting.done.iter().map(|end| format!("{}\n", end.describe())).collect();
     let remark = sitting.remark.as_ref().map_or(String::new(), |remark| format!("{remark}\n"));
     ends + &remark
 }
 
-/// What the wizard chose before a recording.
+/// Choice of the wizard before a recording.
 enum Choice {
     Begin(Box<PreparedSession>),
-    /// Nothing: the program is left, with this remark.
+    /// Quit the program, with this remark.
     Leave(Option<String>),
 }
 
-/// The series of one participant of a plan. What comes next is read from the recordings each time, and kept nowhere else.
+/// The series of one participant of a plan. The next step is determined from the recordings each time.
 struct Planned {
     series: TrialSeries,
     study: Study,
@@ -118,7 +118,7 @@ impl Planned {
         Ok(SeriesOutcome { done, remark: Some(stands(&progress)) })
     }
 
-    /// Gets the next recording ready, after what has to be asked first.
+    /// Prepares the next recording, after the questions that come first.
     async fn choose(&self, progress: &Progress, desk: &mut OperatorDesk) -> Result<Choice, LiveError> {
         let (slot, attempt, open) = match &progress.next {
             NextRecording::Begin { slot, attempt } => (*slot, *attempt, None),
@@ -157,7 +157,7 @@ impl Planned {
     }
 }
 
-/// Whether an open recording is continued or done again.
+/// The question whether an unfinished recording is continued or repeated.
 fn which(progress: &Progress, recording: &str, slot: usize) -> QuestionPage {
     let name = slot_name(progress, slot);
     let attempt = progress.steps.get(slot).and_then(|stand| stand.recordings.last());
@@ -172,7 +172,7 @@ fn which(progress: &Progress, recording: &str, slot: usize) -> QuestionPage {
     }
 }
 
-/// Nothing is recorded before the participant agrees.
+/// The question for consent, without which nothing is recorded.
 fn consent(study: &Study, progress: &Progress, label: &str) -> QuestionPage {
     QuestionPage {
         title: format!("{}: {label}", progress.code),
@@ -189,7 +189,7 @@ pub(super) fn slot_name(progress: &Progress, slot: usize) -> String {
     }
 }
 
-/// How a participant stands, in a line.
+/// Progress of a participant, in one line.
 pub(super) fn stands(progress: &Progress) -> String {
     let (code, done, all) = (&progress.code, progress.done(), progress.steps.len());
     match &progress.next {

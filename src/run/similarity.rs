@@ -11,10 +11,10 @@ use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogReader, at_line};
 
-/// The windows of `--sweep`.
+/// Windows of `--sweep`, in presses of the human.
 pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;
 
-/// Follows recordings on all processors. `done` is called after each.
+/// Follows recordings on all processors. `done` is called after each recording.
 ///
 /// # Errors
 /// A recording cannot be read or applied, or one is named twice.
@@ -39,10 +39,10 @@ fn follow(recording: &Path, request: &CompareRequest) -> FileResult<ComparedReco
     Ok(comparer.finish(recording.display().to_string(), standing))
 }
 
-/// What each knew at a difference, by its number in the list, in words.
+/// Details of a difference, by its number in the list, as text.
 ///
 /// # Errors
-/// There is no such difference, or more than one recording.
+/// There is no difference with this number, or there are several recordings.
 pub fn open(watched: &[ComparedRecording], number: usize) -> FileResult<String> {
     let [one] = watched else {
         let found = format!("--open {number} with {} recordings", watched.len());

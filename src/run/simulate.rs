@@ -1,4 +1,4 @@
-//! `tomcom simulate`: whole trials in virtual time, each independent of how many there are.
+//! `tomcom simulate`: whole trials in virtual time; a trial does not depend on the number of trials.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -22,27 +22,26 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::settings::{Condition, ParticipantSpec, SessionSpec};
 use crate::session::{Header, Stamped};
 
-/// What to simulate.
+/// Request of `tomcom simulate`.
 #[derive(Clone, Debug)]
 pub struct SimulationRequest {
     pub files: SessionFiles,
     pub trials: u64,
-    /// Which of the trials.
+    /// The shard of the trials.
     pub shard: Shard,
-    /// Where the recordings go.
+    /// Folder of the recordings.
     pub out: PathBuf,
 }
 
 impl SimulationRequest {
-    /// The trials of the shard, in their order.
+    /// The trials of the shard, in order.
     pub fn own_trials(&self) -> impl Iterator<Item = u64> + Clone {
         let Shard { number, of } = self.shard;
         (number - 1..self.trials).step_by(of as usize)
     }
 }
 
-/// A part of the trials: of `of` parts the one with this number, 1 the first. The parts have no trial in common, and all of
-/// them together are the whole.
+/// A shard of the trials: number `number` (from 1) of `of` disjoint parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     pub number: u64,
@@ -50,7 +49,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// All trials.
+    /// The shard that contains all trials.
     pub const WHOLE: Shard = Shard { number: 1, of: 1 };
 }
 
@@ -66,28 +65,28 @@ impl FromStr for Shard {
     }
 }
 
-/// No job array is larger.
+/// Largest number of shards.
 const MAX_SHARDS: u64 = 100_000;
-/// So many trials are under way before what came of them is summed up, so that memory does not grow with their number.
+/// Number of trials that are simulated before their results are summed up, which bounds memory.
 const BLOCK: usize = 256;
 
-/// The settings of a simulated trial without a plan. Where the wizard is a person, nobody is there, so without the
-/// assistant it is unassisted; every trial has a participant of its own, with a code of its own.
+/// The settings of a simulated trial without a plan. Without a scripted wizard the wizard condition is unassisted. Every trial has
+/// its own participant with its own code.
 pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
     let mut spec = spec.clone();
     if spec.unattended(spec.trial.condition) != spec.trial.condition {
-        // Whose shadow the assistant would be.
+        // Without a wizard there is nothing that the assistant could shadow.
         (spec.trial.condition, spec.assistant.shadow) = (Condition::None, Shadow::Off);
     }
     spec.participant.code = format!("S{:03}", trial + 1);
     spec
 }
 
-/// Simulates the trials on all processors. What is there already, whole, is read and not made again. `done` is called after
-/// each trial.
+/// Simulates the trials on all processors. Complete recordings that exist already are read instead. `done` is called after each
+/// trial.
 ///
 /// # Errors
-/// A recording that could not be written, another one where it would be, or one with a broken file about its exclusion.
+/// A recording cannot be written, its folder holds another recording, or an exclusion file is damaged.
 pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Result<SimulationSummary, RunError> {
     let mut sums = SimulationSums::default();
     let began = Instant::now();
@@ -99,7 +98,7 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
     each_trial(simulation, done, |trial| {
         recordings.push(trial.folder.display().to_string());
         found += u64::from(trial.found);
-        // The same recording may have been made and excluded before.
+        // An existing recording can be excluded.
         match ruling(&trial.folder).map_err(Box::new)?.is_some_and(|ruling| ruling.excluded) {
             true => excluded += 1,
             false => sums.add(trial.condition, &trial.figures, &plan_lengths),
@@ -110,25 +109,25 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
     Ok(SimulationSummary { excluded, found, recordings, wall_s, ..sums.figures() })
 }
 
-/// A trial that was simulated.
+/// A simulated trial.
 pub struct SimulatedTrial {
     pub folder: PathBuf,
     pub condition: Condition,
     pub figures: TrialSummary,
-    /// It was there already.
+    /// Whether its recording existed already.
     pub found: bool,
 }
 
-/// Simulates the trials on all processors and hands them over one by one, in their order.
+/// Simulates the trials on all processors and passes them on one by one, in order.
 ///
 /// # Errors
-/// Those of [`simulate`], and the first of `take`.
+/// Errors of [`simulate`], and the first error of `take`.
 pub fn each_trial(
     simulation: &SimulationRequest,
     done: impl Fn() + Sync,
     mut take: impl FnMut(SimulatedTrial) -> Result<(), RunError>,
 ) -> Result<(), RunError> {
-    // Before the first trial, so that none is simulated in vain.
+    // Checked before the first trial is simulated.
     for trial in simulation.own_trials() {
         let header = header_of_trial(simulation, trial);
         check_simulated(&folder_of_trial(&simulation.out, &header.session), &header)?;
@@ -154,11 +153,10 @@ pub fn each_trial(
     }
 }
 
-/// A recording to train a wizard with, of the default kitchen: an unassisted trial of so many seconds, in a folder that is
-/// named after them.
+/// Simulates a recording for wizard training: an unassisted trial of this length in the default kitchen.
 ///
 /// # Errors
-/// Those of [`simulate`].
+/// Errors of [`simulate`].
 pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>, RunError> {
     let mut files = options::session_or_default(None).map_err(Box::new)?;
     (files.spec.plan, files.spec.seed) = (None, seed);
@@ -168,20 +166,20 @@ pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>,
     files.spec.check().map_err(|error| {
         Box::new(FileError::from_finding(Path::new("--seconds"), error.found, error.remedy.to_string()))
     })?;
-    // What differs in length is another recording.
+    // Recordings of another length get another name.
     let out = out.join(format!("{seconds}s"));
     let figures = simulate(&SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out }, || ())?;
     Ok(figures.recordings.iter().map(PathBuf::from).collect())
 }
 
-/// Where the recording of a trial goes; the name does not depend on how many trials there are.
+/// Folder of a trial's recording; its name does not depend on the number of trials.
 fn folder_of_trial(out: &Path, spec: &SessionSpec) -> PathBuf {
     let period = spec.step.as_ref().and_then(|step| step.period);
     let period = period.map_or(String::new(), |period| format!("-{period}"));
     out.join(format!("seed{}-{}{period}", spec.seed, spec.participant.code))
 }
 
-/// The header of a trial: of a plan the trials participant by participant, else each of a participant of its own.
+/// The header of a trial: in a plan, trials are ordered by participant; else each trial has its own participant.
 fn header_of_trial(simulation: &SimulationRequest, trial: u64) -> Header {
     let files = &simulation.files.kitchen;
     let (spec, trial) = match simulation.files.study() {
@@ -222,7 +220,7 @@ fn simulate_trial(
     Ok((SimulatedTrial { folder, condition, figures, found }, follower.cost))
 }
 
-/// The figures for people.
+/// The summary as text.
 pub fn describe(figures: &SimulationSummary) -> String {
     let each = match (figures.presses_per_order, figures.optimal_presses_per_order) {
         (Some(presses), Some(best)) => format!(", {presses:.1} presses each in the median (at best {best:.1})"),

@@ -1,4 +1,4 @@
-//! Whether a recording counts: aborted at the console, excluded there or later from the command line, or neither.
+//! Whether a recording counts: it can be aborted, excluded at the console, or excluded later from the command line.
 
 use std::path::Path;
 
@@ -7,10 +7,10 @@ use crate::edge::file_error::FileResult;
 use crate::edge::log::{ExclusionRecord, LogReader, ruling};
 use crate::session::{Event, Session};
 
-/// Why the trial of a recording was aborted, if it was.
+/// Reason for aborting the trial of a recording, if it was aborted.
 ///
 /// # Errors
-/// Those of reading a log.
+/// Errors of reading a log.
 pub fn aborted(recording: &Path) -> FileResult<Option<String>> {
     let mut log = LogReader::open(recording)?;
     while let Some(line) = log.next_line()? {
@@ -21,10 +21,10 @@ pub fn aborted(recording: &Path) -> FileResult<Option<String>> {
     Ok(None)
 }
 
-/// Whether a recording counts that was read to its end. What was said later, beside the log, holds before what is in it.
+/// Whether a recording that was read to its end is excluded. A later decision beside the log overrides the log.
 ///
 /// # Errors
-/// The file beside the log is broken.
+/// The file beside the log is damaged.
 pub fn exclusion_status(session: &Session, log: &LogReader) -> FileResult<ExclusionStatus> {
     let at_console = ExclusionStatus::at_console(session);
     Ok(match ruling(log.folder())? {

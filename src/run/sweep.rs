@@ -1,5 +1,5 @@
-//! `tomcom simulate --sweep`: what matters how much. The same trials again and again, each time with another setting, and
-//! beside them without signals: the participants, orders and chances are the same, so differences are paired.
+//! `tomcom simulate --sweep`: sensitivity of results to settings. The same trials are simulated for every value of a setting and
+//! without signals, with the same participants, orders and random streams, so that differences are paired.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -20,30 +20,30 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::SessionSpec;
 use crate::session::settings::{Condition, GazeSource};
 
-/// The name of the table, in the folder of the recordings, and what a part of the trials has instead.
+/// Name of the table in the folder of the recordings, and name for a shard of the trials.
 pub const TABLE_NAME: &str = "sweep.csv";
 const PART_NAME: &str = "sweep-part";
-/// No grid has more cells.
+/// Largest number of grid cells.
 const MAX_CELLS: usize = 1000;
 
-/// A setting that is swept.
+/// A setting that can be swept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Knob {
-    /// Presses that a signal must save at least.
+    /// Cost of communication, in presses.
     Cost,
-    /// Of ToM: how wrong a belief must be expected to be.
+    /// Threshold of ToM.
     Threshold,
-    /// Decisions of the human in a rollout, and how many rollouts there are at most.
+    /// Horizon and number of rollouts.
     Horizon,
     Rollouts,
-    /// Of the human model: how strictly fewer presses are preferred, and the radius of what is read around the fixation.
+    /// Rationality tau and reading radius of the human model.
     Tau,
     Radius,
-    /// Whether the assistant sees the gaze.
+    /// Whether the assistant uses the gaze.
     Gaze,
 }
 
-/// Names and what they set.
+/// Names of the settings.
 const KNOBS: [(&str, Knob); 7] = [
     ("cost", Knob::Cost),
     ("threshold", Knob::Threshold),
@@ -59,7 +59,7 @@ const KNOBS: [(&str, Knob); 7] = [
 pub struct SweepAxis {
     name: &'static str,
     knob: Knob,
-    /// As they were typed; each is right for the knob.
+    /// Values as typed, each valid for the setting.
     values: Vec<String>,
 }
 
@@ -96,7 +96,7 @@ impl FromStr for SweepAxis {
 }
 
 impl SweepAxis {
-    /// Sets the value; it was looked at when it was read.
+    /// Applies a value, which was validated when it was parsed.
     fn set(&self, spec: &mut SessionSpec, value: &str) {
         let number = value.parse().unwrap_or_default();
         let whole = value.parse().unwrap_or_default();
@@ -116,18 +116,18 @@ impl SweepAxis {
     }
 }
 
-/// One point of the grid: its settings by name, as they were typed.
+/// One cell of the grid: its settings by name, as typed.
 type Cell = Vec<(&'static str, String)>;
 
 /// The table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SweepSummary {
-    /// The first is without signals.
+    /// Rows; the first is without signals.
     pub rows: Vec<SweepRow>,
     pub table: PathBuf,
 }
 
-/// How many trials a sweep takes in all.
+/// Total number of trials of a sweep.
 pub fn trials(simulation: &SimulationRequest, axes: &[SweepAxis]) -> u64 {
     let cells: usize = axes.iter().map(|axis| axis.values.len()).product();
     (cells as u64 + 1) * simulation.own_trials().count() as u64
@@ -137,7 +137,7 @@ pub fn trials(simulation: &SimulationRequest, axes: &[SweepAxis]) -> u64 {
 /// `done` is called after each trial.
 ///
 /// # Errors
-/// Those of simulations, too many combinations, or a value that cannot be.
+/// Errors of simulations, too many combinations, or an invalid value.
 pub fn sweep(
     simulation: &SimulationRequest,
     axes: &[SweepAxis],
@@ -167,7 +167,7 @@ pub fn sweep(
     Ok(SweepSummary { rows, table })
 }
 
-/// Parts of the trials go into tables of their own; the whole one is made of the recordings of all.
+/// Each shard has its own table; the whole table is made from all recordings.
 fn table_name(shard: Shard) -> String {
     match shard {
         Shard::WHOLE => TABLE_NAME.to_string(),
@@ -175,7 +175,7 @@ fn table_name(shard: Shard) -> String {
     }
 }
 
-/// Every combination of the values, the last axis the quickest.
+/// All combinations of the values; the last axis varies fastest.
 fn grid(axes: &[SweepAxis]) -> Result<Vec<Cell>, RunError> {
     let wrong = |found: String, remedy: String| {
         Err(Box::new(FileError::from_finding(Path::new("--sweep"), found, remedy)).into())
@@ -200,7 +200,7 @@ fn grid(axes: &[SweepAxis]) -> Result<Vec<Cell>, RunError> {
     Ok(cells)
 }
 
-/// Settings of another concept than the one that decides change nothing.
+/// Refuses settings of a concept that is not in use.
 fn check_axes(spec: &SessionSpec, axes: &[SweepAxis]) -> Result<(), RunError> {
     let decides = match spec.trial.condition {
         Condition::Assistant => Some(spec.assistant.concept),
@@ -240,13 +240,13 @@ fn folder_of(cell: &Cell) -> String {
     cell.iter().map(|(name, value)| format!("{name}-{value}")).collect::<Vec<_>>().join("_")
 }
 
-/// The trials of one cell, and the figures of all of them.
+/// Simulates the trials of one cell and summarises them.
 fn of_cell(
     simulation: &SimulationRequest,
     done: &(impl Fn() + Sync),
 ) -> Result<(Vec<TrialErrors>, SimulationSummary), RunError> {
     let mut simulation = simulation.clone();
-    // The assistant advises where it acts; advice beside a trial without signals would only take time.
+    // Recommendations in trials without signals would only take time.
     simulation.files.spec.assistant.shadow = Shadow::Off;
     let kitchen = Arc::new(simulation.files.kitchen.kitchen.clone());
     let plan_lengths = plan_lengths(&kitchen, &mut CostToGo::new(kitchen.clone()));
@@ -260,7 +260,7 @@ fn of_cell(
     Ok((trials, sums.figures()))
 }
 
-/// What stands in a column of numbers; nothing where it is not known.
+/// Numbers of a row; empty where unknown.
 fn numbers(row: &SweepRow) -> [String; 6] {
     let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.4}"));
     [
@@ -291,7 +291,7 @@ fn write_table(path: &Path, axes: &[SweepAxis], rows: &[SweepRow]) -> std::io::R
     table.flush()
 }
 
-/// The table for people.
+/// The table as text.
 pub fn describe(figures: &SweepSummary, axes: &[SweepAxis]) -> String {
     let settings: String = axes.iter().map(|axis| format!("{:>10}", axis.name)).collect();
     let mut text = format!(

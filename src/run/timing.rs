@@ -1,4 +1,4 @@
-//! `tomcom replay RECORDING --timing`: how long inference and planning take, event by event, on this machine.
+//! `tomcom replay RECORDING --timing`: computing times of inference and planning by event.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -17,10 +17,10 @@ pub(super) fn monotonic_ns() -> u64 {
     BEGAN.elapsed().as_nanos() as u64
 }
 
-/// Replays a recording and takes the time.
+/// Replays a recording and measures computing times.
 ///
 /// # Errors
-/// Those of [`Replay::run`].
+/// Errors of [`Replay::run`].
 pub fn measure(recording: &Path) -> FileResult<TimingSummary> {
     let mut replay = Replay::open(recording)?;
     replay.follower.timing = Some(InferenceTiming::with_clock(monotonic_ns));

@@ -1,6 +1,5 @@
-//! `tomcom train`: a wizard watches recordings in which it is known what was believed wrong, sends signals by the keys of a
-//! session, and is told at once what each was; at the end there is a score, held against a criterion. Nothing reaches the
-//! participant in the recording.
+//! `tomcom train`: a wizard watches recordings with known false beliefs, sends signals with the usual keys, and gets feedback on
+//! each signal and a score that is compared with a criterion. The recorded participant does not see the signals.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -20,24 +19,24 @@ use crate::edge::training;
 use crate::measures::wizard::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
 use crate::session::settings::{Condition, Visibility};
 
-/// What is trained.
+/// Request of `tomcom train`.
 #[derive(Clone, Debug)]
 pub struct TrainingRequest {
     /// Recordings of simulated participants without signals.
     pub recordings: Vec<PathBuf>,
     /// The wizard's code.
     pub wizard: String,
-    /// Where the result goes.
+    /// Folder of the result.
     pub out: PathBuf,
     pub criterion: TrainingCriterion,
     /// An index into [`SPEEDS`].
     pub speed: usize,
 }
 
-/// Trains a wizard at the console. Returns what came of it, and the file that it was written to.
+/// Trains a wizard at the console. Returns the record and the file to which it was written.
 ///
 /// # Errors
-/// A recording that cannot be trained with, no terminal, or no place for the result.
+/// A recording is not suitable, there is no terminal, or the result cannot be written.
 pub fn train(lesson: &TrainingRequest) -> Result<(TrainingRecord, PathBuf), ReviewError> {
     let before = training::read(&lesson.out, &lesson.wizard)?;
     let films: Vec<(SeekableReplay, Vec<FalseBeliefPeriod>)> =
@@ -56,7 +55,7 @@ pub fn train(lesson: &TrainingRequest) -> Result<(TrainingRecord, PathBuf), Revi
     Ok((record, path))
 }
 
-/// A recording with what was believed wrong in it.
+/// Opens a recording with its periods of false belief.
 fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<FalseBeliefPeriod>)> {
     let mut film = SeekableReplay::open(recording)?;
     let unfit = |found: &str| {
@@ -68,13 +67,13 @@ fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<FalseBeliefPeriod>)
     }
     let spells =
         spells(&film.replay.follower).ok_or_else(|| unfit("a trial of which nobody knows what was believed"))?;
-    // As a wizard's session, with what the paper's wizard had.
+    // As a wizard session with the information of the paper's wizard.
     film.session.spec.trial.condition = Condition::Wizard;
     film.session.spec.console.visibility = Visibility::State;
     Ok((film, spells))
 }
 
-/// Watches one recording after another, until all are over or somebody quits.
+/// Plays one recording after another until all are finished or the wizard quits.
 async fn watch(
     lesson: &TrainingRequest,
     films: Vec<(SeekableReplay, Vec<FalseBeliefPeriod>)>,
@@ -98,7 +97,7 @@ async fn watch(
     Ok(judged)
 }
 
-/// What a recording is called in the records: those that were simulated for the training by their length, too.
+/// Name of a recording in training records; for recordings simulated for training it includes the length.
 fn name_of(recording: &Path, lesson: &TrainingRequest) -> String {
     let simulated = recording.strip_prefix(lesson.out.join("recordings")).ok();
     let name = simulated.or(recording.file_name().map(Path::new)).unwrap_or(recording);

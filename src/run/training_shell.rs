@@ -1,4 +1,4 @@
-//! The console over a recording in training: signals are judged against what was believed wrong, and answered at once.
+//! The training console over a recording: signals are compared with the known false beliefs, with immediate feedback.
 
 use std::time::Instant;
 
@@ -28,20 +28,20 @@ use crate::mind::BeliefWitness;
 use crate::session::event::SignalEnd;
 use crate::session::{Event, Stamped, apply};
 
-/// A recording that is watched in training.
+/// A recording in training.
 pub(super) struct TrainingShell {
     film: SeekableReplay,
     name: String,
     spells: Vec<FalseBeliefPeriod>,
-    /// What is known of each of them.
+    /// Periods of false belief in the recording.
     beliefs: Vec<JudgedBelief>,
     criterion: TrainingCriterion,
     model: ConsoleModel,
     sent: Vec<WizardSignal>,
     signals: Vec<JudgedSignal>,
-    /// What came of it was shown.
+    /// Whether the result has been shown.
     concluded: bool,
-    /// Of each spell, whether it was said that it was missed.
+    /// For each period, whether its omission has been reported.
     told_missed: Vec<bool>,
     now: SessionTime,
     opened: Instant,
@@ -52,7 +52,7 @@ impl TrainingShell {
     /// The console before its first frame; `speed` is an index into [`SPEEDS`].
     ///
     /// # Errors
-    /// The keys of the recording fit it no more, or the terminal is gone.
+    /// The recording's keys are not valid for its kitchen any more, or the terminal was closed.
     pub fn new(
         film: SeekableReplay,
         spells: Vec<FalseBeliefPeriod>,
@@ -85,7 +85,7 @@ impl TrainingShell {
             opened: now,
             at: now,
         };
-        // The trial has begun, and stands.
+        // The trial has started and is paused.
         shell.film.wind(1);
         Ok(shell)
     }
@@ -94,12 +94,12 @@ impl TrainingShell {
         self.film.position == self.film.length().1
     }
 
-    /// Whether it is over, and what came of it was read.
+    /// Whether the recording is finished and its result has been closed.
     fn is_done(&self) -> bool {
         self.concluded && self.model.dialog.is_none()
     }
 
-    /// Shows what came of it, once.
+    /// Shows the result once.
     fn conclude(&mut self) {
         if self.is_over() && !self.concluded {
             self.concluded = true;
@@ -109,7 +109,7 @@ impl TrainingShell {
         }
     }
 
-    /// Takes a message of the terminal; how the recording is left, if that follows from it.
+    /// Handles a terminal message; returns the way of leaving the recording, if any.
     fn take_message(&mut self, message: ConsoleMessage) -> Option<LeavingReason> {
         self.tick();
         self.model.now = self.now;
@@ -136,7 +136,7 @@ impl TrainingShell {
         }
     }
 
-    /// Says what a signal was, or what was missed; it can be looked back on.
+    /// Adds feedback on a signal or on an omission.
     fn tell(&mut self, level: NoticeLevel, text: String) {
         let clock = self.film.session.trial_clock(self.now);
         if let Some(lesson) = &mut self.model.lesson {
@@ -145,14 +145,13 @@ impl TrainingShell {
         self.model.notice = None;
     }
 
-    /// Shows a signal as a session does, on the timeline and as what the participant would see. Nobody sees it: so what
-    /// cannot be is left out.
+    /// Shows a signal on the timeline and as the participant would see it. Signals that are not possible are ignored.
     fn show(&mut self, event: Event) {
         let shown = Stamped { seq: self.film.position as u64, time: self.now.max(self.film.session.time), event };
         let _ = apply(&mut self.film.session, &shown);
     }
 
-    /// Judges a signal, and says at once what it was.
+    /// Judges a signal and gives feedback.
     fn signal(&mut self, shown: Event) {
         let Event::SignalShown { signal, .. } = &shown else { return };
         let signal = signal.clone();
@@ -179,7 +178,7 @@ impl TrainingShell {
         self.tell(level, format!("{words}: {text}"));
     }
 
-    /// What is believed wrong at a moment.
+    /// The false beliefs at a time, as text.
     fn wrong_now(&self, clock: SessionTime) -> String {
         let kitchen = &self.film.session.kitchen;
         let open = self.spells.iter().filter(|spell| spell.holds(clock));
@@ -191,7 +190,7 @@ impl TrainingShell {
         self.model.clock = SessionTime(self.opened.elapsed().as_nanos() as u64);
     }
 
-    /// Moves on by the time that has passed, and says what was missed.
+    /// Advances the replay by the elapsed time and reports omissions.
     fn play(&mut self) {
         let passed_s = self.at.elapsed().as_secs_f64();
         self.at = Instant::now();
@@ -218,7 +217,7 @@ impl TrainingShell {
         self.say_missed();
     }
 
-    /// Takes over what is believed wrong now.
+    /// Updates the present false beliefs.
     fn hear(&mut self, witness: &BeliefWitness) {
         let session = &self.film.session;
         let clock = session.trial_clock(session.time);
@@ -246,13 +245,13 @@ impl TrainingShell {
         }
     }
 
-    /// The spells that were hit.
+    /// Indices of the periods that were hit.
     fn hits(&self) -> Vec<usize> {
         let hit = |worth: SignalVerdict| if let SignalVerdict::Hit { spell, .. } = worth { Some(spell) } else { None };
         worths(&self.sent, &self.spells).into_iter().filter_map(hit).collect()
     }
 
-    /// The measures so far: of the spells that have begun.
+    /// The wizard's performance on the periods that have begun.
     fn measures(&self) -> WizardMeasures {
         let clock = self.film.session.trial_clock(self.now);
         let begun: Vec<FalseBeliefPeriod> = self.spells.iter().filter(|spell| spell.began <= clock).cloned().collect();
@@ -270,7 +269,7 @@ impl TrainingShell {
         begun.map(|(index, _)| JudgedBelief { hit_by: hit_by(index), ..self.beliefs[index].clone() }).collect()
     }
 
-    /// What is kept of it.
+    /// The training record of this recording.
     pub fn judged(&self, before: &[TrainingRecord]) -> JudgedRecording {
         let mut judged = JudgedRecording {
             recording: self.name.clone(),

@@ -1,4 +1,4 @@
-//! A session before it is run: new, again, or taken up where it was cut.
+//! A prepared session: new, repeated, or continued after a cut.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -14,33 +14,33 @@ use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::{Header, SessionSpec, Stamped};
 
-/// A session that is about to be run and recorded.
+/// A session that is ready to be run and recorded.
 pub(super) struct PreparedSession {
     pub engine: Engine,
     pub header: Header,
-    /// What belongs at the beginning of the recording.
+    /// Events at the beginning of the recording.
     pub first: Vec<Stamped>,
-    /// The participant has just agreed to be recorded.
+    /// Whether the participant has just consented.
     pub consent: bool,
-    /// When it begins.
+    /// Session time at which it begins.
     pub time: SessionTime,
-    /// Wizard and assistants are compared at the console.
+    /// Comparison of wizard and assistants, if it is shown.
     pub compare: Option<CompareRequest>,
     pub place: RecordingPlace,
 }
 
-/// Where the recording goes.
+/// Place of the recording.
 pub(super) enum RecordingPlace {
     In(PathBuf),
-    /// Beside the part before, which stays locked.
+    /// Beside the previous part, which stays locked.
     After(PathBuf, RecordingLock),
 }
 
 impl PreparedSession {
-    /// Gets a session ready; nothing is recorded yet.
+    /// Prepares a session; nothing is recorded yet.
     ///
     /// # Errors
-    /// The recording that is to go on cannot.
+    /// The recording cannot be continued.
     pub fn new(beginning: SessionStart) -> Result<PreparedSession, LiveError> {
         match beginning {
             SessionStart::New { files, trial, out } => {
@@ -82,17 +82,17 @@ impl PreparedSession {
         }
     }
 
-    /// The participant has just agreed to be recorded.
+    /// Whether the participant has just consented.
     pub fn with_consent(self) -> PreparedSession {
         PreparedSession { consent: true, ..self }
     }
 
-    /// With wizard and assistants side by side, where that is asked for.
+    /// Adds a comparison of wizard and assistants.
     pub fn comparing(self, compare: Option<CompareRequest>) -> PreparedSession {
         PreparedSession { compare, ..self }
     }
 
-    /// The kitchen that is worked in.
+    /// The kitchen of the session.
     pub fn kitchen(&self) -> &Kitchen {
         &self.engine.session().kitchen
     }

@@ -1,6 +1,5 @@
-//! Verifies a recording in the strongest form: the session is run again from the header, with nothing but the events
-//! from outside, and every line that comes out must equal the recorded line byte for byte. Applying the recorded events
-//! one by one must lead to the same state, too.
+//! Verification of a recording: the session is run again from the header with the external events only, and every line must equal
+//! the recorded line byte for byte. Applying the recorded events one by one must lead to the same state.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -18,17 +17,17 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::admit::is_external;
 use crate::session::{Event, Stamped};
 
-/// What `tomcom replay RECORDING --verify` found.
+/// Result of `tomcom replay RECORDING --verify`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Verification {
     pub verified: bool,
-    /// Recorded events.
+    /// Number of recorded events.
     pub events: u64,
-    /// The recording ends without its end event; it was verified up to there.
+    /// Whether the recording was cut off; it is verified up to the cut.
     pub cut: bool,
-    /// It does because its session still runs.
+    /// Whether its session is still running.
     pub running: bool,
-    /// Where recording and re-run differ first.
+    /// First difference between recording and re-run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difference: Option<VerificationDifference>,
 }
@@ -36,14 +35,14 @@ pub struct Verification {
 /// The first difference between a recording and its re-run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct VerificationDifference {
-    /// Of the recorded event.
+    /// Sequence number of the recorded event.
     pub seq: u64,
-    /// The log, of several parts that which it is in.
+    /// Path of the log (of the part, if there are several).
     pub log: PathBuf,
-    /// The line of the log, counted from 1.
+    /// Line number in the log, from 1.
     pub line: usize,
     pub recorded: String,
-    /// What the re-run gave there; `null`: nothing.
+    /// Line of the re-run; null if there is none.
     pub again: Option<String>,
 }
 
@@ -59,13 +58,13 @@ pub fn verify(recording: &Path) -> FileResult<Verification> {
     Ok(Verification { verified, events: log.events(), cut, running, difference })
 }
 
-/// A recording that was run again to where it ends.
+/// A recording that was run again to its end.
 pub(super) struct RerunRecording {
     pub log: LogReader,
     pub again: RerunSession,
-    /// What applying the recorded events leads to.
+    /// Result of applying the recorded events.
     replayed: Follower,
-    /// Where they differ first.
+    /// First difference.
     pub difference: Option<VerificationDifference>,
 }
 
@@ -95,18 +94,18 @@ impl RerunRecording {
     }
 }
 
-/// The session that is run again.
+/// The session of a re-run.
 pub(super) struct RerunSession {
     pub engine: Engine,
-    /// What came out of it and was not compared yet; at the end of a cut recording, what it lacks.
+    /// Events of the re-run that have not been compared yet; at the end of a cut recording, the events that it lacks.
     pub produced: VecDeque<Stamped>,
-    /// The assistant, and what it was asked and has not answered.
+    /// The advisor with its open requests.
     advisor: Option<Advisor>,
     questions: VecDeque<AdviceRequest>,
 }
 
 impl RerunSession {
-    /// Runs on to the recorded line and compares it with what comes out there.
+    /// Runs the session up to the recorded line and compares the two.
     fn difference_at(&mut self, line: &LogLine, log: &Path) -> Option<VerificationDifference> {
         let recorded = &line.stamped;
         if self.produced.is_empty() {
@@ -115,7 +114,7 @@ impl RerunSession {
                 let outcome = self.engine.input(recorded.time, event);
                 self.produced.extend(outcome.events);
             } else {
-                // A participant may also act without anything to record.
+                // A participant can act without an event.
                 while self.produced.is_empty() && self.engine.next_due().is_some_and(|due| due <= recorded.time) {
                     self.produced.extend(self.engine.fire());
                 }
@@ -134,19 +133,18 @@ impl RerunSession {
         })
     }
 
-    /// An event from outside; advice is computed again, for the event that it was computed for.
+    /// An external event; recommendations are computed again for the event to which they refer.
     fn computed_again(&mut self, event: &Event) -> Event {
         let (Event::Advised(advice), Some(advisor)) = (event, &mut self.advisor) else { return event.clone() };
         self.questions.retain(|question| question.seq >= advice.for_seq);
         match self.questions.front().filter(|question| question.seq == advice.for_seq) {
             Some(question) => Event::Advised(advisor.answer(question)),
-            // Nobody asked: it stays, and is compared with nothing that could have come out.
+            // Without a request the recommendation stays as recorded.
             None => Event::Advised(Recommendation::silent(advice.for_seq, advice.for_ns)),
         }
     }
 
-    /// Whether the re-run stands where applying the recorded events leads, in everything that a session holds and in the
-    /// estimated belief, with nothing left over.
+    /// Whether the re-run ends in the same session state and belief estimate as the replay, without left-over events.
     fn ends_like(&self, replayed: &Follower) -> bool {
         self.produced.is_empty()
             && *self.engine.session() == replayed.session
@@ -154,7 +152,7 @@ impl RerunSession {
     }
 }
 
-/// Says it in words.
+/// The result as text.
 pub fn describe(found: &Verification) -> String {
     let until = match (found.running, found.cut) {
         (true, _) => "; the session is still running, and this is what was written so far",

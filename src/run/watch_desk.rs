@@ -1,4 +1,4 @@
-//! The comparison of a running session, on a thread of its own.
+//! The comparison in a running session, on its own thread.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
@@ -8,14 +8,14 @@ use crate::history::comparison::LaneComparison;
 use crate::session::{Event, Stamped};
 
 impl ComparisonFollower {
-    /// Follows on a thread of its own, which ends with the desk that tells it the events.
+    /// Starts the comparison's thread, which ends when the desk is dropped.
     pub fn on_thread(mut self) -> ComparisonDesk {
         let (tell, events) = channel::<Stamped>();
         let (show, views) = channel();
         thread::spawn(move || {
             while let Ok(stamped) = events.recv() {
                 let before = self.progress();
-                // The session took this event, so it fits; if it does not, there is nothing to compare any more.
+                // The session accepted this event; if the follower does not, the comparison ends.
                 if self.apply(&stamped).is_err() {
                     return;
                 }
@@ -30,7 +30,7 @@ impl ComparisonFollower {
     }
 }
 
-/// Where a running console tells events, and where the comparisons come.
+/// The console's connection to the comparison's thread.
 #[derive(Debug)]
 pub struct ComparisonDesk {
     tell: Sender<Stamped>,
@@ -38,19 +38,19 @@ pub struct ComparisonDesk {
 }
 
 impl ComparisonDesk {
-    /// Tells an event.
+    /// Passes an event.
     pub fn tell(&self, stamped: &Stamped) {
-        // A thread that is gone compares nothing more, and the session goes on.
+        // If the thread has ended, the session continues without a comparison.
         let _ = self.tell.send(stamped.clone());
     }
 
-    /// The last comparison, when all that was told is taken in; no more can be told.
+    /// The final comparison after all passed events.
     pub fn last(self) -> Option<LaneComparison> {
         drop(self.tell);
         self.views.into_iter().last()
     }
 
-    /// The newest comparison since this was called last.
+    /// The latest comparison since the last call.
     pub fn newest(&self) -> Option<LaneComparison> {
         self.views.try_iter().last()
     }

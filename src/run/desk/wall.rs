@@ -7,15 +7,15 @@ use crate::run::error::LiveError;
 use crate::session::SessionSpec;
 use crate::session::settings::ParticipantKind;
 
-/// The participant's display, if the participant is at one.
+/// The participant's display, if the session has one.
 #[derive(Default)]
 pub(in crate::run) struct WallDisplay(Option<Display>);
 
 impl WallDisplay {
-    /// Serves the display, where the participant is at one.
+    /// Starts the server of the display, if the session has one.
     ///
     /// # Errors
-    /// Nothing can listen at its address.
+    /// The address cannot be opened.
     pub async fn open(spec: &SessionSpec) -> Result<WallDisplay, LiveError> {
         if spec.participant.kind != ParticipantKind::Display {
             return Ok(WallDisplay(None));
@@ -30,7 +30,7 @@ impl WallDisplay {
         self.0.as_ref()
     }
 
-    /// The next input of the participant's page; never, if there is none.
+    /// Waits for the next input of the participant's page; forever if there is none.
     pub async fn next(&mut self) -> Option<PageInput> {
         match &mut self.0 {
             Some(display) => display.next().await,

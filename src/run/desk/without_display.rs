@@ -3,7 +3,7 @@
 use crate::run::error::LiveError;
 use crate::session::SessionSpec;
 
-/// What comes from a display: this type has no value.
+/// Input of a display: this type has no value.
 pub(in crate::run) enum PageInput {}
 
 /// No display.
@@ -11,7 +11,7 @@ pub(in crate::run) enum PageInput {}
 pub(in crate::run) struct WallDisplay;
 
 impl WallDisplay {
-    /// Sessions whose participant is at a display were refused before.
+    /// Opens no display: sessions with a participant at a display have been refused before.
     ///
     /// # Errors
     /// None.

@@ -1,4 +1,4 @@
-//! Who acts in a trial by its settings: the robot, and a simulated participant.
+//! Construction of the robot and of the simulated participant from the settings of a trial.
 
 use std::sync::Arc;
 
@@ -17,12 +17,11 @@ use crate::session::settings::ArmKind;
 #[cfg(feature = "physics")]
 use crate::session::settings::ParticipantKind;
 
-/// The simulated participant of a trial. In a plan the same person has several trials, and has learnt from the earlier ones
-/// what its population learns.
+/// The simulated participant of a trial. In a plan the same person has several trials and learns from the earlier ones.
 pub(super) fn simulated_participant(kitchen: Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> SimulatedParticipant {
     let person = spec.step.as_ref().map_or(trial, |step| u64::from(step.participant));
     let trials = spec.step.as_ref().and_then(|step| step.period).map_or(0, |period| period.saturating_sub(1));
-    // About half of the presses are the human's.
+    // About half of the presses are made by the human.
     let presses = f64::from(trials) * f64::from(spec.trial.presses) / 2.0;
     let population = spec.participant.population.clone().unwrap_or_default();
     SimulatedParticipant::new(kitchen, &population, spec.seed, person, trial, Experience { trials, presses })

@@ -1,4 +1,4 @@
-//! What those around a running session are told of its events: simulated participant, scripted wizard.
+//! Information about events for the simulated participant and the scripted wizard.
 
 use super::Engine;
 use crate::kitchen::Change;
@@ -6,7 +6,7 @@ use crate::session::calibration::RunningGazeCheck;
 use crate::session::{Event, Stamped};
 
 impl Engine {
-    /// What the participant may notice of an event that was just applied.
+    /// Passes the part of an applied event that the participant can notice.
     pub(super) fn tell_participant(&mut self, stamped: &Stamped, change: &Change) {
         let Some(participant) = &mut self.participant else { return };
         let session = &self.follower.session;
@@ -29,7 +29,7 @@ impl Engine {
         }
     }
 
-    /// What a scripted wizard sees of an event that was just applied: kitchen, presses and gaze.
+    /// Passes the part of an applied event that a scripted wizard sees: kitchen, presses and gaze.
     pub(super) fn tell_wizard(&mut self, stamped: &Stamped, change: &Change) {
         let Some(wizard) = &mut self.wizard else { return };
         let session = &self.follower.session;

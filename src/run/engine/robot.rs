@@ -1,4 +1,4 @@
-//! The robot in a running session: its deeds become events, and it is told what concerns it.
+//! The robot in a running session: its activities become events, and it is informed of relevant events.
 
 use super::Engine;
 use crate::arm::worker::Robot;
@@ -37,8 +37,7 @@ impl Engine {
         self.record_own(now, event);
     }
 
-    /// What the robot is told of an event that was just applied: what the wizard does to it, and where the human presses;
-    /// what it does because of it.
+    /// Informs the robot of an applied event (interventions of the wizard, presses of the human); returns its reactions.
     pub(super) fn tell_robot(&mut self, stamped: &Stamped, change: &Change) -> Vec<RobotActivity> {
         let kitchen = self.session().kitchen.clone();
         let now = stamped.time;
@@ -70,7 +69,7 @@ impl Engine {
         deed.into_iter().collect()
     }
 
-    /// The hand of a simulated participant sets out in time for the press that it means to make.
+    /// Starts the hand motion of a simulated participant in time for its next press.
     pub(super) fn let_hand_follow(&mut self, now: SessionTime) {
         if let Some((button, at)) = self.participant.as_ref().and_then(SimulatedParticipant::next_press) {
             let button_m = self.session().kitchen.button(Agent::Human, button).at_m;

@@ -1,4 +1,4 @@
-//! The targets of a check of the calibration, when it is time for them.
+//! Timing of the targets in a gaze accuracy check.
 
 use super::live_session::Live;
 use crate::base::time::SessionTime;
@@ -7,8 +7,8 @@ use crate::session::calibration::{AcceptedGazeCheck, CalibrationEvent, RunningGa
 use crate::session::settings::GazeSource;
 
 impl Live {
-    /// What was accepted before this recording holds on: neither the tracker nor the participant was changed. A participant
-    /// who is simulated has new eyes in every recording.
+    /// Carries an accepted check over from the previous recording, since tracker and participant are the same (not for simulated
+    /// participants, whose eyes are drawn anew).
     pub(super) fn carry_calibration(&mut self, before: Option<&AcceptedGazeCheck>) {
         let session = self.engine.session();
         let is_wanted = !matches!(session.spec.participant.gaze, GazeSource::None | GazeSource::Simulated);
@@ -20,7 +20,7 @@ impl Live {
         }
     }
 
-    /// When the next target is to be shown; none while no check goes on.
+    /// Time of the next target; `None` without a running check.
     pub(super) fn target_due(&self) -> Option<SessionTime> {
         self.engine.session().calibration.as_ref().and_then(RunningGazeCheck::next).map(|(time, _)| time)
     }

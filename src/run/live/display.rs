@@ -1,4 +1,4 @@
-//! The participant's display in a live session: what it is shown, and the events that come from it.
+//! The participant's display in a live session: its content, and its inputs as events.
 
 use std::time::Instant;
 
@@ -15,15 +15,15 @@ use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
 use crate::session::{Event, Session};
 
-/// The display of this recording.
+/// The participant's display in a recording.
 pub(super) struct ParticipantDisplay {
     screen: PageScreen,
-    /// What it shows.
+    /// Its present content.
     shown: Option<DisplayUpdate>,
 }
 
 impl ParticipantDisplay {
-    /// The display at the desk, if there is one; with what the wizard has to know of it.
+    /// The display at the desk, if there is one, with its state for the wizard.
     pub fn at(desk: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<DisplayHealth>) {
         let health = |display: &Display| DisplayHealth {
             url: display.url(),
@@ -39,7 +39,7 @@ impl ParticipantDisplay {
         self.screen.build(&scene(session));
     }
 
-    /// Shows what the participant may see now, if that is something else than before.
+    /// Updates the content if it changed.
     pub fn show(&mut self, session: &Session) {
         let now = sight(session);
         if self.shown.as_ref() != Some(&now) {
@@ -48,7 +48,7 @@ impl ParticipantDisplay {
         }
     }
 
-    /// Tells the wizard how the display is.
+    /// Updates the display's state for the wizard.
     pub fn examine(&self, health: &mut DisplayHealth) {
         let counts = self.screen.counts();
         health.page = counts.page.map(|page| [page.width_px, page.height_px]);
@@ -58,7 +58,7 @@ impl ParticipantDisplay {
     }
 }
 
-/// What an input of the page is to the session, and to the wizard.
+/// An input of the page as an event of the session and a notice to the wizard.
 #[derive(Debug, Default)]
 pub(super) struct PageEvent {
     pub event: Option<Event>,
@@ -66,7 +66,7 @@ pub(super) struct PageEvent {
 }
 
 impl PageEvent {
-    /// Of what the page that acts says. `now` is the session's time.
+    /// Converts an input of the acting page; `now` is the session time.
     pub fn from_input(input: PageInput, session: &Session, now: SessionTime) -> PageEvent {
         let event = match input {
             PageInput::Connected { width_px, height_px } => {
@@ -98,8 +98,8 @@ impl PageEvent {
     }
 }
 
-/// A press of the participant. It is stamped when it is taken, since the log's time never runs back, and what became
-/// of the kitchen until then was there before it; when the button went down stands beside it.
+/// A press of the participant. Its event is stamped at reception, since time in the log never decreases; the time at which the
+/// button went down is recorded in addition.
 fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> PageEvent {
     if session.kitchen.button_named(Agent::Human, &button).is_none() {
         let text = "the display told a button that the kitchen does not have".to_string();
@@ -109,12 +109,12 @@ fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> Pa
     PageEvent { event: Some(Event::Press { agent: Agent::Human, button, at_ns }), notice: None }
 }
 
-/// Answers come from the display only where the session says so.
+/// An answer to a questionnaire, if the session lets the participant answer on the display.
 fn answer(event: ProtocolEvent, session: &Session) -> Option<Event> {
     (session.spec.display.questionnaire == Answering::Display).then_some(Event::Protocol(event))
 }
 
-/// The session time of a moment that is a little ago.
+/// Session time of an instant shortly before now.
 fn session_time(at: Instant, now: SessionTime) -> SessionTime {
     let age_ns = Instant::now().saturating_duration_since(at).as_nanos() as u64;
     SessionTime(now.0.saturating_sub(age_ns))

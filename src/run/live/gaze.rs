@@ -1,4 +1,4 @@
-//! Gaze and what else a tracker tells, as events of the session; and what the tracker's program is told of the trial.
+//! Messages of the eye tracker as events of the session, and requests to Pupil Capture about the trial.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -16,19 +16,19 @@ use crate::run::desk::GazeTracker;
 use crate::session::tracker::TrackerEvent;
 use crate::session::{Event, Phase, Session};
 
-/// The recording's side of the tracker.
+/// State of gaze input in a recording.
 #[derive(Debug, Default)]
 pub(super) struct GazeInput {
     clock: DeviceClock,
     limit: RateLimit,
     dropped: DropCounts,
-    /// Gaze that is replayed, and the place of the next sample in it.
+    /// Replayed gaze with the index of its next sample.
     file: Option<Arc<GazeFile>>,
     next: usize,
 }
 
 impl GazeInput {
-    /// Of a recording that begins, or goes on from this session.
+    /// The gaze input of a recording that begins or continues with this session.
     pub fn at(tracker: &GazeTracker, session: &Session) -> GazeInput {
         let Some(file) = tracker.file() else { return GazeInput::default() };
         let dropped = DropCounts { malformed: file.malformed, ..DropCounts::default() };
@@ -38,7 +38,7 @@ impl GazeInput {
         GazeInput { dropped, file: Some(file), next, ..GazeInput::default() }
     }
 
-    /// The event of the tracker's news; none of those that are only counted.
+    /// The event for a tracker message; `None` for messages that are only counted.
     pub fn event(&mut self, news: GazeNews, now: SessionTime) -> Option<Event> {
         let tracker = match news {
             GazeNews::Sample(sample, at) => return self.sample(sample, at, now),
@@ -85,13 +85,13 @@ impl GazeInput {
         Some(Event::Gaze(GazeSample { taken_ns, ..sample }))
     }
 
-    /// How much could not be recorded, if that is more than the session was told.
+    /// An event with the counts of dropped input, if they have grown.
     pub fn drops(&self, session: &Session) -> Option<Event> {
         let is_news = self.dropped != session.tracker.dropped && session.phase != Phase::Closed;
         is_news.then_some(Event::Tracker(TrackerEvent::Dropped(self.dropped)))
     }
 
-    /// When the next sample of replayed gaze is due; none while the trial stands.
+    /// Time of the next sample of replayed gaze; `None` while the trial is not running.
     pub fn file_due(&self, session: &Session) -> Option<SessionTime> {
         let (at_s, _) = self.file.as_ref()?.samples.get(self.next)?;
         session.is_running().then(|| session_time_in_file(session, *at_s))
@@ -106,7 +106,7 @@ impl GazeInput {
     }
 }
 
-/// The session time of a moment of a file, in seconds of the trial's clock.
+/// Session time of a sample in a file, given its time on the trial's clock in seconds.
 fn session_time_in_file(session: &Session, at_s: f64) -> SessionTime {
     session.trial_start + session.paused_total + SessionTime::from_secs_f64(at_s)
 }
@@ -115,15 +115,15 @@ fn session_time(taken: SampleTime, now: SessionTime) -> SessionTime {
     taken.at.map_or(now, |at| ago(now, at))
 }
 
-/// The session time of a moment that is not after now.
+/// Session time of an earlier instant.
 fn ago(now: SessionTime, at: Instant) -> SessionTime {
     now - SessionTime(at.elapsed().as_nanos().min(u128::from(u64::MAX)) as u64)
 }
 
-/// What Pupil Capture is told of a recording.
+/// Requests to Pupil Capture about a recording.
 #[derive(Debug, Default)]
 pub(super) struct CaptureOrders {
-    /// Where Capture takes orders, if it is there.
+    /// Channel to Pupil Capture, if it is in use.
     orders: Option<Sender<CaptureRequest>>,
     /// The name of the recording.
     name: String,
@@ -131,7 +131,7 @@ pub(super) struct CaptureOrders {
 }
 
 impl CaptureOrders {
-    /// Takes up with Capture for a recording of this name. A trial that goes on after a cut is recorded from now on.
+    /// Prepares Pupil Capture for a recording with this name; the trial of a continued recording is recorded from now on.
     pub fn begin(tracker: &GazeTracker, name: String, session: &Session) -> CaptureOrders {
         let mut capture = CaptureOrders { orders: tracker.orders(), name, is_recording: false };
         if matches!(session.phase, Phase::Running | Phase::Paused) {
@@ -140,7 +140,7 @@ impl CaptureOrders {
         capture
     }
 
-    /// Tells what happens in the trial; `at` is when it did.
+    /// Reports an event of the trial, which happened at `at`.
     pub fn tell(&mut self, event: &Event, at: Instant) {
         if self.orders.is_none() {
             return;
@@ -173,7 +173,7 @@ impl CaptureOrders {
         self.order(CaptureRequest::Record(self.name.clone()));
     }
 
-    /// Capture is told as long as it listens; that it does not is said in the health line.
+    /// Sends a request if Pupil Capture is connected; the health line shows a lost connection.
     fn order(&self, order: CaptureRequest) {
         if let Some(orders) = &self.orders {
             let _ = orders.try_send(order);

@@ -1,4 +1,4 @@
-//! What comes in, on its way into the engine: messages of the terminal, gaze, the participant's page, the assistant's answers.
+//! Inputs of a live session on their way into the engine: terminal, gaze, the participant's page, recommendations.
 
 use super::display::PageEvent;
 use super::live_session::Live;
@@ -11,7 +11,7 @@ use crate::run::leaving::LeavingReason;
 use crate::session::{Event, Phase};
 
 impl Live {
-    /// Takes a message of the terminal; how the wizard leaves the recording, if that is what it says.
+    /// Handles a terminal message; returns the way of leaving the recording, if any.
     pub(super) fn take_message(&mut self, message: ConsoleMessage) -> Option<LeavingReason> {
         self.tick();
         self.dirty |= !matches!(message, ConsoleMessage::Pointer(..));
@@ -29,8 +29,8 @@ impl Live {
         None
     }
 
-    /// Gives an event to the engine, and records what comes of it. The wizard is told why something was refused: of gaze,
-    /// and of advice that comes when the trial is over, there is nothing to tell.
+    /// Passes an event to the engine and records the result. Refusals are shown to the wizard, except for gaze samples and late
+    /// recommendations.
     pub(super) fn input(&mut self, event: Event) {
         let is_silent = matches!(event, Event::Gaze(_) | Event::Advised(_));
         let outcome = self.engine.input(self.clock.now(), event);
@@ -40,16 +40,16 @@ impl Live {
         }
     }
 
-    /// Lets the engine do what is due.
+    /// Lets the engine raise due events.
     pub(super) fn fire(&mut self) {
         let events = self.engine.fire();
-        // Most cycles of the arm tell nothing.
+        // Most control cycles of the arm give no event.
         if !events.is_empty() {
             self.record(&events);
         }
     }
 
-    /// Takes what the page that acts says.
+    /// Handles an input of the acting page.
     pub(super) fn hear(&mut self, input: PageInput) {
         if self.engine.session().phase == Phase::Closed {
             return;
@@ -63,21 +63,21 @@ impl Live {
         }
     }
 
-    /// Takes news of the tracker.
+    /// Handles a tracker message.
     pub(super) fn take_gaze(&mut self, news: GazeNews) {
         if let Some(event) = self.gaze.event(news, self.clock.now()) {
             self.input(event);
         }
     }
 
-    /// Takes the next sample of replayed gaze.
+    /// Handles the next sample of replayed gaze.
     pub(super) fn take_file_gaze(&mut self) {
         if let Some(event) = self.gaze.next_of_file(self.engine.session()) {
             self.input(event);
         }
     }
 
-    /// The pointer as a gaze sample; nobody has moved it yet: no sample.
+    /// Records the mouse pointer as a gaze sample, once it has been moved.
     pub(super) fn sample_pointer(&mut self) {
         if let Some([x, y]) = self.model.pointer {
             self.input(Event::Gaze(GazeSample::new(x, y, 1.0)));

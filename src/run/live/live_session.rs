@@ -1,4 +1,4 @@
-//! A live session from its first event to its last: what it consists of, how it begins and how it is closed.
+//! A live session: its parts, its beginning and its end.
 
 use std::time::Duration;
 
@@ -32,50 +32,50 @@ use crate::session::screen::VisibleScreen;
 use crate::session::settings::GazeSource;
 use crate::session::{Event, Header, Session};
 
-/// Clocks, bars and ages move on so often while the trial runs, and while it does not.
+/// Period of redrawing clocks and ages, while the trial is running and otherwise.
 const RUNNING: Duration = Duration::from_millis(100);
 const RESTING: Duration = Duration::from_millis(250);
 
-/// A recording that is run at the desk.
+/// A running recording at the desk.
 pub(super) struct Live {
     pub(super) engine: Engine,
-    /// The assistant, if this session asks it.
+    /// The advisor, if the session requests advice.
     pub(super) advisor: Option<AdvisorDesk>,
-    /// Who compares wizard and assistants, if somebody does.
+    /// The comparison of wizard and assistants, if it is shown.
     pub(super) comparison: Option<ComparisonDesk>,
     /// The participant's display, if there is one.
     pub(super) display: Option<ParticipantDisplay>,
     pub(super) model: ConsoleModel,
-    /// Of this recording.
+    /// Lock of the recording.
     header: Header,
     pub(super) log: LogWriter,
-    /// What Rerun's viewers see.
+    /// The stream to Rerun viewers.
     pub(super) viewing: Option<StreamedSession>,
-    /// The part that is continued is not to be written by anybody else.
+    /// Lock on the previous part of a continued recording.
     _before: Option<RecordingLock>,
-    /// The log cannot be written any more.
+    /// Whether writing the log has failed.
     pub(super) failed: Option<WriteError>,
     pub(super) clock: SessionClock,
     pub(super) gaze: GazeInput,
     pub(super) capture: CaptureOrders,
-    /// The signal that no frame shows yet, by its number.
+    /// Sequence number of a signal that no frame has shown yet.
     pub(super) undrawn: Option<u64>,
-    /// What the wizard sees, as it was recorded last.
+    /// Last recorded content of the wizard's screen.
     pub(super) seen: Option<VisibleScreen>,
-    /// How many judged presses the model knows.
+    /// Number of judged presses in the console model.
     pub(super) judged: usize,
-    /// Something changed since the last frame.
+    /// Whether the screen must be redrawn.
     pub(super) dirty: bool,
 }
 
-/// Runs a session at the desk until the wizard leaves it; everything that happens is recorded.
+/// Runs and records a session at the desk until the wizard leaves it.
 ///
 /// # Errors
 /// The session cannot be recorded, or the terminal is gone.
 pub(in crate::run) async fn run(begun: PreparedSession, desk: &mut OperatorDesk) -> Result<LiveOutcome, LiveError> {
     let mut live = Live::open(begun, desk)?;
     live.greet(&desk.tracker);
-    // Who does not leave by a key leaves the program.
+    // Leaving without a key means quitting the program.
     let leaving = event_loop::run(&mut live, desk).await?.unwrap_or(LeavingReason::Quit);
     desk.tracker.keep(live.engine.session().calibrated.clone());
     let end = live.close(leaving);
@@ -101,7 +101,7 @@ impl ConsoleShell for Live {
     }
 
     fn samples_pointer(&self) -> bool {
-        // With a display, the pointer is on it.
+        // With a display, the pointer on the display is used.
         self.engine.session().spec.participant.gaze == GazeSource::Mouse && self.display.is_none()
     }
 
@@ -196,7 +196,7 @@ impl Live {
         Ok(live)
     }
 
-    /// Opens the stream to Rerun, where the session asks for one; without it the session goes on, too.
+    /// Opens the stream to Rerun if the session has one; if that fails, the session continues without it.
     fn begin_viewing(&mut self, is_new: bool, next: u64) {
         match StreamedSession::open(self.engine.session(), &self.header, &mut self.log, next, is_new) {
             Ok(viewing) => self.viewing = viewing,
@@ -205,14 +205,14 @@ impl Live {
         self.model.viewers = self.viewing.as_ref().map(StreamedSession::status);
     }
 
-    /// Takes up with the tracker: what is known of it is told again.
+    /// Records the present state of the tracker.
     fn greet(&mut self, tracker: &GazeTracker) {
         self.gaze = GazeInput::at(tracker, self.engine.session());
         tracker.known().for_each(|news| self.take_gaze(news));
         self.capture = CaptureOrders::begin(tracker, self.name(), self.engine.session());
     }
 
-    /// Begins the first phase of a plan; without consent nothing is recorded, so that comes first.
+    /// Begins the first phase of a plan, with the consent as first event.
     fn begin_protocol(&mut self, consent: bool) {
         if consent {
             self.input(Event::Protocol(ProtocolEvent::ConsentGiven));
@@ -229,7 +229,7 @@ impl Live {
         self.log.folder().file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// The same trial in another recording beside this one.
+    /// Start of the same trial in another recording beside this one.
     fn beginning_again(&self) -> SessionStart {
         let out = self.log.folder().parent().unwrap_or(std::path::Path::new(".")).to_path_buf();
         let header = Header { redoes: Some(self.name()), started: None, continues: None, ..self.header.clone() };
@@ -238,7 +238,7 @@ impl Live {
 
     fn close(mut self, leaving: LeavingReason) -> Result<LiveOutcome, LiveError> {
         if self.failed.is_none() {
-            // What was left in the middle of a plan is not over: it can be continued.
+            // A recording of a plan that is left early is unfinished and can be continued.
             if leaving != LeavingReason::Quit || self.engine.session().is_step_done() {
                 self.input(Event::SessionEnded);
             }

@@ -1,4 +1,4 @@
-//! A live session: real time, a wizard at the console, every event recorded as it happens.
+//! A live session: real time, a wizard at the console, every event recorded at once.
 
 mod calibration;
 #[cfg(feature = "display")]

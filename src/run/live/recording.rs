@@ -1,4 +1,4 @@
-//! Every event into the log, and to whoever else wants to know of it; what is done when that fails.
+//! Recording of events in the log and their distribution to stream, comparison and tracker; handling of write errors.
 
 use super::live_session::Live;
 use super::viewing::StreamedSession;
@@ -11,7 +11,7 @@ use crate::history::wording;
 use crate::session::{Event, Phase, Stamped};
 
 impl Live {
-    /// Writes events to the log; the session ends where that fails, since what is not recorded did not happen.
+    /// Writes events to the log. If that fails the session ends, because the log is the data.
     pub(super) fn record(&mut self, events: &[Stamped]) {
         self.dirty = true;
         for stamped in events {
@@ -55,7 +55,7 @@ impl Live {
         }
     }
 
-    /// Hands what waits to the operating system and to Rerun's viewers.
+    /// Flushes log and stream.
     pub(super) fn flush(&mut self) {
         self.flush_log();
         if let Some(viewing) = &mut self.viewing {
@@ -71,7 +71,7 @@ impl Live {
         }
     }
 
-    /// Whether the recording is still where it should be, and whether the clock jumped.
+    /// Checks that the recording is still in place, and whether the wall clock jumped.
     pub(super) fn watch(&mut self) {
         self.examine_display();
         if let Some(by_ms) = self.clock.jump() {
@@ -93,7 +93,7 @@ impl Live {
         }
     }
 
-    /// The log cannot be written: alarm, stop the robot, end the session. The console stays until the wizard leaves.
+    /// Handles a failed log: alarm, robot stop, end of the session. The console stays open until the wizard leaves.
     pub(super) fn fail(&mut self, error: WriteError) {
         let (reason, saved) = match &error {
             WriteError::Unwritable { reason, saved, .. } => (reason.to_string(), saved.clone()),
@@ -105,7 +105,7 @@ impl Live {
         self.failed = Some(error);
         self.dirty = true;
         for event in [Event::RobotStopped, Event::SessionEnded] {
-            // Nothing of it can be recorded; a robot that is stopped already stays so.
+            // These events cannot be recorded; a robot that is already stopped stays stopped.
             let _ = self.engine.input(self.clock.now(), event);
         }
     }

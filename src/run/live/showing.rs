@@ -1,4 +1,4 @@
-//! The screens of wizard and participant, and the record of what the wizard's shows.
+//! Output of a live session: the wizard's screen (and its record), and the participant's display.
 
 use super::live_session::Live;
 use crate::console::screen::screen;
@@ -7,13 +7,13 @@ use crate::session::display::DisplayEvent;
 use crate::session::{Event, Phase};
 
 impl Live {
-    /// Tells the model what time it is.
+    /// Updates the time of the console model.
     pub(super) fn tick(&mut self) {
         self.model.now = self.clock.now();
         self.model.clock = self.model.now;
     }
 
-    /// Makes up what the frame that is drawn now shows, and records it.
+    /// Prepares the frame that is drawn next, and records the visible content.
     pub(super) fn prepare_frame(&mut self) {
         self.tick();
         if let (Some(newest), Some(compared)) =
@@ -25,7 +25,7 @@ impl Live {
         self.dirty = false;
     }
 
-    /// Records what the wizard is about to see, if that is something else than before.
+    /// Records the content of the wizard's screen if it changed.
     fn tell_screen(&mut self) {
         let now = screen(self.engine.session(), &self.model);
         if self.engine.session().phase != Phase::Closed && self.seen.as_ref() != Some(&now) {
@@ -34,7 +34,7 @@ impl Live {
         }
     }
 
-    /// Records that the frame which was just drawn is the first one with a signal.
+    /// Records that the frame just drawn is the first one with a signal.
     pub(super) fn tell_drawn(&mut self) {
         if let Some(signal) = self.undrawn.take_if(|_| self.engine.session().phase != Phase::Closed) {
             self.input(Event::SignalDrawn { signal });
@@ -47,7 +47,7 @@ impl Live {
             display.build(self.engine.session());
         }
         self.examine_display();
-        // The page may have been there before this recording.
+        // The page may have been connected before this recording.
         let page = self.model.display.as_ref().and_then(|display| display.page);
         if let Some([width_px, height_px]) = page {
             self.input(Event::Display(DisplayEvent::Connected { width_px, height_px }));
@@ -55,14 +55,14 @@ impl Live {
         self.show_participant();
     }
 
-    /// Shows the participant what is to be seen now.
+    /// Updates the participant's display.
     pub(super) fn show_participant(&mut self) {
         if let Some(display) = &mut self.display {
             display.show(self.engine.session());
         }
     }
 
-    /// Tells the wizard how the participant's display is.
+    /// Updates the state of the participant's display for the wizard.
     pub(super) fn examine_display(&mut self) {
         if let (Some(display), Some(health)) = (&self.display, &mut self.model.display) {
             display.examine(health);

@@ -1,4 +1,4 @@
-//! The session in Rerun while it runs: every event goes to the scene, and what that shows to a stream that never waits.
+//! The live stream to Rerun: every event goes to the scene, whose updates go to a stream that never blocks.
 
 use std::net::SocketAddr;
 
@@ -12,14 +12,14 @@ use crate::run::engine::Engine;
 use crate::scene::{DerivedData, SessionScene};
 use crate::session::{Header, Session, Stamped};
 
-/// What moves between events is shown so late, so that no event of before is still to come.
+/// Delay of motion updates between events, so that no earlier event can follow.
 const BEHIND: SessionTime = SessionTime(100_000_000);
 
-/// A session that is streamed.
+/// A streamed session.
 pub(super) struct StreamedSession {
     scene: SessionScene,
     stream: RerunStream,
-    /// It shows the session from its beginning.
+    /// Whether the stream shows the session from its beginning.
     is_whole: bool,
 }
 
@@ -58,7 +58,7 @@ impl StreamedSession {
         Ok(Some(StreamedSession { scene, stream, is_whole }))
     }
 
-    /// Shows what has just been recorded.
+    /// Streams events that have just been recorded.
     pub fn view(&mut self, events: &[Stamped], engine: &Engine) {
         let judged = engine.judged();
         for (index, stamped) in events.iter().enumerate() {
@@ -67,22 +67,22 @@ impl StreamedSession {
         }
     }
 
-    /// Shows what moved since the last event.
+    /// Streams motion since the last event.
     pub fn view_motion(&mut self, now: SessionTime) {
         self.stream.tell(self.scene.until(now - BEHIND));
     }
 
-    /// How the stream fares.
+    /// State of the stream.
     pub fn status(&self) -> ViewerStreamStatus {
         let fares = self.stream.fares();
         let address = self.stream.server.map(|address| address.to_string());
         ViewerStreamStatus { address, written: fares.written, dropped: fares.dropped }
     }
 
-    /// Ends the stream. The log is complete by now: a file that shows all of it is sealed.
+    /// Ends the stream. If the file shows the whole log, which is complete now, it is sealed.
     pub fn close(self, log: &LogWriter) {
         if let Some(file) = self.stream.close().filter(|_| self.is_whole) {
-            // Without its seal it is made anew when somebody asks for it.
+            // A file without a seal is rebuilt on demand.
             let _ = rrd::seal(&file, &[log.folder().join(LOG_NAME)]);
         }
     }

@@ -1,4 +1,4 @@
-//! A live session in a build without the feature `display`: sessions whose participant is at a display were refused before.
+//! A live session in a build without the feature `display`; sessions with a participant at a display have been refused before.
 
 use crate::base::time::SessionTime;
 use crate::console::display::DisplayHealth;
@@ -25,13 +25,13 @@ impl ParticipantDisplay {
         match *self {}
     }
 
-    /// There is nothing to look at.
+    /// There is nothing to examine.
     pub fn examine(&self, _: &mut DisplayHealth) {
         match *self {}
     }
 }
 
-/// What an input of the page is to the session, and to the wizard.
+/// An input of the page as an event of the session and a notice to the wizard.
 pub(super) struct PageEvent {
     pub event: Option<Event>,
     pub notice: Option<(NoticeLevel, String)>,

@@ -1,5 +1,4 @@
-//! A live session in a build without the feature `rerun`: no stream is written. Where the session asks for one the wizard
-//! is told, as where a stream cannot be opened.
+//! A live session in a build without the feature `rerun`: no stream is written, and the wizard is told if the session asks for one.
 
 use crate::base::features::{Feature, NotBuilt};
 use crate::base::time::SessionTime;
@@ -15,7 +14,7 @@ impl StreamedSession {
     /// Opens no stream.
     ///
     /// # Errors
-    /// The session asks for one.
+    /// The session asks for a stream.
     pub fn open(
         session: &Session,
         _: &Header,
@@ -36,7 +35,7 @@ impl StreamedSession {
         match *self {}
     }
 
-    /// There is nothing to tell.
+    /// There is no state.
     pub fn status(&self) -> ViewerStreamStatus {
         match *self {}
     }

@@ -1,4 +1,8 @@
 //! Gaze: samples on the wall display and the locations that they may have read.
+//!
+//! All sources lead to the same event with three times: arrival (the event's time), the tracker's time, and the session time at which the
+//! sample was taken. Faults are judged when an event is applied, so a recording keeps every sample and a replay judges the same way.
+//! Recorded gaze stays raw; an accepted offset is corrected where gaze is used.
 
 pub mod calibration;
 pub mod device_clock;

@@ -1,6 +1,13 @@
 //! The engine: a running session. It raises the session's own events when they are due, accepts events from outside, and returns
 //! every event once, stamped and in order, for the log.
 //!
+//! At equal times the order is timers, robot, simulated participant, scripted wizard; immediate consequences are applied before anything
+//! else. `headless` jumps from one due time to the next, `live` sleeps until then, and verification uses the recorded times.
+//!
+//! A pause stops clock, robot, orders and participant; pending events are postponed by its length. Presses during a pause are recorded and
+//! do not count. The signals of a scripted wizard and of the assistant are internal events, so a verification repeats them; those of a
+//! person are external. A recommendation is an external event (`advised`): computed at once in headless runs, by a thread in live ones.
+//!
 //! It has no clock: the caller passes the time, so that live sessions, simulations and verifications use the same code.
 
 mod agents;

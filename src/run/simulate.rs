@@ -1,4 +1,7 @@
 //! `tomcom simulate`: whole trials in virtual time; a trial does not depend on the number of trials.
+//!
+//! Trials are simulated on all processors in blocks and summed up in their order, so no number depends on timing, and memory does not grow.
+//! A complete recording with the same header is read instead of simulated. A shard takes every n-th trial.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;

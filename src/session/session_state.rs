@@ -40,7 +40,7 @@ pub struct Session {
     pub state: State,
     /// When each location last changed, indexed by location.
     pub changed_at: [SessionTime; MAX_LOCATIONS],
-    /// Presses during the trial, indexed by [`Agent::index`].
+    /// Presses during the trial, indexed by [`crate::kitchen::Agent::index`].
     pub presses: [u32; 2],
     /// Served orders: when, and the number of presses of both agents until then.
     pub served: Vec<Served>,

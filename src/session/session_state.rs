@@ -40,7 +40,7 @@ pub struct Session {
     pub state: State,
     /// Time of the last change of each location.
     pub changed_at: [SessionTime; MAX_LOCATIONS],
-    /// Presses during the trial, indexed by [`Agent::index`].
+    /// Presses during the trial, indexed by [`crate::kitchen::Agent::index`].
     pub presses: [u32; 2],
     /// Served orders.
     pub served: Vec<Served>,

@@ -1,9 +1,10 @@
 //! The figures of the report, after those of the paper.
 
-use super::effect::{StudyMeasure, TrialPair, pairs};
+use super::effect::{TrialPair, pairs};
 use super::figures::{StudyConditionSummary, StudySummary};
 use super::roc::{Roc, RocPoint};
 use super::svg::{PlotAxis, SvgChart, minus};
+use super::tables::trials::HEADLINE;
 use super::trial::{Trial, mean};
 use crate::communication::concept::ConceptName;
 use crate::session::settings::Condition;
@@ -11,7 +12,7 @@ use crate::session::settings::Condition;
 /// Errors by condition and participant (the paper's top left): the two trials of a participant are joined by a line, means
 /// are black.
 pub fn errors_by_condition(trials: &[Trial]) -> Option<String> {
-    let pairs = pairs(trials, StudyMeasure::ErrorRateHuman);
+    let pairs = pairs(trials, HEADLINE);
     let values = || pairs.iter().flat_map(|pair| pair.values).map(percent);
     if pairs.is_empty() {
         return None;
@@ -41,7 +42,7 @@ pub fn errors_by_condition(trials: &[Trial]) -> Option<String> {
 /// Improvements from the first trial to the second by starting group (the paper's top right); the difference of the means is
 /// twice the effect of assistance.
 pub fn improvements(trials: &[Trial]) -> Option<String> {
-    let pairs = pairs(trials, StudyMeasure::ErrorRateHuman);
+    let pairs = pairs(trials, HEADLINE);
     if pairs.is_empty() {
         return None;
     }

@@ -4,10 +4,10 @@ mod results;
 mod robot;
 mod sections;
 
+use super::column::Table;
 use super::facts::Facts;
 use super::figures::StudySummary;
 use super::svg::{escaped, minus};
-use super::tables::Table;
 use super::trial::Trial;
 
 /// How the page looks.

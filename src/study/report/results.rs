@@ -154,13 +154,13 @@ fn in_words(effect: &AssistanceEffect) -> String {
 
 fn effect_row(effect: &AssistanceEffect) -> Vec<String> {
     let test = effect.assistance();
-    let (reduction, digits) = (effect.reduction, effect.measure.digits());
+    let (reduction, digits) = (effect.reduction, effect.measure.digits);
     let interval = reduction.map_or("\u{2013}".to_string(), |found| {
         let ends = range(Some(found.low), Some(found.high), digits);
         format!("{}<small>{ends}</small>", number(Some(found.estimate), digits))
     });
     vec![
-        effect.measure.title().to_string(),
+        effect.measure.title.to_string(),
         format!("{} + {}", effect.groups[0], effect.groups[1]),
         number(test.map(|test| test.f), 2),
         p_value(test.map(|test| test.p)),
@@ -195,7 +195,7 @@ fn anova(effect: &AssistanceEffect) -> String {
     ];
     format!(
         "<h3>Mixed ANOVA of {}</h3>\n{}",
-        effect.measure.title(),
+        effect.measure.title,
         table(
             "Mixed ANOVA, in the coding of a crossover and in the paper\u{2019}s.",
             &["", "F", "degrees of freedom", "p", "partial \u{3b7}\u{b2}"],

@@ -3,8 +3,9 @@
 use super::{count, number, section, table};
 use crate::robot::AbortReason;
 use crate::session::settings::ArmKind;
+use crate::study::arm_group::ArmGroup;
 use crate::study::figures::StudySummary;
-use crate::study::robot::{ArmGroup, ArmSummary};
+use crate::study::robot_tally::ArmSummary;
 
 /// An arm in words.
 pub(super) fn arm(kind: ArmKind) -> &'static str {

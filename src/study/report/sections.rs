@@ -4,12 +4,12 @@ use super::{count, number, p_sentence, percent, section, table};
 use crate::base::words;
 use crate::session::event::EndReason;
 use crate::session::settings::Condition;
+use crate::study::arm_group::ArmGroup;
+use crate::study::column::Table;
 use crate::study::definitions::DEFINITIONS;
 use crate::study::facts::Facts;
 use crate::study::figures::StudySummary;
-use crate::study::robot::ArmGroup;
 use crate::study::svg::escaped;
-use crate::study::tables::Table;
 use crate::study::trial::{BeliefBasis, Trial};
 
 /// What it is about, and the main figures.

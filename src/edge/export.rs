@@ -1,13 +1,13 @@
 //! What an analysis writes: tables as CSV (RFC 4180, UTF-8), and a page. Rows of events are kept in files of their own until
 //! all recordings are read, so that memory does not grow with the number of recordings, and tables have the recordings' order.
 
+use std::borrow::{Borrow, Cow};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
-
-use crate::study::tables::Table;
+use crate::study::column::{Table, TableRow};
+use crate::study::dictionary::columns;
 
 /// The name of the page.
 pub const REPORT_NAME: &str = "report.html";
@@ -37,19 +37,12 @@ impl Default for TableRows {
 
 impl TableRows {
     /// Adds a row.
-    pub fn add(&mut self, row: &impl Serialize) {
-        self.rows.serialize(row).expect("rows are flat, and written to memory");
+    pub fn add(&mut self, row: &impl TableRow) {
+        self.rows.serialize(row.cells()).expect("rows are flat, and written to memory");
     }
 
     pub fn into_bytes(self) -> Vec<u8> {
         self.rows.into_inner().expect("rows are written to memory")
-    }
-
-    /// The rows of a list.
-    pub fn from_rows<T: Serialize>(rows: impl IntoIterator<Item = T>) -> Vec<u8> {
-        let mut all = TableRows::default();
-        rows.into_iter().for_each(|row| all.add(&row));
-        all.into_bytes()
     }
 }
 
@@ -96,12 +89,18 @@ impl ExportFolder {
         Ok(())
     }
 
-    /// Writes a table of these rows, and says whether there are any.
+    /// Writes the table of these rows, and returns it if there are any.
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn table(&self, table: Table, rows: &[u8]) -> Result<bool, ExportError> {
-        self.write_table(table, |out| out.write_all(rows).map(|()| !rows.is_empty()))
+    pub fn table<Row: TableRow>(
+        &self,
+        rows: impl IntoIterator<Item: Borrow<Row>>,
+    ) -> Result<Option<Table>, ExportError> {
+        let mut all = TableRows::default();
+        rows.into_iter().for_each(|row| all.add(row.borrow()));
+        let rows = all.into_bytes();
+        self.write_table(Row::TABLE, |out| out.write_all(&rows).map(|()| !rows.is_empty()))
     }
 
     /// Writes the tables of what was kept of the recordings with these numbers, in this order, and removes that. Those
@@ -112,14 +111,13 @@ impl ExportFolder {
     pub fn tables_of_events(&self, recordings: &[usize]) -> Result<Vec<Table>, ExportError> {
         let mut filled = Vec::new();
         for table in Table::OF_EVENTS {
-            let has_rows = self.write_table(table, |out| {
+            filled.extend(self.write_table(table, |out| {
                 let mut bytes = 0;
                 for &index in recordings {
                     bytes += io::copy(&mut File::open(self.part(index, table))?, out)?;
                 }
                 Ok(bytes > 0)
-            })?;
-            filled.extend(has_rows.then_some(table));
+            })?);
         }
         fs::remove_dir_all(self.parts()).map_err(|reason| ExportError { path: self.parts(), reason })?;
         Ok(filled)
@@ -141,14 +139,14 @@ impl ExportFolder {
         &self,
         table: Table,
         rows: impl FnOnce(&mut BufWriter<File>) -> io::Result<bool>,
-    ) -> Result<bool, ExportError> {
+    ) -> Result<Option<Table>, ExportError> {
         let path = self.folder.join(format!("{}.csv", table.name()));
         let write = || {
             let mut out = BufWriter::new(File::create(&path)?);
-            let columns: Vec<&str> = table.columns().collect();
-            writeln!(out, "{}", columns.join(","))?;
+            let names: Vec<Cow<str>> = columns(table).into_iter().map(|column| column.column).collect();
+            writeln!(out, "{}", names.join(","))?;
             let has_rows = rows(&mut out)?;
-            out.flush().map(|()| has_rows)
+            out.flush().map(|()| has_rows.then_some(table))
         };
         write().map_err(|reason| ExportError { path: path.clone(), reason })
     }

@@ -260,18 +260,18 @@ fn of_cell(
     Ok((trials, sums.figures()))
 }
 
-/// Numbers of a row; empty where unknown.
-fn numbers(row: &SweepRow) -> [String; 6] {
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.4}"));
-    [
-        number(Some(row.errors_per_100)),
-        number(Some(row.signals_per_100)),
-        number(row.spared_per_100),
-        number(row.spared_error),
-        number(row.mean_sequence_length),
-        number(row.presses_per_order),
-    ]
-}
+/// A column of numbers of the table: its name, and its value in a row.
+type SweepColumn = (&'static str, fn(&SweepRow) -> Option<f64>);
+
+/// The columns of numbers; nothing stands where a value is not known.
+const NUMBERS: [SweepColumn; 6] = [
+    ("errors_per_100", |row| Some(row.errors_per_100)),
+    ("signals_per_100", |row| Some(row.signals_per_100)),
+    ("spared_per_100", |row| row.spared_per_100),
+    ("spared_error", |row| row.spared_error),
+    ("mean_sequence_length", |row| row.mean_sequence_length),
+    ("presses_per_order", |row| row.presses_per_order),
+];
 
 fn setting(row: &SweepRow, axis: &SweepAxis) -> String {
     row.settings.get(axis.name).and_then(|value| value.as_str()).unwrap_or_default().to_string()
@@ -279,14 +279,14 @@ fn setting(row: &SweepRow, axis: &SweepAxis) -> String {
 
 fn write_table(path: &Path, axes: &[SweepAxis], rows: &[SweepRow]) -> std::io::Result<()> {
     let mut table = csv::Writer::from_path(path)?;
-    let head = ["errors_per_100", "signals_per_100", "spared_per_100", "spared_error", "mean_sequence_length"];
     let names = ["condition", "trials"].into_iter().chain(axes.iter().map(|axis| axis.name));
-    table.write_record(names.chain(head).chain(["presses_per_order"]))?;
+    table.write_record(names.chain(NUMBERS.map(|(name, _)| name)))?;
     for (index, row) in rows.iter().enumerate() {
         let condition = if index == 0 { "unassisted" } else { "signals" };
         let settings = axes.iter().map(|axis| setting(row, axis));
         let first = [condition.to_string(), row.trials.to_string()].into_iter().chain(settings);
-        table.write_record(first.chain(numbers(row)))?;
+        let numbers = NUMBERS.iter().map(|(_, value)| value(row).map_or(String::new(), |value| format!("{value:.4}")));
+        table.write_record(first.chain(numbers))?;
     }
     table.flush()
 }

@@ -1,17 +1,20 @@
 //! The figures of the report, after those of the paper.
 
-use super::effect::{StudyMeasure, TrialPair, pairs};
+use maud::Markup;
+
+use super::effect::{TrialPair, pairs};
 use super::figures::{StudyConditionSummary, StudySummary};
 use super::roc::{Roc, RocPoint};
 use super::svg::{PlotAxis, SvgChart, minus};
+use super::tables::trials::HEADLINE;
 use super::trial::{Trial, mean};
 use crate::communication::concept::ConceptName;
 use crate::session::settings::Condition;
 
 /// Errors by condition and participant (the paper's top left): the two trials of a participant are joined by a line, means
 /// are black.
-pub fn errors_by_condition(trials: &[Trial]) -> Option<String> {
-    let pairs = pairs(trials, StudyMeasure::ErrorRateHuman);
+pub fn errors_by_condition(trials: &[Trial]) -> Option<Markup> {
+    let pairs = pairs(trials, HEADLINE);
     let values = || pairs.iter().flat_map(|pair| pair.values).map(percent);
     if pairs.is_empty() {
         return None;
@@ -40,8 +43,8 @@ pub fn errors_by_condition(trials: &[Trial]) -> Option<String> {
 
 /// Improvements from the first trial to the second by starting group (the paper's top right); the difference of the means is
 /// twice the effect of assistance.
-pub fn improvements(trials: &[Trial]) -> Option<String> {
-    let pairs = pairs(trials, StudyMeasure::ErrorRateHuman);
+pub fn improvements(trials: &[Trial]) -> Option<Markup> {
+    let pairs = pairs(trials, HEADLINE);
     if pairs.is_empty() {
         return None;
     }
@@ -66,7 +69,7 @@ pub fn improvements(trials: &[Trial]) -> Option<String> {
 }
 
 /// Seconds from press to press by trial and condition (the paper's bottom): a sign of experience.
-pub fn press_durations(trials: &[Trial]) -> Option<String> {
+pub fn press_durations(trials: &[Trial]) -> Option<Markup> {
     let cells: Vec<(u32, bool)> = vec![(1, false), (1, true), (2, false), (2, true)];
     let of = |&(period, assisted): &(u32, bool)| -> Vec<(&str, f64)> {
         let is_it = |trial: &&Trial| trial.counts() && trial.period == Some(period) && trial.is_assisted() == assisted;
@@ -100,7 +103,7 @@ pub fn press_durations(trials: &[Trial]) -> Option<String> {
 const LONGEST: usize = 12;
 
 /// How many sequences have how many errors, by condition, a trial.
-pub fn sequence_lengths(conditions: &[StudyConditionSummary]) -> Option<String> {
+pub fn sequence_lengths(conditions: &[StudyConditionSummary]) -> Option<Markup> {
     let assisted = |one: &&StudyConditionSummary| one.condition != Condition::None;
     let per_trial = |is: &dyn Fn(&&StudyConditionSummary) -> bool| -> Vec<f64> {
         let found: Vec<&StudyConditionSummary> = conditions.iter().filter(is).collect();
@@ -132,7 +135,7 @@ pub fn sequence_lengths(conditions: &[StudyConditionSummary]) -> Option<String> 
 }
 
 /// Receiver operating characteristics of the concepts, with bands.
-pub fn roc(figures: &StudySummary) -> Option<String> {
+pub fn roc(figures: &StudySummary) -> Option<Markup> {
     let points = || figures.roc.iter().flat_map(|roc| &roc.points);
     points().next()?;
     let x = PlotAxis::over("false positive rate, per press outside of episodes", points().map(|point| point.fpr));
@@ -152,7 +155,7 @@ pub fn roc(figures: &StudySummary) -> Option<String> {
 const MOST_SIGNALS: f64 = 25.0;
 
 /// The same against interruptions.
-pub fn equal_signals(figures: &StudySummary) -> Option<String> {
+pub fn equal_signals(figures: &StudySummary) -> Option<Markup> {
     figures.roc.iter().flat_map(|roc| &roc.points).next()?;
     let x = PlotAxis::between("signals per 100 presses of the human", 0.0, MOST_SIGNALS);
     let y = PlotAxis::between("belief related errors prevented", 0.0, 1.0);

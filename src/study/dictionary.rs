@@ -1,224 +1,65 @@
-//! What every column of every table means.
+//! The dictionary: what every column of every table means, from the declarations of the columns.
 
-use super::tables::DictionaryRow;
+use std::borrow::Cow;
 
-const fn row(table: &'static str, column: &'static str, unit: &'static str, meaning: &'static str) -> DictionaryRow {
-    DictionaryRow { table, column, unit, meaning }
+use super::column::{Column, Table, TableRow};
+use super::tables::actions::ActionRow;
+use super::tables::aspect_beliefs::BeliefRow;
+use super::tables::communications::CommunicationRow;
+use super::tables::concepts::ConceptRow;
+use super::tables::gaze_runs::GazeRow;
+use super::tables::participants::ParticipantRow;
+use super::tables::questionnaires::AnswerRow;
+use super::trial::Trial;
+
+/// A column of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DictionaryRow {
+    pub table: Table,
+    pub column: Cow<'static, str>,
+    pub unit: &'static str,
+    pub meaning: Cow<'static, str>,
+}
+
+impl TableRow for DictionaryRow {
+    const TABLE: Table = Table::Dictionary;
+
+    fn columns() -> Vec<Column<Self>> {
+        vec![
+            Self::column("table", "", "the file is this with .csv", |row| row.table.name().into()),
+            Self::column("column", "", "", |row| row.column.as_ref().into()),
+            Self::column("unit", "", "empty: none", |row| row.unit.into()),
+            Self::column("meaning", "", "", |row| row.meaning.as_ref().into()),
+        ]
+    }
+}
+
+/// The columns of a table, in their order.
+pub fn columns(table: Table) -> Vec<DictionaryRow> {
+    match table {
+        Table::Participants => declared::<ParticipantRow>(),
+        Table::Trials => declared::<Trial>(),
+        Table::Questionnaires => declared::<AnswerRow>(),
+        Table::Concepts => declared::<ConceptRow>(),
+        Table::Actions => declared::<ActionRow>(),
+        Table::Communications => declared::<CommunicationRow>(),
+        Table::Beliefs => declared::<BeliefRow>(),
+        Table::Gaze => declared::<GazeRow>(),
+        Table::Dictionary => declared::<DictionaryRow>(),
+    }
+}
+
+fn declared<Row: TableRow>() -> Vec<DictionaryRow> {
+    let row = |Column { name, unit, meaning, .. }: Column<Row>| DictionaryRow {
+        table: Row::TABLE,
+        column: name,
+        unit,
+        meaning,
+    };
+    Row::columns().into_iter().map(row).collect()
 }
 
 /// The dictionary, table by table, column by column.
-pub const DICTIONARY: &[DictionaryRow] = &[
-    row("participants", "participant", "", "code; with the seed in front where several seeds are analysed together"),
-    row("participants", "kind", "", "simulated, keyboard (at the console) or display (at the wall display)"),
-    row("participants", "group", "", "starting group of the plan; AB has the conditions in the plan's order"),
-    row("participants", "trials", "trials", "recorded"),
-    row("participants", "trials_counted", "trials", "that are not left out"),
-    row(
-        "participants",
-        "assisted_second",
-        "",
-        "the second trial is the assisted one; empty without a pair of trials that count",
-    ),
-    row("participants", "error_rate_human_1", "errors per press of the human", "in the first trial"),
-    row("participants", "error_rate_human_2", "errors per press of the human", "in the second trial"),
-    row("participants", "error_rate_1", "errors per press of both agents", "in the first trial"),
-    row("participants", "error_rate_2", "errors per press of both agents", "in the second trial"),
-    row("participants", "sequence_length_1", "errors", "mean of the first trial's error sequences"),
-    row("participants", "sequence_length_2", "errors", "mean of the second trial's error sequences"),
-    row("participants", "recovery_s_1", "s", "mean recovery time of the first trial's error sequences"),
-    row("participants", "recovery_s_2", "s", "mean recovery time of the second trial's error sequences"),
-    row("participants", "order_s_1", "s", "median time for an order in the first trial"),
-    row("participants", "order_s_2", "s", "median time for an order in the second trial"),
-    row("participants", "presses_per_order_1", "presses of both", "median for an order in the first trial"),
-    row("participants", "presses_per_order_2", "presses of both", "median for an order in the second trial"),
-    row("participants", "press_s_1", "s", "median from press to press of the human in the first trial"),
-    row("participants", "press_s_2", "s", "median from press to press of the human in the second trial"),
-    row("trials", "recording", "", "folder of the recording; the key of all tables by recording"),
-    row("trials", "participant", "", "as in participants"),
-    row("trials", "kind", "", "as in participants"),
-    row("trials", "seed", "", "what everything random followed from"),
-    row("trials", "group", "", "as in participants"),
-    row("trials", "period", "", "1: the participant's first trial, 2: the second"),
-    row("trials", "condition", "", "who sends signals: none, wizard or assistant"),
-    row("trials", "assisted", "", "somebody sends signals"),
-    row("trials", "counts", "", "false: it is left out of all figures"),
-    row("trials", "left_out", "", "why it is left out"),
-    row(
-        "trials",
-        "ended",
-        "",
-        "what ended it: presses, time or orders, as many as were set; wizard or aborted, before that; empty: it was cut",
-    ),
-    row("trials", "arm", "", "the robot's arm: timed (its presses take a while by chance) or physics (simulated)"),
-    row("trials", "human_presses", "presses", "of the human while the trial ran"),
-    row("trials", "robot_presses", "presses", "of the robot while the trial ran"),
-    row("trials", "errors", "errors", "of the human, without races"),
-    row("trials", "races", "presses", "of the human within 300 ms of a change by the robot at the same place"),
-    row("trials", "error_rate_human", "errors per press of the human", ""),
-    row("trials", "error_rate", "errors per press of both agents", ""),
-    row(
-        "trials",
-        "beliefs_from",
-        "",
-        "how it is known what was believed: recorded (simulated participants), raters, or estimate",
-    ),
-    row("trials", "belief_related_errors", "errors", ""),
-    row(
-        "trials",
-        "sequences",
-        "sequences",
-        "belief related errors at most 3 correct presses apart, whatever the aspect",
-    ),
-    row("trials", "sequence_length", "errors", "mean of the sequences"),
-    row("trials", "sequences_by_aspect", "sequences", "of errors about one aspect alone"),
-    row("trials", "sequence_length_by_aspect", "errors", "mean of those"),
-    row("trials", "recovery_s", "s", "mean from a sequence's first error to the first correct press after its last"),
-    row("trials", "orders", "orders", "served"),
-    row("trials", "order_s", "s", "median from one served order to the next, the first from the start"),
-    row("trials", "presses_per_order", "presses of both", "median"),
-    row("trials", "press_s", "s", "median from press to press of the human"),
-    row("trials", "signals", "signals", "shown to the participant"),
-    row("trials", "duration_s", "s", "of the trial, without pauses"),
-    row(
-        "trials",
-        "protective_stops",
-        "stops",
-        "of an arm that felt somebody; this and the next five are empty of a timed arm",
-    ),
-    row("trials", "faults", "stops", "of an arm of which a joint did not follow"),
-    row("trials", "contacts", "contacts", "of somebody with the arm, those that stopped it among them"),
-    row("trials", "peak_force_n", "N", "the largest of these; empty without any"),
-    row("trials", "reduced_s", "s", "on the trial's clock, in which a hand near the arm slowed it"),
-    row("trials", "safeguard_s", "s", "on the trial's clock, in which the arm waited for a hand in its way"),
-    row("trials", "emergency_stops", "stops", "of the robot by the wizard"),
-    row(
-        "trials",
-        "given_up_no_longer_useful",
-        "presses",
-        "that the robot gave up: pressing was no longer useful when the arm was there",
-    ),
-    row("trials", "given_up_stopped", "presses", "that the robot gave up: the wizard stopped it"),
-    row("trials", "given_up_skipped", "presses", "that the robot gave up: the wizard skipped the press"),
-    row("trials", "given_up_driven", "presses", "that the robot gave up: the wizard chose another press"),
-    row("trials", "given_up_out_of_reach", "presses", "that the robot gave up: out of reach; empty of a timed arm"),
-    row(
-        "trials",
-        "given_up_singular",
-        "presses",
-        "that the robot gave up: the arm would be stretched, or in line with itself; empty of a timed arm",
-    ),
-    row(
-        "trials",
-        "given_up_obstructed",
-        "presses",
-        "that the robot gave up: something stood in every way to it; empty of a timed arm",
-    ),
-    row(
-        "trials",
-        "given_up_hand_in_the_way",
-        "presses",
-        "that the robot gave up: a hand was in the way for too long; empty of a timed arm",
-    ),
-    row(
-        "trials",
-        "given_up_no_click",
-        "presses",
-        "that the robot gave up: the button did not click; empty of a timed arm",
-    ),
-    row(
-        "trials",
-        "given_up_contact",
-        "presses",
-        "that the robot gave up: the arm felt somebody and stopped; empty of a timed arm",
-    ),
-    row("trials", "given_up_fault", "presses", "that the robot gave up: a joint did not follow; empty of a timed arm"),
-    row("trials", "wizard_held", "times", "that the wizard held the robot before its next press"),
-    row("trials", "wizard_skipped", "times", "that the wizard skipped a press of the robot"),
-    row("trials", "wizard_driven", "times", "that the wizard chose the robot's next press"),
-    row("trials", "wizard_corrected", "times", "that the wizard put right what is at a location"),
-    row("questionnaires", "recording", "", "as in trials"),
-    row("questionnaires", "participant", "", "as in participants"),
-    row("questionnaires", "condition", "", "of the trial before"),
-    row("questionnaires", "questionnaire", "", "name"),
-    row("questionnaires", "item", "", "id of the item"),
-    row("questionnaires", "about", "", "what the item is about"),
-    row("questionnaires", "reversed", "", "agreement speaks against what it is about"),
-    row("questionnaires", "answer", "points", "1 to points, as given (not turned round); empty: left out"),
-    row("questionnaires", "points", "points", "of the scale"),
-    row("concepts", "recording", "", "as in trials; unassisted trials that count"),
-    row("concepts", "participant", "", "as in participants"),
-    row("concepts", "concept", "", "tom-com, tom or dev"),
-    row(
-        "concepts",
-        "parameter",
-        "",
-        "cost of communication in presses (tom-com), threshold (tom), presses proposed (dev)",
-    ),
-    row("concepts", "presses", "presses", "of the human"),
-    row("concepts", "signals", "signals", "that would have been sent; for dev presses proposed"),
-    row("concepts", "related", "errors", "belief related"),
-    row("concepts", "prevented", "errors", "belief related, that would have been prevented"),
-    row("concepts", "outside", "presses", "of the human outside of false belief episodes"),
-    row("concepts", "false_presses", "presses", "of those, with a false signal before them"),
-    row("concepts", "false_inside", "signals", "on an aspect that was believed right while another one had an episode"),
-    row("concepts", "harmless", "signals", "on a wrong belief that led to no error"),
-    row("actions", "recording", "", "as in trials"),
-    row("actions", "seq", "", "number of the event in the log"),
-    row("actions", "time_s", "s", "on the trial's clock"),
-    row("actions", "agent", "", "human or robot"),
-    row("actions", "press", "presses", "which press of this agent it is, from 1"),
-    row("actions", "button", "", "name of the button"),
-    row("actions", "effective", "", "it changed the kitchen"),
-    row("actions", "since_s", "s", "since this agent's press before"),
-    row("actions", "regret", "presses", "of the human: presses of both that are lost by it"),
-    row("actions", "excess", "presses", "regret above that of the best press of the human"),
-    row("actions", "race", "", "within 300 ms of a change by the robot at the same place"),
-    row("actions", "error", "", "it is an error"),
-    row(
-        "actions",
-        "cause",
-        "",
-        "of an error: belief or slip, by what beliefs_from of the trial says; empty where nobody knows",
-    ),
-    row("actions", "aspect", "", "of a belief related error: what the false belief is about"),
-    row("actions", "second_aspect", "", "the second one, where it takes two false beliefs to explain it"),
-    row("actions", "gain_nats", "nats", "log p(press | belief) - log p(press | truth)"),
-    row("actions", "sequence", "", "of a belief related error: which error sequence of the trial, from 1"),
-    row("actions", "cause_estimated", "", "of people: belief or slip by the assistant's estimate"),
-    row("actions", "rater_1", "", "what the first rater by name says: belief (and about what), slip, race or other"),
-    row("actions", "rater_2", "", "what the second rater says"),
-    row("actions", "log_p", "nats", "of the human's press under the estimated belief"),
-    row("communications", "recording", "", "as in trials"),
-    row("communications", "lane", "", "who sent it (wizard, assistant), or what would have said it (tom-com)"),
-    row("communications", "time_s", "s", "on the trial's clock"),
-    row("communications", "press", "presses", "of the human before it"),
-    row("communications", "kind", "", "recipe, highlight or proposal"),
-    row("communications", "target", "", "location that it is about"),
-    row(
-        "communications",
-        "matched",
-        "",
-        "the other lane said the same within the window; empty where there is no other",
-    ),
-    row("beliefs", "recording", "", "as in trials"),
-    row("beliefs", "seq", "", "of the human's press that it is from before, as in actions"),
-    row("beliefs", "aspect", "", "state aspect: a location's content, or a dish's recipe"),
-    row("beliefs", "truth", "", "its true value"),
-    row("beliefs", "estimate", "", "the value that is expected to be believed most"),
-    row("beliefs", "estimate_p_truth", "probability", "expected, of the truth"),
-    row("beliefs", "estimate_precision", "", "sum of the Dirichlet's alphas"),
-    row("beliefs", "believed", "", "of simulated participants: the likeliest value for it"),
-    row("beliefs", "believed_p_truth", "probability", "of simulated participants: that of the truth for it"),
-    row("gaze", "recording", "", "as in trials"),
-    row("gaze", "time_s", "s", "of the first sample of a run on the same location, on the trial's clock"),
-    row("gaze", "duration_s", "s", "to the last sample of the run"),
-    row("gaze", "location", "", "where the gaze was; empty: on none, or not usable"),
-    row("gaze", "x", "width of the display", "mean, from the left"),
-    row("gaze", "y", "height of the display", "mean, from the top"),
-    row("gaze", "confidence", "0 to 1", "mean, as the tracker says"),
-    row("gaze", "samples", "samples", "in the run; every single one stands in events.jsonl"),
-    row("dictionary", "table", "", "the file is this with .csv"),
-    row("dictionary", "column", "", ""),
-    row("dictionary", "unit", "", "empty: none"),
-    row("dictionary", "meaning", "", ""),
-];
+pub fn dictionary() -> impl Iterator<Item = DictionaryRow> {
+    Table::ALL.into_iter().flat_map(columns)
+}

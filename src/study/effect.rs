@@ -4,7 +4,7 @@
 //! in what they improve from the first trial to the second: what is more of it in the group whose second trial is the assisted
 //! one is the effect of assistance (the interaction of period and starting group; Senn 2002, Cross-over Trials, chapter 3).
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::statistics::{
     Correlation, FTest, Interval, MixedAnova, hedges_g, hodges_lehmann, mixed_anova, pearson, permutation_p,
@@ -36,70 +36,37 @@ impl TrialPair {
     }
 }
 
-/// What is compared between the trials of a participant; of each, less is better.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum StudyMeasure {
-    /// Errors per press of the human.
-    ErrorRateHuman,
-    /// Errors per press of both agents.
-    ErrorRate,
-    /// Mean number of errors of a sequence.
-    SequenceLength,
-    /// Mean seconds to recover from a sequence.
-    RecoveryS,
-    /// Median seconds for an order.
-    OrderS,
-    /// Median presses of both agents for an order.
-    PressesPerOrder,
-    /// Median seconds from one press of the human to the next.
-    PressS,
+/// A statistic of a trial that is compared between assisted and unassisted trials; of each, less is better. It is a column of
+/// the table of trials, two of the table of participants, and a line of the report's tests.
+#[derive(Clone, Copy, Debug)]
+pub struct StudyMeasure {
+    /// Its column in the table of trials, and its name in the figures. The table of participants has it twice, with `_1` and
+    /// `_2`.
+    pub name: &'static str,
+    /// The unit of these columns.
+    pub unit: &'static str,
+    /// Its definition, for the dictionary; empty where the unit says it.
+    pub meaning: &'static str,
+    /// The same of one of a participant's trials: `{}` stands for "first" and for "second".
+    pub meaning_in: &'static str,
+    /// In words, for the report.
+    pub title: &'static str,
+    /// So many digits behind the point say as much as is known.
+    pub digits: usize,
+    /// That of a trial, if it has one.
+    pub value: fn(&Trial) -> Option<f64>,
 }
 
-impl StudyMeasure {
-    /// All of them; the first is the one that the headline is about.
-    pub const ALL: [StudyMeasure; 7] = [
-        StudyMeasure::ErrorRateHuman,
-        StudyMeasure::ErrorRate,
-        StudyMeasure::SequenceLength,
-        StudyMeasure::RecoveryS,
-        StudyMeasure::OrderS,
-        StudyMeasure::PressesPerOrder,
-        StudyMeasure::PressS,
-    ];
-
-    /// That of a trial, if it has one.
-    pub fn value(self, trial: &Trial) -> Option<f64> {
-        match self {
-            StudyMeasure::ErrorRateHuman => trial.error_rate_human(),
-            StudyMeasure::ErrorRate => trial.error_rate(),
-            StudyMeasure::SequenceLength => trial.sequence_length(),
-            StudyMeasure::RecoveryS => trial.recovery_s(),
-            StudyMeasure::OrderS => trial.order_s,
-            StudyMeasure::PressesPerOrder => trial.presses_per_order,
-            StudyMeasure::PressS => trial.press_s,
-        }
+/// Names are unique: they are columns of one table.
+impl PartialEq for StudyMeasure {
+    fn eq(&self, other: &StudyMeasure) -> bool {
+        self.name == other.name
     }
+}
 
-    /// So many digits behind the point say as much as is known.
-    pub fn digits(self) -> usize {
-        match self {
-            StudyMeasure::ErrorRateHuman | StudyMeasure::ErrorRate => 3,
-            _ => 2,
-        }
-    }
-
-    /// In words.
-    pub fn title(self) -> &'static str {
-        match self {
-            StudyMeasure::ErrorRateHuman => "errors per press of the human",
-            StudyMeasure::ErrorRate => "errors per press of both agents",
-            StudyMeasure::SequenceLength => "errors in a sequence",
-            StudyMeasure::RecoveryS => "seconds to recover from a sequence",
-            StudyMeasure::OrderS => "seconds for an order",
-            StudyMeasure::PressesPerOrder => "presses of both for an order",
-            StudyMeasure::PressS => "seconds from press to press of the human",
-        }
+impl Serialize for StudyMeasure {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name)
     }
 }
 
@@ -150,7 +117,7 @@ fn pair(code: &str, trials: &[Trial], measure: StudyMeasure) -> Option<TrialPair
     if first.is_assisted() == second.is_assisted() {
         return None;
     }
-    let values = [measure.value(first)?, measure.value(second)?];
+    let values = [(measure.value)(first)?, (measure.value)(second)?];
     Some(TrialPair { participant: code.to_string(), assisted_second: second.is_assisted(), values })
 }
 

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
+use super::arm_group::{ArmGroup, by_arm};
+use super::effect::{AssistanceEffect, effect, pairs};
 use super::facts::Facts;
-use super::robot::{ArmGroup, by_arm};
 use super::roc::{ConceptComparison, Roc, SweptTrial, compare};
 use super::statistics::{Correlation, FTest, Interval, share_interval};
+use super::tables::trials::measures;
 use super::trial::{BeliefBasis, BeliefErrors, Trial, mean, mean_length};
 use crate::measures::coding::{Agreement, AgreementTable, Codes};
 use crate::measures::matching::{MatchCounts, Similarity};
@@ -159,7 +160,7 @@ impl StudySummary {
         let counting: Vec<&Trial> = trials.iter().filter(|trial| trial.counts()).collect();
         let simulated_participants = trials.iter().any(|trial| trial.kind == ParticipantKind::Simulated);
         let effects: Vec<AssistanceEffect> =
-            StudyMeasure::ALL.iter().map(|&measure| effect(measure, &pairs(trials, measure), SEED)).collect();
+            measures().into_iter().map(|measure| effect(measure, &pairs(trials, measure), SEED)).collect();
         let comparison = concepts(&counting);
         let mut participants: Vec<&str> = counting.iter().map(|trial| trial.participant.as_str()).collect();
         participants.dedup();

@@ -3,6 +3,8 @@
 
 use std::fmt::Write;
 
+use maud::{Markup, PreEscaped, html};
+
 /// Room beside the plot, in pixels: left, right, top, bottom.
 const MARGIN: [f64; 4] = [54.0, 14.0, 14.0, 44.0];
 
@@ -77,9 +79,8 @@ impl SvgChart {
         self.height - bottom - (y - self.y.from) / (self.y.to - self.y.from) * (self.height - top - bottom)
     }
 
-    fn add(&mut self, element: std::fmt::Arguments) {
-        // Writing to a string does not fail.
-        let _ = self.body.write_fmt(element);
+    fn add(&mut self, element: Markup) {
+        self.body.push_str(&element.0);
         self.body.push('\n');
     }
 
@@ -89,41 +90,37 @@ impl SvgChart {
         for (value, text) in self.y.ticks.clone() {
             let y = self.py(value);
             let class = if value == 0.0 { "axis" } else { "grid" };
-            self.add(format_args!(r#"<path class="{class}" d="M{left:.1} {y:.1}H{:.1}"/>"#, width - right));
-            self.add(format_args!(r#"<text class="tick end" x="{:.1}" y="{:.1}">{text}</text>"#, left - 7.0, y + 4.0));
+            let path = format!("M{left:.1} {y:.1}H{:.1}", width - right);
+            self.add(html! { path class=(class) d=(path) {} });
+            self.add(html! { text class="tick end" x=(tenths(left - 7.0)) y=(tenths(y + 4.0)) { (text) } });
         }
         let base = height - bottom;
-        self.add(format_args!(r#"<path class="axis" d="M{left:.1} {top:.1}V{base:.1}H{:.1}"/>"#, width - right));
+        let path = format!("M{left:.1} {top:.1}V{base:.1}H{:.1}", width - right);
+        self.add(html! { path class="axis" d=(path) {} });
         for (value, text) in self.x.ticks.clone() {
             let x = self.px(value);
-            self.add(format_args!(r#"<path class="axis" d="M{x:.1} {base:.1}v4"/>"#));
+            self.add(html! { path class="axis" d=(format!("M{x:.1} {base:.1}v4")) {} });
             for (line, part) in text.split('\n').enumerate() {
                 let y = base + 17.0 + 13.0 * line as f64;
-                self.add(format_args!(r#"<text class="tick middle" x="{x:.1}" y="{y:.1}">{}</text>"#, escaped(part)));
+                self.add(html! { text class="tick middle" x=(tenths(x)) y=(tenths(y)) { (part) } });
             }
         }
         let (x, y) = ((left + width - right) / 2.0, height - 8.0);
-        let label = self.x.label;
-        self.add(format_args!(r#"<text class="label middle" x="{x:.1}" y="{y:.1}">{label}</text>"#));
-        let (y, label) = ((top + base) / 2.0, self.y.label);
-        self.add(format_args!(
-            r#"<text class="label middle" transform="translate(13 {y:.1}) rotate(-90)">{label}</text>"#
-        ));
+        self.add(html! { text class="label middle" x=(tenths(x)) y=(tenths(y)) { (self.x.label) } });
+        let turned = format!("translate(13 {:.1}) rotate(-90)", (top + base) / 2.0);
+        self.add(html! { text class="label middle" transform=(turned) { (self.y.label) } });
     }
 
     /// A point with what it stands for.
     pub fn point(&mut self, class: &str, x: f64, y: f64, title: &str) {
-        let (x, y) = (self.px(x), self.py(y));
-        let title = escaped(title);
-        self.add(format_args!(
-            r#"<circle class="{class}" cx="{x:.1}" cy="{y:.1}" r="4"><title>{title}</title></circle>"#
-        ));
+        let (x, y) = (tenths(self.px(x)), tenths(self.py(y)));
+        self.add(html! { circle class=(class) cx=(x) cy=(y) r="4" { title { (title) } } });
     }
 
     /// A line through points.
     pub fn line(&mut self, class: &str, points: &[(f64, f64)]) {
         let path = self.path(points);
-        self.add(format_args!(r#"<path class="line {class}" d="{path}"/>"#));
+        self.add(html! { path class={ "line " (class) } d=(path) {} });
     }
 
     /// The area between two heights at each x.
@@ -134,23 +131,21 @@ impl SvgChart {
         let there = band.iter().map(|&[x, _, high]| (x, high));
         let back = band.iter().rev().map(|&[x, low, _]| (x, low));
         let path = self.path(&there.chain(back).collect::<Vec<_>>());
-        self.add(format_args!(r#"<path class="band {class}" d="{path}Z"/>"#));
+        self.add(html! { path class={ "band " (class) } d={ (path) "Z" } {} });
     }
 
     /// A bar from 0 to y, between two places on the x axis.
     pub fn bar(&mut self, class: &str, [from, to]: [f64; 2], y: f64, title: &str) {
         let (x, right, base, top) = (self.px(from), self.px(to), self.py(0.0), self.py(y));
-        let (width, height, title) = (right - x, base - top, escaped(title));
-        self.add(format_args!(
-            r#"<rect class="{class}" x="{x:.1}" y="{top:.1}" width="{width:.1}" height="{height:.1}"><title>{title}</title></rect>"#
-        ));
+        let [x, y, width, height] = [x, top, right - x, base - top].map(tenths);
+        self.add(html! { rect class=(class) x=(x) y=(y) width=(width) height=(height) { title { (title) } } });
     }
 
     /// Words beside a point, `right` of it or left.
     pub fn words(&mut self, class: &str, x: f64, y: f64, right: bool, text: &str) {
         let (x, y) = (self.px(x) + if right { 9.0 } else { -9.0 }, self.py(y) + 4.0);
         let side = if right { "start" } else { "end" };
-        self.add(format_args!(r#"<text class="words {side} {class}" x="{x:.1}" y="{y:.1}">{}</text>"#, escaped(text)));
+        self.add(html! { text class={ "words " (side) " " (class) } x=(tenths(x)) y=(tenths(y)) { (text) } });
     }
 
     fn path(&self, points: &[(f64, f64)]) -> String {
@@ -162,22 +157,18 @@ impl SvgChart {
     }
 
     /// The picture; `title` is for those who do not see it.
-    pub fn finish(self, title: &str) -> String {
-        let (width, height) = (self.width, self.height);
-        format!(
-            "<svg viewBox=\"0 0 {width:.0} {height:.0}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n",
-            escaped(title),
-            self.body
-        )
+    pub fn finish(self, title: &str) -> Markup {
+        let size = format!("0 0 {:.0} {:.0}", self.width, self.height);
+        html! { svg viewBox=(size) role="img" aria-label=(title) { "\n" (PreEscaped(self.body)) } "\n" }
     }
+}
+
+/// A place in the picture, in pixels.
+fn tenths(pixels: f64) -> String {
+    format!("{pixels:.1}")
 }
 
 /// Numbers with a real minus sign.
 pub fn minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
-}
-
-/// A text as it may stand in HTML.
-pub fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

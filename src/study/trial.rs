@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::robot::RobotSummary;
+use super::robot_tally::RobotSummary;
 use super::roc::SweptTrial;
 use crate::measures::coding::Codes;
 use crate::measures::matching::CommunicationEvent;
@@ -121,6 +121,15 @@ impl Trial {
     /// Whether it counts.
     pub fn counts(&self) -> bool {
         self.left_out.is_none()
+    }
+
+    /// The kind of participant as it stands in tables.
+    pub fn kind_name(&self) -> &'static str {
+        match self.kind {
+            ParticipantKind::Simulated => "simulated",
+            ParticipantKind::Keyboard => "keyboard",
+            ParticipantKind::Display => "display",
+        }
     }
 
     /// Presses of both agents.

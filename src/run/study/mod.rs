@@ -12,18 +12,19 @@ use self::reading::{AnalysisScope, RecordingAnalysis};
 pub use self::tell::describe;
 use super::parallel;
 use super::replay::SameKitchen;
-use crate::edge::export::{ExportError, ExportFolder, TableRows};
+use crate::edge::export::{ExportError, ExportFolder};
 use crate::edge::file_error::FileError;
 use crate::edge::log::LogReader;
 use crate::edge::recordings;
 use crate::kitchen::Kitchen;
-use crate::study::dictionary::DICTIONARY;
+use crate::study::dictionary::{DictionaryRow, dictionary};
 use crate::study::facts::Facts;
 use crate::study::figures::StudySummary;
 use crate::study::report;
-use crate::study::tables::{self, Table};
+use crate::study::tables::concepts::{ConceptRow, concepts};
+use crate::study::tables::participants::{ParticipantRow, participants};
+use crate::study::tables::questionnaires::{AnswerRow, answers};
 use crate::study::trial::{Trial, arrange};
-use crate::study::trial_row;
 
 /// Why a study could not be analysed.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -131,16 +132,11 @@ pub fn study(
         kept.clear();
     }
     let mut filled = export.tables_of_events(&kept)?;
-    let counting = || trials.iter().filter(|trial| trial.counts());
-    for (table, rows) in [
-        (Table::Participants, TableRows::from_rows(tables::participants(&trials))),
-        (Table::Trials, TableRows::from_rows(trials.iter().map(trial_row::row))),
-        (Table::Questionnaires, TableRows::from_rows(trials.iter().flat_map(tables::answers))),
-        (Table::Concepts, TableRows::from_rows(counting().flat_map(tables::concepts))),
-        (Table::Dictionary, TableRows::from_rows(DICTIONARY)),
-    ] {
-        filled.extend(export.table(table, &rows)?.then_some(table));
-    }
+    filled.extend(export.table::<ParticipantRow>(participants(&trials))?);
+    filled.extend(export.table::<Trial>(&trials)?);
+    filled.extend(export.table::<AnswerRow>(trials.iter().flat_map(answers))?);
+    filled.extend(export.table::<ConceptRow>(trials.iter().filter(|trial| trial.counts()).flat_map(concepts))?);
+    filled.extend(export.table::<DictionaryRow>(dictionary())?);
     filled.sort_unstable();
     let path = export.report(&report::page(&figures, &trials, &facts, &filled))?;
     Ok((figures, path))

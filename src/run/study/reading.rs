@@ -30,7 +30,7 @@ use crate::session::protocol::{ItemAnswer, ProtocolEvent};
 use crate::session::settings::{Condition, ParticipantKind};
 use crate::session::{Event, Header, Phase, Session, Stamped, TimelineEvent};
 use crate::study::facts::Facts;
-use crate::study::robot::{RobotSummary, RobotTally};
+use crate::study::robot_tally::{RobotSummary, RobotTally};
 use crate::study::trial::{BeliefBasis, BeliefErrors, QuestionnaireAnswer, Trial};
 
 /// What a recording gives.

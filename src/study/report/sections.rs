@@ -1,263 +1,154 @@
-//! What is around the results: summary, trials, methods, definitions, files.
+//! What is around the results: summary, trials, definitions, files.
 
-use super::{count, number, p_sentence, percent, section, table};
+use maud::{Markup, Render, html};
+
+use super::elements::{Captions, PageColumn, UNKNOWN, cells, condition, count, number, p_sentence, percent, section};
 use crate::base::words;
+use crate::measures::coding::Agreement;
 use crate::session::event::EndReason;
-use crate::session::settings::Condition;
+use crate::study::column::Table;
 use crate::study::definitions::DEFINITIONS;
-use crate::study::facts::Facts;
 use crate::study::figures::StudySummary;
-use crate::study::robot::ArmGroup;
-use crate::study::svg::escaped;
-use crate::study::tables::Table;
 use crate::study::trial::{BeliefBasis, Trial};
 
 /// What it is about, and the main figures.
-pub(super) fn summary(figures: &StudySummary) -> String {
+pub(super) fn summary(figures: &StudySummary) -> Markup {
     let totals = &figures.totals;
-    let mut text = format!(
-        "<p class=\"lead\">{} of {}, {} recorded presses.</p>\n",
-        words::count(figures.trials, "trial", "trials"),
-        words::count(figures.participants, "participant", "participants"),
-        totals.actions
-    );
-    if figures.simulated_participants {
-        text += "<p class=\"warning\">Participants are simulated. Their errors, beliefs and presses are those of a program that \
-                 is there to try machinery and parameters. Nothing here is evidence about people.</p>\n";
-    }
-    if totals.beliefs_from == Some(BeliefBasis::Estimate) {
-        text += "<p class=\"warning\">What participants believed is known only as the assistant's estimate. Figures that rest on \
-                 it, such as the share of belief related errors, need the codes of two raters to be more than that.</p>\n";
-    }
-    if let Some(found) = &figures.raters {
-        text += &format!(
-            "<p>Two raters coded why presses were errors. They say the same cause of {} of {} errors (Cohen\u{2019}s kappa {}), and of \
-             {} errors that both put down to a belief they say of {} that the same is believed wrong (kappa {}). An error is belief \
-             related if both say so.</p>\n",
-            found.same_cause,
-            found.errors,
-            number(found.kappa_cause, 2),
-            found.beliefs,
-            found.same_aspect,
-            number(found.kappa_aspect, 2)
-        );
-    }
-    let card = |value: String, what: &str| format!("<div class=\"card\"><b>{value}</b><span>{what}</span></div>\n");
-    text += "<div class=\"cards\">\n";
-    text += &card(percent(totals.error_rate), "of the presses of both agents are errors of the human");
-    text += &card(percent(totals.belief_related_share), "of the errors come of false beliefs");
-    text += &card(number(totals.mean_sequence_length, 1), "errors in a sequence, in the mean");
-    text += &match (figures.pearson, &figures.similarity) {
+    let effect = match (figures.pearson, &figures.similarity) {
         (Some(pearson), _) => card(
-            format!("r\u{a0}=\u{a0}{}", number(Some(pearson.r), 2)),
+            &format!("r\u{a0}=\u{a0}{}", number(Some(pearson.r), 2)),
             &format!("of assistance and fewer errors ({})", p_sentence(Some(pearson.p))),
         ),
-        (None, Some(found)) => card(percent(found.strict.recall), "of the wizard's signals have a match"),
-        (None, None) => card(words::count(totals.signals, "signal", "signals"), "shown to participants"),
+        (None, Some(found)) => card(&percent(found.strict.recall), "of the wizard's signals have a match"),
+        (None, None) => card(&words::count(totals.signals, "signal", "signals"), "shown to participants"),
     };
-    text + "</div>\n"
+    html! {
+        p class="lead" {
+            (words::count(figures.trials, "trial", "trials")) " of "
+            (words::count(figures.participants, "participant", "participants")) ", " (totals.actions) " recorded presses."
+        }
+        "\n"
+        @if figures.simulated_participants {
+            p class="warning" {
+                "Participants are simulated. Their errors, beliefs and presses are those of a program that is there to try machinery \
+                 and parameters. Nothing here is evidence about people."
+            }
+            "\n"
+        }
+        @if totals.beliefs_from == Some(BeliefBasis::Estimate) {
+            p class="warning" {
+                "What participants believed is known only as the assistant's estimate. Figures that rest on it, such as the share of \
+                 belief related errors, need the codes of two raters to be more than that."
+            }
+            "\n"
+        }
+        @if let Some(found) = &figures.raters { (raters(found)) }
+        div class="cards" {
+            "\n"
+            (card(&percent(totals.error_rate), "of the presses of both agents are errors of the human"))
+            (card(&percent(totals.belief_related_share), "of the errors come of false beliefs"))
+            (card(&number(totals.mean_sequence_length, 1), "errors in a sequence, in the mean"))
+            (effect)
+        }
+        "\n"
+    }
+}
+
+/// How far two raters agree, in words.
+fn raters(found: &Agreement) -> Markup {
+    html! {
+        p {
+            "Two raters coded why presses were errors. They say the same cause of " (found.same_cause) " of " (found.errors)
+            " errors (Cohen\u{2019}s kappa " (number(found.kappa_cause, 2)) "), and of " (found.beliefs) " errors that both put \
+            down to a belief they say of " (found.same_aspect) " that the same is believed wrong (kappa "
+            (number(found.kappa_aspect, 2)) "). An error is belief related if both say so."
+        }
+        "\n"
+    }
+}
+
+fn card(value: &str, what: &str) -> Markup {
+    html! { div class="card" { b { (value) } span { (what) } } "\n" }
 }
 
 /// No longer list of trials is printed.
 const MOST_TRIALS: usize = 60;
 
 /// Every trial, and those that are left out with the reasons.
-pub(super) fn trials(figures: &StudySummary, trials: &[Trial]) -> String {
-    let row = |trial: &Trial| {
-        vec![
-            escaped(&trial.participant),
-            trial.group.as_deref().map_or("\u{2013}".to_string(), escaped),
-            trial.period.map_or("\u{2013}".to_string(), |period| period.to_string()),
-            condition(trial.condition).to_string(),
-            trial.ended.map_or("\u{2013}", EndReason::name).to_string(),
-            trial.human_presses.to_string(),
-            trial.robot_presses.to_string(),
-            trial.errors.to_string(),
-            percent(trial.error_rate_human()),
-            count(trial.beliefs.as_ref().map(|beliefs| beliefs.errors)),
-            number(trial.sequence_length(), 1),
-            trial.signals.to_string(),
-            trial.orders.to_string(),
-            number(trial.press_s, 2),
-        ]
+pub(super) fn trials(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
+    let content = html! {
+        div class="scroll long" { (counting(captions, trials)) } "\n"
+        h3 { "Left out" } "\n"
+        (left_out(captions, figures))
+        @if figures.practice > 0 {
+            p class="note" {
+                (words::count(figures.practice, "recording is", "recordings are")) " of practice, and no trial."
+            }
+            "\n"
+        }
     };
-    let counting: Vec<&Trial> = trials.iter().filter(|trial| trial.counts()).collect();
-    let rows: Vec<Vec<String>> = counting.iter().take(MOST_TRIALS).map(|trial| row(trial)).collect();
-    let heads = [
-        "participant",
-        "group",
-        "trial",
-        "condition",
-        "ended by",
-        "presses, human",
-        "robot",
-        "errors",
-        "per press of the human",
-        "belief related",
-        "in a sequence",
-        "signals",
-        "orders",
-        "s a press",
+    section("Trials", content)
+}
+
+fn counting(captions: &mut Captions, trials: &[Trial]) -> Markup {
+    let columns: [PageColumn<Trial>; 14] = [
+        ("participant", |trial| trial.participant.render()),
+        ("group", |trial| trial.group.as_deref().unwrap_or(UNKNOWN).render()),
+        ("trial", |trial| count(trial.period.map(u64::from)).render()),
+        ("condition", |trial| condition(trial.condition).render()),
+        ("ended by", |trial| trial.ended.map_or(UNKNOWN, EndReason::name).render()),
+        ("presses, human", |trial| trial.human_presses.render()),
+        ("robot", |trial| trial.robot_presses.render()),
+        ("errors", |trial| trial.errors.render()),
+        ("per press of the human", |trial| percent(trial.error_rate_human()).render()),
+        ("belief related", |trial| count(trial.beliefs.as_ref().map(|beliefs| beliefs.errors)).render()),
+        ("in a sequence", |trial| number(trial.sequence_length(), 1).render()),
+        ("signals", |trial| trial.signals.render()),
+        ("orders", |trial| trial.orders.render()),
+        ("s a press", |trial| number(trial.press_s, 2).render()),
     ];
-    let caption = match counting.len() > MOST_TRIALS {
-        true => format!(
-            "The first {MOST_TRIALS} of {} trials that count; all are in <code>trials.csv</code>.",
-            counting.len()
-        ),
-        false => "Trials that count.".to_string(),
-    };
-    let mut text = format!("<div class=\"scroll long\">{}</div>\n", table(&caption, &heads, &rows));
-    text += "<h3>Left out</h3>\n";
-    text += &match figures.left_out.len() {
-        0 => "<p>No trial is left out.</p>\n".to_string(),
-        _ => {
-            let rows: Vec<Vec<String>> = figures
-                .left_out
-                .iter()
-                .map(|one| [&one.recording, &one.participant, &one.reason].map(|text| escaped(text)).to_vec())
-                .collect();
-            table("Trials that do not count.", &["recording", "participant", "why"], &rows).replacen(
-                "<table>",
-                "<table class=\"text\">",
-                1,
-            )
+    let number = trials.iter().filter(|trial| trial.counts()).count();
+    let caption = html! {
+        @if number > MOST_TRIALS {
+            "The first " (MOST_TRIALS) " of " (number) " trials that count; all are in " code { "trials.csv" } "."
+        } @else {
+            "Trials that count."
         }
     };
-    if figures.practice > 0 {
-        let practice = words::count(figures.practice, "recording is", "recordings are");
-        text += &format!("<p class=\"note\">{practice} of practice, and no trial.</p>\n");
-    }
-    section("Trials", &text)
+    let printed = trials.iter().filter(|trial| trial.counts()).take(MOST_TRIALS);
+    captions.table_of_columns(caption, &columns, printed)
 }
 
-/// A condition in words.
-pub(super) fn condition(condition: Condition) -> &'static str {
-    match condition {
-        Condition::None => "unassisted",
-        Condition::Wizard => "wizard",
-        Condition::Assistant => "assistant",
+fn left_out(captions: &mut Captions, figures: &StudySummary) -> Markup {
+    if figures.left_out.is_empty() {
+        return html! { p { "No trial is left out." } "\n" };
     }
-}
-
-/// How it was done, from what the recordings say.
-pub(super) fn methods(figures: &StudySummary, facts: &Facts) -> String {
-    let all = |key: &str| facts.all(key).map_or("unknown".to_string(), |text| escaped(&text));
-    let planned = facts.all("plan").map_or(" without a plan".to_string(), |plan| {
-        format!(
-            " after the plan {} (name and digest; groups and orders of conditions follow from its seed)",
-            escaped(&plan)
-        )
-    });
-    let orders = facts.all("orders").map_or(String::new(), |orders| format!(" or {} served orders", escaped(&orders)));
-    let mut text = format!(
-        "<p>{} took part{planned}; {} recorded, {} left out of the analysis. Participants: {}. The task was that of the kitchen \
-         \u{201c}{}\u{201d}. A trial was to end after {} presses of both agents or {} s{orders}, whatever came first.{}{} A press \
-         of the robot took {}. Gaze came from {}{}. A signal was shown for {}.",
-        words::count(figures.participants, "participant", "participants"),
-        words::count(figures.trials + figures.left_out.len() as u64, "trial was", "trials were"),
-        figures.left_out.len(),
-        all("participant"),
-        all("kitchen"),
-        all("presses"),
-        all("seconds"),
-        endings(figures),
-        arms(figures),
-        all("robot"),
-        all("gaze"),
-        facts.all("accuracy").map_or(String::new(), |deg| format!(" (accuracy in checks: {deg}\u{b0})")),
-        all("shown"),
-    );
-    if facts.has("scripted wizard") {
-        text += &format!(
-            " The wizard was a script that sees kitchen, presses and gaze, and no estimate: {}.",
-            all("scripted wizard")
-        );
-    }
-    if facts.has("wizard saw") {
-        text += &format!(" The wizard saw {}", all("wizard saw"));
-        text += if facts.has("unblinded") { ", and in some trials what assistants would say." } else { "." };
-    }
-    text += &format!(
-        " The human model's temperature was \u{3c4} = {}, the cost of a signal {} presses. Recorded with tomcom {} (log format {}), \
-         seed {}; analysed with tomcom {}.</p>\n",
-        all("tau"),
-        all("cost"),
-        all("program"),
-        all("format"),
-        all("seed"),
-        env!("CARGO_PKG_VERSION"),
-    );
-    text += &format!(
-        "<p>Every recording was replayed event by event; errors, their causes{} were computed anew from the recorded events. \
-         {}</p>\n",
-        // Where nothing was asked of the concepts, nothing is known of what they would have said.
-        match figures.similarity.is_some() || figures.roc.iter().any(|roc| !roc.points.is_empty()) {
-            true => ", the estimate of beliefs and what each concept would have said",
-            false => " and the estimate of beliefs",
-        },
-        match figures.totals.beliefs_from {
-            Some(BeliefBasis::Recorded) =>
-                "Why presses were errors was judged by what the simulated participants recorded of their beliefs.",
-            Some(BeliefBasis::Raters) => "Why presses were errors was coded by two raters.",
-            Some(BeliefBasis::Estimate) =>
-                "Why presses were errors was judged by the assistant's estimate of the beliefs.",
-            None => "Why presses were errors is not known for all trials.",
-        }
-    );
-    section("Methods", &text)
-}
-
-/// How many trials ended how, in a sentence.
-fn endings(figures: &StudySummary) -> String {
-    let one = |(reason, &count): (&EndReason, &u64)| {
-        let how = match reason {
-            EndReason::Presses => "with the presses",
-            EndReason::Time => "as the time was over",
-            EndReason::Orders => "as the orders were served",
-            EndReason::Wizard => "as the wizard ended it before",
-            EndReason::Aborted => "aborted",
-        };
-        format!("{count} {how}")
-    };
-    let ended: Vec<String> = figures.ended.iter().map(one).collect();
-    let shorter = match figures.ended.keys().all(|reason| *reason == EndReason::Presses) {
-        true => "",
-        false => " Each counts as one trial, however long it was.",
-    };
-    match ended.is_empty() {
-        true => String::new(),
-        false => format!(" Of the trials that count ended {}.{shorter}", ended.join(", ")),
-    }
-}
-
-/// With which arms, in a sentence.
-fn arms(figures: &StudySummary) -> String {
-    let trials = |group: &ArmGroup| {
-        format!("{} in {}", super::robot::arm(group.kind), words::count(group.trials, "trial", "trials"))
-    };
-    match &figures.robot[..] {
-        [] => String::new(),
-        [one] => format!(" The robot\u{2019}s arm was {}.", super::robot::arm(one.kind)),
-        both => {
-            let both: Vec<String> = both.iter().map(trials).collect();
-            format!(" The robot\u{2019}s arm was {}; the figures pool them.", both.join(" and "))
-        }
-    }
+    let rows: Vec<Vec<Markup>> =
+        figures.left_out.iter().map(|one| cells([&one.recording, &one.participant, &one.reason])).collect();
+    captions.table_of_text("Trials that do not count.", &["recording", "participant", "why"], &rows)
 }
 
 /// What every term means.
-pub(super) fn definitions() -> String {
-    let one = |(term, text): &(&str, &str)| format!("<dt>{}</dt>\n<dd>{}</dd>\n", escaped(term), escaped(text));
-    section("Definitions", &format!("<dl>\n{}</dl>\n", DEFINITIONS.iter().map(one).collect::<String>()))
+pub(super) fn definitions() -> Markup {
+    let content = html! {
+        dl { @for (term, text) in DEFINITIONS { "\n" dt { (term) } "\n" dd { (text) } } } "\n"
+    };
+    section("Definitions", content)
 }
 
 /// The files beside the report that have something in them.
-pub(super) fn files(tables: &[Table]) -> String {
-    let names: Vec<String> = tables.iter().map(|table| format!("<code>{}.csv</code>", table.name())).collect();
-    let text = format!(
-        "<p>Beside this page: {}. The last one says what every column of the others means. Empty cells are unknown values; a \
-         recording's name joins the tables.</p>\n",
-        names.join(", ")
-    );
-    section("Tables", &text)
+pub(super) fn files(tables: &[Table]) -> Markup {
+    let content = html! {
+        p {
+            "Beside this page: "
+            @for (index, table) in tables.iter().enumerate() {
+                @if index > 0 { ", " }
+                code { (table.name()) ".csv" }
+            }
+            ". The last one says what every column of the others means. Empty cells are unknown values; a recording's name joins \
+            the tables."
+        }
+        "\n"
+    };
+    section("Tables", content)
 }

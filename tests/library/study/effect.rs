@@ -1,10 +1,11 @@
 //! The effect of assistance, against values of other programs.
 
 use tomcom::session::settings::Condition;
-use tomcom::study::effect::{StudyMeasure, effect, pairs};
+use tomcom::study::effect::{effect, pairs};
 use tomcom::study::facts::Facts;
 use tomcom::study::figures::StudySummary;
 use tomcom::study::statistics::{hodges_lehmann, mixed_anova, permutation_p};
+use tomcom::study::tables::trials::HEADLINE;
 use tomcom::study::trial::arrange;
 
 use super::{near, trial, trials};
@@ -13,7 +14,7 @@ use super::{near, trial, trials};
 #[test]
 fn the_assistance_effect_is_that_of_other_programs() {
     let trials = trials(&[[24, 12], [30, 16], [18, 16], [40, 22], [22, 10]], &[[20, 18], [16, 16], [28, 20], [24, 24]]);
-    let found = effect(StudyMeasure::ErrorRateHuman, &pairs(&trials, StudyMeasure::ErrorRateHuman), 1);
+    let found = effect(HEADLINE, &pairs(&trials, HEADLINE), 1);
     assert_eq!(found.groups, [5, 4]);
     let test = found.assistance().expect("a test");
     near(test.f, 7.070008537626539);
@@ -27,10 +28,8 @@ fn the_assistance_effect_is_that_of_other_programs() {
     // Half the shift.
     near(found.reduction.expect("an estimate").estimate, 0.0275);
     // Of groups of equal size the paper's coding tests the same.
-    let equal: Vec<(usize, [f64; 2])> = pairs(&trials, StudyMeasure::ErrorRateHuman)[1..]
-        .iter()
-        .map(|p| (usize::from(p.assisted_second), p.values))
-        .collect();
+    let equal: Vec<(usize, [f64; 2])> =
+        pairs(&trials, HEADLINE)[1..].iter().map(|p| (usize::from(p.assisted_second), p.values)).collect();
     let turned: Vec<(usize, [f64; 2])> =
         equal.iter().map(|&(group, [a, b])| (group, if group == 1 { [a, b] } else { [b, a] })).collect();
     near(mixed_anova(&turned).within.expect("a test").f, mixed_anova(&equal).interaction.expect("a test").f);
@@ -40,7 +39,7 @@ fn the_assistance_effect_is_that_of_other_programs() {
 fn what_is_missing_leaves_the_participant_out_of_the_pairs_and_nothing_is_invented() {
     let mut trials = trials(&[[24, 12], [30, 16]], &[[20, 18], [16, 16]]);
     trials[0].left_out = Some("excluded: the tracker slipped".to_string());
-    assert_eq!(pairs(&trials, StudyMeasure::ErrorRateHuman).len(), 3);
+    assert_eq!(pairs(&trials, HEADLINE).len(), 3);
     let figures = StudySummary::from_trials(&trials, &Facts::default(), 0);
     assert_eq!((figures.trials, figures.participants, figures.left_out.len()), (7, 4, 1));
     // A second trial that was done again counts as it was done the last time.
@@ -48,8 +47,7 @@ fn what_is_missing_leaves_the_participant_out_of_the_pairs_and_nothing_is_invent
     again.recording = "A1-2-again".to_string();
     trials.push(again);
     arrange(&mut trials);
-    let pair =
-        pairs(&trials, StudyMeasure::ErrorRateHuman).into_iter().find(|pair| pair.participant == "A1").expect("a pair");
+    let pair = pairs(&trials, HEADLINE).into_iter().find(|pair| pair.participant == "A1").expect("a pair");
     near(pair.values[1], 0.01);
     let nobody = StudySummary::from_trials(&[], &Facts::default(), 0);
     assert!(nobody.anova.is_none() && nobody.pearson.is_none() && nobody.permutation_p.is_none());

@@ -8,7 +8,7 @@ mod tables;
 use tomcom::base::time::SessionTime;
 use tomcom::session::event::EndReason;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
-use tomcom::study::robot::RobotSummary;
+use tomcom::study::robot_tally::RobotSummary;
 use tomcom::study::trial::{BeliefBasis, BeliefErrors, Trial, arrange};
 
 fn near(found: f64, wanted: f64) {

@@ -14,15 +14,14 @@ use tomcom::run::study::reading::{self, AnalysisScope};
 use tomcom::session::Event;
 use tomcom::session::event::EndReason;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
+use tomcom::study::column::{Table, TableCell, TableRow};
 use tomcom::study::facts::Facts;
 use tomcom::study::figures::StudySummary;
 use tomcom::study::prevention::PreventionCounts;
 use tomcom::study::report;
-use tomcom::study::robot::{ArmSummary, RobotTally};
+use tomcom::study::robot_tally::{ArmSummary, RobotTally};
 use tomcom::study::roc::SweptTrial;
-use tomcom::study::tables::Table;
 use tomcom::study::trial::{BeliefBasis, QuestionnaireAnswer, Trial};
-use tomcom::study::trial_row;
 
 use super::{at, near, trial, trials};
 
@@ -102,9 +101,13 @@ fn what_the_robot_did_is_counted_while_the_trial_is_on() {
     let given_up = [AbortReason::Contact, AbortReason::Skipped, AbortReason::NoClick].map(|why| found.given_up(why));
     assert_eq!(given_up, [Some(1), Some(1), Some(0)]);
     // A timed arm feels nothing: that is unknown, and not nought.
-    let row = trial_row::row(&Trial { robot: figures_of(ArmKind::Timed), ..trial("A0", 1, Condition::None, 4) });
-    assert_eq!((row.contacts, row.peak_force_n, row.reduced_s, row.given_up_no_click), (None, None, None, None));
-    assert_eq!((row.ended, row.arm, row.given_up_skipped), (Some("presses"), "timed", Some(1)));
+    let trial = Trial { robot: figures_of(ArmKind::Timed), ..trial("A0", 1, Condition::None, 4) };
+    let columns = Trial::columns();
+    let cell = |name: &str| columns.iter().find(|column| column.name == name).expect("a column").cell(&trial);
+    for unknown in ["contacts", "peak_force_n", "reduced_s", "given_up_no_click"] {
+        assert_eq!(cell(unknown), TableCell::Unknown, "{unknown}");
+    }
+    assert_eq!(["ended", "arm", "given_up_skipped"].map(cell), ["presses".into(), "timed".into(), 1u64.into()]);
 }
 
 #[test]

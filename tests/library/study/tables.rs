@@ -1,34 +1,206 @@
-//! The tables and their dictionary.
+//! The study's tables: columns that are declared once, the rows and the dictionary that follow, and the files they go to.
 
-use csv::Writer;
-use serde::Serialize;
-use tomcom::study::tables::{
-    ActionRow, AnswerRow, BeliefRow, CommunicationRow, ConceptRow, DictionaryRow, GazeRow, ParticipantRow, Table,
-};
-use tomcom::study::trial_row::TrialRow;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
 
-/// The names of the fields of a row, as they are written.
-fn columns(row: &impl Serialize) -> Vec<String> {
-    let mut out = Writer::from_writer(Vec::new());
-    out.serialize(row).expect("a flat row");
-    let text = String::from_utf8(out.into_inner().expect("bytes")).expect("text");
-    text.lines().next().unwrap_or_default().split(',').map(str::to_string).collect()
+use tomcom::edge::export::ExportFolder;
+use tomcom::run::study::reading::{self, AnalysisScope, RecordingAnalysis};
+use tomcom::session::settings::Condition;
+use tomcom::study::column::{Column, Table, TableCell, TableRow};
+use tomcom::study::dictionary::{DictionaryRow, columns, dictionary};
+use tomcom::study::tables::participants::participants;
+use tomcom::study::tables::trials::{HEADLINE, measures};
+use tomcom::study::trial::Trial;
+
+/// The columns that other people's scripts may name. Columns are appended; none is renamed, moved or taken away.
+const PUBLISHED: [(Table, &str); 9] = [
+    (
+        Table::Participants,
+        "participant kind group trials trials_counted assisted_second error_rate_human_1 error_rate_human_2 error_rate_1 \
+         error_rate_2 sequence_length_1 sequence_length_2 recovery_s_1 recovery_s_2 order_s_1 order_s_2 presses_per_order_1 \
+         presses_per_order_2 press_s_1 press_s_2",
+    ),
+    (
+        Table::Trials,
+        "recording participant kind seed group period condition assisted counts left_out ended arm human_presses robot_presses \
+         errors races error_rate_human error_rate beliefs_from belief_related_errors sequences sequence_length \
+         sequences_by_aspect sequence_length_by_aspect recovery_s orders order_s presses_per_order press_s signals duration_s \
+         protective_stops faults contacts peak_force_n reduced_s safeguard_s emergency_stops given_up_no_longer_useful \
+         given_up_stopped given_up_skipped given_up_driven given_up_out_of_reach given_up_singular given_up_obstructed \
+         given_up_hand_in_the_way given_up_no_click given_up_contact given_up_fault wizard_held wizard_skipped wizard_driven \
+         wizard_corrected",
+    ),
+    (Table::Questionnaires, "recording participant condition questionnaire item about reversed answer points"),
+    (
+        Table::Concepts,
+        "recording participant concept parameter presses signals related prevented outside false_presses false_inside harmless",
+    ),
+    (
+        Table::Actions,
+        "recording seq time_s agent press button effective since_s regret excess race error cause aspect second_aspect \
+         gain_nats sequence cause_estimated rater_1 rater_2 log_p",
+    ),
+    (Table::Communications, "recording lane time_s press kind target matched"),
+    (
+        Table::Beliefs,
+        "recording seq aspect truth estimate estimate_p_truth estimate_precision believed believed_p_truth",
+    ),
+    (Table::Gaze, "recording time_s duration_s location x y confidence samples"),
+    (Table::Dictionary, "table column unit meaning"),
+];
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study-tables").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// What a recording of a person gives, with errors, signals and gaze.
+fn analysis(name: &str) -> RecordingAnalysis {
+    let folder = folder(name);
+    fs::copy("tests/golden/format-1-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
+    let (_, analysis) = reading::read(&folder, "hand", AnalysisScope { concepts: false, events: true })
+        .expect("a recording")
+        .expect("a trial");
+    analysis
+}
+
+/// The first trial without signals, the second with them; the second has half the errors.
+fn pair() -> [Trial; 2] {
+    let second = Trial {
+        participant: "P01".to_string(),
+        period: Some(2),
+        condition: Condition::Wizard,
+        left_out: None,
+        order_s: Some(20.0),
+        presses_per_order: Some(16.5),
+        ..analysis("pair").trial
+    };
+    let first = Trial {
+        recording: "before".to_string(),
+        period: Some(1),
+        condition: Condition::None,
+        errors: second.errors * 2,
+        order_s: Some(31.25),
+        ..second.clone()
+    };
+    [first, second]
+}
+
+fn cell<'a, Row: TableRow>(row: &'a Row, name: &str) -> TableCell<'a> {
+    let columns = Row::columns();
+    let column = columns.iter().find(|column| column.name == name).unwrap_or_else(|| panic!("no column {name}"));
+    column.cell(row)
 }
 
 #[test]
-fn the_dictionary_says_what_every_column_means() {
-    let of_table = |table: Table| match table {
-        Table::Participants => columns(&ParticipantRow::default()),
-        Table::Trials => columns(&TrialRow::default()),
-        Table::Questionnaires => columns(&AnswerRow::default()),
-        Table::Concepts => columns(&ConceptRow::default()),
-        Table::Actions => columns(&ActionRow::default()),
-        Table::Communications => columns(&CommunicationRow::default()),
-        Table::Beliefs => columns(&BeliefRow::default()),
-        Table::Gaze => columns(&GazeRow::default()),
-        Table::Dictionary => columns(&DictionaryRow { table: "", column: "", unit: "", meaning: "" }),
-    };
-    for table in Table::ALL {
-        assert_eq!(of_table(table), table.columns().collect::<Vec<_>>(), "{}", table.name());
+fn published_columns_keep_their_names_and_places() {
+    for (table, published) in PUBLISHED {
+        let published: Vec<&str> = published.split(' ').collect();
+        let columns = columns(table);
+        let names: Vec<&str> = columns.iter().map(|column| column.column.as_ref()).collect();
+        assert!(names.len() >= published.len(), "{}: {names:?}", table.name());
+        assert_eq!(names[..published.len()], published, "{}", table.name());
     }
+}
+
+#[test]
+fn columns_have_names_of_their_own_that_need_no_quotes() {
+    for table in Table::ALL {
+        let columns = columns(table);
+        let names: BTreeSet<&str> = columns.iter().map(|column| column.column.as_ref()).collect();
+        assert_eq!(names.len(), columns.len(), "{}", table.name());
+        let is_plain = |name: &&str| name.chars().all(|sign| matches!(sign, 'a'..='z' | '0'..='9' | '_'));
+        assert_eq!(names.iter().find(|name| !is_plain(name)), None, "{}", table.name());
+    }
+    let described: BTreeSet<Table> = dictionary().map(|row| row.table).collect();
+    assert_eq!(described, BTreeSet::from(Table::ALL));
+}
+
+/// A statistic that is compared is declared once, and is then a column of trials and two of participants.
+#[test]
+fn statistics_stand_in_both_tables_with_the_same_values() {
+    let trials = pair();
+    let rows: Vec<_> = participants(&trials).collect();
+    let [participant] = &rows[..] else { panic!("one participant") };
+    assert_eq!(cell(participant, "assisted_second"), TableCell::Flag(true));
+    assert_eq!(measures()[0], HEADLINE);
+    let names: BTreeSet<&str> = measures().iter().map(|measure| measure.name).collect();
+    assert_eq!(names.len(), measures().len());
+    for measure in measures() {
+        let values = trials.each_ref().map(|trial| cell(trial, measure.name));
+        assert_eq!(values.clone(), trials.each_ref().map(|trial| (measure.value)(trial).into()), "{}", measure.name);
+        for (value, period) in values.into_iter().zip(1..) {
+            assert_ne!(value, TableCell::Unknown, "{}", measure.name);
+            assert_eq!(cell(participant, &format!("{}_{period}", measure.name)), value, "{}", measure.name);
+        }
+        let meanings = columns(Table::Participants).into_iter().filter(|row| row.column.starts_with(measure.name));
+        let said: Vec<String> = meanings.map(|row| row.meaning.into_owned()).collect();
+        assert!(said.iter().any(|text| text.contains("first")), "{said:?}");
+        assert!(said.iter().all(|text| !text.contains("{}")), "{said:?}");
+    }
+}
+
+/// The fields of a column of a table in a folder.
+fn fields(folder: &Path, table: Table, column: &str) -> Vec<String> {
+    let mut file = csv::Reader::from_path(folder.join(format!("{}.csv", table.name()))).expect("a table");
+    let heads = file.headers().expect("a first line").clone();
+    let index = heads.iter().position(|name| name == column).unwrap_or_else(|| panic!("no column {column}"));
+    file.records().map(|row| row.expect("as many fields as the first line")[index].to_string()).collect()
+}
+
+#[test]
+fn tables_are_written_as_they_are_declared() {
+    let folder = folder("written");
+    let export = ExportFolder::create(&folder).expect("a folder");
+    let [mut first, second] = pair();
+    first.left_out = Some("excluded: \"slipped\", and\nleft".to_string());
+    let trials = [first, second];
+    assert_eq!(export.table::<Trial>(&trials).expect("a table"), Some(Table::Trials));
+    assert_eq!(export.table::<DictionaryRow>(dictionary()).expect("a table"), Some(Table::Dictionary));
+    assert_eq!(export.table::<Trial>(&[]).expect("a table"), None, "a table without rows");
+    assert_eq!(fields(&folder, Table::Trials, "recording"), Vec::<String>::new());
+    export.table::<Trial>(&trials).expect("a table");
+    let trial = |column: &str| fields(&folder, Table::Trials, column);
+    assert_eq!(trial("left_out"), ["excluded: \"slipped\", and\nleft", ""]);
+    assert_eq!(trial("counts"), ["false", "true"]);
+    assert_eq!(trial("period"), ["1", "2"]);
+    assert_eq!(trial("order_s"), ["31.25", "20.0"]);
+    // What a timed arm would have felt is unknown, and not nought.
+    assert_eq!([trial("contacts"), trial("given_up_fault")], [["", ""], ["", ""]]);
+    assert!(trial("given_up_stopped").iter().all(|count| count.parse::<u64>().is_ok()));
+    let described = fields(&folder, Table::Dictionary, "column");
+    let of_trials: Vec<String> = fields(&folder, Table::Dictionary, "table");
+    let of_trials = of_trials.iter().zip(described).filter(|(table, _)| *table == "trials").map(|(_, column)| column);
+    let heads: Vec<String> = Trial::columns().into_iter().map(|Column { name, .. }| name.into_owned()).collect();
+    assert_eq!(of_trials.collect::<Vec<_>>(), heads);
+}
+
+/// Rows of events go through files of their own, without a first line.
+#[test]
+fn tables_of_events_say_what_happened() {
+    let folder = folder("events");
+    let RecordingAnalysis { trial, rows, .. } = analysis("recording");
+    let export = ExportFolder::create(&folder).expect("a folder");
+    export.keep(0, &rows).expect("files");
+    assert_eq!(export.tables_of_events(&[0]).expect("tables"), Table::OF_EVENTS);
+    let actions = |column: &str| fields(&folder, Table::Actions, column);
+    let agents = actions("agent");
+    let count = |agent: &str| agents.iter().filter(|one| *one == agent).count() as u64;
+    assert_eq!([count("human"), count("robot")], [trial.human_presses, trial.robot_presses]);
+    let errors = actions("error").iter().filter(|error| *error == "true").count() as u64;
+    assert_eq!((errors, errors > 0), (trial.errors, true));
+    // Nothing is judged of the robot, and every press of the human is.
+    let judged = actions("regret").iter().zip(&agents).all(|(regret, agent)| (agent == "human") != regret.is_empty());
+    assert!(judged);
+    let human: BTreeSet<String> =
+        actions("seq").into_iter().zip(&agents).filter(|(_, agent)| *agent == "human").map(|(seq, _)| seq).collect();
+    let believed: BTreeSet<String> = fields(&folder, Table::Beliefs, "seq").into_iter().collect();
+    assert_eq!(believed, human);
+    let sequences: BTreeSet<String> = actions("sequence").into_iter().filter(|number| !number.is_empty()).collect();
+    assert_eq!(sequences.len(), trial.beliefs.expect("an estimate").lengths.len());
+    let sent = fields(&folder, Table::Communications, "lane").len() as u64;
+    assert_eq!((sent, sent > 0), (trial.signals, true));
 }

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::trial::Trial;
 use crate::base::time::SessionTime;
 use crate::communication::Sender;
 use crate::robot::AbortReason;
@@ -57,7 +56,8 @@ impl RobotSummary {
         (self.arm.is_some() || !reason.is_of_physics()).then(|| count.unwrap_or(0))
     }
 
-    fn add(&mut self, other: &RobotSummary) {
+    /// Adds what was counted in another trial.
+    pub fn add(&mut self, other: &RobotSummary) {
         self.emergency_stops += other.emergency_stops;
         for (&reason, count) in &other.given_up {
             *self.given_up.entry(reason).or_default() += count;
@@ -76,28 +76,6 @@ impl RobotSummary {
             arm.safeguard_s += other.safeguard_s;
         }
     }
-}
-
-/// The figures of the trials with one kind of arm together.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ArmGroup {
-    pub kind: ArmKind,
-    pub trials: u64,
-    #[serde(flatten)]
-    pub robot: RobotSummary,
-}
-
-/// By kind of arm, those that occur.
-pub fn by_arm(trials: &[&Trial]) -> Vec<ArmGroup> {
-    let of = |kind: ArmKind| {
-        let mut group = ArmGroup { kind, trials: 0, robot: RobotSummary::default() };
-        for trial in trials.iter().filter(|trial| trial.arm == kind) {
-            group.trials += 1;
-            group.robot.add(&trial.robot);
-        }
-        (group.trials > 0).then_some(group)
-    };
-    [ArmKind::Timed, ArmKind::Physics].into_iter().filter_map(of).collect()
 }
 
 /// Counts along a recording.

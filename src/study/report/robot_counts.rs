@@ -1,27 +1,22 @@
 //! What the robot did beside its presses, and what the wizard did with it.
 
-use super::{count, number, section, table};
-use crate::robot::AbortReason;
-use crate::session::settings::ArmKind;
-use crate::study::figures::StudySummary;
-use crate::study::robot::{ArmGroup, ArmSummary};
+use maud::{Markup, Render, html};
 
-/// An arm in words.
-pub(super) fn arm(kind: ArmKind) -> &'static str {
-    match kind {
-        ArmKind::Timed => "timed",
-        ArmKind::Physics => "simulated in the physics",
-    }
-}
+use super::elements::{Captions, arm, count, nothing, number, section};
+use crate::base::words;
+use crate::robot::AbortReason;
+use crate::study::arm_group::ArmGroup;
+use crate::study::figures::StudySummary;
+use crate::study::robot_tally::ArmSummary;
 
 /// A table with a column for each kind of arm.
-pub(super) fn robot(figures: &StudySummary) -> String {
+pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let groups = &figures.robot;
     if groups.is_empty() {
-        return String::new();
+        return nothing();
     }
-    let row = |what: &str, of: &dyn Fn(&ArmGroup) -> String| {
-        std::iter::once(what.to_string()).chain(groups.iter().map(of)).collect::<Vec<String>>()
+    let row = |what: &str, of: &dyn Fn(&ArmGroup) -> String| -> Vec<Markup> {
+        std::iter::once(what.render()).chain(groups.iter().map(|group| of(group).render())).collect()
     };
     let felt = |what: &str, of: fn(&ArmSummary) -> u64| row(what, &|group| count(group.robot.arm.as_ref().map(of)));
     let seconds = |what: &str, of: fn(&ArmSummary) -> Option<f64>| {
@@ -48,13 +43,11 @@ pub(super) fn robot(figures: &StudySummary) -> String {
         did("driven by the wizard", |group| group.robot.driven),
         did("places put right by the wizard", |group| group.robot.corrected),
     ]);
-    let head = |group: &ArmGroup| {
-        let trials = crate::base::words::count(group.trials, "trial", "trials");
-        format!("{}, {trials}", arm(group.kind))
+    let head = |group: &ArmGroup| format!("{}, {}", arm(group.kind), words::count(group.trials, "trial", "trials"));
+    let heads: Vec<String> = std::iter::once("arm".to_string()).chain(groups.iter().map(head)).collect();
+    let caption = html! {
+        "Sums over trials, pauses included, by arm. A timed arm has nothing to feel with. Each trial\u{2019}s are in "
+        code { "trials.csv" } "."
     };
-    let heads: Vec<String> = groups.iter().map(head).collect();
-    let heads: Vec<&str> = ["arm"].into_iter().chain(heads.iter().map(String::as_str)).collect();
-    let caption = "Sums over trials, pauses included, by arm. A timed arm has nothing to feel with. Each trial\u{2019}s are in \
-                   <code>trials.csv</code>.";
-    section("The robot", &table(caption, &heads, &rows))
+    section("The robot", captions.table(caption, &heads, &rows))
 }

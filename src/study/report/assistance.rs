@@ -1,0 +1,137 @@
+//! The effect of assistance.
+
+use maud::{Markup, Render, html};
+
+use super::elements::{
+    Captions, PageColumn, UNKNOWN, cells, condition, keys, nothing, number, p_sentence, p_value, percent, range,
+    scroll, section, with_interval,
+};
+use crate::study::charts;
+use crate::study::effect::AssistanceEffect;
+use crate::study::figures::{StudyConditionSummary, StudySummary};
+use crate::study::statistics::FTest;
+use crate::study::trial::Trial;
+
+/// Whether assistance helps: charts, means by condition, and tests.
+pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
+    let key = keys(&[("first", "assisted first"), ("second", "unassisted first")]);
+    let of_conditions = keys(&[("unassisted", "unassisted"), ("assisted", "assisted")]);
+    let pictures = html! {
+        (captions.figure(charts::errors_by_condition(trials), html! {
+            "Errors by condition; a line is a participant with both trials, black the mean of their rates, in which each \
+             counts the same. The table\u{2019}s share is that of all presses together." (key)
+        }))
+        (captions.figure(charts::improvements(trials), "By how much the second trial has fewer errors in 100 presses. \
+            Practice moves both groups, assistance moves them apart."))
+        (captions.figure(charts::press_durations(trials), html! {
+            "Median seconds from press to press, a sign of experience." (of_conditions)
+        }))
+        (captions.figure(charts::sequence_lengths(&figures.conditions), html! {
+            "How many error sequences of each length a trial has, in the mean." (of_conditions)
+        }))
+    };
+    if pictures.0.is_empty() {
+        return nothing();
+    }
+    let headline = figures.effects.first();
+    let content = html! {
+        (scroll(conditions(captions, figures)))
+        div class="figures" { (pictures) } "\n"
+        (headline.map_or_else(nothing, in_words))
+        h3 { "Tests" } "\n"
+        (scroll(tests(captions, figures)))
+        @if let Some(effect) = headline { (anova(captions, effect)) }
+    };
+    section("Does assistance help?", content)
+}
+
+fn conditions(captions: &mut Captions, figures: &StudySummary) -> Markup {
+    let columns: [PageColumn<StudyConditionSummary>; 11] = [
+        ("condition", |one| condition(one.condition).render()),
+        ("trials", |one| one.trials.render()),
+        ("errors a trial", |one| number(one.mean_errors, 1).render()),
+        ("per press of the human", |one| percent(one.totals.error_rate_human).render()),
+        ("per press of both", |one| percent(one.totals.error_rate).render()),
+        ("belief related", |one| percent(one.totals.belief_related_share).render()),
+        ("errors in a sequence", |one| number(one.totals.mean_sequence_length, 2).render()),
+        ("s to recover", |one| number(one.totals.mean_recovery_s, 1).render()),
+        ("s for an order", |one| number(one.mean_order_s, 1).render()),
+        ("s a press", |one| number(one.mean_press_s, 2).render()),
+        ("signals", |one| one.totals.signals.render()),
+    ];
+    let caption = "By condition. Shares are of all presses, or errors, of a condition together, so that long trials weigh more; \
+                   errors a trial, seconds for an order and seconds a press are means over trials.";
+    captions.table_of_columns(caption, &columns, figures.conditions.iter())
+}
+
+/// What the first effect says, in a sentence.
+fn in_words(effect: &AssistanceEffect) -> Markup {
+    let (Some(reduction), Some(test)) = (effect.reduction, effect.assistance()) else { return nothing() };
+    let [estimate, low, high] = [reduction.estimate, reduction.low, reduction.high].map(|value| 100.0 * value);
+    let interval = match low.is_finite() && high.is_finite() {
+        true => format!(", interval of {:.1} %: {}", 100.0 * reduction.level, range([low, high], 1)),
+        false => ", with too few participants for an interval".to_string(),
+    };
+    let degrees = format!("{:.0},\u{a0}{:.0}", test.df[0], test.df[1]);
+    html! {
+        p {
+            "Assistance takes " (number(Some(estimate), 1)) " errors away from 100 presses of the human (Hodges-Lehmann"
+            (interval) "). Interaction of period and starting group: F(" (degrees) ")\u{a0}=\u{a0}"
+            (number(Some(test.f), 2)) ", " (p_sentence(Some(test.p))) "."
+        }
+        "\n"
+    }
+}
+
+/// A line for each statistic that is compared.
+fn tests(captions: &mut Captions, figures: &StudySummary) -> Markup {
+    let columns: [PageColumn<AssistanceEffect>; 10] = [
+        ("less of it with assistance?", |effect| effect.measure.title.render()),
+        ("participants", |effect| format!("{} + {}", effect.groups[0], effect.groups[1]).render()),
+        ("F (interaction)", |effect| number(effect.assistance().map(|test| test.f), 2).render()),
+        ("p", |effect| p_value(effect.assistance().map(|test| test.p)).render()),
+        ("partial \u{3b7}\u{b2}", |effect| number(effect.assistance().map(|test| test.partial_eta_sq), 2).render()),
+        ("r", |effect| number(effect.pearson.map(|found| found.r), 2).render()),
+        ("p of r", |effect| p_value(effect.pearson.map(|found| found.p)).render()),
+        ("permutation p", |effect| p_value(effect.permutation_p).render()),
+        ("less by", |effect| {
+            let found = effect.reduction;
+            with_interval(
+                found.map(|found| found.estimate),
+                found.map(|found| [found.low, found.high]),
+                effect.measure.digits,
+            )
+        }),
+        ("Hedges\u{2019} g", |effect| number(effect.hedges_g, 2).render()),
+    ];
+    let caption = "Tests of what assistance takes away. Participants: assisted in the second trial + in the first. Less by: the \
+                   Hodges-Lehmann estimate with its interval (at least 95 %).";
+    captions.table_of_columns(caption, &columns, figures.effects.iter())
+}
+
+/// The whole analysis of variance, in both codings.
+fn anova(captions: &mut Captions, effect: &AssistanceEffect) -> Markup {
+    let row = |what: &dyn Render, test: Option<FTest>| {
+        cells([
+            what,
+            &number(test.map(|test| test.f), 3),
+            &test.map_or(UNKNOWN.to_string(), |test| format!("{:.0}, {:.0}", test.df[0], test.df[1])),
+            &p_value(test.map(|test| test.p)),
+            &number(test.map(|test| test.partial_eta_sq), 3),
+        ])
+    };
+    let (period, condition) = (&effect.by_period, &effect.by_condition);
+    let rows = [
+        row(&"period (within)", period.within),
+        row(&"starting group (between)", period.between),
+        row(&html! { "period \u{d7} starting group: " b { "assistance" } }, period.interaction),
+        row(&"the paper\u{2019}s coding: condition (within)", condition.within),
+        row(&"the paper\u{2019}s coding: starting group (between)", condition.between),
+        row(&"the paper\u{2019}s coding: condition \u{d7} starting group", condition.interaction),
+    ];
+    let heads = ["", "F", "degrees of freedom", "p", "partial \u{3b7}\u{b2}"];
+    html! {
+        h3 { "Mixed ANOVA of " (effect.measure.title) } "\n"
+        (captions.table("Mixed ANOVA, in the coding of a crossover and in the paper\u{2019}s.", &heads, &rows))
+    }
+}

@@ -1,0 +1,174 @@
+//! What the page is put together from: sections, figures, tables, and numbers as they are written.
+
+use maud::{Markup, PreEscaped, Render, html};
+
+use crate::session::settings::{ArmKind, Condition};
+use crate::study::svg::minus;
+
+/// What stands where nothing is known.
+pub(super) const UNKNOWN: &str = "\u{2013}";
+
+/// Counts figures and tables, which are numbered in the order of the page.
+#[derive(Debug, Default)]
+pub(super) struct Captions {
+    figures: u32,
+    tables: u32,
+}
+
+impl Captions {
+    /// A picture with what it shows; nothing where there is none.
+    pub(super) fn figure(&mut self, picture: Option<Markup>, caption: impl Render) -> Markup {
+        let Some(picture) = picture else { return nothing() };
+        self.figures += 1;
+        html! {
+            figure { (picture) figcaption { b { "Figure\u{a0}" (self.figures) "." } " " (caption) } }
+            "\n"
+        }
+    }
+
+    /// A table with what it shows; the first column is text, all others are figures. What is to be said of it stands in its
+    /// caption, which no page parts from it.
+    pub(super) fn table(&mut self, caption: impl Render, heads: &[impl Render], rows: &[Vec<Markup>]) -> Markup {
+        self.table_of_class(None, caption, heads, rows)
+    }
+
+    /// The same with a row for each of `rows`; every column has its head and what stands in it.
+    pub(super) fn table_of_columns<'r, Row: 'r>(
+        &mut self,
+        caption: impl Render,
+        columns: &[PageColumn<Row>],
+        rows: impl Iterator<Item = &'r Row>,
+    ) -> Markup {
+        let heads: Vec<&str> = columns.iter().map(|(head, _)| *head).collect();
+        let rows: Vec<Vec<Markup>> = rows.map(|row| columns.iter().map(|(_, value)| value(row)).collect()).collect();
+        self.table(caption, &heads, &rows)
+    }
+
+    /// A table of which all columns are text.
+    pub(super) fn table_of_text(
+        &mut self,
+        caption: impl Render,
+        heads: &[impl Render],
+        rows: &[Vec<Markup>],
+    ) -> Markup {
+        self.table_of_class(Some("text"), caption, heads, rows)
+    }
+
+    fn table_of_class(
+        &mut self,
+        class: Option<&str>,
+        caption: impl Render,
+        heads: &[impl Render],
+        rows: &[Vec<Markup>],
+    ) -> Markup {
+        self.tables += 1;
+        html! {
+            table class=[class] {
+                caption { b { "Table\u{a0}" (self.tables) "." } " " (caption) }
+                thead { tr { @for head in heads { th { (head) } } } }
+                tbody {
+                    @for row in rows { "\n" tr { @for cell in row { td { (cell) } } } }
+                }
+            }
+            "\n"
+        }
+    }
+}
+
+/// A column of a table on the page: its head, and what stands in it.
+pub(super) type PageColumn<Row> = (&'static str, fn(&Row) -> Markup);
+
+/// No element.
+pub(super) fn nothing() -> Markup {
+    PreEscaped(String::new())
+}
+
+/// The cells of a row.
+pub(super) fn cells<const N: usize>(cells: [&dyn Render; N]) -> Vec<Markup> {
+    cells.into_iter().map(Render::render).collect()
+}
+
+/// A section with a heading; nothing without content.
+pub(super) fn section(heading: &str, content: Markup) -> Markup {
+    if content.0.is_empty() {
+        return nothing();
+    }
+    html! { section { h2 { (heading) } "\n" (content) } "\n" }
+}
+
+/// What can be scrolled sideways where it is too wide.
+pub(super) fn scroll(content: Markup) -> Markup {
+    html! { div class="scroll" { (content) } "\n" }
+}
+
+/// What colours mean: classes with words.
+pub(super) fn keys(keys: &[(&str, &str)]) -> Markup {
+    html! {
+        @for (class, word) in keys { " " span class="of" { i class={ "key " (class) } {} (word) } }
+    }
+}
+
+/// A number with so many digits behind the point; a dash for nothing.
+pub(super) fn number(value: Option<f64>, digits: usize) -> String {
+    value.filter(|value| value.is_finite()).map_or(UNKNOWN.to_string(), |value| minus(&format!("{value:.digits$}")))
+}
+
+/// A number with its interval below it, where there is one.
+pub(super) fn with_interval(value: Option<f64>, interval: Option<[f64; 2]>, digits: usize) -> Markup {
+    html! { (number(value, digits)) @if let Some(ends) = interval { small { (range(ends, digits)) } } }
+}
+
+pub(super) fn percent(value: Option<f64>) -> String {
+    value.map_or(UNKNOWN.to_string(), |value| format!("{:.1} %", 100.0 * value))
+}
+
+/// A probability of a test, as journals want it.
+pub(super) fn p_value(p: Option<f64>) -> String {
+    match p {
+        None => UNKNOWN.to_string(),
+        Some(p) if p < 0.001 => "< 0.001".to_string(),
+        Some(p) => format!("{p:.3}"),
+    }
+}
+
+/// The same in a sentence, with its sign; no line breaks in it.
+pub(super) fn p_sentence(p: Option<f64>) -> String {
+    match p {
+        Some(p) if p < 0.001 => "p\u{a0}<\u{a0}0.001".to_string(),
+        p => format!("p\u{a0}=\u{a0}{}", p_value(p)),
+    }
+}
+
+/// From … to …; words where that is not bounded.
+pub(super) fn range([low, high]: [f64; 2], digits: usize) -> String {
+    if low.is_infinite() && high.is_infinite() {
+        return "no interval: too few".to_string();
+    }
+    let end = |value: f64| match value {
+        f64::INFINITY => "\u{221e}".to_string(),
+        f64::NEG_INFINITY => "\u{2212}\u{221e}".to_string(),
+        value => minus(&format!("{value:.digits$}")),
+    };
+    format!("{} to {}", end(low), end(high))
+}
+
+pub(super) fn count(value: Option<u64>) -> String {
+    value.map_or(UNKNOWN.to_string(), |value| value.to_string())
+}
+
+/// A condition in words.
+pub(super) fn condition(condition: Condition) -> &'static str {
+    match condition {
+        Condition::None => "unassisted",
+        Condition::Wizard => "wizard",
+        Condition::Assistant => "assistant",
+    }
+}
+
+/// An arm in words.
+pub(super) fn arm(kind: ArmKind) -> &'static str {
+    match kind {
+        ArmKind::Timed => "timed",
+        ArmKind::Physics => "simulated in the physics",
+    }
+}

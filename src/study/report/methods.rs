@@ -1,0 +1,134 @@
+//! How it was done, from what the recordings say.
+
+use maud::{Markup, html};
+
+use super::elements::{arm, section};
+use crate::base::words;
+use crate::session::event::EndReason;
+use crate::study::arm_group::ArmGroup;
+use crate::study::facts::Facts;
+use crate::study::figures::StudySummary;
+use crate::study::trial::BeliefBasis;
+
+/// How the trials were run, and how they were analysed.
+pub(super) fn methods(figures: &StudySummary, facts: &Facts) -> Markup {
+    let content = html! {
+        p { (conduct(figures, facts)) (wizard(facts)) (versions(facts)) } "\n"
+        p { (analysis(figures)) } "\n"
+    };
+    section("Methods", content)
+}
+
+/// What is known of a kind.
+fn all(facts: &Facts, key: &str) -> String {
+    facts.all(key).unwrap_or_else(|| "unknown".to_string())
+}
+
+fn conduct(figures: &StudySummary, facts: &Facts) -> String {
+    let planned = facts.all("plan").map_or(" without a plan".to_string(), |plan| {
+        format!(" after the plan {plan} (name and digest; groups and orders of conditions follow from its seed)")
+    });
+    let orders = facts.all("orders").map_or(String::new(), |orders| format!(" or {orders} served orders"));
+    let accuracy = facts.all("accuracy").map_or(String::new(), |deg| format!(" (accuracy in checks: {deg}\u{b0})"));
+    let all = |key| all(facts, key);
+    format!(
+        "{} took part{planned}; {} recorded, {} left out of the analysis. Participants: {}. The task was that of the kitchen \
+         \u{201c}{}\u{201d}. A trial was to end after {} presses of both agents or {} s{orders}, whatever came first.{}{} A press \
+         of the robot took {}. Gaze came from {}{accuracy}. A signal was shown for {}.",
+        words::count(figures.participants, "participant", "participants"),
+        words::count(figures.trials + figures.left_out.len() as u64, "trial was", "trials were"),
+        figures.left_out.len(),
+        all("participant"),
+        all("kitchen"),
+        all("presses"),
+        all("seconds"),
+        endings(figures),
+        arms(figures),
+        all("robot"),
+        all("gaze"),
+        all("shown"),
+    )
+}
+
+/// What the wizard was, and saw.
+fn wizard(facts: &Facts) -> Markup {
+    html! {
+        @if facts.has("scripted wizard") {
+            " The wizard was a script that sees kitchen, presses and gaze, and no estimate: " (all(facts, "scripted wizard")) "."
+        }
+        @if facts.has("wizard saw") {
+            " The wizard saw " (all(facts, "wizard saw"))
+            @if facts.has("unblinded") { ", and in some trials what assistants would say." } @else { "." }
+        }
+    }
+}
+
+fn versions(facts: &Facts) -> String {
+    let all = |key| all(facts, key);
+    format!(
+        " The human model's temperature was \u{3c4} = {}, the cost of a signal {} presses. Recorded with tomcom {} (log format {}), \
+         seed {}; analysed with tomcom {}.",
+        all("tau"),
+        all("cost"),
+        all("program"),
+        all("format"),
+        all("seed"),
+        env!("CARGO_PKG_VERSION"),
+    )
+}
+
+fn analysis(figures: &StudySummary) -> String {
+    // Where nothing was asked of the concepts, nothing is known of what they would have said.
+    let computed = match figures.similarity.is_some() || figures.roc.iter().any(|roc| !roc.points.is_empty()) {
+        true => ", the estimate of beliefs and what each concept would have said",
+        false => " and the estimate of beliefs",
+    };
+    let causes = match figures.totals.beliefs_from {
+        Some(BeliefBasis::Recorded) => {
+            "Why presses were errors was judged by what the simulated participants recorded of their beliefs."
+        }
+        Some(BeliefBasis::Raters) => "Why presses were errors was coded by two raters.",
+        Some(BeliefBasis::Estimate) => "Why presses were errors was judged by the assistant's estimate of the beliefs.",
+        None => "Why presses were errors is not known for all trials.",
+    };
+    format!(
+        "Every recording was replayed event by event; errors, their causes{computed} were computed anew from the recorded events. \
+         {causes}"
+    )
+}
+
+/// How many trials ended how, in a sentence.
+fn endings(figures: &StudySummary) -> String {
+    let one = |(reason, &count): (&EndReason, &u64)| {
+        let how = match reason {
+            EndReason::Presses => "with the presses",
+            EndReason::Time => "as the time was over",
+            EndReason::Orders => "as the orders were served",
+            EndReason::Wizard => "as the wizard ended it before",
+            EndReason::Aborted => "aborted",
+        };
+        format!("{count} {how}")
+    };
+    let ended: Vec<String> = figures.ended.iter().map(one).collect();
+    let shorter = match figures.ended.keys().all(|reason| *reason == EndReason::Presses) {
+        true => "",
+        false => " Each counts as one trial, however long it was.",
+    };
+    match ended.is_empty() {
+        true => String::new(),
+        false => format!(" Of the trials that count ended {}.{shorter}", ended.join(", ")),
+    }
+}
+
+/// With which arms, in a sentence.
+fn arms(figures: &StudySummary) -> String {
+    let trials = |group: &ArmGroup| format!("{} in {}", arm(group.kind), words::count(group.trials, "trial", "trials"));
+    match &figures.robot[..] {
+        [] => String::new(),
+        [one] => format!(" The robot\u{2019}s arm was {}.", arm(one.kind)),
+        both => {
+            let both: Vec<String> = both.iter().map(trials).collect();
+            format!(" The robot\u{2019}s arm was {}; the figures pool them.", both.join(" and "))
+        }
+    }
+}

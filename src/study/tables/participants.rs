@@ -1,0 +1,55 @@
+//! The table of participants, with what is compared between their trials.
+
+use crate::study::column::{Column, Table, TableRow};
+use crate::study::effect::{StudyMeasure, TrialPair, pairs};
+use crate::study::tables::trials::{HEADLINE, measures};
+use crate::study::trial::Trial;
+
+/// A participant: its trials, at least one.
+#[derive(Clone, Copy, Debug)]
+pub struct ParticipantRow<'a>(&'a [Trial]);
+
+/// The participants of trials in the order of participants.
+pub fn participants(trials: &[Trial]) -> impl Iterator<Item = ParticipantRow<'_>> {
+    trials.chunk_by(|a, b| a.participant == b.participant).map(ParticipantRow)
+}
+
+impl ParticipantRow<'_> {
+    /// The two trials that are compared, if there are two that count and have this measure.
+    fn pair(&self, measure: StudyMeasure) -> Option<TrialPair> {
+        pairs(self.0, measure).pop()
+    }
+}
+
+impl TableRow for ParticipantRow<'_> {
+    const TABLE: Table = Table::Participants;
+
+    fn columns() -> Vec<Column<Self>> {
+        let code = "code; with the seed in front where several seeds are analysed together";
+        let kind = "simulated, keyboard (at the console) or display (at the wall display)";
+        let group = "starting group of the plan; AB has the conditions in the plan's order";
+        let second = "the second trial is the assisted one; empty without a pair of trials that count";
+        let mut columns: Vec<Column<Self>> = vec![
+            Self::column("participant", "", code, |row| (&row.0[0].participant).into()),
+            Self::column("kind", "", kind, |row| row.0[0].kind_name().into()),
+            Self::column("group", "", group, |row| row.0[0].group.as_ref().into()),
+            Self::column("trials", "trials", "recorded", |row| (row.0.len() as u64).into()),
+            Self::column("trials_counted", "trials", "that are not left out", |row| {
+                (row.0.iter().filter(|trial| trial.counts()).count() as u64).into()
+            }),
+            Self::column("assisted_second", "", second, |row| {
+                row.pair(HEADLINE).map(|pair| pair.assisted_second).into()
+            }),
+        ];
+        for measure in measures() {
+            for (index, period) in ["first", "second"].into_iter().enumerate() {
+                let name = format!("{}_{}", measure.name, index + 1);
+                let meaning = measure.meaning_in.replace("{}", period);
+                columns.push(Self::column(name, measure.unit, meaning, move |row| {
+                    row.pair(measure).map(|pair| pair.values[index]).into()
+                }));
+            }
+        }
+        columns
+    }
+}

@@ -26,6 +26,7 @@ mod gaze_status;
 mod hands;
 pub mod header;
 pub mod orders;
+pub mod participant_code;
 mod participant_settings;
 mod phase;
 pub mod plan;

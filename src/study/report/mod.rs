@@ -1,5 +1,6 @@
 //! The report: one page that needs nothing beside it, for screen and paper.
 
+pub mod page_head;
 mod results;
 mod robot;
 mod sections;
@@ -29,8 +30,9 @@ pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[T
         sections::files(tables),
     ];
     let title = escaped(&figures.title);
+    let about = page_head::about(trials.iter().map(|trial| trial.participant.as_str()));
     format!(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n\
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n{about}\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
          <main>\n<h1>{title}</h1>\n{}</main>\n</body>\n</html>\n",
         numbered(&numbered(&body.concat(), "<figcaption>", "Figure"), "<caption>", "Table")

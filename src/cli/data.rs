@@ -12,6 +12,7 @@ use crate::base::words::count;
 use crate::edge::forget::{self, ParticipantData};
 use crate::run::codes::{self, CodedRecording, CodesSummary};
 use crate::run::review;
+use crate::session::participant_code;
 use crate::session::settings::is_code;
 
 /// Prints raters' codes of errors, and their agreement.
@@ -66,11 +67,13 @@ pub(super) fn rate(recording: &Path, rater: &str) -> Result<(), Failure> {
 
 /// Deletes everything about a participant below a folder.
 ///
-/// Recordings with their parts, streams and codes, rows of tables, reports, and what a wizard has trained on them. With a
-/// wizard's code: the records of training.
+/// Recordings with their parts, streams and codes; rows of tables, by the columns that name the participant or the recording;
+/// reports about the participant; what a wizard has trained on the recordings. With a wizard's code: the records of training.
+/// Only what tomcom wrote is deleted. It is listed first, and what is left, with the reason.
 #[derive(Debug, Args)]
-#[command(after_help = "Session files stay, and so does what an eye tracker has recorded by itself.\n\
-                  Exit code 0: deleted. 1: there was nothing, or not all of it could be deleted.\n\
+#[command(after_help = "Session files stay, and so does what other programs have written, such as an eye tracker.\n\
+                  A code that begins with - stands behind --: tomcom forget --in sessions -- -7\n\
+                  Exit code 0: all of it is deleted. 1: there was nothing, or something is left. 2: wrong arguments.\n\
                   Example: tomcom forget P07 --in sessions\nMore: docs/recordings.md, docs/security.md")]
 pub(super) struct ForgetArgs {
     /// The code of the participant.
@@ -81,18 +84,45 @@ pub(super) struct ForgetArgs {
     /// Do not ask.
     #[arg(long)]
     yes: bool,
-    /// How to print what was deleted.
+    /// How to print what is deleted and what is left.
     #[arg(long, value_enum, default_value = "text")]
     format: OutputFormat,
 }
 
-/// What was deleted, as JSON.
+/// What is or was to be deleted, as JSON.
 #[derive(Debug, Serialize)]
-struct Forgotten<'a> {
+struct ForgetSummary<'a> {
     code: &'a str,
     deleted: bool,
-    #[serde(flatten)]
-    found: &'a ParticipantData,
+    recordings: Vec<String>,
+    recording_files: Vec<String>,
+    files: Vec<String>,
+    tables: Vec<(String, u64)>,
+    trainings: Vec<String>,
+    left: Vec<LeftSummary<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct LeftSummary<'a> {
+    path: String,
+    reason: &'a str,
+}
+
+impl ForgetSummary<'_> {
+    fn new(found: &ParticipantData, deleted: bool) -> ForgetSummary<'_> {
+        let told = |path: &PathBuf| path.display().to_string();
+        let all = |paths: &[PathBuf]| paths.iter().map(told).collect();
+        ForgetSummary {
+            code: &found.code,
+            deleted,
+            recordings: all(&found.recordings),
+            recording_files: all(&found.recording_files),
+            files: all(&found.files),
+            tables: found.tables.iter().map(|(path, rows)| (told(path), *rows)).collect(),
+            trainings: all(&found.trainings),
+            left: found.left.iter().map(|left| LeftSummary { path: told(&left.path), reason: &left.reason }).collect(),
+        }
+    }
 }
 
 pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
@@ -101,25 +131,38 @@ pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
         let help = "a code of 1 to 32 letters, digits, - and _, such as P07";
         return Err(Failure::Wrong(miette::miette!(help = help, "found the code \"{code}\"")));
     }
-    let found = forget::find(&args.folder, code)?;
-    let deletes = !found.is_empty() && (args.yes || is_meant(args, &found)?);
-    if deletes {
-        forget::delete(&found, code)?;
+    let found = forget::find(&args.folder, &std::env::temp_dir(), code)?;
+    if let Some(fault) = participant_code::fault(code).filter(|_| found.is_empty()) {
+        let help =
+            "the code of a participant; recordings of earlier versions with such a code are found by their headers";
+        let folder = args.folder.display();
+        return Err(Failure::Wrong(miette::miette!(
+            help = help,
+            "found the code \"{code}\", and nothing in {folder} that has it: {fault}"
+        )));
     }
-    let figures = Forgotten { code, deleted: deletes, found: &found };
-    print(args.format, &figures, || match (found.is_empty(), deletes) {
-        (true, _) => format!("nothing of {code} is in {}\n", args.folder.display()),
-        (false, true) => format!("deleted:\n{}", listed(&found)),
-        (false, false) => "nothing was deleted\n".to_string(),
+    if !found.is_empty() && !args.yes && !is_meant(args, &found)? {
+        return print(args.format, &ForgetSummary::new(&found, false), || "nothing was deleted\n".to_string())
+            .and(Err(Failure::No));
+    }
+    let deletes = !found.is_empty();
+    let done = if deletes { forget::delete(found)? } else { found };
+    print(args.format, &ForgetSummary::new(&done, deletes), || match deletes {
+        true => format!("deleted:\n{}{}", listed(&done), left(&done)),
+        false if done.left.is_empty() => format!("nothing of {code} is in {}\n", args.folder.display()),
+        false => format!("nothing of {code} that can be deleted is in {}\n{}", args.folder.display(), left(&done)),
     })?;
-    if deletes { Ok(()) } else { Err(Failure::No) }
+    if deletes && done.left.is_empty() { Ok(()) } else { Err(Failure::No) }
 }
 
 /// Shows what would be deleted, and asks for the code.
 fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure> {
     let (mut out, input) = (std::io::stderr(), std::io::stdin());
-    writeln!(out, "{}", listed(found))?;
+    writeln!(out, "to be deleted:\n{}{}", listed(found), left(found))?;
     if !input.is_terminal() {
+        if args.format == OutputFormat::Json {
+            print(args.format, &ForgetSummary::new(found, false), String::new)?;
+        }
         let help = "--yes, or a terminal to answer at";
         return Err(Failure::Wrong(miette::miette!(help = help, "found nobody to ask whether this is to be deleted")));
     }
@@ -130,11 +173,25 @@ fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure>
     Ok(answer.trim() == args.code)
 }
 
+/// What is deleted, a line each; the files of a recording stand together below their folder.
 fn listed(found: &ParticipantData) -> String {
     let line = |path: &Path, what: &str| format!("  {}{what}\n", path.display());
-    let recordings = found.recordings.iter().map(|path| line(path, " (recording)"));
+    let recording = |folder: &PathBuf| {
+        let own = found.recording_files.iter().filter(|file| file.parent() == Some(folder));
+        let names: Vec<String> =
+            own.map(|file| file.file_name().unwrap_or_default().to_string_lossy().into_owned()).collect();
+        let names = if names.is_empty() { String::new() } else { format!("    {}\n", names.join(", ")) };
+        line(folder, " (recording)") + &names
+    };
+    let recordings = found.recordings.iter().map(recording);
     let files = found.files.iter().map(|path| line(path, ""));
     let tables = found.tables.iter().map(|(path, rows)| line(path, &format!(" ({})", count(*rows, "row", "rows"))));
     let trainings = found.trainings.iter().map(|path| line(path, " (what was trained on these recordings)"));
     recordings.chain(files).chain(tables).chain(trainings).collect()
+}
+
+/// What stays, a line each with the reason; nothing where nothing stays.
+fn left(found: &ParticipantData) -> String {
+    let lines: String = found.left.iter().map(|left| format!("  {}: {}\n", left.path.display(), left.reason)).collect();
+    if lines.is_empty() { lines } else { format!("left:\n{lines}") }
 }

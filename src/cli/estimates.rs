@@ -1,5 +1,7 @@
 //! Commands that check estimates: beliefs, benefits of signals, parameters of the human model.
 
+use std::path::Path;
+
 use super::args::{FitArgs, ReplayArgs};
 use super::failure::Failure;
 use super::output::{print, progress};
@@ -33,16 +35,22 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
     let mut parameters: Vec<_> = args.parameters.iter().map(|one| one.parameter()).collect();
     parameters.sort_unstable();
     parameters.dedup();
+    let unwritable = |path: &Path, error: std::io::Error| {
+        let help = "a place where a file can be written";
+        Failure::Failed(miette::miette!(help = help, "{}: cannot be written: {error}", path.display()))
+    };
+    if let Some(path) = &args.out {
+        // Before the search, so that it is not in vain.
+        files::check_fitted(path).map_err(|error| unwritable(path, error))?;
+    }
     let trials = fit::FitTrials::read(&args.recordings)?;
     let plan = fitting::FitPlan { parameters, start, most_tries: args.tries as usize };
     let bar = progress(plan.most_tries as u64, "tries at most");
     let found = fit::fit(&trials, &plan, || bar.inc(1));
     bar.finish_and_clear();
     if let Some(path) = &args.out {
-        files::write_human_model(path, &found.model, &fitting::comment(&found)).map_err(|error| {
-            let help = "a place where a file can be written";
-            Failure::Failed(miette::miette!(help = help, "{}: cannot be written: {error}", path.display()))
-        })?;
+        let written = files::write_human_model(path, &found.model, &fitting::comment(&found));
+        written.map_err(|error| unwritable(path, error))?;
     }
     print(args.format, &found, || fitting::describe(&found))
 }

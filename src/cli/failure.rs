@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::base::features::NotBuilt;
 use crate::edge::file_error::FileError;
+use crate::edge::forget::ForgetError;
 use crate::edge::log::{ExclusionError, WriteError};
 use crate::run::error::{LiveError, ReviewError, RunError};
 use crate::session::settings::SettingError;
@@ -45,6 +46,12 @@ impl From<ExclusionError> for Failure {
             ExclusionError::Recording(error) => Failure::from(error),
             error => Failure::Wrong(miette::Report::new(error)),
         }
+    }
+}
+
+impl From<ForgetError> for Failure {
+    fn from(error: ForgetError) -> Failure {
+        Failure::Failed(miette::Report::new(error))
     }
 }
 

@@ -6,8 +6,11 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use super::overwrite;
+use super::written_tables::{WrittenTables, reader};
 use crate::study::column::{Table, TableRow};
 use crate::study::dictionary::columns;
+use crate::study::report::page_head;
 
 /// The name of the page.
 pub const REPORT_NAME: &str = "report.html";
@@ -56,17 +59,35 @@ impl ExportFolder {
     /// Makes the folder, if it is not there.
     ///
     /// # Errors
-    /// It cannot be made, or written to.
+    /// It cannot be made, or written to, or it has files of others with the names of tables and report.
     pub fn create(folder: &Path) -> Result<ExportFolder, ExportError> {
         let export = ExportFolder { folder: folder.to_path_buf() };
+        export.check_replaced()?;
         let parts = export.parts();
         // What a run before this one left there.
-        match fs::remove_dir_all(&parts) {
-            Err(reason) if reason.kind() != io::ErrorKind::NotFound => return Err(ExportError { path: parts, reason }),
-            _ => {}
-        }
+        remove_parts(&parts).map_err(|reason| ExportError { path: parts.clone(), reason })?;
         fs::create_dir_all(&parts).map_err(|reason| ExportError { path: parts, reason })?;
         Ok(export)
+    }
+
+    /// Whether all that is replaced is of an analysis before this one.
+    fn check_replaced(&self) -> Result<(), ExportError> {
+        let written =
+            WrittenTables::read(&self.folder).map_err(|reason| ExportError { path: self.folder.clone(), reason })?;
+        for table in Table::ALL {
+            let path = self.folder.join(format!("{}.csv", table.name()));
+            let is_own = |head: &[u8]| {
+                let mut header = csv::ByteRecord::new();
+                reader(head).read_byte_record(&mut header).unwrap_or(false) && written.has(table.name(), &header)
+            };
+            let what = format!("the table \"{}\"", table.name());
+            overwrite::check(&path, &what, is_own).map_err(|reason| ExportError { path, reason })?;
+        }
+        let path = self.folder.join(REPORT_NAME);
+        // Reports of earlier versions do not say what they are, and have a dictionary beside them.
+        let is_own =
+            |head: &[u8]| written.is_listed() || page_head::participants(&String::from_utf8_lossy(head)).is_some();
+        overwrite::check(&path, "a report", is_own).map_err(|reason| ExportError { path, reason })
     }
 
     fn parts(&self) -> PathBuf {
@@ -119,7 +140,7 @@ impl ExportFolder {
                 Ok(bytes > 0)
             })?);
         }
-        fs::remove_dir_all(self.parts()).map_err(|reason| ExportError { path: self.parts(), reason })?;
+        remove_parts(&self.parts()).map_err(|reason| ExportError { path: self.parts(), reason })?;
         Ok(filled)
     }
 
@@ -150,4 +171,24 @@ impl ExportFolder {
         };
         write().map_err(|reason| ExportError { path: path.clone(), reason })
     }
+}
+
+/// Removes the folder of rows that an analysis has left. Files of others in it stay, and so does the folder then.
+fn remove_parts(folder: &Path) -> io::Result<()> {
+    let entries = match fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(reason) if reason.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(reason) => return Err(reason),
+    };
+    for entry in entries {
+        let entry = entry?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let is_part = name.split_once('-').is_some_and(|(index, table)| {
+            index.parse::<usize>().is_ok() && Table::OF_EVENTS.iter().any(|part| part.name() == table)
+        });
+        if is_part {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    fs::remove_dir(folder)
 }

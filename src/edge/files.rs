@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use super::file_error::{FileError, FileResult, missing, read_text};
 use super::key_file::check_keys;
 use super::language::read_words;
+use super::overwrite;
 use super::parse::parse;
 use super::place::place_of;
+use crate::analysis::fitting::FITTED;
 use crate::kitchen::Kitchen;
 use crate::kitchen::compile::{SpecError, SpecFile};
 use crate::kitchen::layout::LayoutSpec;
@@ -56,7 +58,7 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
         spec.human = read_human_model(&model)?;
     }
     read_words(path, &text, &mut spec)?;
-    spec.check().map_err(|error| wrong_setting(path, &text, error))?;
+    spec.check().and_then(|()| spec.check_participant_codes()).map_err(|error| wrong_setting(path, &text, error))?;
     if let Some(step) = &spec.step {
         let found = format!("the place of a recording in the plan \"{}\"", step.plan);
         let remedy = "no [step]: the program finds it out from the plan and its recordings".to_string();
@@ -138,11 +140,21 @@ pub fn read_human_model(path: &Path) -> FileResult<HumanModel> {
     }
 }
 
+/// Whether a file of fitted parameters can be written there.
+///
+/// # Errors
+/// A file is there that this program did not write.
+pub fn check_fitted(path: &Path) -> std::io::Result<()> {
+    let begins = format!("# {FITTED}");
+    overwrite::check(path, "a file of fitted parameters", |head| head.starts_with(begins.as_bytes()))
+}
+
 /// Writes a file with all parameters of the human model, below a comment of whole lines.
 ///
 /// # Errors
-/// It cannot be written.
+/// It cannot be written, or a file is there that this program did not write.
 pub fn write_human_model(path: &Path, model: &HumanModel, comment: &str) -> std::io::Result<()> {
+    check_fitted(path)?;
     let comment: String = comment.lines().map(|line| format!("# {line}\n")).collect();
     let text = toml::to_string(model).map_err(std::io::Error::other)?;
     std::fs::write(path, format!("{comment}\n{text}"))

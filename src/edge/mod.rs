@@ -15,18 +15,22 @@ pub mod gaze_json;
 pub mod key_file;
 pub mod language;
 pub mod log;
+pub mod overwrite;
 pub mod parse;
 mod place;
 pub mod pupil;
 pub mod recordings;
 #[cfg(feature = "rerun")]
 pub mod rerun;
+pub mod rescue;
 #[cfg(feature = "rerun")]
 pub mod rrd;
 #[cfg(feature = "rerun")]
 pub mod stream;
+pub mod stream_head;
 pub mod terminal;
 pub mod training;
 mod type_error;
 #[cfg(feature = "rerun")]
 pub mod viewer;
+pub mod written_tables;

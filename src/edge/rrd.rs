@@ -7,13 +7,11 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+pub use super::log::RRD_NAME;
 use super::rerun::VERSION;
+use super::stream_head::{BEGINS, MARK, MARK_END};
 use crate::scene;
 
-/// The name of the stream in the folder of a recording.
-pub const RRD_NAME: &str = "recording.rrd";
-/// How such a file begins, before the version of Rerun that wrote it: four bytes.
-const BEGINS: &[u8] = b"RRF2";
 /// What stands in its last bytes if it was written to its end.
 const ENDS: &[u8] = b"FOOT";
 /// Where these are looked for, in bytes.
@@ -26,7 +24,7 @@ const PIECE: usize = 1 << 16;
 
 /// Stands in the name of every stream that holds a recording from its beginning, as this program would write it today.
 pub fn mark() -> String {
-    format!("tomcom-scene-{}-whole", scene::VERSION)
+    format!("{MARK}{}{MARK_END}", scene::VERSION)
 }
 
 /// How a file is.

@@ -91,7 +91,8 @@ impl SettingOverrides {
             }
             (None, _, gaze) => gaze,
         };
-        spec.check()
+        spec.check()?;
+        spec.check_participant_codes()
     }
 }
 

@@ -9,9 +9,11 @@ use super::replay::Replay;
 use crate::base::time::SessionTime;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, LogReader, RecordingLock};
+use crate::edge::overwrite;
 use crate::edge::rerun::{RerunWriter, StreamIdentity, StreamLane, StreamOutlets, WebViewer, uri};
 use crate::edge::rrd::{self, RRD_NAME, RrdState};
 use crate::edge::stream::{PORTS, is_free};
+use crate::edge::stream_head;
 use crate::edge::terminal::asked_to_end;
 use crate::edge::viewer::{self, Viewer};
 use crate::mind::dirichlet::DirichletBelief;
@@ -209,6 +211,14 @@ fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunError
     let mut begun = path.as_os_str().to_os_string();
     begun.push(".new");
     let begun = PathBuf::from(begun);
+    if !path.ends_with(RRD_NAME) {
+        for path in [path, &begun] {
+            let is_own = |_: &[u8]| stream_head::identity(path).is_ok_and(|found| found.is_some());
+            if let Err(reason) = overwrite::check(path, "a stream", is_own) {
+                return Err(RerunError::Unwritable { path: path.to_path_buf(), reason });
+            }
+        }
+    }
     let outlets = StreamOutlets { file: Some(begun.clone()), server: None, at: None };
     let written = playing(recordings).map_err(RerunError::from).and_then(|all| write(all, recordings, &outlets));
     match written {

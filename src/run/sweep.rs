@@ -16,6 +16,7 @@ use crate::communication::concept::ConceptName;
 use crate::communication::settings::Shadow;
 use crate::edge::file_error::FileError;
 use crate::edge::log::WriteError;
+use crate::edge::overwrite;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::SessionSpec;
 use crate::session::settings::{Condition, GazeSource};
@@ -144,6 +145,10 @@ pub fn sweep(
     done: impl Fn() + Sync,
 ) -> Result<SweepSummary, RunError> {
     let cells = grid(axes)?;
+    let table = simulation.out.join(table_name(simulation.shard));
+    let unwritable = |reason| WriteError::Unwritable { path: table.clone(), reason, saved: None };
+    overwrite::check(&table, "a table of a sweep", |head| head.starts_with(b"condition,trials,"))
+        .map_err(unwritable)?;
     check_axes(&simulation.files.spec, axes)?;
     let specs = cells.iter().map(|cell| spec_of(&simulation.files.spec, axes, cell)).collect::<Result<Vec<_>, _>>()?;
     let mut unassisted = simulation.clone();
@@ -158,12 +163,7 @@ pub fn sweep(
         let (trials, figures) = of_cell(&one, &done)?;
         rows.push(SweepRow::new(cell, &figures, Some([&before, &trials])));
     }
-    let table = simulation.out.join(table_name(simulation.shard));
-    write_table(&table, axes, &rows).map_err(|reason| WriteError::Unwritable {
-        path: table.clone(),
-        reason,
-        saved: None,
-    })?;
+    write_table(&table, axes, &rows).map_err(unwritable)?;
     Ok(SweepSummary { rows, table })
 }
 

@@ -5,7 +5,8 @@
 //!
 //! - Settings: `setting_checks`, `condition`, `participant_settings`, `console_settings`, `robot_settings`, [`display`],
 //!   [`stream`], [`tracker`] (with its events and state), and the specifications in [`plan`]; [`settings`], all of them
-//!   together. On these stand `reading`, `requirements`, [`header`], [`orders`], and the studies in [`plan`].
+//!   together. On these stand `reading`, `requirements`, [`participant_code`], [`header`], [`orders`], and the studies in
+//!   [`plan`].
 //! - What happens: `gaze_check`, `protocol_event` (with the phases of a plan), `preflight_check`, [`screen`]; [`event`], all of
 //!   them together.
 //! - The state: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `protocol_state`; `session_state`, all of them
@@ -26,6 +27,7 @@ mod gaze_status;
 mod hands;
 pub mod header;
 pub mod orders;
+pub mod participant_code;
 mod participant_settings;
 mod phase;
 pub mod plan;

@@ -12,6 +12,7 @@ mod kitchen;
 mod measures;
 mod oracle;
 mod participant;
+mod participant_codes;
 mod plan;
 mod readers;
 mod replay;

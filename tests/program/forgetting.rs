@@ -1,59 +1,233 @@
 //! `tomcom forget`: it asks first, and forgets a person everywhere.
 
+use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use serial_test::serial;
 use tomcom::edge::files::read_session;
+use tomcom::edge::log::RecordingLock;
 use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
 
 use crate::tmux::TOMCOM;
 
+/// A folder with recordings, and the folder that the program takes for the system's one for temporary files.
+pub struct RecordingsFolder {
+    pub root: PathBuf,
+    pub temporary: PathBuf,
+}
+
+impl RecordingsFolder {
+    /// Four short trials of the paper's plan: two of P01 and two of P02.
+    pub fn of_two_people(name: &str) -> RecordingsFolder {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("forgetting").join(name);
+        let _ = fs::remove_dir_all(&folder);
+        let made = RecordingsFolder { root: folder.join("recordings"), temporary: folder.join("temporary") };
+        fs::create_dir_all(&made.temporary).expect("made");
+        let mut files = read_session(Path::new("sessions/paper.toml")).expect("the paper's session");
+        files.spec.trial.presses = 10;
+        let simulation = SimulationRequest { files, trials: 4, shard: Shard::WHOLE, out: made.root.clone() };
+        simulate(&simulation, || ()).expect("the folder can be written");
+        made
+    }
+
+    pub fn at(&self, path: &str) -> PathBuf {
+        self.root.join(path)
+    }
+
+    pub fn put(&self, path: &str, bytes: impl AsRef<[u8]>) {
+        let path = self.at(path);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        fs::write(path, bytes).expect("written");
+    }
+
+    pub fn text(&self, path: &str) -> String {
+        fs::read_to_string(self.at(path)).expect(path)
+    }
+
+    /// Makes a recording one of somebody with another code, as an earlier version would have written it.
+    pub fn give(&self, recording: &str, code: &str) {
+        let (log, settings) = (format!("{recording}/events.jsonl"), format!("{recording}/session.toml"));
+        let old = if recording.contains("P01") { "P01" } else { "P02" };
+        let (header, events) =
+            self.text(&log).split_once('\n').map(|(a, b)| (a.to_string(), b.to_string())).expect("lines");
+        let renamed = header.replace(&format!("\"code\":\"{old}\""), &format!("\"code\":\"{code}\""));
+        assert_ne!(renamed, header);
+        self.put(&log, format!("{renamed}\n{events}"));
+        let renamed = self.text(&settings).replace(&format!("code = \"{old}\""), &format!("code = \"{code}\""));
+        self.put(&settings, renamed);
+    }
+
+    /// Analyses the recordings into `study`.
+    pub fn study(&self) {
+        let root = self.root.to_str().expect("UTF-8");
+        let (code, told) = self.run(&["study", root, "--skip", "concepts"]);
+        assert_eq!(code, Some(0), "{told}");
+    }
+
+    /// Runs the program without a terminal; its exit code and all that it prints.
+    pub fn run(&self, arguments: &[&str]) -> (Option<i32>, String) {
+        let mut command = Command::new(TOMCOM);
+        let done = command.args(arguments).env("TMPDIR", &self.temporary).stdin(Stdio::null()).output();
+        let done = done.expect("the program starts");
+        (done.status.code(), String::from_utf8_lossy(&[done.stdout, done.stderr].concat()).into_owned())
+    }
+
+    pub fn forget(&self, arguments: &[&str]) -> (Option<i32>, String) {
+        let root = self.root.to_str().expect("UTF-8");
+        self.run(&[&["forget", "--in", root], arguments].concat())
+    }
+
+    /// Every file, with what is in it, by its path.
+    pub fn files(&self) -> BTreeMap<String, Vec<u8>> {
+        let mut found = BTreeMap::new();
+        let mut folders = vec![self.root.clone()];
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(&folder).expect("a folder") {
+                let path = entry.expect("an entry").path();
+                let name = path.strip_prefix(&self.root).expect("below it").display().to_string();
+                match path.symlink_metadata().expect("it is there").is_dir() {
+                    true => folders.push(path),
+                    false => drop(found.insert(name, fs::read(&path).expect("a file"))),
+                }
+            }
+        }
+        found
+    }
+}
+
+/// A record of training on these recordings.
+fn record(wizard: &str, recordings: &[&str]) -> String {
+    let judged = |name: &&str| {
+        format!(
+            "{{\"recording\":\"{name}\",\"complete\":true,\"presses\":1,\"signals\":[],\"measures\":{},\"kappa_with_oneself\":null}}",
+            serde_json::to_string(&tomcom::measures::wizard::WizardMeasures::from_signals(&[], None)).expect("JSON")
+        )
+    };
+    let judged: Vec<String> = recordings.iter().map(judged).collect();
+    format!(
+        "{{\"wizard\":\"{wizard}\",\"at\":\"2026-03-14T10:00:00Z\",\"minutes\":1.0,\"criterion\":{{\"hits\":0.6,\"wrong\":0.4}},\"met\":true,\"recordings\":[{}]}}",
+        judged.join(",")
+    )
+}
+
 #[test]
 #[serial]
 fn forgetting_asks_first_and_a_wizards_code_is_that_of_the_training() {
-    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("forgetting");
-    let _ = fs::remove_dir_all(&out);
-    let mut files = read_session(Path::new("sessions/paper.toml")).expect("the paper's session");
-    files.spec.trial.presses = 10;
-    let simulation = SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out: out.clone() };
-    simulate(&simulation, || ()).expect("the folder can be written");
-    let record = |wizard: &str, recordings: &[&str]| {
-        let judged = |name: &&str| {
-            format!(
-                "{{\"recording\":\"{name}\",\"complete\":true,\"presses\":1,\"signals\":[],\"measures\":{},\"kappa_with_oneself\":null}}",
-                serde_json::to_string(&tomcom::measures::wizard::WizardMeasures::from_signals(&[], None))
-                    .expect("JSON")
-            )
-        };
-        let judged: Vec<String> = recordings.iter().map(judged).collect();
-        format!(
-            "{{\"wizard\":\"{wizard}\",\"at\":\"2026-03-14T10:00:00Z\",\"minutes\":1.0,\"criterion\":{{\"hits\":0.6,\"wrong\":0.4}},\"met\":true,\"recordings\":[{}]}}",
-            judged.join(",")
-        )
-    };
-    let training = out.join("training");
-    fs::create_dir_all(&training).expect("made");
-    fs::write(training.join("W1-1.json"), record("W1", &["seed1-P01-1", "seed9-S001"])).expect("written");
-    fs::write(training.join("W1-2.json"), record("W1", &["seed1-P01-1"])).expect("written");
-    fs::write(training.join("W2-1.json"), record("W2", &["seed9-S001"])).expect("written");
-    let tomcom = |arguments: &[&str]| {
-        let out = out.to_str().expect("UTF-8");
-        let mut command = Command::new(TOMCOM);
-        let done = command.args(arguments).args(["--in", out]).stdin(Stdio::null()).output();
-        let done = done.expect("the program starts");
-        (done.status.code(), String::from_utf8_lossy(&[done.stdout, done.stderr].concat()).into_owned())
-    };
-    let (code, told) = tomcom(&["forget", "P01"]);
+    let lab = RecordingsFolder::of_two_people("asks");
+    lab.put("training/W1-1.json", record("W1", &["seed1-P01-1", "seed9-S001"]));
+    lab.put("training/W1-2.json", record("W1", &["seed1-P01-1"]));
+    lab.put("training/W2-1.json", record("W2", &["seed9-S001"]));
+    let is_there = |path: &str| lab.at(path).exists();
+    let before = lab.files();
+    let (code, told) = lab.forget(&["P01"]);
     assert!(code == Some(2) && told.contains("seed1-P01-1 (recording)") && told.contains("--yes"), "{told}");
-    assert!(out.join("seed1-P01-1").exists());
-    assert_eq!(tomcom(&["forget", "P01", "--yes"]).0, Some(0));
-    assert!(!out.join("seed1-P01-1").exists() && !training.join("W1-2.json").exists());
-    let left = fs::read_to_string(training.join("W1-1.json")).expect("what was trained on others stays");
-    assert!(left.contains("seed9-S001") && !left.contains("P01"), "{left}");
-    assert_eq!(tomcom(&["forget", "P01", "--yes"]).0, Some(1), "there is nothing left");
-    assert_eq!(tomcom(&["forget", "W1", "--yes"]).0, Some(0));
-    assert!(!training.join("W1-1.json").exists() && training.join("W2-1.json").exists());
-    assert_eq!(tomcom(&["forget", "Jane Doe", "--yes"]).0, Some(2));
+    assert!(told.contains("    events.jsonl, session.toml\n"), "every file is listed: {told}");
+    assert_eq!(lab.files(), before);
+    assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0));
+    assert!(!is_there("seed1-P01-1") && !is_there("seed1-P01-2") && !is_there("training/W1-2.json"));
+    let left = lab.text("training/W1-1.json");
+    assert!(left.contains("seed9-S001") && !left.contains("P01"), "what was trained on others stays: {left}");
+    assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(1), "there is nothing left");
+    assert_eq!(lab.forget(&["W1", "--yes"]).0, Some(0));
+    assert!(!is_there("training/W1-1.json") && is_there("training/W2-1.json"));
+    assert_eq!(lab.forget(&["Jane Doe", "--yes"]).0, Some(2));
+}
+
+#[test]
+#[serial]
+fn a_participant_is_forgotten_everywhere_and_nobody_else() {
+    let lab = RecordingsFolder::of_two_people("everywhere");
+    lab.study();
+    let (_, told) = lab.run(&["review", lab.at("seed1-P01-1").to_str().expect("UTF-8"), "--save"]);
+    assert!(told.contains("recording.rrd"), "{told}");
+    // What a kill before the log leaves behind, of a later part.
+    lab.put("seed1-P01-1-part2/session.toml", lab.text("seed1-P01-1/session.toml"));
+    lab.put("seed1-P01-1/codes-R1.csv", "press,cause,aspect\n");
+    lab.put("codes.csv", "recording,rater,press,cause,aspect\nseed1-P01-1,R1,4,slip,\nseed1-P02-1,P01,4,slip,\n");
+    // A session file of somebody is no recording, whoever it is for.
+    lab.put("pilot/session.toml", "layout = \"x\"\n[participant]\ncode = \"P01\"\n");
+    let (before, study) = (lab.files(), lab.text("study/trials.csv"));
+    let (code, told) = lab.forget(&["P01", "--yes"]);
+    assert_eq!(code, Some(0), "{told}");
+    let after = lab.files();
+    for (path, bytes) in &before {
+        let is_gone = path.starts_with("seed1-P01") || path == "study/report.html";
+        let is_table = path.starts_with("study/") || path == "codes.csv";
+        assert_eq!(after.contains_key(path), !is_gone, "{path}");
+        if is_table && !is_gone {
+            // All lines but those of P01 are as they were.
+            let kept = |line: &&[u8]| !line.starts_with(b"P01,") && !line.starts_with(b"seed1-P01");
+            let kept: Vec<&[u8]> = bytes.split_inclusive(|&byte| byte == b'\n').filter(kept).collect();
+            assert_eq!(String::from_utf8_lossy(&after[path]), String::from_utf8_lossy(&kept.concat()), "{path}");
+        } else if !is_gone {
+            assert_eq!(&after[path], bytes, "{path}");
+        }
+    }
+    assert_eq!(
+        after.len() + before.keys().filter(|path| !after.contains_key(*path)).count(),
+        before.len(),
+        "nothing is new"
+    );
+    assert!(!lab.at("seed1-P01-1").exists() && !lab.at("seed1-P01-1-part2").exists(), "nor are empty folders left");
+    assert!(study.contains("seed1-P01-2,P01,") && !lab.text("study/trials.csv").contains("P01"));
+    assert!(lab.text("codes.csv").contains("seed1-P02-1,P01,"), "a rater of that code is another person");
+}
+
+#[test]
+#[serial]
+fn nothing_goes_while_a_recording_is_being_written() {
+    let lab = RecordingsFolder::of_two_people("locked");
+    lab.study();
+    let lock = RecordingLock::take(&lab.at("seed1-P01-2")).expect("a lock");
+    let before = lab.files();
+    let (code, told) = lab.forget(&["P01", "--yes"]);
+    assert!(
+        code == Some(1) && told.contains("nothing was deleted") && told.contains("writes this recording"),
+        "{told}"
+    );
+    assert_eq!(lab.files(), before);
+    assert_eq!(lab.forget(&["P02", "--yes"]).0, Some(0), "that of somebody else is no matter");
+    drop(lock);
+    assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0));
+    assert!(lab.files().keys().all(|path| path.starts_with("study/")), "{:?}", lab.files().keys());
+    // Where no lock can be taken, as in a folder that cannot be written to, it is the same.
+    let lab = RecordingsFolder::of_two_people("unlockable");
+    fs::create_dir(lab.at("seed1-P01-2/lock")).expect("made");
+    let before = lab.files();
+    let (code, told) = lab.forget(&["P01", "--yes"]);
+    assert!(code == Some(1) && told.contains("nothing was deleted") && told.contains("seed1-P01-2"), "{told}");
+    assert_eq!(lab.files(), before);
+}
+
+#[test]
+#[serial]
+fn json_lists_what_is_to_be_deleted_what_was_and_what_is_left() {
+    let lab = RecordingsFolder::of_two_people("json");
+    lab.study();
+    lab.put("seed1-P01-1.zip", "of another program");
+    let listed = |arguments: &[&str]| {
+        let root = lab.root.to_str().expect("UTF-8");
+        let mut command = Command::new(TOMCOM);
+        let command = command.args(["forget", "P01", "--in", root, "--format", "json"]).args(arguments);
+        let done = command.env("TMPDIR", &lab.temporary).stdin(Stdio::null()).output().expect("the program starts");
+        let json: serde_json::Value = serde_json::from_slice(&done.stdout).expect("JSON");
+        (done.status.code(), json)
+    };
+    let (code, asked) = listed(&[]);
+    let (after, deleted) = listed(&["--yes"]);
+    assert_eq!((code, after), (Some(2), Some(1)), "nobody to ask; something is left");
+    assert_eq!((&asked["deleted"], &deleted["deleted"]), (&false.into(), &true.into()));
+    for field in ["code", "recordings", "recording_files", "files", "tables", "trainings", "left"] {
+        assert_eq!(asked[field], deleted[field], "what was listed was done: {field}");
+    }
+    let path = |path: &str| serde_json::Value::from(lab.at(path).display().to_string());
+    assert_eq!(deleted["recordings"], serde_json::json!([path("seed1-P01-1"), path("seed1-P01-2")]));
+    assert_eq!(deleted["recording_files"].as_array().map(Vec::len), Some(4));
+    assert_eq!(deleted["files"][0], path("study/report.html"));
+    let tables = deleted["tables"].as_array().expect("a list");
+    assert_eq!(tables.last(), Some(&serde_json::json!([path("study/trials.csv"), 2])));
+    assert_eq!(deleted["left"][0]["path"], path("seed1-P01-1.zip"));
+    assert!(deleted["left"][0]["reason"].as_str().is_some_and(|reason| reason.contains("name of one of")), "{deleted}");
 }

@@ -4,6 +4,9 @@
 mod commands;
 mod docs;
 mod forgetting;
+mod forgetting_damage;
+mod forgetting_others;
+mod overwriting;
 mod plan;
 mod survival;
 mod terminal;

@@ -170,6 +170,9 @@ pub fn fit(
     }
 }
 
+/// What the comment of a file of fitted parameters begins with.
+pub const FITTED: &str = "Parameters of the human model, fitted to";
+
 /// Comment at the top of a file with fitted parameters.
 pub fn comment(fit: &FitSummary) -> String {
     let values = fit.parameters.iter().map(|one| match (one.standard_error, one.interval) {
@@ -189,7 +192,7 @@ pub fn comment(fit: &FitSummary) -> String {
     });
     let values: Vec<String> = values.collect();
     format!(
-        "Parameters of the human model, fitted to {} with {} of the human:\n{}",
+        "{FITTED} {} with {} of the human:\n{}",
         count(fit.recordings, "recording", "recordings"),
         count(fit.human_actions, "press", "presses"),
         values.join("\n")

@@ -7,12 +7,13 @@ use std::path::{Path, PathBuf};
 
 use super::WriteError;
 use crate::edge::file_error::{FileError, FileResult};
+use crate::edge::overwrite;
 use crate::measures::coding::{CauseKind, Codable, Code, Codes};
 use crate::session::settings::is_code;
 
 /// The columns of the file; those of an export of several recordings have two more before them.
 const COLUMNS: [&str; 3] = ["press", "cause", "aspect"];
-const EXPORT_COLUMNS: [&str; 5] = ["recording", "rater", "press", "cause", "aspect"];
+pub const EXPORT_COLUMNS: [&str; 5] = ["recording", "rater", "press", "cause", "aspect"];
 /// What would be right of a line that is no row at all.
 const REMEDY: &str = "as many fields as the first line has";
 
@@ -101,9 +102,11 @@ pub fn read_export(path: &Path) -> FileResult<(String, Vec<CodeRow>)> {
 /// Writes an export.
 ///
 /// # Errors
-/// It cannot be written.
+/// It cannot be written, or another file is there.
 pub fn write_export(path: &Path, rows: &[CodeRow]) -> Result<(), WriteError> {
     let failed = |reason| WriteError::unwritable(path, reason);
+    let is_own = |head: &[u8]| overwrite::first_line(head) == EXPORT_COLUMNS.join(",").as_bytes();
+    overwrite::check(path, "an export of raters' codes", is_own).map_err(failed)?;
     let write = || -> csv::Result<()> {
         let mut table = csv::Writer::from_path(path)?;
         table.write_record(EXPORT_COLUMNS)?;

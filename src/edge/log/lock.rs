@@ -8,7 +8,7 @@ use super::WriteError;
 
 /// The name of the lock in the folder of a recording that is being written, with the number of the process in it, and
 /// where viewers connect.
-const LOCK_NAME: &str = "lock";
+pub const LOCK_NAME: &str = "lock";
 /// How often somebody else may give the lock up between our opening and taking it.
 const ATTEMPTS: usize = 8;
 

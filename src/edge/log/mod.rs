@@ -13,14 +13,16 @@ use std::path::PathBuf;
 
 use crate::session::Stamped;
 pub use exclusion::{EXCLUSION_NAME, ExclusionError, ExclusionRecord, rule, ruling};
-pub use lock::{LockHolder, RecordingLock};
+pub use lock::{LOCK_NAME, LockHolder, RecordingLock};
 pub use reader::{LogEnding, LogLine, LogReader, at_line};
-pub use writer::{LogWriter, check_continued, check_simulated, is_whole};
+pub use writer::{LogWriter, check_continued, check_simulated, is_whole, is_written_settings};
 
 /// The name of the log in its folder.
 pub const LOG_NAME: &str = "events.jsonl";
 /// The name of the settings in the folder of a recording.
 pub const SETTINGS_NAME: &str = "session.toml";
+/// The name of the stream in the folder of a recording.
+pub const RRD_NAME: &str = "recording.rrd";
 
 /// Why a recording is not written, or not on.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]

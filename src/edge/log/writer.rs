@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use super::lock::{RecordingLock, is_same};
 use super::{LOG_NAME, LogReader, SETTINGS_NAME, WriteError};
 use crate::base::time::SessionTime;
-use crate::session::{Event, Header, Stamped};
+use crate::edge::rescue::{RescueNote, rescue_folder};
+use crate::session::{Event, Header, SessionSpec, Stamped};
 
 /// Gaze samples wait at most so long, in session time, before they are handed to the operating system.
 const FLUSH_AFTER: SessionTime = SessionTime(50_000_000);
@@ -24,6 +25,8 @@ pub struct LogWriter {
     prompt: bool,
     flushed_at: SessionTime,
     settings: String,
+    /// Where the recording belongs, whatever becomes of its folder.
+    home: PathBuf,
     lock: RecordingLock,
 }
 
@@ -79,7 +82,8 @@ impl LogWriter {
         let mut out = BufWriter::with_capacity(1 << 16, file);
         write_line(&mut out, header).and_then(|()| out.flush()).map_err(failed)?;
         fs::rename(&begun, &path).map_err(failed)?;
-        Ok(LogWriter { folder, path, out, prompt, flushed_at: SessionTime::ZERO, settings, lock })
+        let home = fs::canonicalize(&folder).unwrap_or_else(|_| folder.clone());
+        Ok(LogWriter { folder, path, out, prompt, flushed_at: SessionTime::ZERO, settings, home, lock })
     }
 
     /// The folder of the recording.
@@ -135,8 +139,14 @@ impl LogWriter {
         // What cannot be handed over any more was not acknowledged for longer than gaze may wait.
         let _ = self.out.flush();
         let name = self.folder.file_name()?;
-        let elsewhere = std::env::temp_dir().join(format!("tomcom-rescued-{}", std::process::id())).join(name);
-        [self.folder.clone(), elsewhere].into_iter().find(|folder| self.copy_to(folder).is_ok())
+        let elsewhere = rescue_folder(&std::env::temp_dir()).join(name);
+        if self.copy_to(&self.folder.clone()).is_ok() {
+            return Some(self.folder.clone());
+        }
+        self.copy_to(&elsewhere).ok()?;
+        // The data is saved; the note only helps to find out later where it belongs.
+        let _ = RescueNote { home: self.home.clone() }.write(&elsewhere);
+        Some(elsewhere)
     }
 
     fn copy_to(&mut self, folder: &Path) -> io::Result<()> {
@@ -145,7 +155,12 @@ impl LogWriter {
         let log = self.out.get_mut();
         log.rewind()?;
         io::copy(log, &mut copy)?;
-        fs::write(folder.join(SETTINGS_NAME), &self.settings)?;
+        // Settings that are there already stay: nothing follows from them that the log does not say.
+        match OpenOptions::new().write(true).create_new(true).open(folder.join(SETTINGS_NAME)) {
+            Ok(mut file) => file.write_all(self.settings.as_bytes())?,
+            Err(reason) if reason.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(reason) => return Err(reason),
+        }
         copy.sync_all()
     }
 }
@@ -174,10 +189,13 @@ fn next_part(folder: &Path) -> PathBuf {
 /// replaced; any other one may not.
 ///
 /// # Errors
-/// Another recording is there.
+/// Another recording is there, or settings of somebody else.
 pub fn check_simulated(folder: &Path, header: &Header) -> Result<(), WriteError> {
     if !folder.join(LOG_NAME).exists() {
-        return Ok(());
+        // A kill before the log leaves settings behind.
+        let is_foreign = fs::read_to_string(folder.join(SETTINGS_NAME)).is_ok_and(|text| !is_written_settings(&text));
+        let what = "a session.toml that tomcom did not write";
+        return if is_foreign { Err(WriteError::Taken { folder: folder.to_path_buf(), what }) } else { Ok(()) };
     }
     let what = match LogReader::open(folder).map(|log| log.header) {
         Ok(there) if there == *header => return Ok(()),
@@ -204,6 +222,12 @@ pub fn is_whole(folder: &Path, header: &Header) -> bool {
         Ok(last.is_some_and(|last| last.event == Event::SessionEnded))
     };
     ends().unwrap_or(false) && LogReader::open(folder).is_ok_and(|log| log.header == *header)
+}
+
+/// Whether this program wrote these settings into the folder of a recording: it writes all of them and nothing else.
+pub fn is_written_settings(text: &str) -> bool {
+    let spec = toml::from_str::<SessionSpec>(text).ok();
+    spec.and_then(|spec| toml::to_string(&spec).ok()).is_some_and(|written| written == text)
 }
 
 fn write_line(out: &mut impl Write, value: &impl serde::Serialize) -> io::Result<()> {

@@ -4,6 +4,7 @@ mod assistance;
 mod concept_comparison;
 mod elements;
 mod methods;
+pub mod page_head;
 mod results;
 mod robot_counts;
 mod sections;
@@ -38,7 +39,7 @@ pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[T
     let page = html! {
         (DOCTYPE) "\n"
         html lang="en" {
-            (head(figures))
+            (head(figures, trials))
             body {
                 main { h1 { (figures.title) } "\n" @for section in sections { (section) } }
             }
@@ -49,12 +50,12 @@ pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[T
 }
 
 /// The head of the page.
-fn head(figures: &StudySummary) -> Markup {
+fn head(figures: &StudySummary, trials: &[Trial]) -> Markup {
     html! {
         head {
             meta charset="utf-8"; "\n"
             title { (figures.title) } "\n"
-            @for (name, content) in metadata() { meta name=(name) content=(content); "\n" }
+            @for (name, content) in metadata(trials) { meta name=(name) content=(content); "\n" }
             style { "\n" (PreEscaped(STYLE)) }
         }
         "\n"
@@ -62,6 +63,7 @@ fn head(figures: &StudySummary) -> Markup {
 }
 
 /// The metadata of the page, by name.
-fn metadata() -> [(&'static str, String); 1] {
-    [("viewport", "width=device-width, initial-scale=1".to_string())]
+fn metadata(trials: &[Trial]) -> [(&'static str, String); 3] {
+    let [generator, participants] = page_head::about(trials.iter().map(|trial| trial.participant.as_str()));
+    [generator, participants, ("viewport", "width=device-width, initial-scale=1".to_string())]
 }

@@ -2,7 +2,6 @@
 //! was made before.
 
 mod codes;
-mod forget;
 mod job_array;
 mod learning;
 mod wizard;

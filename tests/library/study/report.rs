@@ -18,7 +18,7 @@ use tomcom::study::column::{Table, TableCell, TableRow};
 use tomcom::study::facts::Facts;
 use tomcom::study::figures::StudySummary;
 use tomcom::study::prevention::PreventionCounts;
-use tomcom::study::report;
+use tomcom::study::report::{self, page_head};
 use tomcom::study::robot_tally::{ArmSummary, RobotTally};
 use tomcom::study::roc::SweptTrial;
 use tomcom::study::trial::{BeliefBasis, QuestionnaireAnswer, Trial};
@@ -46,6 +46,11 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
     assert_eq!((accepted.high, accepted.medium, accepted.undecided, accepted.not_reported), (1, 1, 0, 1));
     let page = report::page(&figures, &trials, &Facts::default(), &Table::ALL);
     assert!(page.contains("<title>No kitchen: a study of simulated participants</title>"));
+    let mut names: Vec<&str> = trials.iter().map(|trial| trial.participant.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(page_head::participants(&page), Some(names), "the head says whom it is about");
+    assert_eq!(page_head::participants("<html><head></head></html>"), None);
     assert!(page.contains("excluded: &lt;b&gt; &amp; &quot;quoted&quot;"), "reasons are told, and no markup");
     for outside in ["<script", "http:", "https:", "url(", "<link", "<img"] {
         assert!(!page.contains(outside), "{outside}");

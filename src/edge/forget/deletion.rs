@@ -1,0 +1,168 @@
+//! Deletes what was found of a participant. Whatever can fail without a change is tried first.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use super::participant_data::{ParticipantData, find, others, training};
+use super::walk::LeftFile;
+use crate::analysis::training_record::TrainingRecord;
+use crate::edge::file_error::FileError;
+use crate::edge::log::{LOG_NAME, RecordingLock, SETTINGS_NAME, WriteError};
+
+/// Why nothing of a participant was deleted.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum ForgetError {
+    /// A recording is being written, or its folder cannot be written to.
+    #[error("nothing was deleted: {0}")]
+    #[diagnostic(transparent)]
+    Recording(WriteError),
+    #[error("nothing was deleted: {0}")]
+    #[diagnostic(transparent)]
+    File(Box<FileError>),
+    #[error("nothing was deleted: {}: cannot be deleted or written anew: {reason}", path.display())]
+    #[diagnostic(help("the right to write to its folder, on a disk with free space"))]
+    Unwritable { path: PathBuf, reason: io::Error },
+    #[error("nothing was deleted: files in {} have changed since they were listed", folder.display())]
+    #[diagnostic(help("run the command again, when nothing else writes there"))]
+    Changed { folder: PathBuf },
+}
+
+/// Deletes what was found. What could not be deleted in the end is told as left. Nothing is deleted if one of the recordings
+/// is being written, if something has changed since it was found, or if a folder cannot be written to.
+///
+/// # Errors
+/// Nothing was deleted, for one of these reasons.
+pub fn delete(found: ParticipantData) -> Result<ParticipantData, ForgetError> {
+    let locks = found.recordings.iter().map(|folder| RecordingLock::take(folder));
+    let locks = locks.collect::<Result<Vec<RecordingLock>, _>>().map_err(ForgetError::Recording)?;
+    let again = find(&found.root, &found.temporary, &found.code).map_err(|error| ForgetError::File(Box::new(error)))?;
+    if again != found {
+        return Err(ForgetError::Changed { folder: found.root });
+    }
+    let unwritable = |path: &Path| {
+        let path = path.to_path_buf();
+        |reason| ForgetError::Unwritable { path, reason }
+    };
+    let mut replacements = Vec::new();
+    for (path, cut) in &found.cuts {
+        replacements.push(Replacement::begin(path, |new| copy_without(path, cut, new)).map_err(unwritable(path))?);
+    }
+    for path in &found.trainings {
+        let rewrite = |new: &mut File| write_others(path, &found, new);
+        replacements.push(Replacement::begin(path, rewrite).map_err(unwritable(path))?);
+    }
+    for path in &found.files {
+        // Whether the folder can be written to is known when something was written there.
+        Replacement::begin(path, |_| Ok(())).map_err(unwritable(path))?;
+    }
+    Ok(commit(found, replacements, locks))
+}
+
+/// Puts the new files in their places, and deletes the rest: the recordings last, since their names are what other files are
+/// known by if the command has to be run again.
+fn commit(found: ParticipantData, replacements: Vec<Replacement>, locks: Vec<RecordingLock>) -> ParticipantData {
+    let mut done =
+        ParticipantData { recording_files: Vec::new(), files: Vec::new(), left: Vec::new(), ..found.clone() };
+    let mut left = found.left;
+    let mut fails = |path: &Path, result: io::Result<()>| match result {
+        Ok(()) => false,
+        Err(reason) => {
+            left.push(LeftFile::new(path, format!("it cannot be deleted or written anew: {reason}")));
+            true
+        }
+    };
+    for replacement in replacements {
+        let path = replacement.path.clone();
+        if fails(&path, replacement.put_in_place()) {
+            done.tables.retain(|(table, _)| *table != path);
+            done.trainings.retain(|training| *training != path);
+        }
+    }
+    for path in found.files {
+        if !fails(&path, fs::remove_file(&path)) {
+            done.files.push(path);
+        }
+    }
+    // Log and settings of a recording say whose it is if the rest cannot be deleted.
+    let (known_by, mut files): (Vec<PathBuf>, Vec<PathBuf>) =
+        found.recording_files.into_iter().partition(|path| path.ends_with(LOG_NAME) || path.ends_with(SETTINGS_NAME));
+    files.extend(known_by);
+    let mut occupied: Vec<PathBuf> = Vec::new();
+    for path in files {
+        let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
+        let is_needed = path.ends_with(LOG_NAME) || path.ends_with(SETTINGS_NAME);
+        let kept = io::Error::other("it says whose the files beside it are, which could not be deleted");
+        let result = if is_needed && occupied.contains(&folder) { Err(kept) } else { fs::remove_file(&path) };
+        match fails(&path, result) {
+            true => occupied.push(folder),
+            false => done.recording_files.push(path),
+        }
+    }
+    // The lock of a recording is a file in its folder.
+    drop(locks);
+    for folder in found.folders.iter().rev() {
+        // Those with something in them stay: that is told as left, or is of somebody else.
+        let _ = fs::remove_dir(folder);
+    }
+    done.recording_files.sort();
+    left.sort();
+    ParticipantData { left, ..done }
+}
+
+/// A new file beside the one that it is to replace. It is removed if it is not put in its place.
+struct Replacement {
+    new: PathBuf,
+    path: PathBuf,
+    is_put: bool,
+}
+
+impl Replacement {
+    /// Writes the new content beside a file.
+    fn begin(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<Replacement> {
+        let mut name = path.file_name().unwrap_or_default().to_os_string();
+        name.push(format!(".tomcom-{}.new", std::process::id()));
+        let new = path.with_file_name(name);
+        let mut file = OpenOptions::new().write(true).create_new(true).open(&new)?;
+        let replacement = Replacement { new, path: path.to_path_buf(), is_put: false };
+        write(&mut file)?;
+        file.set_permissions(fs::metadata(path)?.permissions())?;
+        file.sync_all()?;
+        Ok(replacement)
+    }
+
+    fn put_in_place(mut self) -> io::Result<()> {
+        fs::rename(&self.new, &self.path)?;
+        self.is_put = true;
+        Ok(())
+    }
+}
+
+impl Drop for Replacement {
+    fn drop(&mut self) {
+        if !self.is_put {
+            // Left behind it is a copy without the participant.
+            let _ = fs::remove_file(&self.new);
+        }
+    }
+}
+
+/// Copies a file without these bytes.
+fn copy_without(path: &Path, cut: &[Range<u64>], new: &mut File) -> io::Result<()> {
+    let mut old = File::open(path)?;
+    let mut from = 0;
+    for range in cut {
+        io::copy(&mut (&old).take(range.start - from), new)?;
+        from = old.seek(SeekFrom::Start(range.end))?;
+    }
+    io::copy(&mut old, new).map(drop)
+}
+
+/// Writes a record of training without the participant's recordings.
+fn write_others(path: &Path, found: &ParticipantData, new: &mut File) -> io::Result<()> {
+    let record = training(path)?.ok_or_else(|| io::Error::other("it is no record of training any more"))?;
+    let record = TrainingRecord { recordings: others(&record, &found.subject), ..record };
+    let text = serde_json::to_string_pretty(&record).map_err(io::Error::other)? + "\n";
+    new.write_all(text.as_bytes())
+}

@@ -1,0 +1,18 @@
+//! Finds and deletes everything about one participant (or one wizard) below a folder: recordings with what this program wrote
+//! beside their logs, rows of tables, reports, streams, records of training.
+//!
+//! Only files that say that this program wrote them are deleted or changed: recordings say it in their headers, tables by
+//! their columns, reports and streams in their heads, training records by their fields. The participant is looked for in the
+//! column or field that means the participant or the recording. A file that may hold something of the participant, and does
+//! not say so, is left and named with the reason.
+
+mod deletion;
+mod owner;
+mod participant_data;
+mod participant_rows;
+mod subject;
+mod walk;
+
+pub use self::deletion::{ForgetError, delete};
+pub use self::participant_data::{ParticipantData, find};
+pub use self::walk::LeftFile;

@@ -1,0 +1,111 @@
+//! Whose recording a folder holds.
+
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::edge::log::{LOCK_NAME, LOG_NAME, RRD_NAME, SETTINGS_NAME, is_written_settings};
+use crate::edge::stream_head;
+use crate::session::header::FORMAT;
+
+/// Whose recording a folder holds.
+pub(super) enum RecordingOwner {
+    Participant {
+        code: String,
+        /// When it began, as the identity of a stream says it; none without a readable header.
+        began: Option<String>,
+    },
+    /// A recording that does not say whose it is, with the reason.
+    Unknown(&'static str),
+    NoRecording,
+}
+
+/// What the first line of a log is.
+enum FirstLine {
+    /// There is no log.
+    Missing,
+    /// It is of another program.
+    Foreign,
+    Damaged,
+    Header {
+        code: String,
+        began: Option<String>,
+    },
+}
+
+impl RecordingOwner {
+    /// Reads the header of the folder's log. Where that is damaged or gone, the settings beside it say the code. A session file
+    /// alone is a recording only if this program wrote it, which a kill before the log leaves behind.
+    pub(super) fn read(folder: &Path) -> RecordingOwner {
+        let settings = || read_settings(folder);
+        match first_line(folder) {
+            FirstLine::Header { code, began } => RecordingOwner::Participant { code, began },
+            FirstLine::Foreign => RecordingOwner::NoRecording,
+            FirstLine::Damaged => match settings() {
+                Some((code, _)) => RecordingOwner::Participant { code, began: None },
+                None => RecordingOwner::Unknown(
+                    "a recording that does not say whose it is: events.jsonl has no readable header, and session.toml is missing \
+                     or damaged; it is to be deleted by hand, if it is the participant's",
+                ),
+            },
+            FirstLine::Missing => {
+                let is_streamed = || stream_head::identity(&folder.join(RRD_NAME)).is_ok_and(|found| found.is_some());
+                let is_begun = || is_file(&folder.join(LOCK_NAME)) || is_file(&folder.join(format!("{LOG_NAME}.new")));
+                match settings() {
+                    Some((code, is_own)) if is_own || is_begun() || is_streamed() => {
+                        RecordingOwner::Participant { code, began: None }
+                    }
+                    None if is_streamed() => RecordingOwner::Unknown(
+                        "a recording that does not say whose it is: recording.rrd, without events.jsonl and session.toml; it is to \
+                         be deleted by hand, if it is the participant's",
+                    ),
+                    _ => RecordingOwner::NoRecording,
+                }
+            }
+        }
+    }
+}
+
+/// Whether there is a plain file at this path: what a symbolic link leads to is left alone, and opening a named pipe would wait
+/// for its other end.
+fn is_file(path: &Path) -> bool {
+    path.symlink_metadata().is_ok_and(|data| data.is_file())
+}
+
+fn first_line(folder: &Path) -> FirstLine {
+    let path = folder.join(LOG_NAME);
+    if !is_file(&path) {
+        return FirstLine::Missing;
+    }
+    let mut line = String::new();
+    let read = File::open(path).and_then(|file| BufReader::new(file).read_line(&mut line));
+    let Some(Value::Object(header)) = read.ok().and_then(|_| serde_json::from_str(&line).ok()) else {
+        return FirstLine::Damaged;
+    };
+    if header.get("format").and_then(Value::as_str) != Some(FORMAT) {
+        // An event: the header before it is lost.
+        let is_event = header.contains_key("seq") && header.contains_key("t_ns");
+        return if is_event { FirstLine::Damaged } else { FirstLine::Foreign };
+    }
+    let session = header.get("session");
+    let code = session.and_then(|session| session.get("participant")?.get("code")?.as_str());
+    let seed = session.and_then(|session| session.get("seed")?.as_u64());
+    let began = match (header.get("started").and_then(Value::as_str), seed, header.get("trial").and_then(Value::as_u64))
+    {
+        (Some(started), ..) => Some(started.to_string()),
+        (None, Some(seed), Some(trial)) => Some(format!("seed {seed} trial {trial}")),
+        _ => None,
+    };
+    code.map_or(FirstLine::Damaged, |code| FirstLine::Header { code: code.to_string(), began })
+}
+
+/// The code in the settings of a folder, and whether this program wrote them: it writes all settings and nothing else.
+fn read_settings(folder: &Path) -> Option<(String, bool)> {
+    let path = folder.join(SETTINGS_NAME);
+    let text = is_file(&path).then(|| fs::read_to_string(path).ok()).flatten()?;
+    let settings: toml::Table = text.parse().ok()?;
+    let code = settings.get("participant")?.get("code")?.as_str()?.to_string();
+    Some((code, is_written_settings(&text)))
+}

@@ -1,0 +1,249 @@
+//! What there is about a participant below a folder.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use super::participant_rows::{FolderTables, TableMatch};
+use super::subject::{ForgetSubject, NamedPerson};
+use super::walk::{ForgetWalk, LeftFile, WalkedFolder};
+use crate::analysis::training_record::{JudgedRecording, TrainingRecord};
+use crate::base::words::count;
+use crate::edge::export::REPORT_NAME;
+use crate::edge::file_error::FileResult;
+use crate::edge::log::SETTINGS_NAME;
+use crate::edge::stream_head;
+use crate::edge::written_tables::table_named;
+use crate::study::report::page_head;
+
+/// No report, and no record of training, is longer, in bytes.
+const MAX_BYTES: u64 = 64 << 20;
+
+/// What there is about a code.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ParticipantData {
+    pub code: String,
+    /// Where it was looked for: in this folder, and in the system's folder for temporary files.
+    pub root: PathBuf,
+    pub temporary: PathBuf,
+    /// Folders of recordings, their later parts among them.
+    pub recordings: Vec<PathBuf>,
+    /// The files in these folders that are deleted.
+    pub recording_files: Vec<PathBuf>,
+    /// Other files that are deleted as a whole.
+    pub files: Vec<PathBuf>,
+    /// Tables, and how many of their rows are deleted.
+    pub tables: Vec<(PathBuf, u64)>,
+    /// Records of a wizard's training from which these recordings are deleted.
+    pub trainings: Vec<PathBuf>,
+    /// What is or may be about the participant and stays, with the reason.
+    pub left: Vec<LeftFile>,
+    /// Where the rows of each table are, in bytes.
+    pub(super) cuts: BTreeMap<PathBuf, Vec<Range<u64>>>,
+    /// Folders that are removed if nothing is in them afterwards, each after the one that it is in.
+    pub(super) folders: Vec<PathBuf>,
+    pub(super) subject: ForgetSubject,
+}
+
+impl ParticipantData {
+    /// Whether nothing can be deleted. There may be something that is left.
+    pub fn is_empty(&self) -> bool {
+        self.recording_files.is_empty() && self.files.is_empty() && self.tables.is_empty() && self.trainings.is_empty()
+    }
+}
+
+/// Looks for everything with this code below a folder, and for what was saved from that folder, or made of recordings in it,
+/// in `temporary`, the system's folder for temporary files. Session files, and what symbolic links lead to, are left alone.
+///
+/// # Errors
+/// The folder cannot be read. What cannot be read in it is left.
+pub fn find(root: &Path, temporary: &Path, code: &str) -> FileResult<ParticipantData> {
+    let mut walk = ForgetWalk::through(root, temporary, code)?;
+    let folders = std::mem::take(&mut walk.folders);
+    let mut found = ParticipantData {
+        code: code.to_string(),
+        root: root.to_path_buf(),
+        temporary: temporary.to_path_buf(),
+        recordings: Vec::new(),
+        recording_files: Vec::new(),
+        files: Vec::new(),
+        tables: Vec::new(),
+        trainings: Vec::new(),
+        left: Vec::new(),
+        cuts: BTreeMap::new(),
+        folders: Vec::new(),
+        subject: walk.subject.clone(),
+    };
+    for (folder, WalkedFolder { files, is_own }) in &folders {
+        let tables = match FolderTables::read(folder, &walk.subject) {
+            Ok(tables) => tables,
+            Err(reason) => {
+                walk.left.push(LeftFile::unreadable(folder, &reason));
+                continue;
+            }
+        };
+        let mut look = FolderLook { tables: &tables, is_own: *is_own, cuts: Vec::new(), found: &mut found };
+        for path in files {
+            match look.at(path) {
+                Ok(true) => {}
+                Ok(false) if *is_own => walk.leave_strange(path),
+                Ok(false) => {}
+                Err(reason) => walk.left.push(LeftFile::unreadable(path, &reason)),
+            }
+        }
+        look.close();
+    }
+    found.left.append(&mut walk.left);
+    // The settings of a recording say whose its folder is, as long as something else of the participant is in there.
+    let is_occupied =
+        |folder: &Path| found.left.iter().any(|left| left.path != folder && left.path.starts_with(folder));
+    let (kept, deleted): (Vec<PathBuf>, Vec<PathBuf>) = walk
+        .recording_files
+        .into_iter()
+        .partition(|path| path.ends_with(SETTINGS_NAME) && path.parent().is_some_and(is_occupied));
+    let keeps =
+        "it says whose the folder is, as long as the other files are in there; run the command again afterwards";
+    found.left.extend(kept.iter().map(|path| LeftFile::new(path, keeps)));
+    found.left.sort();
+    (found.recordings, found.recording_files, found.folders) = (walk.recordings, deleted, walk.own_folders);
+    Ok(found)
+}
+
+/// A look at the files of one folder.
+struct FolderLook<'a> {
+    tables: &'a FolderTables,
+    /// It is in the folder of a recording of the participant.
+    is_own: bool,
+    /// Tables with rows of the participant.
+    cuts: Vec<(PathBuf, Vec<Range<u64>>)>,
+    found: &'a mut ParticipantData,
+}
+
+impl FolderLook<'_> {
+    /// Takes a file up, if something of the participant is in it. Whether it is known what it is.
+    fn at(&mut self, path: &Path) -> io::Result<bool> {
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let is_known = match extension.as_str() {
+            "csv" => self.at_table(path)?,
+            "json" => self.at_training(path)?,
+            "html" => self.at_page(path, &name)?,
+            _ => match stream_head::identity(path)? {
+                Some(identity) if self.found.subject.is_streamed(&identity) => {
+                    self.found.files.push(path.to_path_buf());
+                    true
+                }
+                _ => false,
+            },
+        };
+        if !is_known && !self.is_own && self.found.subject.is_named_by_recording(&name) {
+            let reason = "it has the name of one of the participant's recordings, and does not say what is in it";
+            self.found.left.push(LeftFile::new(path, reason));
+        }
+        Ok(is_known)
+    }
+
+    fn at_table(&mut self, path: &Path) -> io::Result<bool> {
+        let is_dictionary = path.ends_with("dictionary.csv");
+        match self.tables.look_at(path, &self.found.subject)? {
+            TableMatch::Nothing => return Ok(false),
+            // Of an analysis of the participant alone nothing remains.
+            TableMatch::Own { kept, .. } if self.is_own && (kept == 0 || is_dictionary) => {
+                self.found.files.push(path.to_path_buf());
+            }
+            TableMatch::Own { cut, .. } if cut.is_empty() => {}
+            TableMatch::Own { cut, .. } => self.cuts.push((path.to_path_buf(), cut)),
+            TableMatch::Unclear(reason) => self.found.left.push(LeftFile::new(path, reason)),
+        }
+        Ok(true)
+    }
+
+    fn at_training(&mut self, path: &Path) -> io::Result<bool> {
+        let Some(record) = training(path)? else { return Ok(false) };
+        let subject = &self.found.subject;
+        let whose = |one: &JudgedRecording| subject.recording(&one.recording);
+        let kept = others(&record, subject).len();
+        if record.wizard == subject.code || (kept == 0 && !record.recordings.is_empty()) {
+            self.found.files.push(path.to_path_buf());
+        } else if record.recordings.iter().any(|one| whose(one) == NamedPerson::Ambiguous) {
+            let reason = "a record of training that names a recording, and recordings of several people in different folders have \
+                          this name; tomcom forget --in the folder with one of them, or delete it by hand";
+            self.found.left.push(LeftFile::new(path, reason));
+        } else if kept < record.recordings.len() {
+            self.found.trainings.push(path.to_path_buf());
+        }
+        Ok(true)
+    }
+
+    fn at_page(&mut self, path: &Path, name: &str) -> io::Result<bool> {
+        let Some(bytes) = read_small(path)? else { return Ok(false) };
+        let page = String::from_utf8_lossy(&bytes);
+        let subject = &self.found.subject;
+        let Some(participants) = page_head::participants(&page) else {
+            let is_report = name == REPORT_NAME && (self.tables.name_participant() || subject.is_named_in(&bytes));
+            if is_report {
+                let reason = "a report that does not say who made it and whom it is about, as those of earlier versions; make it \
+                              anew with tomcom study, or delete it";
+                self.found.left.push(LeftFile::new(path, reason));
+            }
+            return Ok(is_report);
+        };
+        let whose: Vec<NamedPerson> = participants.iter().map(|name| subject.participant(name)).collect();
+        if whose.contains(&NamedPerson::Subject) {
+            self.found.files.push(path.to_path_buf());
+        } else if whose.contains(&NamedPerson::Ambiguous) {
+            let reason =
+                "a report about somebody who has the code, or the same code after a seed; make it anew, or delete it";
+            self.found.left.push(LeftFile::new(path, reason));
+        }
+        Ok(true)
+    }
+
+    /// Takes up the tables of the folder: all of them that name the participant, or none. The table of trials says whose the
+    /// recordings in the others are, so it is no use to change it as long as one of those stays.
+    fn close(self) {
+        let is_study_table = |path: &Path| {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            table_named(&stem).is_some() && path.extension().is_some_and(|extension| extension == "csv")
+        };
+        let Some(folder) = self.cuts.first().and_then(|(path, _)| path.parent()).map(Path::to_path_buf) else { return };
+        let is_beside = |left: &&LeftFile| left.path.parent() == Some(&folder) && is_study_table(&left.path);
+        let damaged = self.found.left.iter().find(is_beside).map(|left| left.path.clone());
+        for (path, cut) in self.cuts {
+            match &damaged {
+                Some(damaged) if is_study_table(&path) => {
+                    let beside = damaged.file_name().unwrap_or_default().to_string_lossy();
+                    let rows = count(cut.len() as u64, "row is", "rows are");
+                    let reason =
+                        format!("{rows} about the participant; it is changed together with {beside}, or not at all");
+                    self.found.left.push(LeftFile::new(&path, reason));
+                }
+                _ => {
+                    self.found.tables.push((path.clone(), cut.len() as u64));
+                    self.found.cuts.insert(path, cut);
+                }
+            }
+        }
+    }
+}
+
+/// What a wizard watched beside the participant's recordings.
+pub(super) fn others(record: &TrainingRecord, subject: &ForgetSubject) -> Vec<JudgedRecording> {
+    let is_other = |one: &&JudgedRecording| subject.recording(&one.recording) != NamedPerson::Subject;
+    record.recordings.iter().filter(is_other).cloned().collect()
+}
+
+/// The record of training in a file; none where there is anything else.
+pub(super) fn training(path: &Path) -> io::Result<Option<TrainingRecord>> {
+    Ok(read_small(path)?.and_then(|bytes| serde_json::from_slice(&bytes).ok()))
+}
+
+/// The content of a file; none where it is too long for what this program writes.
+fn read_small(path: &Path) -> io::Result<Option<Vec<u8>>> {
+    match fs::metadata(path)?.len() {
+        ..=MAX_BYTES => fs::read(path).map(Some),
+        _ => Ok(None),
+    }
+}

@@ -1,0 +1,201 @@
+//! The walk through folders: recordings, and all files that are not in the place of one.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::owner::RecordingOwner;
+use super::subject::ForgetSubject;
+use crate::edge::file_error::{FileError, FileResult};
+use crate::edge::log::{EXCLUSION_NAME, LOCK_NAME, LOG_NAME, RRD_NAME, SETTINGS_NAME};
+use crate::edge::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};
+use crate::session::settings::is_code;
+
+/// Why a file in the folder of a recording is left.
+const STRANGE: &str = "in the folder of one of the participant's recordings, and tomcom did not write it; it is to be deleted or \
+                       moved by hand";
+
+/// What is or may be about the participant and is left, with the reason.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct LeftFile {
+    pub path: PathBuf,
+    pub reason: String,
+}
+
+impl LeftFile {
+    pub(super) fn new(path: &Path, reason: impl Into<String>) -> LeftFile {
+        LeftFile { path: path.to_path_buf(), reason: reason.into() }
+    }
+
+    pub(super) fn unreadable(path: &Path, reason: &io::Error) -> LeftFile {
+        LeftFile::new(path, format!("it cannot be read, so it may be about the participant: {reason}"))
+    }
+}
+
+/// What kind of thing has a name in a folder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum EntryKind {
+    File,
+    Folder,
+    /// A symbolic link, a pipe, a device.
+    Other,
+}
+
+/// The other files of a folder.
+#[derive(Debug, Default)]
+pub(super) struct WalkedFolder {
+    pub files: Vec<PathBuf>,
+    /// It is in the folder of a recording of the participant.
+    pub is_own: bool,
+}
+
+/// What was found on a walk through folders.
+#[derive(Debug)]
+pub(super) struct ForgetWalk {
+    pub subject: ForgetSubject,
+    /// Folders of recordings of the participant.
+    pub recordings: Vec<PathBuf>,
+    /// The files of these recordings.
+    pub recording_files: Vec<PathBuf>,
+    /// The folders of these recordings, and those in them that are of nobody else; each after the one that it is in.
+    pub own_folders: Vec<PathBuf>,
+    /// All other files that are in no recording's place, by folder.
+    pub folders: BTreeMap<PathBuf, WalkedFolder>,
+    pub left: Vec<LeftFile>,
+}
+
+impl ForgetWalk {
+    /// Walks through a folder, and through the recordings that were in it before they were saved below the system's folder for
+    /// temporary files.
+    ///
+    /// # Errors
+    /// The folder cannot be read. What cannot be read in it is left.
+    pub(super) fn through(root: &Path, temporary: &Path, code: &str) -> FileResult<ForgetWalk> {
+        let mut walk = ForgetWalk {
+            subject: ForgetSubject::new(code),
+            recordings: Vec::new(),
+            recording_files: Vec::new(),
+            own_folders: Vec::new(),
+            folders: BTreeMap::new(),
+            left: Vec::new(),
+        };
+        if let Err(reason) = fs::read_dir(root) {
+            return Err(FileError::unreadable(root, reason, "the folder with the recordings"));
+        }
+        walk.enter(root, false);
+        let (home, elsewhere) = (canonical(root), canonical(temporary));
+        // Otherwise they were on the way.
+        if !elsewhere.starts_with(&home) {
+            walk.enter_rescued(&home, temporary);
+        }
+        Ok(walk)
+    }
+
+    /// Takes up a folder with everything below it.
+    fn enter(&mut self, folder: &Path, is_inside: bool) {
+        let owner = RecordingOwner::read(folder);
+        let (mut is_own, mut is_known) = (is_inside, false);
+        match owner {
+            RecordingOwner::Participant { code, began } if code == self.subject.code => {
+                self.subject.add_own(folder, began);
+                self.recordings.push(folder.to_path_buf());
+                (is_own, is_known) = (true, true);
+            }
+            RecordingOwner::Participant { code, .. } => {
+                self.subject.add_other(folder, code);
+                is_own = false;
+            }
+            RecordingOwner::Unknown(reason) => {
+                self.left.push(LeftFile::new(folder, reason));
+                is_own = false;
+            }
+            RecordingOwner::NoRecording => {}
+        }
+        let entries = match entries(folder) {
+            Ok(entries) => entries,
+            Err(reason) => return self.left.push(LeftFile::unreadable(folder, &reason)),
+        };
+        if is_own {
+            self.own_folders.push(folder.to_path_buf());
+        }
+        let mut files = Vec::new();
+        for (path, kind) in entries {
+            let is_of_recording = is_known && is_of_recording(&path);
+            match kind {
+                EntryKind::Folder => self.enter(&path, is_own),
+                // Whoever takes the lock of a recording gives it back.
+                EntryKind::File if is_of_recording && path.ends_with(LOCK_NAME) => {}
+                EntryKind::File if is_of_recording => self.recording_files.push(path),
+                EntryKind::File => files.push(path),
+                EntryKind::Other if is_own => self.left.push(LeftFile::new(&path, STRANGE)),
+                EntryKind::Other => {}
+            }
+        }
+        self.folders.insert(folder.to_path_buf(), WalkedFolder { files, is_own });
+    }
+
+    /// Takes up recordings that were saved from a folder below `home`.
+    fn enter_rescued(&mut self, home: &Path, temporary: &Path) {
+        for (folder, _) in entries(temporary).unwrap_or_default().iter().filter(is_rescued) {
+            for (recording, kind) in entries(folder).unwrap_or_default() {
+                let is_from_here = RescueNote::read(&recording).is_some_and(|note| note.home.starts_with(home));
+                if kind == EntryKind::Folder && is_from_here {
+                    // It goes, too, when nothing is in it any more.
+                    self.own_folders.push(folder.clone());
+                    self.enter(&recording, false);
+                }
+            }
+        }
+        // Streams of the recordings that could not stand beside them.
+        let streams =
+            entries(temporary).unwrap_or_default().into_iter().filter(is_stream).map(|(path, _)| path).collect();
+        self.folders.insert(temporary.to_path_buf(), WalkedFolder { files: streams, is_own: false });
+    }
+
+    /// Tells what of the participant's own folders nothing is known about.
+    pub(super) fn leave_strange(&mut self, path: &Path) {
+        self.left.push(LeftFile::new(path, STRANGE));
+    }
+}
+
+/// The files and folders in a folder, in the order of their names.
+fn entries(folder: &Path) -> io::Result<Vec<(PathBuf, EntryKind)>> {
+    let mut entries = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let kind = match entry.file_type()? {
+            kind if kind.is_file() => EntryKind::File,
+            kind if kind.is_dir() => EntryKind::Folder,
+            _ => EntryKind::Other,
+        };
+        entries.push((entry.path(), kind));
+    }
+    entries.sort_by(|a, b| a.0.cmp(&b.0));
+    Ok(entries)
+}
+
+/// Whether the program writes a file of this name into the folder of a recording, or has left it there when it was killed.
+fn is_of_recording(path: &Path) -> bool {
+    let Some(name) = path.file_name().and_then(|name| name.to_str()) else { return false };
+    let name = name.strip_suffix(".new").unwrap_or(name);
+    let is_code_file = name.strip_prefix("codes-").and_then(|name| name.strip_suffix(".csv")).is_some_and(is_code);
+    let seal = name.strip_suffix(".toml").unwrap_or_default();
+    let names = [LOG_NAME, SETTINGS_NAME, RRD_NAME, EXCLUSION_NAME, RESCUE_NOTE_NAME, LOCK_NAME];
+    is_code_file || names.contains(&name) || seal == RRD_NAME
+}
+
+fn is_rescued((path, kind): &&(PathBuf, EntryKind)) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    *kind == EntryKind::Folder && name.starts_with(RESCUED)
+}
+
+/// Whether this is a stream that `tomcom review` left in the system's folder for temporary files.
+fn is_stream((path, kind): &(PathBuf, EntryKind)) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    *kind == EntryKind::File && name.starts_with("tomcom-") && (name.ends_with(".rrd") || name.ends_with(".rrd.new"))
+}
+
+fn canonical(path: &Path) -> PathBuf {
+    fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf())
+}

@@ -1,0 +1,35 @@
+//! Files that the program is told to write: one that is there already is replaced only if this program wrote it.
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
+
+/// What kind of file it is stands within so many bytes of its beginning.
+const HEAD: u64 = 1 << 16;
+
+/// Whether a file can be written to this path. `is_own` is given the beginning of the file that is there, and says whether
+/// this program wrote it; `what` names such files, for the message. Empty files, pipes and devices hold nothing to be lost.
+///
+/// # Errors
+/// There is a file of somebody else, or one that cannot be read.
+pub fn check(path: &Path, what: &str, is_own: impl FnOnce(&[u8]) -> bool) -> io::Result<()> {
+    match fs::metadata(path) {
+        Ok(data) if data.is_file() => {}
+        Ok(_) => return Ok(()),
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+        Err(error) => return Err(error),
+    }
+    let mut head = Vec::new();
+    File::open(path)?.take(HEAD).read_to_end(&mut head)?;
+    if head.is_empty() || is_own(&head) {
+        return Ok(());
+    }
+    let found = format!("a file is there that is not {what} of tomcom; choose another name, or delete it first");
+    Err(io::Error::new(ErrorKind::AlreadyExists, found))
+}
+
+/// The first line of a text, without its end and without a byte order mark.
+pub fn first_line(head: &[u8]) -> &[u8] {
+    let line = head.split(|byte| matches!(byte, b'\r' | b'\n')).next().unwrap_or_default();
+    line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line)
+}

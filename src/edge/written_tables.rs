@@ -1,0 +1,86 @@
+//! By what a table of a study is known again: its columns, as this version writes them, or as the dictionary beside it lists
+//! them.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, ErrorKind};
+use std::path::Path;
+
+use csv::{ByteRecord, ReaderBuilder};
+
+use crate::study::column::Table;
+use crate::study::dictionary::columns;
+
+/// The tables that the dictionary in a folder lists.
+#[derive(Debug, Default)]
+pub struct WrittenTables {
+    columns: BTreeMap<Vec<u8>, Vec<Vec<u8>>>,
+}
+
+impl WrittenTables {
+    /// Reads the dictionary in a folder; where there is none, nothing is listed.
+    ///
+    /// # Errors
+    /// It is there, and cannot be read.
+    pub fn read(folder: &Path) -> io::Result<WrittenTables> {
+        let mut tables = WrittenTables::default();
+        let dictionary = records(&folder.join("dictionary.csv"))?;
+        if let Some((header, rows)) = dictionary.split_first()
+            && has_columns_of(header, Table::Dictionary)
+        {
+            for row in rows {
+                if let (Some(table), Some(column)) = (row.get(0), row.get(1)) {
+                    tables.columns.entry(table.to_vec()).or_default().push(column.to_vec());
+                }
+            }
+        }
+        Ok(tables)
+    }
+
+    /// Whether the dictionary was written by this program.
+    pub fn is_listed(&self) -> bool {
+        !self.columns.is_empty()
+    }
+
+    /// Whether this program wrote the table of this name with this header.
+    pub fn has(&self, name: &str, header: &ByteRecord) -> bool {
+        let listed = self.columns.get(name.as_bytes());
+        listed.is_some_and(|columns| header.iter().eq(columns.iter().map(Vec::as_slice)))
+            || table_named(name).is_some_and(|table| has_columns_of(header, table))
+    }
+
+    /// The columns of the table of this name, if a study has one.
+    pub fn columns_of(&self, name: &str) -> Option<Vec<Vec<u8>>> {
+        let listed = self.columns.get(name.as_bytes()).cloned();
+        listed.or_else(|| {
+            Some(columns(table_named(name)?).into_iter().map(|row| row.column.as_bytes().to_vec()).collect())
+        })
+    }
+}
+
+/// The table of a study with this name.
+pub fn table_named(name: &str) -> Option<Table> {
+    Table::ALL.into_iter().find(|table| table.name() == name)
+}
+
+fn has_columns_of(header: &ByteRecord, table: Table) -> bool {
+    header.iter().eq(columns(table).iter().map(|row| row.column.as_bytes()))
+}
+
+/// A reader of all records of a table, the header among them; they may have any number of cells, and any bytes in them.
+pub fn reader<R: io::Read>(table: R) -> csv::Reader<R> {
+    ReaderBuilder::new().has_headers(false).flexible(true).from_reader(table)
+}
+
+/// All records of a small table; none where there is no such file.
+///
+/// # Errors
+/// It is there, and cannot be read.
+pub fn records(path: &Path) -> io::Result<Vec<ByteRecord>> {
+    match path.symlink_metadata() {
+        Ok(data) if data.is_file() => Ok(reader(File::open(path)?).into_byte_records().collect::<csv::Result<_>>()?),
+        Ok(_) => Ok(Vec::new()),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Vec::new()),
+        Err(error) => Err(error),
+    }
+}

@@ -37,7 +37,7 @@ fn a_program_that_panics() {
 fn a_panic_gives_the_terminal_back_and_its_message_can_be_read() {
     let Some(terminal) = Terminal::open("panic") else { return };
     let this = std::env::current_exe().expect("a path");
-    terminal.run(&format!("{} --ignored --exact terminal::a_program_that_panics --nocapture", this.display()));
+    terminal.run(&format!("{} --ignored --exact terminal::leaving::a_program_that_panics --nocapture", this.display()));
     terminal.is_whole("101");
     terminal.see("on purpose");
 }

@@ -17,6 +17,7 @@ use super::playback::Playback;
 use super::rater_session::RaterSession;
 use super::view::theme::Theme;
 use crate::base::time::SessionTime;
+use crate::base::words::count;
 use crate::gaze::GazeSample;
 use crate::history::belief_track::BeliefHistory;
 use crate::kitchen::{Agent, AspectId};
@@ -120,6 +121,8 @@ pub struct ConsoleModel {
     pub pointer: Option<[f64; 2]>,
     /// Latest gaze samples with their times, the oldest first, for the gaze map.
     pub trail: VecDeque<(SessionTime, GazeSample)>,
+    /// Number of rejected senders of gaze: connections and datagrams that are not a tracker's.
+    pub rejected_senders: u64,
     /// State of the participant's display, if there is one.
     pub display: Option<DisplayHealth>,
     /// Times of the human's errors, in order.
@@ -164,6 +167,7 @@ impl ConsoleModel {
             focused: true,
             pointer: None,
             trail: VecDeque::with_capacity(TRAIL),
+            rejected_senders: 0,
             display: None,
             errors: Vec::new(),
             belief: BeliefHistory::default(),
@@ -180,6 +184,20 @@ impl ConsoleModel {
     /// Shows a notice.
     pub fn say(&mut self, level: NoticeLevel, text: impl Into<String>) {
         self.notice = Some(Notice { text: text.into(), level, at: self.clock });
+    }
+
+    /// Counts rejected senders of gaze. The first one, and every doubling of their number, gives a notice: whoever sends can
+    /// neither flood the notices nor replace an alarm.
+    pub fn count_rejected(&mut self, more: u64) {
+        let before = self.rejected_senders;
+        self.rejected_senders += more;
+        let has_doubled = self.rejected_senders.checked_ilog2() > before.checked_ilog2();
+        let is_alarmed = self.notice.as_ref().is_some_and(|notice| notice.level == NoticeLevel::Alarm);
+        if has_doubled && !is_alarmed {
+            let told = count(self.rejected_senders, "sender", "senders");
+            let text = format!("gaze: {told} rejected and not read: no JSON object, or not the tracker's address");
+            self.say(NoticeLevel::Refused, text);
+        }
     }
 
     /// Adds a gaze sample to the trail of the gaze map.

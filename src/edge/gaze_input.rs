@@ -14,6 +14,8 @@ pub enum GazeNews {
     Sample(GazeSample, Option<Instant>),
     /// So many messages, lines or samples that were none.
     Malformed(u64),
+    /// Number of rejected senders: connections and datagrams that are not a tracker's.
+    Rejected(u64),
     /// So many news that nobody took in time.
     Overrun(u64),
     /// A tracker's program began to send; its clock may be another one than before.

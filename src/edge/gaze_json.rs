@@ -1,22 +1,38 @@
 //! Gaze from any other program: lines {"t": seconds, "x": 0..1, "y": 0..1, "confidence": 0..1} over TCP or UDP on
 //! localhost. Coordinates are fractions of the wall display, the origin at the top left; t is the tracker's own clock.
-//! Lines that are no samples are counted.
+//! Lines that are no samples are counted. A connection or datagram that does not begin with a JSON object is rejected and
+//! counted, and none of its lines is read: websites can make a browser send requests to this port.
 
 use std::io;
-use std::net::Ipv4Addr;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::time::{Duration, Instant};
 
 use serde::Deserialize;
 use tokio::io::AsyncReadExt;
 use tokio::net::{TcpListener, TcpStream, UdpSocket};
 use tokio::sync::mpsc::{Receiver, Sender, channel};
+use tokio::time::{sleep, timeout};
 
+use super::connection_table::{ConnectionLimits, ConnectionPlace, ConnectionTable};
+use super::datagram_holder::DatagramHolder;
 use super::gaze_input::{GazeNews, WAITING};
 use crate::gaze::GazeSample;
+use crate::session::settings::GazeSenders;
 
 /// A line may be so long, in bytes.
 const MAX_LINE: usize = 4096;
 /// And a datagram, with one line or several.
 const MAX_DATAGRAM: usize = 1 << 16;
+/// Time limit for the first line of a connection.
+const FIRST_LINE: Duration = Duration::from_secs(10);
+/// All connections come from this machine. A tracker that has sent a sample may be silent as long as there is room.
+const LIMITS: ConnectionLimits = ConnectionLimits {
+    most: 32,
+    per_address: 32,
+    admitted: 32,
+    admitted_per_address: 32,
+    silence: Duration::from_secs(5),
+};
 
 #[derive(Deserialize)]
 struct Line {
@@ -27,41 +43,85 @@ struct Line {
     confidence: f64,
 }
 
-/// Listens on this port of localhost, for connections and for datagrams; trackers may come and go.
+/// The open gaze input.
+#[derive(Debug)]
+pub struct GazeListener {
+    /// Address for connections and datagrams.
+    pub address: SocketAddr,
+    pub news: Receiver<GazeNews>,
+}
+
+/// Listens on this port of localhost for connections and datagrams; trackers may come and go. Port 0 stands for a free port.
 ///
 /// # Errors
 /// The port cannot be listened on.
-pub async fn listen(port: u16) -> io::Result<Receiver<GazeNews>> {
+pub async fn listen(port: u16, senders: GazeSenders) -> io::Result<GazeListener> {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).await?;
-    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, port)).await?;
-    let (sender, receiver) = channel(WAITING);
-    tokio::spawn(take_datagrams(socket, sender.clone()));
-    tokio::spawn(async move {
-        while !sender.is_closed() {
-            match listener.accept().await {
-                Ok((stream, _)) => drop(tokio::spawn(read(stream, sender.clone()))),
-                // Out of sockets, or the like: try again, but not in a hot loop.
-                Err(_) => tokio::time::sleep(std::time::Duration::from_millis(100)).await,
-            }
-        }
-    });
-    Ok(receiver)
+    let address = listener.local_addr()?;
+    let socket = UdpSocket::bind(address).await?;
+    let (sender, news) = channel(WAITING);
+    tokio::spawn(take_datagrams(socket, DatagramHolder::new(senders), sender.clone()));
+    tokio::spawn(take_connections(listener, sender));
+    Ok(GazeListener { address, news })
 }
 
-/// Reads datagrams for ever; what nobody takes in time is counted.
-async fn take_datagrams(socket: UdpSocket, news: Sender<GazeNews>) {
-    let mut buffer = vec![0; MAX_DATAGRAM];
-    let (mut lost, mut from) = (0, None);
+/// Accepts connections without end.
+async fn take_connections(listener: TcpListener, news: Sender<GazeNews>) {
+    let table = ConnectionTable::new(LIMITS);
     while !news.is_closed() {
-        let Ok((count, sender)) = socket.recv_from(&mut buffer).await else {
-            // Somebody who sent has gone: that is told here, and nothing else.
-            tokio::time::sleep(std::time::Duration::from_millis(1)).await;
+        let Ok((stream, from)) = listener.accept().await else {
+            // The process may be out of descriptors: the pause prevents a busy loop.
+            sleep(Duration::from_millis(100)).await;
             continue;
         };
-        let began = (from.replace(sender) != Some(sender)).then_some(GazeNews::Began);
-        let found = buffer[..count].split(|&byte| byte == b'\n').filter_map(parse);
-        for news_of in began.into_iter().chain(found) {
-            lost += u64::from(news.try_send(news_of).is_err());
+        match table.arrive(from.ip(), Instant::now()) {
+            Some(arrival) => drop(tokio::spawn(attend(stream, arrival.place, news.clone()))),
+            None => reject(&news),
+        }
+    }
+}
+
+/// Reads a connection until it ends, is rejected, or is replaced by another.
+async fn attend(stream: TcpStream, place: ConnectionPlace, news: Sender<GazeNews>) {
+    let is_tracker = tokio::select! {
+        biased;
+        () = place.closed() => false,
+        is_tracker = read(stream, &place, &news) => is_tracker,
+    };
+    if !is_tracker {
+        reject(&news);
+    }
+}
+
+/// Counts a rejected sender.
+fn reject(news: &Sender<GazeNews>) {
+    // A closed or full channel has more serious consequences than a wrong count.
+    let _ = news.try_send(GazeNews::Rejected(1));
+}
+
+/// Reads datagrams without end; samples that are not processed in time are counted.
+async fn take_datagrams(socket: UdpSocket, mut holder: DatagramHolder, news: Sender<GazeNews>) {
+    let mut buffer = vec![0; MAX_DATAGRAM];
+    let (mut lost, mut tracker) = (0, None);
+    while !news.is_closed() {
+        let Ok((count, from)) = socket.recv_from(&mut buffer).await else {
+            // Somebody who sent has gone: that is told here, and nothing else.
+            sleep(Duration::from_millis(1)).await;
+            continue;
+        };
+        let (now, datagram) = (Instant::now(), &buffer[..count]);
+        if begins_object(datagram) == Some(false) || !holder.admits(from.ip(), now) {
+            reject(&news);
+            continue;
+        }
+        let found: Vec<GazeNews> = datagram.split(|&byte| byte == b'\n').filter_map(parse).collect();
+        let mut began = None;
+        if found.iter().any(|news| matches!(news, GazeNews::Sample(..))) {
+            holder.heard(from.ip(), now);
+            began = (tracker.replace(from) != Some(from)).then_some(GazeNews::Began);
+        }
+        for one in began.into_iter().chain(found) {
+            lost += u64::from(news.try_send(one).is_err());
         }
         if lost > 0 && news.try_send(GazeNews::Overrun(lost)).is_ok() {
             lost = 0;
@@ -69,37 +129,100 @@ async fn take_datagrams(socket: UdpSocket, news: Sender<GazeNews>) {
     }
 }
 
-/// Reads lines until the tracker goes; one that never ends a line cannot fill the memory. One that sends faster than it is
-/// read has to wait.
-async fn read(mut stream: TcpStream, news: Sender<GazeNews>) {
-    let mut buffer = vec![0; MAX_LINE];
-    let mut line: Vec<u8> = Vec::new();
-    let mut too_long = false;
-    if news.send(GazeNews::Began).await.is_err() {
-        return;
+/// Whether bytes begin like a JSON object; `None` if there are too few to decide.
+fn begins_object(bytes: &[u8]) -> Option<bool> {
+    let mut signs = bytes.iter().filter(|byte| !byte.is_ascii_whitespace());
+    match (signs.next(), signs.next()) {
+        (Some(b'{'), Some(next)) => Some(matches!(next, b'"' | b'}')),
+        (Some(b'{') | None, None) => None,
+        _ => Some(false),
     }
-    while let Ok(count @ 1..) = stream.read(&mut buffer).await {
+}
+
+/// Splits a connection's bytes into lines.
+#[derive(Default)]
+struct LineReader {
+    line: Vec<u8>,
+    is_too_long: bool,
+    /// Whether the first line is complete.
+    has_line: bool,
+    /// Whether a sample arrived.
+    has_begun: bool,
+}
+
+impl LineReader {
+    /// Adds a byte; returns the content of the line that it ends, if any.
+    fn take(&mut self, byte: u8) -> Option<GazeNews> {
+        if byte != b'\n' {
+            // The bound protects the memory against a sender that never ends its line.
+            match self.line.len() < MAX_LINE {
+                true => self.line.push(byte),
+                false => self.is_too_long = true,
+            }
+            return None;
+        }
+        self.end()
+    }
+
+    /// Ends the line and returns its content, if any.
+    fn end(&mut self) -> Option<GazeNews> {
+        let found = if self.is_too_long { Some(GazeNews::Malformed(1)) } else { parse(&self.line) };
+        self.line.clear();
+        self.is_too_long = false;
+        self.has_line |= found.is_some();
+        found
+    }
+
+    /// Whether the beginning of the first line shows that the sender is no tracker.
+    fn is_foreign(&self) -> bool {
+        !self.has_line && begins_object(&self.line) == Some(false)
+    }
+}
+
+/// Reads lines until the connection ends; a sender that is too fast is slowed down by TCP. Returns false if the sender has to
+/// be rejected.
+async fn read(mut stream: TcpStream, place: &ConnectionPlace, news: &Sender<GazeNews>) -> bool {
+    let mut buffer = vec![0; MAX_LINE];
+    let mut lines = LineReader::default();
+    let first_by = tokio::time::Instant::now() + FIRST_LINE;
+    loop {
+        let left = first_by.saturating_duration_since(tokio::time::Instant::now());
+        let patience = if lines.has_line { Duration::MAX } else { left };
+        let Ok(count) = timeout(patience, stream.read(&mut buffer)).await else { return false };
+        let Ok(count @ 1..) = count else { break };
+        place.heard(Instant::now());
         for &byte in &buffer[..count] {
-            match byte {
-                b'\n' => {
-                    let found = if too_long { Some(GazeNews::Malformed(1)) } else { parse(&line) };
-                    line.clear();
-                    too_long = false;
-                    if let Some(found) = found
-                        && news.send(found).await.is_err()
-                    {
-                        return;
-                    }
-                }
-                _ if line.len() < MAX_LINE => line.push(byte),
-                _ => too_long = true,
+            let found = lines.take(byte);
+            if lines.is_foreign() {
+                return false;
+            }
+            if let Some(found) = found
+                && !tell(found, &mut lines, place, news).await
+            {
+                return true;
             }
         }
     }
-    // A sender may end without ending its last line.
-    if let Some(found) = parse(&line).filter(|_| !too_long) {
-        let _ = news.send(found).await;
+    // The last line may lack its newline.
+    if !lines.is_too_long
+        && let Some(found) = lines.end()
+    {
+        tell(found, &mut lines, place, news).await;
     }
+    true
+}
+
+/// Passes on the content of a line, with `Began` before the first sample; returns false if the receiver is gone.
+async fn tell(found: GazeNews, lines: &mut LineReader, place: &ConnectionPlace, news: &Sender<GazeNews>) -> bool {
+    if matches!(found, GazeNews::Sample(..)) && !lines.has_begun {
+        lines.has_begun = true;
+        // All connections together are not more than may be admitted.
+        let _ = place.admit();
+        if news.send(GazeNews::Began).await.is_err() {
+            return false;
+        }
+    }
+    news.send(found).await.is_ok()
 }
 
 /// What a line says; nothing for an empty one.
@@ -129,8 +252,9 @@ mod tests {
         let address = listener.local_addr().expect("an address");
         let (sender, mut lines) = channel(WAITING);
         let reader = tokio::spawn(async move {
-            let (stream, _) = listener.accept().await.expect("a tracker");
-            read(stream, sender).await;
+            let (stream, from) = listener.accept().await.expect("a tracker");
+            let arrival = ConnectionTable::new(LIMITS).arrive(from.ip(), Instant::now()).expect("a place");
+            attend(stream, arrival.place, sender).await;
         });
         let mut tracker = TcpStream::connect(address).await.expect("connected");
         let text = [

@@ -2,6 +2,8 @@
 
 pub mod ask;
 pub mod clock;
+pub mod connection_table;
+pub mod datagram_holder;
 #[cfg(feature = "display")]
 pub mod display;
 pub mod doctor;

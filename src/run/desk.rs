@@ -130,8 +130,9 @@ impl GazeTracker {
         match participant.gaze {
             GazeSource::Json => {
                 let port = participant.gaze_port;
-                let news = gaze_json::listen(port).await.map_err(|reason| LiveError::Gaze { port, reason })?;
-                Ok(GazeTracker { news: Some(news), ..GazeTracker::default() })
+                let listener = gaze_json::listen(port, participant.gaze_senders).await;
+                let listener = listener.map_err(|reason| LiveError::Gaze { port, reason })?;
+                Ok(GazeTracker { news: Some(listener.news), ..GazeTracker::default() })
             }
             GazeSource::Pupil => {
                 let (address, surface_name) = (tracker.address.clone(), tracker.surface.clone());

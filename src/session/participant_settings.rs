@@ -14,6 +14,9 @@ pub struct ParticipantSpec {
     pub gaze: GazeSource,
     /// Port of the JSON gaze input on localhost.
     pub gaze_port: u16,
+    /// Addresses from which the JSON gaze input reads datagrams.
+    #[serde(skip_serializing_if = "GazeSenders::is_first")]
+    pub gaze_senders: GazeSenders,
     /// Population from which simulated participants are drawn; `None` for the default population.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub population: Option<Population>,
@@ -27,6 +30,7 @@ impl Default for ParticipantSpec {
             kind: ParticipantKind::Simulated,
             gaze: GazeSource::Simulated,
             gaze_port: 50021,
+            gaze_senders: GazeSenders::First,
             population: None,
         }
     }
@@ -65,4 +69,20 @@ pub enum GazeSource {
     Json,
     /// No gaze at all.
     None,
+}
+
+/// Addresses from which the JSON gaze input reads datagrams.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GazeSenders {
+    /// The address that sent the first sample, until it has been silent for 5 s.
+    First,
+    /// Every address.
+    Any,
+}
+
+impl GazeSenders {
+    fn is_first(&self) -> bool {
+        *self == GazeSenders::First
+    }
 }

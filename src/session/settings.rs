@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 pub use super::condition::Condition;
 pub use super::console_settings::{ConsoleSpec, MAX_NOTES, ThemeChoice, Visibility};
 use super::display::DisplaySpec;
-pub use super::participant_settings::{GazeSource, ParticipantKind, ParticipantSpec};
+pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
 use super::plan::{PlanSpec, StepSpec};
 pub use super::robot_settings::{ArmKind, RobotSpec};
 pub use super::setting_checks::{SettingError, is_code};

@@ -2,11 +2,14 @@
 
 mod arm;
 mod cohort;
+mod connection_table;
 mod console;
 mod cost_to_go;
 mod display;
+mod display_server;
 mod examples;
 mod gaze;
+mod gaze_senders;
 mod inference;
 mod kitchen;
 mod measures;

@@ -4,6 +4,7 @@ import fcntl
 import os
 import pty
 import re
+import resource
 import select
 import struct
 import subprocess
@@ -21,10 +22,18 @@ ANSWERS = {b"\x1b]11;?\x1b\\": b"\x1b]11;rgb:0000/0000/0000\x1b\\", b"\x1b[c": b
 OWN_KEY_S = 1
 
 
+def prepare(files):
+    """Takes the terminal, in the process that becomes the program."""
+    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+    if files:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (files, files))
+
+
 class Console:
     """Runs `tomcom operate` with these arguments until it is left by `with`."""
 
-    def __init__(self, tomcom, arguments, size=(120, 40)):
+    def __init__(self, tomcom, arguments, size=(120, 40), files=None):
+        """`files`: at most so many open files."""
         self.screen = pyte.Screen(*size)
         self.stream = pyte.ByteStream(self.screen)
         self.lock = threading.Lock()
@@ -37,7 +46,7 @@ class Console:
         self.process = subprocess.Popen(
             [tomcom, "operate", *map(str, arguments)],
             stdin=slave, stdout=slave, stderr=slave, env=environment, start_new_session=True,
-            preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),
+            preexec_fn=lambda: prepare(files),
         )
         os.close(slave)
         self.reader = threading.Thread(target=self.read, daemon=True)

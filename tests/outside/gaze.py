@@ -102,7 +102,8 @@ def send_among_nonsense(console):
             sample["confidence"] = chance.random()
             sent.append(sample)
             line = json.dumps(sample).encode() + b"\n"
-            if index % 10 == 0:
+            # A connection that begins with nonsense is none of a tracker.
+            if index % 10 == 1:
                 line = MALFORMED[(index // 10) % len(MALFORMED)] + b"\n" + line
             cut = chance.randrange(len(line))
             tracker.sendall(line[:cut])

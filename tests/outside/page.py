@@ -19,10 +19,11 @@ navigator.getGamepads = () => [pad, null, null, null];
 
 
 @contextmanager
-def browser():
+def browser(*more):
+    """Chromium, with these arguments beside the usual ones."""
     path = shutil.which("chromium")
     assert path, "Debian's package chromium is needed"
-    arguments = ["--no-sandbox", "--disable-background-networking", "--disable-sync", "--disable-component-update"]
+    arguments = ["--no-sandbox", "--disable-background-networking", "--disable-sync", "--disable-component-update", *more]
     with sync_playwright() as playwright:
         made = playwright.chromium.launch(executable_path=path, args=arguments)
         try:

@@ -29,10 +29,9 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let source = ConsoleModel::gaze_label(session.spec.participant.gaze);
     // Only the most frequent fault is shown; the preflight list and the summaries show all.
     let worst = faults(session).into_iter().max_by_key(|(count, _)| *count);
-    let remark = match worst {
-        None => source.to_string(),
-        Some((count, kind)) => format!("{source}, {count} {kind}"),
-    };
+    let rejected = Some((model.rejected_senders, "rejected")).filter(|(count, _)| *count > 0);
+    let told = worst.into_iter().chain(rejected).map(|(count, kind)| format!(", {count} {kind}"));
+    let remark = format!("{source}{}", told.collect::<String>());
     let inside = brush.panel(area, "Gaze", &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);

@@ -4,26 +4,25 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
+use axum::body::Bytes;
 use axum::extract::ws::{Message, Utf8Bytes, WebSocket};
 use tokio::sync::watch;
-use tokio::time::{sleep, timeout};
+use tokio::time::{sleep_until, timeout};
 
-use super::PageInput;
-use super::code::is_code;
 use super::message::{FromPage, ToPage, read, text};
-use super::server::ServerState;
+use super::page_input::PageInput;
+use super::page_life::PageLife;
+use super::pairing::PairingVerdict;
+use super::server_state::ServerState;
 use super::status::{ActivePage, count};
+use crate::edge::connection_table::ConnectionPlace;
 
-/// A page says who it is within this time.
+/// Time limit for a page's hello.
 const HELLO: Duration = Duration::from_secs(5);
-/// Who has to type a code first, within this one.
-const TYPING: Duration = Duration::from_secs(120);
-/// A page pings every second; one that is silent so long is gone.
-const SILENCE: Duration = Duration::from_secs(8);
 /// A page that takes nothing for so long is gone.
 const STUCK: Duration = Duration::from_secs(5);
-/// After a wrong code a page waits so long.
-const WRONG: Duration = Duration::from_secs(1);
+/// Number of codes that a connection may send.
+const ATTEMPTS: u32 = 20;
 /// So many messages a second, and so many at once: a pointer at 120 Hz, and presses.
 const PER_SECOND: f64 = 300.0;
 /// After so many messages that were none, a connection is closed.
@@ -35,7 +34,8 @@ const BOUNCE_MS: f64 = 50.0;
 struct Talk {
     socket: WebSocket,
     hub: Arc<ServerState>,
-    number: u64,
+    place: Arc<ConnectionPlace>,
+    life: PageLife,
     page: String,
     size: ActivePage,
     faults: u32,
@@ -48,13 +48,18 @@ struct Talk {
 }
 
 /// Talks with a page until one of the two ends it.
-pub(super) async fn talk(socket: WebSocket, hub: Arc<ServerState>, number: u64) {
-    let allowed = (PER_SECOND, Instant::now());
-    let (page, size) = (String::new(), ActivePage::default());
-    let mut talk = Talk { socket, hub, number, page, size, faults: 0, allowed, pressed: 0, last: None };
+pub(super) async fn talk(socket: WebSocket, hub: Arc<ServerState>, place: Arc<ConnectionPlace>) {
+    let now = Instant::now();
+    let (page, size, life) = (String::new(), ActivePage::default(), PageLife::new(now));
+    let (faults, allowed, pressed) = (0, (PER_SECOND, now), 0);
+    let mut talk = Talk { socket, hub, place, life, page, size, faults, allowed, pressed, last: None };
     let Some(waits) = talk.greet().await else { return };
+    // Beyond the limit of watching pages only the acting page is let in.
+    if !talk.take_seat(waits).await && !talk.place.admit() {
+        count(&talk.hub.status.refused);
+        return;
+    }
     talk.hub.status.pages.fetch_add(1, Ordering::Relaxed);
-    talk.take_seat(waits).await;
     talk.run().await;
     talk.hub.status.pages.fetch_sub(1, Ordering::Relaxed);
     talk.leave_seat().await;
@@ -65,34 +70,96 @@ impl Talk {
     /// waits for another page.
     async fn greet(&mut self) -> Option<bool> {
         self.say(&ToPage::Words { words: self.hub.words.clone() }).await?;
+        let hello_by = tokio::time::Instant::now() + HELLO;
+        let (mut has_said, mut attempts) = (false, 0);
         loop {
-            let Some(FromPage::Hello { page, width, height, code, waits }) = self.first().await? else {
-                self.fault()?;
-                continue;
-            };
-            (self.page, self.size.width_px, self.size.height_px) = (page, width, height);
-            let Some(wanted) = self.hub.code.clone() else { return Some(waits) };
-            match code {
-                Some(code) if is_code(&code, &wanted) => return Some(waits),
-                Some(_) => {
-                    count(&self.hub.status.refused);
-                    // Nobody finds a code by trying.
-                    sleep(WRONG).await;
-                    self.say(&ToPage::Pairing { why: "wrong" }).await?;
+            let message = tokio::select! {
+                biased;
+                () = self.place.closed() => return None,
+                said = self.socket.recv() => said?.ok()?,
+                () = sleep_until(hello_by), if !has_said => return None,
+                () = sleep_until(self.life.next().into()) => {
+                    self.keep_alive().await?;
+                    continue;
                 }
-                None => self.say(&ToPage::Pairing { why: "code" }).await?,
+            };
+            match self.message(message)? {
+                None => {}
+                Some(FromPage::Hello { page, width, height, code, waits }) => {
+                    (self.page, self.size.width_px, self.size.height_px) = (page, width, height);
+                    if !self.hub.has_code() {
+                        return Some(waits);
+                    }
+                    has_said = true;
+                    attempts += u32::from(code.is_some());
+                    if self.pair(code).await? {
+                        return Some(waits);
+                    }
+                    if attempts == ATTEMPTS {
+                        return None;
+                    }
+                }
+                // A page that shows the form for the code sends pings, too.
+                Some(FromPage::Ping { t, hidden, .. }) if has_said => self.pong(t, hidden).await?,
+                Some(FromPage::Size { width, height }) if has_said => {
+                    (self.size.width_px, self.size.height_px) = (width, height);
+                }
+                Some(_) => self.fault()?,
             }
         }
     }
 
-    /// A message before the page is let in. Who is asked for a code has time to type it.
-    async fn first(&mut self) -> Option<Option<FromPage>> {
-        let patience = if self.hub.code.is_some() { TYPING } else { HELLO };
-        match timeout(patience, self.socket.recv()).await {
-            Ok(Some(Ok(Message::Text(text)))) => Some(read(&text)),
-            Ok(Some(Ok(Message::Close(_)) | Err(_)) | None) | Err(_) => None,
-            Ok(Some(Ok(_))) => Some(None),
+    /// Checks the code and tells the page if it is not right; returns whether it is.
+    async fn pair(&mut self, code: Option<String>) -> Option<bool> {
+        let Some(code) = code else {
+            self.say(&ToPage::Pairing { why: "code", wait_s: 0 }).await?;
+            return Some(false);
+        };
+        let (why, wait) = match self.hub.pair(self.place.address(), &self.page, &code) {
+            PairingVerdict::Right => return Some(true),
+            PairingVerdict::Wrong(wait) => ("wrong", wait),
+            PairingVerdict::Locked(wait) => ("locked", wait),
+        };
+        count(&self.hub.status.refused);
+        let wait_s = wait.as_secs_f64().ceil() as u64;
+        self.say(&ToPage::Pairing { why, wait_s }).await?;
+        Some(false)
+    }
+
+    /// The page's message, if the frame contains one that is to be handled; outer `None` ends the connection.
+    fn message(&mut self, message: Message) -> Option<Option<FromPage>> {
+        let now = Instant::now();
+        self.life.heard(now, matches!(message, Message::Text(_)));
+        self.place.heard(now);
+        let text = match message {
+            Message::Text(text) => text,
+            Message::Binary(_) => return self.fault().map(|()| None),
+            Message::Ping(_) | Message::Pong(_) => return Some(None),
+            Message::Close(_) => return None,
+        };
+        if !self.is_allowed() {
+            count(&self.hub.status.refused);
+            return Some(None);
         }
+        match read(&text) {
+            None => self.fault().map(|()| None),
+            message => Some(message),
+        }
+    }
+
+    /// Sends a ping; `None` if the page is gone.
+    async fn keep_alive(&mut self) -> Option<()> {
+        let now = Instant::now();
+        if self.life.is_gone(now) {
+            return None;
+        }
+        self.life.pinged(now);
+        timeout(STUCK, self.socket.send(Message::Ping(Bytes::new()))).await.ok()?.ok()
+    }
+
+    async fn pong(&mut self, t: f64, is_hidden: bool) -> Option<()> {
+        self.life.hide(is_hidden);
+        self.say(&ToPage::Pong { t, at: self.hub.now_ms() }).await
     }
 
     /// Counts a message that was none; nothing, if it was one too many.
@@ -102,19 +169,22 @@ impl Talk {
         (self.faults < FAULTS).then_some(())
     }
 
-    /// The first page acts, unless it waits for another; one that is loaded again acts in the place of itself.
-    async fn take_seat(&mut self, waits: bool) {
+    /// The first page acts, unless it waits for another; one that is loaded again acts in the place of itself. Whether this
+    /// page acts now.
+    async fn take_seat(&mut self, waits: bool) -> bool {
         let mut took = false;
         self.hub.acting.send_if_modified(|acting| {
             took = acting.as_ref().map_or(!waits, |(_, other)| *other == self.page);
             if took {
-                *acting = Some((self.number, self.page.clone()));
+                *acting = Some((self.place.number, self.page.clone()));
             }
             took
         });
         if took {
+            self.place.reserve(true);
             self.tell_size().await;
         }
+        took
     }
 
     /// Says that the page which acts is there, of this size.
@@ -137,7 +207,7 @@ impl Talk {
     }
 
     fn acts(&self) -> bool {
-        self.hub.acting.borrow().as_ref().is_some_and(|(number, _)| *number == self.number)
+        self.hub.acting.borrow().as_ref().is_some_and(|(number, _)| *number == self.place.number)
     }
 
     /// Tells scene, role and sight whenever they change, and takes what the page says.
@@ -148,14 +218,11 @@ impl Talk {
         scene.mark_changed();
         sight.mark_changed();
         acting.mark_changed();
-        let mut heard = Instant::now();
         loop {
             tokio::select! {
                 biased;
-                said = self.socket.recv() => {
-                    heard = Instant::now();
-                    self.hear(said?.ok()?).await?;
-                }
+                () = self.place.closed() => return None,
+                said = self.socket.recv() => self.hear(said?.ok()?).await?,
                 changed = scene.changed() => {
                     changed.ok()?;
                     self.pass_on(&mut scene).await?;
@@ -165,13 +232,14 @@ impl Talk {
                 changed = acting.changed() => {
                     changed.ok()?;
                     let free = acting.borrow_and_update().is_none();
+                    self.place.reserve(self.acts());
                     self.say(&ToPage::Role { acts: self.acts(), free }).await?;
                 }
                 changed = sight.changed() => {
                     changed.ok()?;
                     self.pass_on(&mut sight).await?;
                 }
-                () = sleep(SILENCE.saturating_sub(heard.elapsed())) => return None,
+                () = sleep_until(self.life.next().into()) => self.keep_alive().await?,
             }
         }
     }
@@ -192,24 +260,14 @@ impl Talk {
 
     /// Takes what the page says; nothing, if it is to be left.
     async fn hear(&mut self, message: Message) -> Option<()> {
-        let text = match message {
-            Message::Text(text) => text,
-            Message::Binary(_) => return self.fault(),
-            Message::Ping(_) | Message::Pong(_) => return Some(()),
-            Message::Close(_) => return None,
-        };
-        if !self.is_allowed() {
-            count(&self.hub.status.refused);
-            return Some(());
-        }
-        match read(&text) {
-            None => self.fault(),
-            Some(FromPage::Ping { t, took }) => {
+        match self.message(message)? {
+            None => Some(()),
+            Some(FromPage::Ping { t, took, hidden }) => {
                 if self.acts() {
                     let change = |page: &mut ActivePage| page.round_trip_ms = took.or(page.round_trip_ms);
                     self.hub.status.page(|page| page.iter_mut().for_each(change));
                 }
-                self.say(&ToPage::Pong { t, at: self.hub.now_ms() }).await
+                self.pong(t, hidden).await
             }
             Some(FromPage::Size { width, height }) => {
                 (self.size.width_px, self.size.height_px) = (width, height);

@@ -35,10 +35,12 @@ pub(super) enum FromPage {
     },
     /// Somebody at a page that watches wants to take part.
     TakePart,
-    /// Its own time, in milliseconds, and how long the last one took there and back.
+    /// Its own time, in milliseconds, how long the last one took there and back, and whether nobody can see the page.
     Ping {
         t: f64,
         took: Option<f64>,
+        #[serde(default)]
+        hidden: bool,
     },
     /// A button went down; presses of a page are numbered.
     Press {
@@ -79,8 +81,9 @@ pub(super) enum ToPage {
     Words { words: BTreeMap<String, String> },
     /// Whether its presses count; if not, whether those of another page do (else it is free to take part).
     Role { acts: bool, free: bool },
-    /// "code": the pairing code is asked for; "wrong": it was not that.
-    Pairing { why: &'static str },
+    /// "code": the pairing code is asked for; "wrong": it was not that; "locked": it was not looked at. After so many seconds
+    /// the next one is.
+    Pairing { why: &'static str, wait_s: u64 },
 }
 
 /// Reads a message; nothing, if it is none.
@@ -93,7 +96,7 @@ pub(super) fn read(text: &str) -> Option<FromPage> {
         FromPage::Hello { page, width, height, code, .. } => {
             is_text(page) && is_size(*width, *height) && code.as_ref().is_none_or(|code| code.len() <= MAX_TEXT)
         }
-        FromPage::Ping { t, took } => is_time(t) && took.is_none_or(|took| (0.0..1e6).contains(&took)),
+        FromPage::Ping { t, took, .. } => is_time(t) && took.is_none_or(|took| (0.0..1e6).contains(&took)),
         FromPage::Press { button, at, .. } => is_text(button) && is_time(at),
         FromPage::Pointer { x, y } => (-1.0..=2.0).contains(x) && (-1.0..=2.0).contains(y),
         FromPage::Answer { item, .. } | FromPage::Back { item } => is_text(item),

@@ -6,21 +6,26 @@
 
 mod code;
 mod connection;
-mod listener;
+mod host_check;
 mod message;
+mod page_input;
+mod page_life;
+mod pairing;
 mod server;
+mod server_state;
 mod status;
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::sync::Arc;
-use std::time::Instant;
 
 use tokio::net::TcpListener;
 use tokio::sync::mpsc::{Receiver, channel};
 use tokio::sync::watch;
 
-use self::server::{ServerState, serve};
+pub use self::page_input::PageInput;
+use self::server::serve;
+use self::server_state::ServerState;
 use self::status::DisplayStatus;
 pub use self::status::{ActivePage, DisplayCounts};
 use crate::display::words::DisplayWords;
@@ -28,43 +33,6 @@ use crate::display::{DisplayScene, DisplayUpdate};
 
 /// So many inputs of the page may wait to be taken.
 const WAITING: usize = 1024;
-
-/// What the page that acts tells.
-#[derive(Clone, Debug, PartialEq)]
-pub enum PageInput {
-    /// It is there, of this size in pixels.
-    Connected {
-        width_px: u32,
-        height_px: u32,
-    },
-    Lost,
-    /// A button went down at this moment.
-    Press {
-        button: String,
-        at: Instant,
-    },
-    /// The pointer was at this point of the display, in fractions.
-    Pointer {
-        x: f64,
-        y: f64,
-    },
-    /// An item of a questionnaire was rated, or left out.
-    Answer {
-        item: String,
-        rated: Option<u8>,
-    },
-    /// Back to this item.
-    Back {
-        item: String,
-    },
-    /// The answers are as they were meant.
-    Confirm,
-    /// What the event of this number brought was drawn at this moment.
-    Drawn {
-        cue: u64,
-        at: Instant,
-    },
-}
 
 /// The display, as a session has it: where it is served, and what comes from it. It is served until this is dropped.
 pub struct Display {

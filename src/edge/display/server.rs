@@ -1,30 +1,44 @@
 //! The server: the page's files, and the place where pages connect.
 
-use std::collections::BTreeMap;
+use std::convert::Infallible;
 use std::io;
-use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use axum::Router;
 use axum::extract::State;
 use axum::extract::ws::WebSocketUpgrade;
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::http::{HeaderMap, Request, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
-use tokio::net::TcpListener;
-use tokio::sync::mpsc::Sender;
-use tokio::sync::watch;
+use axum::{Extension, Router};
+use hyper::body::Incoming;
+use hyper::server::conn::http1;
+use hyper::service::{Service, service_fn};
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::time::{sleep, timeout};
 
-use super::PageInput;
 use super::connection::talk;
-use super::listener::LimitedListener;
+use super::host_check::{has_own_host, has_own_origin};
 use super::message::MAX_BYTES;
-use super::status::{DisplayStatus, count};
+use super::server_state::ServerState;
+use super::status::count;
+use crate::edge::connection_table::ConnectionPlace;
 
 /// The page may load nothing from elsewhere, and nobody may frame it.
 const POLICY: &str = "default-src 'self'; connect-src 'self' ws:; img-src data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+/// Time limit for the head of a request.
+const HEADER: Duration = Duration::from_secs(5);
+/// Time limit for request and response together.
+const ANSWER: Duration = Duration::from_secs(30);
+/// Longest head of a request, in bytes.
+const MAX_REQUEST: usize = 16 * 1024;
+/// Pause after an error of `accept`.
+const AGAIN: Duration = Duration::from_millis(100);
+
+/// Body of a refusal, for somebody who opened the page by another host name.
+const REFUSED: &str = "Refused: open the participant's page at the address that the console shows.";
 
 /// The page's files: path, kind, text.
 const FILES: [(&str, &str, &str); 6] = [
@@ -36,49 +50,8 @@ const FILES: [(&str, &str, &str); 6] = [
     ("/art.js", "text/javascript; charset=utf-8", include_str!("page/art.js")),
 ];
 
-/// What all connections share.
-pub(super) struct ServerState {
-    /// What a page is asked for, if the network reaches it.
-    pub code: Option<String>,
-    /// The words of the page, by what they stand for.
-    pub words: BTreeMap<String, String>,
-    pub inputs: Sender<PageInput>,
-    pub scene: watch::Receiver<Arc<str>>,
-    pub sight: watch::Receiver<Arc<str>>,
-    pub status: Arc<DisplayStatus>,
-    /// The connection that acts, and the page that it is of.
-    pub acting: watch::Sender<Option<(u64, String)>>,
-    connections: AtomicU64,
-    began: Instant,
-}
-
-impl ServerState {
-    pub fn new(
-        code: Option<String>,
-        words: BTreeMap<String, String>,
-        inputs: Sender<PageInput>,
-        scene: watch::Receiver<Arc<str>>,
-        sight: watch::Receiver<Arc<str>>,
-        status: Arc<DisplayStatus>,
-    ) -> ServerState {
-        let (acting, connections, began) = (watch::Sender::new(None), AtomicU64::new(0), Instant::now());
-        ServerState { code, words, inputs, scene, sight, status, acting, connections, began }
-    }
-
-    /// The server's clock, in milliseconds.
-    pub fn now_ms(&self) -> f64 {
-        self.began.elapsed().as_secs_f64() * 1000.0
-    }
-
-    /// The moment of a time on it. What comes from a page was no later than now, and not long ago.
-    pub fn moment(&self, at_ms: f64) -> Instant {
-        /// No press waits longer than so many milliseconds on its way.
-        const OLDEST_MS: f64 = 2000.0;
-        let now = Instant::now();
-        let age_ms = (self.now_ms() - at_ms).clamp(0.0, OLDEST_MS);
-        now.checked_sub(Duration::from_secs_f64(age_ms / 1000.0)).unwrap_or(now)
-    }
-}
+/// The router as a service of hyper.
+type Answers = TowerToHyperService<Router>;
 
 /// Serves until nobody wants inputs any more.
 pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> io::Result<()> {
@@ -94,85 +67,71 @@ pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> 
         ];
         router = router.route(path, get(move || async move { (headers, text) }));
     }
+    let answers = TowerToHyperService::new(router.with_state(hub.clone()));
     let inputs = hub.inputs.clone();
-    let server = axum::serve(LimitedListener::new(listener), router.with_state(hub));
     // The session is over: its connections end with it, without waiting for what they may still say.
     tokio::select! {
-        done = server => done,
+        () = take_connections(listener, hub, answers) => Ok(()),
         () = inputs.closed() => Ok(()),
     }
 }
 
-/// Lets a page connect: of this server, and of no other that a browser may have open.
-async fn connect(State(hub): State<Arc<ServerState>>, headers: HeaderMap, upgrade: WebSocketUpgrade) -> Response {
-    if !is_own(&headers, hub.code.is_some()) {
-        count(&hub.status.refused);
-        return StatusCode::FORBIDDEN.into_response();
-    }
-    let number = hub.connections.fetch_add(1, Ordering::Relaxed);
-    let upgrade = upgrade.max_message_size(MAX_BYTES).max_frame_size(MAX_BYTES);
-    upgrade.on_upgrade(move |socket| talk(socket, hub, number))
-}
-
-/// Whether a request comes from a page of this server. Without a pairing code the host must be a loopback address or
-/// `localhost`: any other name that resolves to this machine, `127.evil.example` too, belongs to a foreign page (DNS
-/// rebinding). In the network the pairing code keeps foreign pages out.
-fn is_own(headers: &HeaderMap, has_code: bool) -> bool {
-    let text = |name| headers.get(name).and_then(|value| value.to_str().ok());
-    let Some(host) = text(header::HOST) else { return false };
-    let is_same = text(header::ORIGIN).is_none_or(|origin| origin.strip_prefix("http://") == Some(host));
-    is_same && (has_code || is_local(host))
-}
-
-/// Whether the value of a `Host` header, with or without a port, is a loopback address or `localhost`.
-fn is_local(host: &str) -> bool {
-    if let Ok(address) = host.parse::<SocketAddr>() {
-        return address.ip().is_loopback();
-    }
-    let name = match host.rsplit_once(':') {
-        Some((name, port)) if port.parse::<u16>().is_ok() => name,
-        _ => host,
-    };
-    let address = name.strip_prefix('[').and_then(|name| name.strip_suffix(']')).unwrap_or(name);
-    name.eq_ignore_ascii_case("localhost") || address.parse::<IpAddr>().is_ok_and(|address| address.is_loopback())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_its_own_pages_may_connect() {
-        let is_own = |host: &'static str, origin: Option<&'static str>, has_code| {
-            let mut headers = HeaderMap::new();
-            headers.insert(header::HOST, host.parse().expect("a header"));
-            origin.map(|origin| headers.insert(header::ORIGIN, origin.parse().expect("a header")));
-            super::is_own(&headers, has_code)
+/// Accepts connections without end.
+async fn take_connections(listener: TcpListener, hub: Arc<ServerState>, answers: Answers) {
+    loop {
+        let Ok((stream, from)) = listener.accept().await else {
+            // The process may be out of descriptors: the pause prevents a busy loop.
+            sleep(AGAIN).await;
+            continue;
         };
-        assert!(is_own("127.0.0.1:50022", Some("http://127.0.0.1:50022"), false));
-        assert!(is_own("localhost:50022", Some("http://localhost:50022"), false));
-        assert!(is_own("localhost:50022", None, false));
-        assert!(!is_own("localhost:50022", Some("http://somewhere.example"), false));
-        assert!(!is_own("somewhere.example:50022", Some("http://somewhere.example:50022"), false));
-        // Names that only look like an address of this machine.
-        for foreign in [
-            "127.evil.example",
-            "127.0.0.1.evil.example",
-            "localhost.evil.example",
-            "127.0.0.1x",
-            "127.1",
-            "10.0.0.7",
-            "[::2]",
-        ] {
-            let named: &'static str = format!("{foreign}:50022").leak();
-            let origin: &'static str = format!("http://{foreign}:50022").leak();
-            assert!(!is_own(named, Some(origin), false), "{foreign}");
-            assert!(!is_own(foreign, None, false), "{foreign}");
+        let arrival = hub.connections.arrive(from.ip(), Instant::now());
+        if arrival.as_ref().is_none_or(|arrival| arrival.made_room) {
+            count(&hub.status.refused);
         }
-        for own in ["127.0.0.1", "127.8.8.8:50022", "LOCALHOST:50022", "localhost", "[::1]:50022", "[::1]"] {
-            assert!(is_own(own, None, false), "{own}");
-        }
-        assert!(is_own("10.0.0.7:50022", Some("http://10.0.0.7:50022"), true));
-        assert!(!is_own("10.0.0.7:50022", Some("http://10.0.0.8:50022"), true));
+        let Some(arrival) = arrival else { continue };
+        // A press is a small message: it must not wait for a larger one.
+        let _ = stream.set_nodelay(true);
+        tokio::spawn(answer(stream, Arc::new(arrival.place), hub.clone(), answers.clone()));
+        // The new connection's request is read before further connections can replace it.
+        tokio::task::yield_now().await;
     }
+}
+
+/// Answers one request. A WebSocket that it opens continues in a task of its own; other connections are then closed.
+async fn answer(stream: TcpStream, place: Arc<ConnectionPlace>, hub: Arc<ServerState>, answers: Answers) {
+    let shared = place.clone();
+    let service = service_fn(move |mut request: Request<Incoming>| {
+        shared.heard(Instant::now());
+        let is_own = has_own_host(request.headers(), request.uri(), hub.has_code());
+        request.extensions_mut().insert(shared.clone());
+        let (answers, hub) = (answers.clone(), hub.clone());
+        async move { if is_own { answers.call(request).await } else { Ok::<Response, Infallible>(refuse(&hub)) } }
+    });
+    let mut http = http1::Builder::new();
+    http.timer(TokioTimer::new()).header_read_timeout(HEADER).keep_alive(false).max_buf_size(MAX_REQUEST);
+    let served = http.serve_connection(TokioIo::new(stream), service).with_upgrades();
+    tokio::select! {
+        // Errors and time-outs close the connection as success does.
+        _ = timeout(ANSWER, served) => {}
+        () = place.closed() => {}
+    }
+}
+
+/// Lets a page connect: of this server, and of no other that a browser may have open.
+async fn connect(
+    State(hub): State<Arc<ServerState>>,
+    Extension(place): Extension<Arc<ConnectionPlace>>,
+    headers: HeaderMap,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    if !has_own_origin(&headers) {
+        return refuse(&hub);
+    }
+    let upgrade = upgrade.max_message_size(MAX_BYTES).max_frame_size(MAX_BYTES);
+    upgrade.on_upgrade(move |socket| talk(socket, hub, place))
+}
+
+fn refuse(hub: &ServerState) -> Response {
+    count(&hub.status.refused);
+    (StatusCode::FORBIDDEN, REFUSED).into_response()
 }

@@ -50,6 +50,8 @@ impl GazeInput {
                 self.dropped.overrun += count;
                 return None;
             }
+            // The console counts senders that are no trackers; the log has nothing of them.
+            GazeNews::Rejected(_) => return None,
             GazeNews::Began => {
                 self.clock = DeviceClock::default();
                 return None;

@@ -65,6 +65,10 @@ impl Live {
 
     /// Handles a tracker message.
     pub(super) fn take_gaze(&mut self, news: GazeNews) {
+        if let GazeNews::Rejected(count) = news {
+            self.model.count_rejected(count);
+            self.dirty = true;
+        }
         if let Some(event) = self.gaze.event(news, self.clock.now()) {
             self.input(event);
         }

@@ -4,8 +4,11 @@
 
 (() => {
   const RESIZED_MS = 400, IDLE_MS = 3000, PING_MS = 1000, FIRST_PINGS = 5, FIRST_PING_MS = 60, SILENCE_MS = 4000, AGAIN_MS = 500, POINTER_MS = 16;
-  let socket = null, code = new URLSearchParams(location.search).get("code"), number = 0, heard = 0, acts = null, isFree = false;
+  let socket = null, code = new URLSearchParams(location.search).get("code"), number = 0, acts = null, isFree = false;
   let trips = [], took = null, cue = null, pointed = null, pinger = 0;
+  // When the ping was sent that nothing has answered yet; 0: there is none. The timers of a hidden page are slow: the time
+  // since the last message says nothing of the connection.
+  let asked = 0;
   // Presses whose effect is not on the screen yet.
   const waiting = [];
 
@@ -30,19 +33,21 @@
 
   function ping() {
     const first = trips.length < FIRST_PINGS;
-    say({ kind: "ping", t: performance.now(), took });
+    asked = asked || performance.now();
+    say({ kind: "ping", t: performance.now(), took, hidden: document.visibilityState === "hidden" });
     clearTimeout(pinger);
     pinger = setTimeout(ping, first ? FIRST_PING_MS : PING_MS);
   }
 
   function hear({ data }) {
     const now = performance.now(), message = JSON.parse(data);
-    heard = now;
+    asked = 0;
     if (message.kind === "pong") {
       took = now - message.t;
       trips = [...trips.slice(-19), { took, offset: message.at - (message.t + now) / 2 }];
     } else if (message.kind === "pairing") {
-      Stage.askCode(message.why === "wrong", (typed) => { code = typed; hello(); });
+      code = null;
+      Stage.askCode(message.why, message.wait_s, (typed) => { code = typed; hello(); });
     } else if (message.kind === "words") {
       Stage.greet(message.words);
     } else if (message.kind === "role") {
@@ -97,7 +102,7 @@
   function connect() {
     const made = new WebSocket(`ws://${location.host}/talk`);
     socket = made;
-    heard = performance.now();
+    asked = performance.now();
     made.onopen = () => { Stage.mark({ lost: false }); hello(); };
     made.onmessage = hear;
     made.onclose = () => {
@@ -148,11 +153,15 @@
     idle = setTimeout(rest, IDLE_MS);
   });
   rest();
-  // A connection that says nothing any more is none, although nobody closed it.
-  setInterval(() => isOpen() && performance.now() - heard > SILENCE_MS && socket.close(), 500);
+  // A connection that does not answer any more is none, although nobody closed it.
+  setInterval(() => isOpen() && asked && performance.now() - asked > SILENCE_MS && socket.close(), 500);
   // The screen stays on; where the browser does not do that, nothing is lost.
   const stayOn = () => navigator.wakeLock && navigator.wakeLock.request("screen").catch(() => {});
-  document.addEventListener("visibilitychange", () => document.visibilityState === "visible" && stayOn());
+  document.addEventListener("visibilitychange", () => {
+    if (document.visibilityState === "visible") stayOn();
+    // The server is patient with a page that nobody sees.
+    if (isOpen() && trips.length) ping();
+  });
   stayOn();
   Hands.begin(press, say, point);
   connect();

@@ -346,16 +346,24 @@ const Stage = (() => {
     root.replaceChildren(element("div", "sheet open big", card));
   }
 
-  /** Asks for the pairing code. */
-  function askCode(isWrong, then) {
+  /** Asks for the pairing code, the next one after so many seconds. What is typed already stays when the connection comes back. */
+  function askCode(why, waitS, then) {
+    const typed = why === "code" && root.querySelector("form input")?.value;
     scene = shown = parts = null;
     const card = element("form", "card");
     const field = element("input", "");
-    Object.assign(field, { maxLength: 12, autocomplete: "off", spellcheck: false, autofocus: true });
+    Object.assign(field, { maxLength: 12, autocomplete: "off", spellcheck: false, autofocus: true, value: typed || "" });
     field.setAttribute("aria-label", words.pairing);
-    const hint = isWrong ? words["pairing wrong"] : words["pairing text"];
-    card.append(text("h1", "", words.pairing), field, text("p", isWrong ? "wrong" : "", hint));
-    card.addEventListener("submit", (event) => { event.preventDefault(); then(field.value); });
+    const hints = { code: [words["pairing text"]], wrong: [words["pairing wrong"]], locked: [words["pairing locked"]] };
+    if (waitS) hints[why].push(words["pairing wait"].replace("#", waitS));
+    card.append(text("h1", "", words.pairing), field, text("p", why === "code" ? "" : "wrong", hints[why].join(" ")));
+    // What is sent before the wait is over is not looked at.
+    const from = performance.now() + 1000 * waitS;
+    card.addEventListener("submit", (event) => {
+      event.preventDefault();
+      field.disabled = true;
+      setTimeout(() => then(field.value), Math.max(0, from - performance.now()));
+    });
     const sheet = element("div", "sheet open big", card);
     root.replaceChildren(sheet);
     field.focus();

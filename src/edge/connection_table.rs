@@ -1,0 +1,200 @@
+//! Table of a listener's open connections. It limits their number, in total and per address. A new connection beyond a limit
+//! replaces the one that was silent longest, so that silent connections cannot keep others out.
+
+use std::collections::BTreeMap;
+use std::net::IpAddr;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use tokio::sync::watch;
+
+/// Limits of a listener.
+#[derive(Clone, Copy, Debug)]
+pub struct ConnectionLimits {
+    /// Open connections in total. The sum over all listeners stays well below 1024, a usual limit of open files.
+    pub most: usize,
+    /// Open connections per address.
+    pub per_address: usize,
+    /// Admitted connections in total.
+    pub admitted: usize,
+    /// Admitted connections per address. Fewer than [`Self::per_address`] leave room for new connections.
+    pub admitted_per_address: usize,
+    /// Silence after which an admitted connection may be replaced, if no waiting one can be.
+    pub silence: Duration,
+}
+
+/// How a connection is treated when there are too many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ConnectionStanding {
+    /// Not identified yet: new connections may replace it.
+    Waiting,
+    /// Identified as a page or a tracker: replaced only after a silence.
+    Admitted,
+    /// Never replaced, and not counted by the limits of admitted connections.
+    Reserved,
+}
+
+#[derive(Debug)]
+struct ConnectionEntry {
+    number: u64,
+    address: IpAddr,
+    standing: ConnectionStanding,
+    heard: Instant,
+    close: watch::Sender<bool>,
+}
+
+#[derive(Debug, Default)]
+struct ConnectionEntries {
+    entries: Vec<ConnectionEntry>,
+    next: u64,
+}
+
+/// Open connections of one listener.
+#[derive(Debug)]
+pub struct ConnectionTable {
+    limits: ConnectionLimits,
+    inner: Mutex<ConnectionEntries>,
+}
+
+/// An open connection's entry in the table; dropping it removes the entry.
+#[derive(Debug)]
+pub struct ConnectionPlace {
+    /// Serial number of the connection.
+    pub number: u64,
+    address: IpAddr,
+    table: Arc<ConnectionTable>,
+    closing: watch::Receiver<bool>,
+}
+
+/// A new connection, and whether it replaces another.
+#[derive(Debug)]
+pub struct Arrival {
+    /// Entry of the new connection.
+    pub place: ConnectionPlace,
+    /// Whether another connection is closed for it.
+    pub made_room: bool,
+}
+
+impl ConnectionTable {
+    /// An empty table.
+    pub fn new(limits: ConnectionLimits) -> Arc<ConnectionTable> {
+        Arc::new(ConnectionTable { limits, inner: Mutex::default() })
+    }
+
+    /// Adds a connection from this address. Beyond a limit it replaces the connection that was silent longest: one of the same
+    /// address if that address has too many, else one of the address with the most waiting connections. `None`: no connection
+    /// can be replaced, and the new one has to be refused.
+    pub fn arrive(self: &Arc<Self>, address: IpAddr, now: Instant) -> Option<Arrival> {
+        let address = network_of(address);
+        let mut inner = self.lock();
+        let of_address = inner.entries.iter().filter(|entry| entry.address == address).count();
+        let is_full = of_address >= self.limits.per_address || inner.entries.len() >= self.limits.most;
+        if is_full {
+            let only = (of_address >= self.limits.per_address).then_some(address);
+            let index = self.replaceable(&inner.entries, only, now)?;
+            inner.entries.remove(index).close.send_replace(true);
+        }
+        let number = inner.next;
+        inner.next += 1;
+        let (close, closing) = watch::channel(false);
+        let standing = ConnectionStanding::Waiting;
+        inner.entries.push(ConnectionEntry { number, address, standing, heard: now, close });
+        let place = ConnectionPlace { number, address, table: self.clone(), closing };
+        Some(Arrival { place, made_room: is_full })
+    }
+
+    /// Index of the connection to be replaced, among those of this address or among all.
+    fn replaceable(&self, entries: &[ConnectionEntry], only: Option<IpAddr>, now: Instant) -> Option<usize> {
+        let is_waiting = |entry: &ConnectionEntry| entry.standing == ConnectionStanding::Waiting;
+        let mut waiting = BTreeMap::<IpAddr, usize>::new();
+        entries
+            .iter()
+            .filter(|entry| is_waiting(entry))
+            .for_each(|entry| *waiting.entry(entry.address).or_default() += 1);
+        let crowd = waiting.values().copied().max().unwrap_or_default();
+        let is_replaceable = |entry: &ConnectionEntry| match (only, entry.standing) {
+            (Some(address), _) if address != entry.address => false,
+            (Some(_), ConnectionStanding::Waiting) => true,
+            (None, ConnectionStanding::Waiting) => waiting.get(&entry.address) == Some(&crowd),
+            (_, ConnectionStanding::Admitted) => now.saturating_duration_since(entry.heard) >= self.limits.silence,
+            (_, ConnectionStanding::Reserved) => false,
+        };
+        let candidates = entries.iter().enumerate().filter(|(_, entry)| is_replaceable(entry));
+        // Waiting connections are replaced before admitted ones.
+        candidates.min_by_key(|(_, entry)| (!is_waiting(entry), entry.heard)).map(|(index, _)| index)
+    }
+
+    /// Number of open connections.
+    pub fn count(&self) -> usize {
+        self.lock().entries.len()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, ConnectionEntries> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl ConnectionPlace {
+    /// Address of the other end, as the limits count it; see [`network_of`].
+    pub fn address(&self) -> IpAddr {
+        self.address
+    }
+
+    /// Notes that data arrived.
+    pub fn heard(&self, now: Instant) {
+        self.change(|entry| entry.heard = now);
+    }
+
+    /// Admits the connection, if the limits of admitted connections leave room; returns whether it is admitted.
+    #[must_use]
+    pub fn admit(&self) -> bool {
+        let limits = self.table.limits;
+        let mut inner = self.table.lock();
+        let is_admitted = |entry: &&ConnectionEntry| entry.standing == ConnectionStanding::Admitted;
+        let others = inner.entries.iter().filter(is_admitted).filter(|entry| entry.number != self.number);
+        let of_address = others.clone().filter(|entry| entry.address == self.address).count();
+        let has_room = others.count() < limits.admitted && of_address < limits.admitted_per_address;
+        let Some(entry) = inner.entries.iter_mut().find(|entry| entry.number == self.number) else { return false };
+        if entry.standing == ConnectionStanding::Waiting && has_room {
+            entry.standing = ConnectionStanding::Admitted;
+        }
+        entry.standing != ConnectionStanding::Waiting
+    }
+
+    /// Reserves the connection's entry, or turns a reserved entry into an admitted one.
+    pub fn reserve(&self, is_reserved: bool) {
+        self.change(|entry| match (is_reserved, entry.standing) {
+            (true, _) => entry.standing = ConnectionStanding::Reserved,
+            (false, ConnectionStanding::Reserved) => entry.standing = ConnectionStanding::Admitted,
+            (false, _) => {}
+        });
+    }
+
+    /// Completes when the connection is replaced and has to be closed.
+    pub async fn closed(&self) {
+        // An error means that the entry is gone, which is the same.
+        let _ = self.closing.clone().wait_for(|closing| *closing).await;
+    }
+
+    fn change(&self, change: impl FnOnce(&mut ConnectionEntry)) {
+        let mut inner = self.table.lock();
+        if let Some(entry) = inner.entries.iter_mut().find(|entry| entry.number == self.number) {
+            change(entry);
+        }
+    }
+}
+
+impl Drop for ConnectionPlace {
+    fn drop(&mut self) {
+        self.table.lock().entries.retain(|entry| entry.number != self.number);
+    }
+}
+
+/// The network that limits count as one address: an IPv4 address, or the /64 prefix of an IPv6 address, which one site can
+/// use completely.
+pub fn network_of(address: IpAddr) -> IpAddr {
+    match address.to_canonical() {
+        IpAddr::V4(address) => address.into(),
+        IpAddr::V6(address) => IpAddr::V6((address.to_bits() & !u128::from(u64::MAX)).into()),
+    }
+}

@@ -1,0 +1,99 @@
+//! Detection of pages that are gone. A browser answers the server's pings by itself, even if its page hangs. The page's own
+//! messages come from timers, which browsers throttle to one per minute while the page is hidden.
+
+use std::time::{Duration, Instant};
+
+/// Interval of the server's pings.
+const PING: Duration = Duration::from_secs(2);
+/// Silence after which a browser is gone.
+const SILENCE: Duration = Duration::from_secs(8);
+/// Time without a message after which a visible page hangs; it sends one per second.
+const VISIBLE: Duration = Duration::from_secs(8);
+/// The same for a hidden page.
+const HIDDEN: Duration = Duration::from_secs(90);
+
+/// Times of the last signs of life.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PageLife {
+    /// Arrival of the last frame of any kind, answers to pings included.
+    heard: Instant,
+    /// Arrival of the page's last own message.
+    spoke: Instant,
+    pinged: Instant,
+    is_hidden: bool,
+}
+
+impl PageLife {
+    pub fn new(now: Instant) -> PageLife {
+        PageLife { heard: now, spoke: now, pinged: now, is_hidden: false }
+    }
+
+    /// Notes the arrival of a frame; `is_message` if the page itself sent it.
+    pub fn heard(&mut self, now: Instant, is_message: bool) {
+        self.heard = now;
+        if is_message {
+            self.spoke = now;
+        }
+    }
+
+    /// Notes whether the page is hidden.
+    pub fn hide(&mut self, is_hidden: bool) {
+        self.is_hidden = is_hidden;
+    }
+
+    pub fn pinged(&mut self, now: Instant) {
+        self.pinged = now;
+    }
+
+    /// Time of the next ping, or of giving the page up.
+    pub fn next(&self) -> Instant {
+        (self.pinged + PING).min(self.gone_at())
+    }
+
+    pub fn is_gone(&self, now: Instant) -> bool {
+        now >= self.gone_at()
+    }
+
+    fn gone_at(&self) -> Instant {
+        let patience = if self.is_hidden { HIDDEN } else { VISIBLE };
+        (self.heard + SILENCE).min(self.spoke + patience)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Seconds, of six hours, for which a page stays connected.
+    fn stays_s(answers: bool, is_hidden: bool, message_s: u64) -> u64 {
+        let start = Instant::now();
+        let mut life = PageLife::new(start);
+        life.hide(is_hidden);
+        let hours_s = 6 * 3600;
+        let gone = (1..=hours_s).find(|second| {
+            let now = start + Duration::from_secs(*second);
+            if now >= life.next() && !life.is_gone(now) {
+                life.pinged(now);
+                if answers {
+                    life.heard(now, false);
+                }
+            }
+            if second % message_s == 0 {
+                life.heard(now, true);
+            }
+            life.is_gone(now)
+        });
+        gone.unwrap_or(hours_s)
+    }
+
+    #[test]
+    fn a_page_stays_for_hours_as_long_as_its_browser_answers_and_it_says_something() {
+        let hours_s = 6 * 3600;
+        assert_eq!(stays_s(true, false, 1), hours_s, "a visible page");
+        assert_eq!(stays_s(true, true, 60), hours_s, "a hidden page, whose timers are slowed down");
+        assert_eq!(stays_s(false, false, hours_s), 8, "a browser that is gone");
+        assert_eq!(stays_s(true, false, hours_s), 8, "a visible page that hangs");
+        assert_eq!(stays_s(true, true, hours_s), 90, "a hidden page that hangs");
+        assert_eq!(stays_s(false, true, 60), 8, "a hidden page whose browser is gone");
+    }
+}

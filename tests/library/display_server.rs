@@ -1,0 +1,276 @@
+//! The server of the participant's display, as anybody can reach it: with raw sockets.
+
+use std::io::{ErrorKind, Read, Write};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpStream};
+use std::time::Duration;
+
+use serde_json::{Value, json};
+use tomcom::display::words::DisplayWords;
+use tomcom::edge::display::Display;
+use tomcom::session::display::DisplaySpec;
+
+/// Nothing that is waited for takes longer; that it does not come is the failure.
+const PATIENCE: Duration = Duration::from_secs(30);
+const LOCAL: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
+const ALL: IpAddr = IpAddr::V4(Ipv4Addr::UNSPECIFIED);
+
+/// Serves the display; it is there until this is dropped.
+fn serve(listen: IpAddr) -> (Display, SocketAddr) {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
+    let words = DisplayWords::for_display(&DisplaySpec::default());
+    let display = runtime.block_on(Display::open(listen, 0, &words)).expect("a free port");
+    let port = display.url().rsplit_once(':').and_then(|(_, port)| port.parse().ok()).expect("a port");
+    (display, SocketAddr::new(LOCAL, port))
+}
+
+fn connect(address: SocketAddr) -> TcpStream {
+    let stream = TcpStream::connect(address).expect("connected");
+    stream.set_read_timeout(Some(PATIENCE)).expect("a time-out");
+    stream
+}
+
+/// Sends a request with these lines of headers; the status of the answer, 0: the connection was closed without one.
+fn status(address: SocketAddr, path: &str, headers: &[String]) -> u32 {
+    let mut stream = connect(address);
+    let upgrade = match path {
+        "/talk" => {
+            "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+        }
+        _ => "",
+    };
+    let lines: String = headers.iter().map(|line| format!("{line}\r\n")).collect();
+    write!(stream, "GET {path} HTTP/1.1\r\n{upgrade}{lines}\r\n").expect("sent");
+    let mut line = Vec::new();
+    for byte in stream.bytes().map_while(Result::ok).take_while(|byte| *byte != b'\r') {
+        line.push(byte);
+    }
+    let line = String::from_utf8_lossy(&line).into_owned();
+    line.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or_default()
+}
+
+/// A page, as far as the server can see.
+struct RawPage(TcpStream);
+
+impl RawPage {
+    fn open(stream: TcpStream, host: SocketAddr) -> RawPage {
+        let mut page = RawPage(stream);
+        page.0.set_read_timeout(Some(PATIENCE)).expect("a time-out");
+        let request = format!(
+            "GET /talk HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n\
+             Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+        );
+        page.0.write_all(request.as_bytes()).expect("sent");
+        let mut head = Vec::new();
+        while !head.ends_with(b"\r\n\r\n") {
+            let mut byte = [0];
+            page.0.read_exact(&mut byte).expect("an answer");
+            head.push(byte[0]);
+        }
+        assert!(head.starts_with(b"HTTP/1.1 101"), "{}", String::from_utf8_lossy(&head));
+        page
+    }
+
+    /// A text frame as browsers send it (RFC 6455, section 5.2); with a mask of zeros.
+    fn say(&mut self, message: &Value) {
+        let text = message.to_string();
+        let mut frame = vec![0x81, 0x80 | 126];
+        frame.extend((text.len() as u16).to_be_bytes());
+        frame.extend([0; 4]);
+        frame.extend(text.as_bytes());
+        // Who was thrown out already is told so by what it hears.
+        let _ = self.0.write_all(&frame);
+    }
+
+    fn hello(&mut self, page: &str, code: Option<&str>) {
+        self.say(&json!({"kind": "hello", "page": page, "width": 800, "height": 600, "code": code}));
+    }
+
+    /// The next message of this kind; none, if the connection ends before.
+    fn hear(&mut self, kind: &str) -> Option<Value> {
+        loop {
+            let mut head = [0; 2];
+            self.0.read_exact(&mut head).ok()?;
+            let length = match head[1] {
+                126 => {
+                    let mut length = [0; 2];
+                    self.0.read_exact(&mut length).ok()?;
+                    usize::from(u16::from_be_bytes(length))
+                }
+                short => usize::from(short),
+            };
+            let mut payload = vec![0; length];
+            self.0.read_exact(&mut payload).ok()?;
+            // Pings are answered by browsers; this one is not there for so long.
+            if head[0] != 0x81 {
+                continue;
+            }
+            let message: Value = serde_json::from_slice(&payload).expect("JSON");
+            if message["kind"] == kind {
+                return Some(message);
+            }
+        }
+    }
+
+    /// Says hello; whether it acts, none: it is not let in.
+    fn joins(&mut self, page: &str) -> Option<bool> {
+        self.hello(page, None);
+        self.hear("role")?["acts"].as_bool()
+    }
+}
+
+fn page(address: SocketAddr) -> RawPage {
+    RawPage::open(connect(address), address)
+}
+
+#[test]
+fn only_requests_to_this_machine_by_its_own_names_are_answered() {
+    let (display, address) = serve(LOCAL);
+    let port = address.port();
+    let evil = format!("127.evil.example:{port}");
+    let own = [
+        format!("127.0.0.1:{port}"),
+        "127.0.0.1".to_string(),
+        format!("localhost:{port}"),
+        "localhost".to_string(),
+        format!("LOCALHOST:{port}"),
+        format!("[::1]:{port}"),
+        "[::1]".to_string(),
+    ];
+    for host in &own {
+        let headers = [format!("Host: {host}")];
+        assert_eq!(status(address, "/", &headers), 200, "{host}");
+        assert_eq!(status(address, "/talk", &headers), 101, "{host}");
+        let origin = |origin: &str| [headers[0].clone(), format!("Origin: {origin}")];
+        assert_eq!(status(address, "/talk", &origin(&format!("http://{host}"))), 101, "{host}");
+        for foreign in
+            [format!("http://{evil}"), format!("https://{host}"), "null".to_string(), "http://a.b".to_string()]
+        {
+            assert_eq!(status(address, "/talk", &origin(&foreign)), 403, "{host} from {foreign}");
+        }
+    }
+    for host in [
+        evil.clone(),
+        "127.evil.example".to_string(),
+        format!("127.0.0.1.:{port}"),
+        format!("localhost.:{port}"),
+        format!("localhost.evil.example:{port}"),
+        format!("[127.0.0.1]:{port}"),
+        format!("10.0.0.7:{port}"),
+    ] {
+        let headers = [format!("Host: {host}"), format!("Origin: http://{host}")];
+        assert_eq!(status(address, "/", &headers), 403, "{host}");
+        assert_eq!(status(address, "/talk", &headers), 403, "{host}");
+    }
+    let hosts = [format!("Host: localhost:{port}"), format!("Host: {evil}")];
+    assert_eq!(status(address, "/talk", &hosts), 403, "two hosts");
+    assert_eq!(status(address, "/talk", &[hosts[1].clone(), hosts[0].clone()]), 403, "two hosts");
+    assert_eq!(status(address, "/talk", &[]), 403, "no host");
+    assert_eq!(status(address, &format!("http://{evil}/talk"), &hosts[..1]), 403, "another host in the first line");
+    assert!(display.screen().counts().refused > 20);
+    assert_eq!(display.screen().counts().page, None);
+}
+
+#[test]
+fn a_page_joins_while_520_connections_say_nothing_or_only_half_of_it() {
+    let (display, address) = serve(LOCAL);
+    let silent: Vec<TcpStream> = (0..260).map(|_| connect(address)).collect();
+    let halves: Vec<TcpStream> = (0..260)
+        .map(|_| {
+            let mut stream = connect(address);
+            // Some were closed already, in favour of those that came later.
+            let _ = stream.write_all(b"GET / HTTP/1.1\r\nHost: loc");
+            stream
+        })
+        .collect();
+    let mut page = page(address);
+    assert_eq!(page.joins("participant"), Some(true));
+    assert!(display.screen().counts().page.is_some());
+    // And what says nothing is closed by itself: all of it ends.
+    for mut stream in silent.into_iter().chain(halves) {
+        let ended = stream.read_to_end(&mut Vec::new());
+        let is_open = ended.is_err_and(|error| matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut));
+        assert!(!is_open, "it is still there");
+    }
+}
+
+#[test]
+fn the_page_that_acts_has_a_place_among_those_that_watch() {
+    let (display, address) = serve(LOCAL);
+    let mut acting = page(address);
+    assert_eq!(acting.joins("participant"), Some(true));
+    let mut watching: Vec<RawPage> = (0..40).map(|_| page(address)).collect();
+    let joined: Vec<Option<bool>> =
+        watching.iter_mut().enumerate().map(|(number, page)| page.joins(&format!("watching {number}"))).collect();
+    assert_eq!(joined.iter().filter(|acts| **acts == Some(false)).count(), 32, "{joined:?}");
+    assert_eq!(joined.iter().filter(|acts| acts.is_none()).count(), 8, "{joined:?}");
+    // It is loaded again: in its own place, although no other page is let in.
+    let mut again = page(address);
+    assert_eq!(again.joins("participant"), Some(true));
+    assert_eq!(page(address).joins("watching 41"), None);
+    assert_eq!(display.screen().counts().refused, 9);
+    drop((acting, watching));
+}
+
+#[test]
+fn an_address_tries_one_code_at_a_time_however_many_connections_it_has() {
+    let (display, address) = serve(ALL);
+    let code = display.code().expect("what the network reaches asks for a code").to_string();
+    let mut known = page(address);
+    known.hello("participant", Some(&code));
+    assert_eq!(known.hear("role").map(|role| role["acts"] == true), Some(true));
+    let mut guessers: Vec<RawPage> = (0..50).map(|_| page(address)).collect();
+    for (number, guesser) in guessers.iter_mut().enumerate() {
+        guesser.hello(&format!("guesser {number}"), Some("WRONG2"));
+    }
+    let answers: Vec<Value> = guessers.iter_mut().filter_map(|guesser| guesser.hear("pairing")).collect();
+    let looked_at = answers.iter().filter(|answer| answer["why"] == "wrong").count();
+    assert!(answers.iter().all(|answer| answer["why"] == "wrong" || answer["why"] == "locked"), "{answers:?}");
+    // The machine may be slow enough for the first waits of a second to pass.
+    assert!((1..=4).contains(&looked_at) && answers.len() == 50, "{looked_at} of {} codes looked at", answers.len());
+    assert!(answers.iter().all(|answer| answer["wait_s"].as_u64().is_some_and(|seconds| seconds > 0)), "{answers:?}");
+    // Until it has to wait for longer than the rest of this test takes.
+    let mut guesser = page(address);
+    for _ in 0..20 {
+        guesser.hello("guesser", Some("WRONG2"));
+        let wait_s = guesser.hear("pairing").and_then(|answer| answer["wait_s"].as_u64()).unwrap_or_default();
+        if wait_s >= 8 {
+            break;
+        }
+        std::thread::sleep(Duration::from_secs(wait_s));
+    }
+    guesser.hello("guesser", Some(&code));
+    assert_eq!(guesser.hear("pairing").map(|answer| answer["why"] == "locked"), Some(true), "not even the right one");
+    // A page that was let in before comes back, and so does one at another address.
+    let mut again = page(address);
+    again.hello("participant", Some(&code));
+    assert!(again.hear("role").is_some(), "a page that was let in before");
+    let other = socket_from(Ipv4Addr::new(127, 0, 0, 2), address);
+    let mut other = RawPage::open(other, address);
+    other.hello("other", Some(&code.to_lowercase()));
+    assert!(other.hear("role").is_some(), "a page at another address");
+}
+
+/// Connects from this address of this machine.
+fn socket_from(from: Ipv4Addr, to: SocketAddr) -> TcpStream {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
+    let stream = runtime.block_on(async {
+        let socket = tokio::net::TcpSocket::new_v4().expect("a socket");
+        socket.bind(SocketAddr::new(from.into(), 0)).expect("an address of this machine");
+        socket.connect(to).await.expect("connected").into_std().expect("a stream")
+    });
+    stream.set_nonblocking(false).expect("a stream that waits");
+    stream
+}
+
+#[test]
+fn a_page_that_is_asked_for_a_code_may_wait_and_is_answered() {
+    let (_display, address) = serve(ALL);
+    let mut page = page(address);
+    page.hello("participant", None);
+    assert_eq!(page.hear("pairing").map(|answer| answer["why"] == "code"), Some(true));
+    // More pings than malformed messages would be allowed.
+    for t in 0..150 {
+        page.say(&json!({"kind": "ping", "t": t, "took": null, "hidden": true}));
+        assert_eq!(page.hear("pong").map(|pong| pong["t"] == f64::from(t)), Some(true));
+    }
+}

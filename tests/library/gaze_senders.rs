@@ -1,0 +1,209 @@
+//! Who may send gaze: trackers, as many as come and go, and nobody who is none.
+
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::{TcpStream, UdpSocket};
+use tokio::time::timeout;
+use tomcom::console::keymap::KeyMap;
+use tomcom::console::keys::KeyBindings;
+use tomcom::console::model::ConsoleModel;
+use tomcom::console::notice::NoticeLevel;
+use tomcom::console::view::theme::{TerminalBackground, Theme};
+use tomcom::edge::datagram_holder::{DatagramHolder, RELEASE};
+use tomcom::edge::files::{read_kitchen, read_session};
+use tomcom::edge::gaze_input::GazeNews;
+use tomcom::edge::gaze_json::{GazeListener, listen};
+use tomcom::gaze::GazeSample;
+use tomcom::session::SessionSpec;
+use tomcom::session::settings::GazeSenders;
+
+const SAMPLE: &[u8] = b"{\"x\": 0.25, \"y\": 0.5, \"confidence\": 0.9}\n";
+/// Nothing that is waited for takes longer; that it does not come is the failure.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+async fn open(senders: GazeSenders) -> GazeListener {
+    listen(0, senders).await.expect("a free port")
+}
+
+/// What comes next.
+async fn next(listener: &mut GazeListener) -> GazeNews {
+    timeout(PATIENCE, listener.news.recv()).await.expect("news").expect("a listener")
+}
+
+fn sample() -> GazeNews {
+    GazeNews::Sample(GazeSample::new(0.25, 0.5, 0.9), None)
+}
+
+/// Sends this over a connection of its own, and waits until the other end closes it.
+async fn send_until_closed(to: SocketAddr, pieces: &[&[u8]]) {
+    let mut stream = TcpStream::connect(to).await.expect("connected");
+    for piece in pieces {
+        // It may be closed before all of it is sent.
+        let _ = stream.write_all(piece).await;
+        tokio::time::sleep(Duration::from_millis(5)).await;
+    }
+    let mut answer = Vec::new();
+    let _ = timeout(PATIENCE, stream.read_to_end(&mut answer)).await.expect("it is closed");
+    assert!(answer.is_empty(), "whoever sends hears nothing");
+}
+
+#[tokio::test]
+async fn a_connection_that_begins_with_no_object_is_closed_and_nothing_of_it_is_read() {
+    let mut listener = open(GazeSenders::First).await;
+    let lines = SAMPLE.repeat(50);
+    let post = [b"POST / HTTP/1.1\r\nHost: 127.0.0.1:50021\r\nContent-Type: text/plain\r\n\r\n", &lines[..]].concat();
+    let broken: [&[&[u8]]; 6] = [
+        &[&post],
+        &[b"\n\n", &post],
+        &[b"{", b" ", b"x", &lines],
+        &[b"[", SAMPLE],
+        &[b"\x16\x03\x01\x02\x00\x01", SAMPLE],
+        &[b"nonsense\n", SAMPLE],
+    ];
+    for pieces in broken {
+        send_until_closed(listener.address, pieces).await;
+        assert_eq!(next(&mut listener).await, GazeNews::Rejected(1), "{:?}", String::from_utf8_lossy(pieces[0]));
+    }
+    assert!(listener.news.try_recv().is_err(), "nothing else is told of them");
+}
+
+#[tokio::test]
+async fn a_tracker_may_begin_in_pieces_or_with_a_sample_that_is_none() {
+    let mut listener = open(GazeSenders::First).await;
+    let mut tracker = TcpStream::connect(listener.address).await.expect("connected");
+    for piece in [&b"\r\n "[..], b"{", b"\n", &b"{\"x\": NaN, \"y\": 0.5, \"confidence\": 0}\nnonsense\n"[..]] {
+        tracker.write_all(piece).await.expect("sent");
+        tokio::time::sleep(Duration::from_millis(5)).await;
+    }
+    for _ in 0..3 {
+        assert_eq!(next(&mut listener).await, GazeNews::Malformed(1));
+    }
+    tracker.write_all(SAMPLE).await.expect("sent");
+    // Its clock begins with its first sample.
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+}
+
+#[tokio::test]
+async fn who_connects_and_says_nothing_is_no_sender() {
+    let mut listener = open(GazeSenders::First).await;
+    drop(TcpStream::connect(listener.address).await.expect("connected"));
+    let mut tracker = TcpStream::connect(listener.address).await.expect("connected");
+    tracker.write_all(SAMPLE).await.expect("sent");
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+}
+
+#[tokio::test]
+async fn silent_connections_keep_no_tracker_out_and_one_that_sent_stays() {
+    let mut listener = open(GazeSenders::First).await;
+    let mut tracker = TcpStream::connect(listener.address).await.expect("connected");
+    tracker.write_all(SAMPLE).await.expect("sent");
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    let mut silent = Vec::new();
+    for _ in 0..300 {
+        silent.push(TcpStream::connect(listener.address).await.expect("connected"));
+    }
+    let mut other = TcpStream::connect(listener.address).await.expect("connected");
+    other.write_all(SAMPLE).await.expect("sent");
+    let mut news = Vec::new();
+    while news.last() != Some(&sample()) {
+        news.push(next(&mut listener).await);
+    }
+    let rejected = news.iter().filter(|news| **news == GazeNews::Rejected(1)).count();
+    assert!((250..300).contains(&rejected), "{rejected} silent connections gave way");
+    tracker.write_all(SAMPLE).await.expect("the tracker that sent before is still connected");
+    while next(&mut listener).await != sample() {}
+    // What still says nothing is closed by itself.
+    for mut stream in silent {
+        let _ = timeout(PATIENCE, stream.read_to_end(&mut Vec::new())).await.expect("it is closed");
+    }
+}
+
+async fn socket(last: u8) -> UdpSocket {
+    UdpSocket::bind((Ipv4Addr::new(127, 0, 0, last), 0)).await.expect("an address of this machine")
+}
+
+#[tokio::test]
+async fn datagrams_are_taken_from_the_address_that_sent_first() {
+    let mut listener = open(GazeSenders::First).await;
+    let (tracker, other) = (socket(1).await, socket(2).await);
+    // A datagram that is no sample makes nobody the tracker.
+    other.send_to(b"{\"x\": 0.5}", listener.address).await.expect("sent");
+    assert_eq!(next(&mut listener).await, GazeNews::Malformed(1));
+    tracker.send_to(SAMPLE, listener.address).await.expect("sent");
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    for _ in 0..3 {
+        other.send_to(SAMPLE, listener.address).await.expect("sent");
+        assert_eq!(next(&mut listener).await, GazeNews::Rejected(1));
+    }
+    tracker.send_to(&SAMPLE.repeat(2), listener.address).await.expect("sent");
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (sample(), sample()));
+    // A browser's own datagrams (STUN, RFC 8489) begin with no object, whoever sends.
+    tracker.send_to(b"\x00\x01\x00\x08\x21\x12\xa4\x42", listener.address).await.expect("sent");
+    assert_eq!(next(&mut listener).await, GazeNews::Rejected(1));
+}
+
+#[tokio::test]
+async fn datagrams_of_all_addresses_are_taken_where_the_session_says_so() {
+    let mut listener = open(GazeSenders::Any).await;
+    for sender in [socket(1).await, socket(2).await, socket(3).await] {
+        sender.send_to(SAMPLE, listener.address).await.expect("sent");
+        assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    }
+}
+
+#[test]
+fn an_address_that_is_silent_for_five_seconds_is_the_trackers_no_more() {
+    let [one, other] = [1, 2].map(|last| IpAddr::V4(Ipv4Addr::new(127, 0, 0, last)));
+    let start = Instant::now();
+    let after = |seconds: f64| start + Duration::from_secs_f64(seconds);
+    assert_eq!(RELEASE, Duration::from_secs(5));
+    let mut holder = DatagramHolder::new(GazeSenders::First);
+    assert!(holder.admits(one, start) && holder.admits(other, start));
+    holder.heard(one, start);
+    holder.heard(one, after(3.0));
+    assert!(holder.admits(one, after(7.9)) && !holder.admits(other, after(7.9)));
+    assert!(holder.admits(other, after(8.0)));
+    holder.heard(other, after(8.0));
+    assert!(!holder.admits(one, after(9.0)) && holder.admits(other, after(9.0)));
+    let mut any = DatagramHolder::new(GazeSenders::Any);
+    any.heard(one, start);
+    assert!(any.admits(other, start));
+}
+
+#[test]
+fn the_setting_is_read_and_only_kept_where_it_says_something() {
+    let read = |settings: &str| toml::from_str::<SessionSpec>(&format!("layout = \"\"\n[participant]\n{settings}"));
+    let first = read("gaze = \"json\"").expect("settings");
+    assert_eq!(first.participant.gaze_senders, GazeSenders::First);
+    assert!(!serde_json::to_string(&first).expect("JSON").contains("gaze_senders"));
+    let any = read("gaze_senders = \"any\"").expect("settings");
+    assert!(serde_json::to_string(&any).expect("JSON").contains(r#""gaze_senders":"any""#));
+    assert!(read("gaze_senders = \"all\"").is_err());
+}
+
+#[test]
+fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
+    let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    let kitchen = read_kitchen(Path::new("layouts/sushi.toml")).unwrap_or_else(|error| panic!("{error}")).kitchen;
+    let keys = KeyBindings::live(&kitchen, &files.spec, &KeyMap::default()).expect("the layout's keys are free");
+    let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
+    let mut model = ConsoleModel::new(keys, theme, (120, 40));
+    let mut told = Vec::new();
+    for number in 1..=9 {
+        model.notice = None;
+        model.count_rejected(1);
+        if let Some(notice) = &model.notice {
+            assert_eq!(notice.level, NoticeLevel::Refused);
+            assert!(notice.text.contains("rejected"), "{}", notice.text);
+            told.push(number);
+        }
+    }
+    assert_eq!(told, [1, 2, 4, 8]);
+    model.say(NoticeLevel::Alarm, "the recording cannot be written");
+    model.count_rejected(100);
+    assert_eq!(model.rejected_senders, 109);
+    assert_eq!(model.notice.map(|notice| notice.level), Some(NoticeLevel::Alarm));
+}

@@ -1,48 +1,48 @@
-//! The clocks. Session time comes from the monotonic one. The wall clock, which can be set and jumps, is only for the
-//! names of recordings and the headers of live ones, and is watched, so that the log says where it jumped.
+//! Clocks. Session time comes from the monotonic clock. The wall clock can be set and can jump; it is used only for names and headers
+//! of recordings, and its jumps are recorded in the log.
 
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use crate::base::time::SessionTime;
 
-/// A live session looks at its clock much more often; after a longer gap, everything stood still.
+/// Gap between readings after which the program counts as having been suspended.
 const STANDSTILL: Duration = Duration::from_secs(1);
-/// Smaller differences between the clocks, in milliseconds, are no jumps: time servers nudge, programs wait.
+/// Least difference between the clocks that counts as a jump, in milliseconds.
 const JUMP_MS: i64 = 500;
 
-/// The time of a live session. It stands still while the program does (suspended, stopped, or blocked for more than a
-/// second): what robot and participant were about to do then is still to come, and does not happen all at once.
+/// The clock of a live session. It stops while the program is suspended or blocked for more than a second, so that pending actions
+/// of robot and participant do not all happen at once afterwards.
 #[derive(Clone, Debug)]
 pub struct SessionClock {
     /// The session time at `began`.
     offset: SessionTime,
     began: Instant,
     looked: Instant,
-    /// How long everything stood still since `began`.
+    /// Total time of suspensions since `began`.
     stood: Duration,
-    /// The wall clock less session time, in milliseconds, when they were last compared.
+    /// Wall clock minus session time at the last comparison, in milliseconds.
     ahead_ms: i64,
 }
 
 impl SessionClock {
-    /// A clock that shows `offset` now.
+    /// Starts a clock that shows `offset` now.
     pub fn start(offset: SessionTime) -> SessionClock {
         let now = Instant::now();
         let ahead_ms = WallTime::now().unix_ms as i64 - millis(offset);
         SessionClock { offset, began: now, looked: now, stood: Duration::ZERO, ahead_ms }
     }
 
-    /// The session time now.
+    /// The present session time.
     pub fn now(&mut self) -> SessionTime {
         self.at(Instant::now())
     }
 
-    /// When the session time will be this, if nothing stands still until then.
+    /// Instant at which a session time will be reached without further suspensions.
     pub fn instant_of(&self, time: SessionTime) -> Instant {
         self.began + self.stood + Duration::from_nanos((time - self.offset).0)
     }
 
-    /// By how much, in milliseconds, the wall clock jumped since this was last asked.
+    /// Jump of the wall clock since the last call, in milliseconds, if there was one.
     pub fn jump(&mut self) -> Option<i64> {
         let wall = WallTime::now();
         let now = self.now();
@@ -74,15 +74,15 @@ fn millis(time: SessionTime) -> i64 {
     (time.0 / 1_000_000) as i64
 }
 
-/// A moment of the wall clock, in UTC.
+/// A time of the wall clock, in UTC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WallTime {
-    /// Milliseconds since 1970.
+    /// Milliseconds since 1970-01-01.
     unix_ms: u64,
 }
 
 impl WallTime {
-    /// Now; a clock before 1970 counts as 1970.
+    /// The present wall clock time; a clock before 1970 gives 1970.
     pub fn now() -> WallTime {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         WallTime { unix_ms: since_1970.as_millis() as u64 }

@@ -1,5 +1,5 @@
-//! What an analysis writes: tables as CSV (RFC 4180, UTF-8), and a page. Rows of events are kept in files of their own until
-//! all recordings are read, so that memory does not grow with the number of recordings, and tables have the recordings' order.
+//! Output of an analysis: tables as CSV (RFC 4180, UTF-8), and the report. Rows of events are kept in temporary files until all
+//! recordings are read, so that memory does not grow with their number and tables have the order of the recordings.
 
 use std::borrow::{Borrow, Cow};
 use std::fs::{self, File};
@@ -12,12 +12,12 @@ use crate::study::column::{Table, TableRow};
 use crate::study::dictionary::columns;
 use crate::study::report::page_head;
 
-/// The name of the page.
+/// Name of the report.
 pub const REPORT_NAME: &str = "report.html";
-/// Where rows are kept on the way.
+/// Folder of the temporary files.
 const PARTS_NAME: &str = ".rows";
 
-/// Why a result cannot be written.
+/// An output file that cannot be written.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 #[error("{}: cannot be written: {reason}", path.display())]
 #[diagnostic(help("another folder with --out, on a disk with free space"))]
@@ -26,7 +26,7 @@ pub struct ExportError {
     pub reason: io::Error,
 }
 
-/// Rows of one table, without the names of its columns.
+/// Rows of one table, without the header line.
 #[derive(Debug)]
 pub struct TableRows {
     rows: csv::Writer<Vec<u8>>,
@@ -49,14 +49,14 @@ impl TableRows {
     }
 }
 
-/// The folder that results are written to.
+/// Output folder.
 #[derive(Debug)]
 pub struct ExportFolder {
     folder: PathBuf,
 }
 
 impl ExportFolder {
-    /// Makes the folder, if it is not there.
+    /// Creates the folder if it does not exist.
     ///
     /// # Errors
     /// It cannot be made, or written to, or it has files of others with the names of tables and report.
@@ -64,7 +64,7 @@ impl ExportFolder {
         let export = ExportFolder { folder: folder.to_path_buf() };
         export.check_replaced()?;
         let parts = export.parts();
-        // What a run before this one left there.
+        // Leftovers of an interrupted run.
         remove_parts(&parts).map_err(|reason| ExportError { path: parts.clone(), reason })?;
         fs::create_dir_all(&parts).map_err(|reason| ExportError { path: parts, reason })?;
         Ok(export)
@@ -98,10 +98,10 @@ impl ExportFolder {
         self.parts().join(format!("{index}-{}", table.name()))
     }
 
-    /// Keeps the rows of the recording with this number, in the order of [`Table::OF_EVENTS`].
+    /// Stores the event rows of one recording, in the order of [`Table::OF_EVENTS`].
     ///
     /// # Errors
-    /// They cannot be written.
+    /// The files cannot be written.
     pub fn keep(&self, index: usize, rows: &[Vec<u8>; 4]) -> Result<(), ExportError> {
         for (table, rows) in Table::OF_EVENTS.into_iter().zip(rows) {
             let path = self.part(index, table);
@@ -110,7 +110,7 @@ impl ExportFolder {
         Ok(())
     }
 
-    /// Writes the table of these rows, and returns it if there are any.
+    /// Writes a table; returns it if it has rows.
     ///
     /// # Errors
     /// It cannot be written.
@@ -124,11 +124,11 @@ impl ExportFolder {
         self.write_table(Row::TABLE, |out| out.write_all(&rows).map(|()| !rows.is_empty()))
     }
 
-    /// Writes the tables of what was kept of the recordings with these numbers, in this order, and removes that. Those
-    /// that have rows are returned.
+    /// Writes the event tables from the stored rows of these recordings, in this order, and removes the temporary files. Returns the
+    /// tables that have rows.
     ///
     /// # Errors
-    /// They cannot be written.
+    /// The files cannot be written.
     pub fn tables_of_events(&self, recordings: &[usize]) -> Result<Vec<Table>, ExportError> {
         let mut filled = Vec::new();
         for table in Table::OF_EVENTS {
@@ -144,7 +144,7 @@ impl ExportFolder {
         Ok(filled)
     }
 
-    /// Writes the page, and says where it is.
+    /// Writes the report and returns its path.
     ///
     /// # Errors
     /// It cannot be written.

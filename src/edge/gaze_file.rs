@@ -1,4 +1,4 @@
-//! Gaze that was recorded: Pupil Player's export of gaze on a surface, and recordings of this program.
+//! Recorded gaze: Pupil Player's export of gaze on a surface, and recordings of this program.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -11,20 +11,20 @@ use crate::gaze::surface::SurfaceMap;
 use crate::session::Event;
 use crate::session::apply::apply;
 
-/// No line of an export is longer, in bytes.
+/// Longest line of an export, in bytes.
 const MAX_LINE: u64 = 1 << 16;
-/// No file has more samples: a day at 60 a second.
+/// Largest number of samples in a file (a day at 60 Hz).
 const MAX_SAMPLES: usize = 5_184_000;
 
-/// The columns of an export that are read.
+/// Columns of an export that are used.
 const COLUMNS: [&str; 4] = ["gaze_timestamp", "x_norm", "y_norm", "confidence"];
 
-/// The samples of a file, in its order.
+/// The samples of a gaze file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GazeFile {
-    /// Seconds of the trial's clock at which each was taken, and the sample.
+    /// Time on the trial's clock in seconds, and sample, in the file's order.
     pub samples: Vec<(f64, GazeSample)>,
-    /// Lines that hold no sample.
+    /// Number of malformed lines.
     pub malformed: u64,
 }
 
@@ -32,7 +32,7 @@ pub struct GazeFile {
 /// `surfaces/gaze_positions_on_surface_NAME.csv`, whose surface is mapped by `map`.
 ///
 /// # Errors
-/// The file cannot be read, or is none of these.
+/// The file cannot be read or has another format.
 pub fn read(path: &Path, map: &SurfaceMap) -> FileResult<GazeFile> {
     let is_recording = path.is_dir() || path.extension().is_some_and(|extension| extension == "jsonl");
     if is_recording { of_recording(path) } else { of_export(path, map) }

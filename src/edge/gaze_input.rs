@@ -1,33 +1,33 @@
-//! What comes from a tracker, whatever it is, on its way into the session.
+//! Messages of eye trackers of all kinds on their way into the session.
 
 use std::time::Instant;
 
 use crate::gaze::GazeSample;
 
-/// So many news may wait to be taken.
+/// Capacity of the queue of tracker messages.
 pub const WAITING: usize = 4096;
 
-/// News of a tracker. Places are fractions of the wall display, the origin at the top left.
+/// A message of a tracker. Points are in fractions of the wall display, origin at the top left.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GazeNews {
-    /// A sample, and when it was taken, where the clocks were compared.
+    /// A sample, with the time at which it was taken if the clocks have been compared.
     Sample(GazeSample, Option<Instant>),
-    /// So many messages, lines or samples that were none.
+    /// Number of malformed messages, lines or samples.
     Malformed(u64),
     /// Number of rejected senders: connections and datagrams that are not a tracker's.
     Rejected(u64),
-    /// So many news that nobody took in time.
+    /// Number of messages dropped because the queue was full.
     Overrun(u64),
-    /// A tracker's program began to send; its clock may be another one than before.
+    /// A tracker's program started to send; its clock may differ from before.
     Began,
-    /// A tracker's program answers, and calls itself so.
+    /// A tracker's program responds, with its name.
     Connected(String),
-    /// It does not any more.
+    /// A tracker's program no longer responds.
     Lost(String),
     SeesDisplay(bool),
-    /// A fixation that is over.
+    /// A finished fixation.
     Fixation(TrackerFixation),
-    /// Lids closed, or opened.
+    /// Onset or offset of a blink.
     Blink {
         is_onset: bool,
         confidence: f64,
@@ -35,18 +35,18 @@ pub enum GazeNews {
     },
 }
 
-/// When something was, on the tracker's clock and on ours.
+/// A time on the tracker's clock and on ours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleTime {
     pub device_ns: u64,
     pub at: Option<Instant>,
 }
 
-/// A fixation as a tracker finds it.
+/// A fixation detected by a tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerFixation {
     pub id: u64,
-    /// On the display, if it was there.
+    /// Position on the display, if it was there.
     pub at: Option<[f64; 2]>,
     pub duration_ms: f64,
     pub dispersion_deg: f64,

@@ -19,9 +19,9 @@ use super::gaze_input::{GazeNews, WAITING};
 use crate::gaze::GazeSample;
 use crate::session::settings::GazeSenders;
 
-/// A line may be so long, in bytes.
+/// Longest line, in bytes.
 const MAX_LINE: usize = 4096;
-/// And a datagram, with one line or several.
+/// Longest datagram, in bytes; it can contain several lines.
 const MAX_DATAGRAM: usize = 1 << 16;
 /// Time limit for the first line of a connection.
 const FIRST_LINE: Duration = Duration::from_secs(10);
@@ -225,7 +225,7 @@ async fn tell(found: GazeNews, lines: &mut LineReader, place: &ConnectionPlace, 
     news.send(found).await.is_ok()
 }
 
-/// What a line says; nothing for an empty one.
+/// Parses a line; `None` for an empty line.
 pub fn parse(line: &[u8]) -> Option<GazeNews> {
     if line.trim_ascii().is_empty() {
         return None;

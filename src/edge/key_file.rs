@@ -1,4 +1,4 @@
-//! Reads key files: which keys of the console a session changes.
+//! Reads key files, which change keys of the console.
 
 use std::path::Path;
 
@@ -17,10 +17,10 @@ impl ParsedFile for KeyMap {
     const KIND: FileKind = FileKind::Keys;
 }
 
-/// Whether the console can take the keys of a layout, changed by a key file.
+/// Checks the keys of a layout together with a key file.
 ///
 /// # Errors
-/// A key is taken twice, or the key file is wrong.
+/// A key is used twice, or the key file is invalid.
 pub(super) fn check_keys(
     (path, text): (&Path, &str),
     layout: &LayoutSpec,
@@ -45,10 +45,10 @@ pub(super) fn check_keys(
     }
 }
 
-/// What a key file says; nothing, if there is none.
+/// Parses a key file; an empty map without a file.
 ///
 /// # Errors
-/// It is no key file.
+/// The text is not a key file.
 pub fn key_map(keys: Option<&FileText>) -> FileResult<KeyMap> {
     keys.map_or(Ok(KeyMap::default()), |keys| parse(Path::new(&keys.path), &keys.text))
 }

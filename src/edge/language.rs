@@ -1,4 +1,4 @@
-//! Files with the words of the participant's display, for languages that the program does not carry.
+//! Files with the words of the participant's display, for languages that are not built in.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,7 +10,7 @@ use super::parse::{FileKind, ParsedFile, parse};
 use crate::session::SessionSpec;
 use crate::session::display::DisplaySpec;
 
-/// A file with words: each by what it is in English.
+/// A file with words, by their English originals.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(transparent)]
 pub struct LanguageFile(pub BTreeMap<String, String>);
@@ -19,7 +19,7 @@ impl ParsedFile for LanguageFile {
     const KIND: FileKind = FileKind::Language;
 }
 
-/// Reads the words of a session's display, where they are in a file; those in the session file stand above them.
+/// Reads the words of a session's display from a file; words in the session file take precedence.
 ///
 /// # Errors
 /// The file is not there, or has no words.

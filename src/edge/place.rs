@@ -1,11 +1,11 @@
-//! Where a setting stands in a TOML text.
+//! Position of a setting in a TOML text.
 
 use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-/// The bytes of the `nth` setting of this path, 0 the first. A path ends with the setting's name and names tables around
-/// it, from outside: "rerun.address"; tables in between may be left out: "human.tau". None: it is not written there.
+/// Byte range of the `nth` setting (from 0) with this dotted path, outermost table first: "rerun.address". Inner tables may be left
+/// out: "human.tau". `None` if the setting does not occur.
 pub(super) fn place_of(text: &str, path: &str, nth: usize) -> Option<Range<usize>> {
     let document = DeTable::parse(text).ok()?;
     let names: Vec<&str> = path.split('.').collect();
@@ -15,7 +15,7 @@ pub(super) fn place_of(text: &str, path: &str, nth: usize) -> Option<Range<usize
     places.into_iter().nth(nth)
 }
 
-/// The places in a table of what `names` is the path of.
+/// Collects the byte ranges of the settings with a path in a table.
 fn collect(table: &DeTable, names: &[&str], places: &mut Vec<Range<usize>>) {
     let Some((first, rest)) = names.split_first() else { return };
     for (name, value) in table {

@@ -1,4 +1,4 @@
-//! What came of a wizard's training: a JSON file for each time, in one folder, by the wizard's code.
+//! Records of wizard training: one JSON file per training in a folder, by the wizard's code.
 
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::file_error::{FileError, FileResult};
 use crate::analysis::training_record::TrainingRecord;
 
-/// Writes a record into the folder, in a file of its own, and returns its path.
+/// Writes a record to a new file in the folder and returns its path.
 ///
 /// # Errors
 /// It cannot be written.
@@ -29,10 +29,10 @@ pub fn write(folder: &Path, record: &TrainingRecord) -> io::Result<PathBuf> {
     Err(io::Error::other("too many files"))
 }
 
-/// The records of a wizard in the folder, in the order in which they were made; none where there is no folder.
+/// The records of a wizard in the folder, in order of time; empty if the folder does not exist.
 ///
 /// # Errors
-/// A file cannot be read, or is no record.
+/// A file cannot be read or is not a record.
 pub fn read(folder: &Path, wizard: &str) -> FileResult<Vec<TrainingRecord>> {
     let remedy = "a training record of tomcom, or another folder";
     let mut records = Vec::new();

@@ -1,4 +1,4 @@
-//! What serde says of a value of the wrong type, in the words of people who write settings and no programs.
+//! Translation of serde's messages about wrong types into words for people who write settings files.
 
 use serde::de::DeserializeOwned;
 
@@ -15,7 +15,7 @@ pub(super) fn message<T: DeserializeOwned>(text: &str, error: &toml::de::Error) 
     said.unwrap_or_else(|| error.message().to_string())
 }
 
-/// What was found, and what would be right where the message knows it.
+/// The value found, and a description of a valid one if the message contains it.
 pub(super) fn in_words(message: &str) -> (String, Option<String>) {
     let (found, expected) = match message.split_once(", expected ") {
         Some((found, expected)) => (found, Some(expected)),
@@ -54,7 +54,7 @@ fn value(what: &str) -> String {
     }
 }
 
-/// What a value would have to be.
+/// Description of a valid value.
 fn values(expected: &str) -> String {
     let whole = |most: u64| format!("a whole number from 0 to {most}");
     match expected {
@@ -73,7 +73,7 @@ fn values(expected: &str) -> String {
     }
 }
 
-/// The settings that there are.
+/// List of the known settings.
 fn settings(expected: &str) -> String {
     expected.replace('`', "")
 }

@@ -1,5 +1,4 @@
-//! By what a table of a study is known again: its columns, as this version writes them, or as the dictionary beside it lists
-//! them.
+//! Recognition of tables that this program wrote: by the columns of this version, or by the dictionary beside the table.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -18,10 +17,10 @@ pub struct WrittenTables {
 }
 
 impl WrittenTables {
-    /// Reads the dictionary in a folder; where there is none, nothing is listed.
+    /// Reads the dictionary in a folder, if there is one.
     ///
     /// # Errors
-    /// It is there, and cannot be read.
+    /// The file exists but cannot be read.
     pub fn read(folder: &Path) -> io::Result<WrittenTables> {
         let mut tables = WrittenTables::default();
         let dictionary = records(&folder.join("dictionary.csv"))?;
@@ -49,7 +48,7 @@ impl WrittenTables {
             || table_named(name).is_some_and(|table| has_columns_of(header, table))
     }
 
-    /// The columns of the table of this name, if a study has one.
+    /// Columns of the table with this name, if a study has such a table.
     pub fn columns_of(&self, name: &str) -> Option<Vec<Vec<u8>>> {
         let listed = self.columns.get(name.as_bytes()).cloned();
         listed.or_else(|| {
@@ -67,15 +66,15 @@ fn has_columns_of(header: &ByteRecord, table: Table) -> bool {
     header.iter().eq(columns(table).iter().map(|row| row.column.as_bytes()))
 }
 
-/// A reader of all records of a table, the header among them; they may have any number of cells, and any bytes in them.
+/// A CSV reader of all records including the header, with any number of cells and any bytes.
 pub fn reader<R: io::Read>(table: R) -> csv::Reader<R> {
     ReaderBuilder::new().has_headers(false).flexible(true).from_reader(table)
 }
 
-/// All records of a small table; none where there is no such file.
+/// All records of a small table; empty if the file does not exist.
 ///
 /// # Errors
-/// It is there, and cannot be read.
+/// The file exists but cannot be read.
 pub fn records(path: &Path) -> io::Result<Vec<ByteRecord>> {
     match path.symlink_metadata() {
         Ok(data) if data.is_file() => Ok(reader(File::open(path)?).into_byte_records().collect::<csv::Result<_>>()?),

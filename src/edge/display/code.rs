@@ -3,17 +3,17 @@
 use std::collections::hash_map::RandomState;
 use std::hash::BuildHasher;
 
-/// Letters and digits that nobody takes for one another.
+/// Letters and digits that are not easily confused.
 const SIGNS: &[u8; 32] = b"ABCDEFGHJKLMNPQRSTUVWXYZ23456789";
 
-/// Six signs that nobody can know before: from the system's own randomness, with which the maps of the standard library
-/// are seeded, and not from the session's seed, which is written in files.
+/// An unpredictable code of six signs, from the system's random source (by the seeds of the standard library's hash maps) rather than
+/// from the session's seed, which is recorded.
 pub(super) fn pairing_code() -> String {
     let bits = RandomState::new().hash_one("pairing code");
     (0..6).map(|place| char::from(SIGNS[(bits >> (5 * place)) as usize % SIGNS.len()])).collect()
 }
 
-/// Whether what was typed is the code; case and spaces do not count. It looks at all of it, whatever is wrong where.
+/// Whether a typed text is the code, ignoring case and spaces, in constant time.
 pub(super) fn is_code(typed: &str, code: &str) -> bool {
     let typed: Vec<u8> =
         typed.bytes().filter(u8::is_ascii_alphanumeric).map(|byte| byte.to_ascii_uppercase()).collect();

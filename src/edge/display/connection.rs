@@ -1,4 +1,4 @@
-//! One connection: a page that says who it is, then acts or watches.
+//! One connection of a page, which identifies itself and then acts or watches.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -19,18 +19,18 @@ use crate::edge::connection_table::ConnectionPlace;
 
 /// Time limit for a page's hello.
 const HELLO: Duration = Duration::from_secs(5);
-/// A page that takes nothing for so long is gone.
+/// Time after which a page that accepts no message is disconnected.
 const STUCK: Duration = Duration::from_secs(5);
 /// Number of codes that a connection may send.
 const ATTEMPTS: u32 = 20;
-/// So many messages a second, and so many at once: a pointer at 120 Hz, and presses.
+/// Largest rate of messages per second (a pointer at 120 Hz, and presses).
 const PER_SECOND: f64 = 300.0;
-/// After so many messages that were none, a connection is closed.
+/// Number of malformed messages after which a connection is closed.
 const FAULTS: u32 = 100;
-/// The same button within so many milliseconds is a contact that bounces.
+/// Presses of the same button within this time count as contact bounce, in milliseconds.
 const BOUNCE_MS: f64 = 50.0;
 
-/// A page at the other end.
+/// State of a connected page.
 struct Talk {
     socket: WebSocket,
     hub: Arc<ServerState>,
@@ -39,15 +39,15 @@ struct Talk {
     page: String,
     size: ActivePage,
     faults: u32,
-    /// Messages that it may send at once now, and since when that is so.
+    /// Budget of messages (token bucket) with the time of its last update.
     allowed: (f64, Instant),
-    /// The number of its last press.
+    /// Number of its last press.
     pressed: u64,
-    /// The last press of its button and when, on the server's clock.
+    /// Last pressed button with its time on the server's clock.
     last: Option<(String, f64)>,
 }
 
-/// Talks with a page until one of the two ends it.
+/// Serves a page until one side closes the connection.
 pub(super) async fn talk(socket: WebSocket, hub: Arc<ServerState>, place: Arc<ConnectionPlace>) {
     let now = Instant::now();
     let (page, size, life) = (String::new(), ActivePage::default(), PageLife::new(now));

@@ -7,18 +7,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::display::{DisplayScene, DisplayUpdate};
 
-/// No message of a page is longer, in bytes.
+/// Longest message of a page, in bytes.
 pub(super) const MAX_BYTES: usize = 1024;
-/// No text in it is longer.
+/// Longest text in a message.
 const MAX_TEXT: usize = 64;
-/// No screen is larger, in pixels.
+/// Largest screen width or height, in pixels.
 const MAX_PIXELS: u32 = 100_000;
 
-/// What a page says.
+/// A message of a page.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub(super) enum FromPage {
-    /// First: who it is (a number of its own, which it keeps when it is loaded again), and how large.
+    /// First message: the page's random name (kept when it is reloaded) and its size.
     Hello {
         page: String,
         width: u32,
@@ -28,21 +28,21 @@ pub(super) enum FromPage {
         #[serde(default)]
         waits: bool,
     },
-    /// It has another size now.
+    /// New size of the page.
     Size {
         width: u32,
         height: u32,
     },
-    /// Somebody at a page that watches wants to take part.
+    /// A watching page asks to act.
     TakePart,
-    /// Its own time, in milliseconds, how long the last one took there and back, and whether nobody can see the page.
+    /// A ping: the page's time in milliseconds, its last round trip time, and whether the page is hidden.
     Ping {
         t: f64,
         took: Option<f64>,
         #[serde(default)]
         hidden: bool,
     },
-    /// A button went down; presses of a page are numbered.
+    /// A press, with its number.
     Press {
         number: u64,
         button: String,
@@ -60,33 +60,33 @@ pub(super) enum FromPage {
         item: String,
     },
     Confirm,
-    /// The screen shows what the event of this number brought.
+    /// The screen shows the event with this sequence number.
     Drawn {
         cue: u64,
         at: f64,
     },
-    /// From a press to its effect on the screen, in milliseconds.
+    /// Time from a press to its effect on the screen, in milliseconds.
     Redrawn {
         took: f64,
     },
 }
 
-/// What is said to a page, beside scene and sight.
+/// A message to a page other than scene and sight.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub(super) enum ToPage {
-    /// Its ping's own time, and the server's.
+    /// Answer to a ping: the ping's time and the server's time.
     Pong { t: f64, at: f64 },
     /// The words of the page.
     Words { words: BTreeMap<String, String> },
-    /// Whether its presses count; if not, whether those of another page do (else it is free to take part).
+    /// The page's role: acting, watching while another page acts, or free to act.
     Role { acts: bool, free: bool },
     /// "code": the pairing code is asked for; "wrong": it was not that; "locked": it was not looked at. After so many seconds
     /// the next one is.
     Pairing { why: &'static str, wait_s: u64 },
 }
 
-/// Reads a message; nothing, if it is none.
+/// Parses a message; `None` if it is malformed.
 pub(super) fn read(text: &str) -> Option<FromPage> {
     let message: FromPage = serde_json::from_str(text).ok()?;
     let is_time = |ms: &f64| ms.is_finite() && ms.abs() < 1e13;
@@ -108,7 +108,7 @@ pub(super) fn read(text: &str) -> Option<FromPage> {
     is_fine.then_some(message)
 }
 
-/// The message that builds a page.
+/// The message with the static scene.
 pub(super) fn scene(scene: &DisplayScene) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {
@@ -118,7 +118,7 @@ pub(super) fn scene(scene: &DisplayScene) -> Arc<str> {
     text(&Message { kind: "scene", scene })
 }
 
-/// The message that shows what is now.
+/// The message with the present sight.
 pub(super) fn sight(sight: &DisplayUpdate) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {
@@ -129,7 +129,7 @@ pub(super) fn sight(sight: &DisplayUpdate) -> Arc<str> {
 }
 
 pub(super) fn text(message: &impl Serialize) -> Arc<str> {
-    // Nothing of what is said has maps with other keys than strings: it can be written.
+    // All messages have string keys, so serialisation cannot fail.
     Arc::from(serde_json::to_string(message).unwrap_or_default())
 }
 

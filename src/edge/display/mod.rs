@@ -1,8 +1,7 @@
-//! The participant's wall display: a page in a browser, served on a thread of its own, so that whatever connects there
-//! delays no session, and no session a page.
+//! The participant's wall display: a page in a browser, served on its own thread, so that connections cannot delay the session.
 //!
-//! The page is told the scene and the whole sight, as JSON over a WebSocket; it tells presses, answers, the pointer. One page
-//! acts, all others watch.
+//! The page receives scene and sight as JSON over a WebSocket, and sends presses, answers and the pointer. One page acts, all others
+//! watch.
 
 mod code;
 mod connection;
@@ -31,10 +30,10 @@ pub use self::status::{ActivePage, DisplayCounts};
 use crate::display::words::DisplayWords;
 use crate::display::{DisplayScene, DisplayUpdate};
 
-/// So many inputs of the page may wait to be taken.
+/// Capacity of the queue of page inputs.
 const WAITING: usize = 1024;
 
-/// The display, as a session has it: where it is served, and what comes from it. It is served until this is dropped.
+/// The running display: its address and its inputs. Dropping it stops the server.
 pub struct Display {
     address: SocketAddr,
     code: Option<String>,
@@ -42,7 +41,7 @@ pub struct Display {
     screen: PageScreen,
 }
 
-/// What the pages show, and how they are; copies are about the same pages.
+/// Shared handle to the content and the state of the pages.
 #[derive(Clone)]
 pub struct PageScreen {
     scene: watch::Sender<Arc<str>>,
@@ -51,7 +50,7 @@ pub struct PageScreen {
 }
 
 impl Display {
-    /// Serves the page at this address, in these words. What is not localhost asks for a pairing code.
+    /// Serves the page at an address with these words. Addresses other than localhost need a pairing code.
     ///
     /// # Errors
     /// The address cannot be listened on.
@@ -82,13 +81,12 @@ impl Display {
         Ok(Display { address, code, inputs, screen })
     }
 
-    /// The next input of the page that acts.
+    /// Waits for the next input of the acting page.
     pub async fn next(&mut self) -> Option<PageInput> {
         self.inputs.recv().await
     }
 
-    /// Where the page is: "http://127.0.0.1:50022". Where every address of this machine is listened on, the one that the
-    /// network knows it by.
+    /// URL of the page, such as "http://127.0.0.1:50022"; for a wildcard address, that of this machine in the network.
     pub fn url(&self) -> String {
         let mut address = self.address;
         if let (true, Some(known)) = (address.ip().is_unspecified(), address_outside(address.ip())) {
@@ -97,19 +95,19 @@ impl Display {
         format!("http://{address}")
     }
 
-    /// What the page asks for, if the network reaches it.
+    /// Pairing code, if the page needs one.
     pub fn code(&self) -> Option<&str> {
         self.code.as_deref()
     }
 
-    /// What the pages show.
+    /// Handle to the content of the pages.
     pub fn screen(&self) -> PageScreen {
         self.screen.clone()
     }
 }
 
-/// The address from which this machine would send into the network; nothing is sent (the addresses are those kept for
-/// documentation, RFC 5737 and 3849).
+/// Address of this machine in the network, found without sending anything (the target is a documentation address, RFC 5737 and
+/// RFC 3849).
 fn address_outside(any: IpAddr) -> Option<IpAddr> {
     let elsewhere: IpAddr = match any {
         IpAddr::V4(_) => Ipv4Addr::new(192, 0, 2, 1).into(),
@@ -121,17 +119,17 @@ fn address_outside(any: IpAddr) -> Option<IpAddr> {
 }
 
 impl PageScreen {
-    /// Builds the pages anew.
+    /// Sends a new scene to the pages.
     pub fn build(&self, scene: &DisplayScene) {
         self.scene.send_replace(message::scene(scene));
     }
 
-    /// Shows what the participant may see now.
+    /// Sends the present sight to the pages.
     pub fn show(&self, sight: &DisplayUpdate) {
         self.sight.send_replace(message::sight(sight));
     }
 
-    /// How the pages are.
+    /// Counters of the pages.
     pub fn counts(&self) -> DisplayCounts {
         self.status.counts()
     }

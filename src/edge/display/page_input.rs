@@ -1,38 +1,38 @@
-//! What the page that acts tells the session.
+//! Inputs of the acting page for the session.
 
 use std::time::Instant;
 
-/// What the page that acts tells.
+/// An input of the acting page.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PageInput {
-    /// It is there, of this size in pixels.
+    /// The page is connected, with this size in pixels.
     Connected {
         width_px: u32,
         height_px: u32,
     },
     Lost,
-    /// A button went down at this moment.
+    /// A press at this instant.
     Press {
         button: String,
         at: Instant,
     },
-    /// The pointer was at this point of the display, in fractions.
+    /// Position of the pointer, in fractions of the display.
     Pointer {
         x: f64,
         y: f64,
     },
-    /// An item of a questionnaire was rated, or left out.
+    /// Answer to a questionnaire item, or skipping it.
     Answer {
         item: String,
         rated: Option<u8>,
     },
-    /// Back to this item.
+    /// Return to a questionnaire item.
     Back {
         item: String,
     },
-    /// The answers are as they were meant.
+    /// Confirmation of all answers.
     Confirm,
-    /// What the event of this number brought was drawn at this moment.
+    /// The event with this sequence number was drawn at this instant.
     Drawn {
         cue: u64,
         at: Instant,

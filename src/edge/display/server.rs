@@ -1,4 +1,4 @@
-//! The server: the page's files, and the place where pages connect.
+//! The display's server: the page's files, and the WebSocket.
 
 use std::convert::Infallible;
 use std::io;
@@ -26,7 +26,7 @@ use super::server_state::ServerState;
 use super::status::count;
 use crate::edge::connection_table::ConnectionPlace;
 
-/// The page may load nothing from elsewhere, and nobody may frame it.
+/// Content security policy: the page loads nothing from elsewhere and must not be framed.
 const POLICY: &str = "default-src 'self'; connect-src 'self' ws:; img-src data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 /// Time limit for the head of a request.
 const HEADER: Duration = Duration::from_secs(5);
@@ -40,7 +40,7 @@ const AGAIN: Duration = Duration::from_millis(100);
 /// Body of a refusal, for somebody who opened the page by another host name.
 const REFUSED: &str = "Refused: open the participant's page at the address that the console shows.";
 
-/// The page's files: path, kind, text.
+/// Files of the page: path, content type, text.
 const FILES: [(&str, &str, &str); 6] = [
     ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("/display.css", "text/css; charset=utf-8", include_str!("page/display.css")),
@@ -53,7 +53,7 @@ const FILES: [(&str, &str, &str); 6] = [
 /// The router as a service of hyper.
 type Answers = TowerToHyperService<Router>;
 
-/// Serves until nobody wants inputs any more.
+/// Serves until the receiver of inputs is dropped.
 pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> io::Result<()> {
     let listener = TcpListener::from_std(listener)?;
     let hub = Arc::new(hub);

@@ -1,28 +1,28 @@
-//! How the pages are: counted by the server, looked at by the session.
+//! State and counters of the pages, written by the server and read by the session.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The page that acts.
+/// State of the acting page.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ActivePage {
     pub width_px: u32,
     pub height_px: u32,
-    /// There and back, in milliseconds, as it measured it last.
+    /// Last measured round trip time, in milliseconds.
     pub round_trip_ms: Option<f64>,
-    /// From the last press to its effect on the screen, in milliseconds.
+    /// Time from the last press to its effect on the screen, in milliseconds.
     pub redraw_ms: Option<f64>,
 }
 
-/// What was counted so far.
+/// Counters so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DisplayCounts {
     pub page: Option<ActivePage>,
-    /// Pages that only watch.
+    /// Number of watching pages.
     pub watching: u64,
-    /// Messages that were none.
+    /// Number of malformed messages.
     pub malformed: u64,
-    /// Pages and messages that were not let in: a wrong code, too many, too fast, or of a page that only watches.
+    /// Number of refused pages and messages: wrong code, too many, too fast, or from a watching page.
     pub refused: u64,
 }
 
@@ -45,13 +45,13 @@ impl DisplayStatus {
         }
     }
 
-    /// Changes what is known of the page that acts.
+    /// Updates the state of the acting page.
     pub fn page(&self, change: impl FnOnce(&mut Option<ActivePage>)) {
         change(&mut self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner));
     }
 }
 
-/// Counts one more.
+/// Increments a counter.
 pub(super) fn count(counter: &AtomicU64) {
     counter.fetch_add(1, Ordering::Relaxed);
 }

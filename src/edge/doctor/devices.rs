@@ -1,5 +1,5 @@
-//! What is around a session: the participant's page, and where its gaze comes from. What the session does not use is looked
-//! at, too, where it is by default, and breaks nothing.
+//! Checks of the participant's page and of the gaze sources. Sources that the session does not use are checked at their default
+//! places and never fail.
 
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
@@ -13,10 +13,10 @@ use crate::session::preflight::{PreflightCheck, PreflightVerdict};
 use crate::session::settings::{GazeSource, ParticipantKind};
 use crate::session::tracker::TrackerSpec;
 
-/// A display that is its own surface: whether a file can be read does not depend on where its tags stick.
+/// Corners of a surface that covers the whole display: reading a file does not depend on the tags.
 const WHOLE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
-/// Whether the participant's page can be served.
+/// Checks whether the participant's page can be served.
 pub(super) fn display(spec: &SessionSpec) -> PreflightCheck {
     let address = SocketAddr::new(spec.display.listen, spec.display.port);
     let is_used = spec.participant.kind == ParticipantKind::Display;
@@ -29,7 +29,7 @@ pub(super) fn display(spec: &SessionSpec) -> PreflightCheck {
     }
 }
 
-/// Whether what the session's gaze comes from is there.
+/// Checks the gaze source of the session.
 pub(super) fn gaze(spec: &SessionSpec) -> PreflightCheck {
     match spec.participant.gaze {
         GazeSource::Pupil => eye_tracker(&spec.tracker, true),
@@ -39,7 +39,7 @@ pub(super) fn gaze(spec: &SessionSpec) -> PreflightCheck {
     }
 }
 
-/// Something is not there: that breaks a session that uses it, and matters for others only with this flag.
+/// Result for a missing device: a failure if the session uses it, else a remark about the option that would use it.
 fn missing(is_used: bool, name: &str, found: String, flag: &str, remedy: &str) -> PreflightCheck {
     match is_used {
         true => PreflightCheck::new(name, PreflightVerdict::Failed, found, remedy),
@@ -49,7 +49,7 @@ fn missing(is_used: bool, name: &str, found: String, flag: &str, remedy: &str) -
     }
 }
 
-/// Whether Pupil Capture answers.
+/// Checks whether Pupil Capture responds.
 fn eye_tracker(tracker: &TrackerSpec, is_used: bool) -> PreflightCheck {
     let (address, port) = (&tracker.address, tracker.port);
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
@@ -63,7 +63,7 @@ fn eye_tracker(tracker: &TrackerSpec, is_used: bool) -> PreflightCheck {
     }
 }
 
-/// Whether trackers can send lines of JSON.
+/// Checks whether the port of the JSON gaze input is free.
 fn lines(port: u16) -> PreflightCheck {
     let address = (Ipv4Addr::LOCALHOST, port);
     match TcpListener::bind(address).and_then(|_| UdpSocket::bind(address)) {
@@ -75,7 +75,7 @@ fn lines(port: u16) -> PreflightCheck {
     }
 }
 
-/// Whether recorded gaze can be replayed.
+/// Checks whether a gaze file can be replayed.
 fn file(path: &str) -> PreflightCheck {
     let remedy =
         "file under [tracker]: Pupil Player's gaze_positions_on_surface_NAME.csv, or the folder of a recording";
@@ -89,7 +89,7 @@ fn file(path: &str) -> PreflightCheck {
     }
 }
 
-/// What would be right of a file.
+/// Remedy of a file error.
 fn told(error: &FileError) -> String {
     match error {
         FileError::Unreadable { remedy, .. } | FileError::Unfit { remedy, .. } | FileError::Wrong { remedy, .. } => {

@@ -1,18 +1,18 @@
-//! How the clock of Pupil Capture stands to ours, from the answers to questions for its time.
+//! Offset of Pupil Capture's clock, from its answers to time requests.
 
 use std::time::{Duration, Instant};
 
-/// So many answers make the offset, as Pupil Labs does it.
+/// Number of clock replies averaged for the offset (as Pupil Labs does).
 pub(super) const ANSWERS: usize = 10;
-/// A clock that is off by more than this, in seconds, was set.
+/// A change of the offset by more than this means that the clock was set, in seconds.
 const SET_S: f64 = 0.25;
 
-/// How Capture's clock stands to ours: mean of the newest answers, without those that took long. What is late on one way
-/// only puts the offset off by half of it.
+/// The offset of Capture's clock: mean over the latest replies without slow ones. A delay in one direction shifts a reply's offset by
+/// half of the delay.
 #[derive(Debug)]
 pub(super) struct PupilClock {
     anchor: Instant,
-    /// Pupil time less seconds since the anchor, and how long the answer took in seconds; newest last.
+    /// Pupil time minus seconds since the anchor, and round trip time in seconds, the newest last.
     answers: Vec<(f64, f64)>,
 }
 
@@ -21,11 +21,11 @@ impl PupilClock {
         PupilClock { anchor: Instant::now(), answers: Vec::new() }
     }
 
-    /// Takes an answer to the question for the time, asked and answered then.
+    /// Adds a reply to a time request.
     pub fn take(&mut self, asked: Instant, answered: Instant, pupil_s: f64) {
         let since = |at: Instant| at.saturating_duration_since(self.anchor).as_secs_f64();
         let (offset, took_s) = (pupil_s - (since(asked) + since(answered)) / 2.0, since(answered) - since(asked));
-        // A clock that was set is another clock.
+        // A clock that was set starts anew.
         if self.offset().is_some_and(|before| (before - offset).abs() > SET_S + took_s) {
             self.answers.clear();
         }
@@ -42,7 +42,7 @@ impl PupilClock {
         (count > 0).then(|| sum / f64::from(count))
     }
 
-    /// Our moment of a Pupil time.
+    /// Instant of a Pupil time.
     pub fn instant(&self, pupil_s: f64) -> Option<Instant> {
         let since_s = pupil_s - self.offset()?;
         match Duration::try_from_secs_f64(since_s.abs()) {
@@ -52,7 +52,7 @@ impl PupilClock {
         }
     }
 
-    /// The Pupil time of one of our moments.
+    /// Pupil time of an instant.
     pub fn pupil_s(&self, at: Instant) -> Option<f64> {
         let since_s = match at.checked_duration_since(self.anchor) {
             Some(after) => after.as_secs_f64(),

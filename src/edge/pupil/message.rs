@@ -1,33 +1,33 @@
-//! What Pupil Capture's messages say: gaze and fixations on a surface, blinks. Payloads are msgpack maps; whatever is in
-//! them, reading takes no more memory than a multiple of their length, and answers with what is right in them.
+//! Parser of Pupil Capture's messages: gaze and fixations on a surface, blinks. Payloads are msgpack maps. Memory is bounded by a
+//! multiple of their length; valid parts of a partly invalid message are used.
 
 use rmpv::Value;
 use rmpv::decode::read_value_with_max_depth;
 
-/// Messages are maps in lists in maps, not deeper.
+/// Largest nesting depth of a message.
 const MAX_DEPTH: usize = 16;
-/// A datum of a frame has a few items; more are not taken.
+/// Largest number of items of a datum.
 const MAX_ITEMS: usize = 4096;
 
 /// Gaze on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceGaze {
-    /// In fractions of the surface, the origin at the bottom left, y up; may lie outside.
+    /// Position in fractions of the surface, origin at the bottom left, y up; can lie outside.
     pub norm_pos: [f64; 2],
-    /// 0 to 1.
+    /// Confidence from 0 to 1.
     pub confidence: f64,
-    /// Pupil time, in seconds.
+    /// Pupil time in seconds.
     pub timestamp: f64,
 }
 
-/// A fixation; the same id comes again while it lasts.
+/// A fixation; messages with the same id repeat while it lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PupilFixation {
     pub id: u64,
-    /// On the surface; nothing if it is told in the scene camera's picture.
+    /// Position on the surface; `None` if it is given in the scene camera's picture.
     pub on_surface: Option<[f64; 2]>,
     pub confidence: f64,
-    /// When it began, in Pupil time in seconds.
+    /// Beginning in Pupil time, in seconds.
     pub timestamp: f64,
     pub duration_ms: f64,
     pub dispersion_deg: f64,
@@ -41,20 +41,20 @@ pub struct PupilBlink {
     pub timestamp: f64,
 }
 
-/// What a message says.
+/// Content of a message.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PupilMessage {
-    /// It was about the surface that was asked for: the tracker sees it.
+    /// Whether it is about the requested surface, which is then visible to the tracker.
     pub sees_surface: bool,
-    /// In the order in which they were taken.
+    /// Samples in the order in which they were taken.
     pub gaze: Vec<SurfaceGaze>,
     pub fixations: Vec<PupilFixation>,
     pub blink: Option<PupilBlink>,
-    /// Items that are none, or the whole message.
+    /// Number of malformed items; 1 for a malformed message.
     pub malformed: u64,
 }
 
-/// Reads a message with this topic; others than those that were subscribed to say nothing.
+/// Parses a message with this topic; topics without a subscription are ignored.
 pub fn read(topic: &[u8], payload: &[u8], surface: &str) -> PupilMessage {
     let is_surface = topic.strip_prefix(b"surfaces.") == Some(surface.as_bytes());
     if !is_surface && topic != b"fixations" && topic != b"blinks" {
@@ -97,7 +97,7 @@ fn of_surface(datum: &Value) -> PupilMessage {
     told
 }
 
-/// The list of this name; one that is missing is empty, one that is none is malformed.
+/// The list with this name; empty if it is missing, counted as malformed if it is not a list.
 fn items<'a>(datum: &'a Value, name: &str, malformed: &mut u64) -> &'a [Value] {
     match field(datum, name) {
         Some(Value::Array(items)) => {
@@ -149,7 +149,7 @@ fn number(item: &Value, name: &str) -> Option<f64> {
 fn place(item: &Value) -> Option<[f64; 2]> {
     let [x, y] = field(item, "norm_pos")?.as_array()?.as_slice() else { return None };
     let place = [x.as_f64()?, y.as_f64()?];
-    // Beside the surface is a place, too; as far as this, nobody looks at it.
+    // Points beside the surface are valid up to this distance.
     place.iter().all(|value| value.abs() < 1e3).then_some(place)
 }
 
@@ -157,7 +157,7 @@ fn confidence(item: &Value) -> Option<f64> {
     number(item, "confidence").filter(|value| (0.0..=1.0).contains(value))
 }
 
-/// Pupil time begins anywhere; where it does not fit nanoseconds, it is none.
+/// A Pupil time, whose origin is arbitrary; `None` if it does not fit into nanoseconds.
 fn time(item: &Value) -> Option<f64> {
     number(item, "timestamp").filter(|value| (0.0..1e10).contains(value))
 }

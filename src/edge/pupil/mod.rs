@@ -1,5 +1,5 @@
-//! Pupil Core through Pupil Capture's network API: it is asked for its ports and its time, subscribed to, told to record,
-//! and annotated. A Capture that is not there, ends, hangs or begins again is tried again for ever.
+//! Pupil Core through Pupil Capture's network API: requests for ports and time, subscription, recording, annotations. The connection
+//! is retried without limit when Capture is missing, ends, hangs or restarts.
 
 mod clock;
 pub mod message;
@@ -20,41 +20,41 @@ use clock::{ANSWERS, PupilClock};
 use message::PupilMessage;
 use zmtp::{SocketRole, ZmtpConnection, ZmtpMessage};
 
-/// From one try to the next.
+/// Time between connection attempts.
 const RETRY: Duration = Duration::from_millis(300);
-/// The surface that was not told of for so long is not seen.
+/// The surface counts as lost after this long without a datum.
 const UNSEEN: Duration = Duration::from_secs(1);
-/// Capture's time is asked for so often.
+/// Period of time requests to Capture.
 const ASK_TIME: Duration = Duration::from_secs(1);
-/// So many orders may wait for Capture.
+/// Capacity of the queue of requests to Capture.
 const ORDERS: usize = 256;
 
-/// Where Capture is, and what of it is wanted.
+/// Address of Capture, and what to receive from it.
 #[derive(Clone, Debug)]
 pub struct CaptureAddress {
     pub address: String,
-    /// Of Pupil Remote.
+    /// Port of Pupil Remote.
     pub port: u16,
     pub surface: String,
-    /// From the surface to the display.
+    /// Map from the surface to the display.
     pub map: SurfaceMap,
-    /// Whether it is told to record, and annotated.
+    /// Whether Capture records and is annotated.
     pub records: bool,
 }
 
-/// What Capture is told to do.
+/// A request to Capture.
 #[derive(Debug)]
 pub enum CaptureRequest {
-    /// Record under this name.
+    /// Start a recording with this name.
     Record(String),
     StopRecording,
-    /// Annotate its recording with what happened at this moment.
+    /// Annotate its recording with an event at this instant.
     Annotate(String, Instant),
-    /// Say when all orders before this one were carried out.
+    /// Report when all earlier requests have been carried out.
     Report(oneshot::Sender<()>),
 }
 
-/// Follows Capture from now on; its news, and where orders are taken. Ends when the news are no longer wanted.
+/// Starts following Capture; returns the channels of its messages and of requests. Ends when the receiver is dropped.
 pub fn follow(capture: CaptureAddress) -> (Receiver<GazeNews>, Sender<CaptureRequest>) {
     let (news, receiver) = channel(WAITING);
     let (sender, orders) = channel(ORDERS);
@@ -71,10 +71,10 @@ pub fn follow(capture: CaptureAddress) -> (Receiver<GazeNews>, Sender<CaptureReq
     (receiver, sender)
 }
 
-/// What Capture calls itself, if it answers at this port.
+/// Name and version of Capture at this port.
 ///
 /// # Errors
-/// Why it does not.
+/// Reason why it does not respond.
 pub async fn version(address: &str, port: u16) -> io::Result<String> {
     let mut remote = ZmtpConnection::open(address, port, SocketRole::Req).await?;
     Ok(format!("Pupil Capture {}", remote.ask(&[b"v"]).await?))
@@ -84,16 +84,16 @@ struct Follower {
     capture: CaptureAddress,
     news: Sender<GazeNews>,
     orders: Receiver<CaptureRequest>,
-    /// The name under which it is to record now, also after it began again.
+    /// Name of the present recording, also after a restart of Capture.
     recording: Option<String>,
-    /// News that nobody took in time, and were not told of yet.
+    /// Number of dropped messages that have not been reported yet.
     lost: u64,
-    /// The fixation that may go on.
+    /// The fixation that may still last.
     waiting: Option<TrackerFixation>,
 }
 
 impl Follower {
-    /// Follows Capture as long as it is there; why it is not, and whether it was.
+    /// Follows Capture until the connection is lost; returns the reason, and whether it was connected.
     async fn once(&mut self) -> Result<(), Lost> {
         let never = |reason: io::Error| Lost { reason, was_there: false };
         let (address, port) = (self.capture.address.clone(), self.capture.port);
@@ -161,7 +161,7 @@ impl Follower {
     }
 
     async fn tell(&mut self, news: GazeNews) {
-        // Nobody wants to know any more: the loop outside sees it.
+        // The receiver was dropped; the outer loop ends.
         let _ = self.news.send(news).await;
     }
 
@@ -177,10 +177,10 @@ impl Follower {
     }
 }
 
-/// Why Capture is not followed any more.
+/// Loss of the connection to Capture.
 struct Lost {
     reason: io::Error,
-    /// It was, until then.
+    /// Whether it was connected before.
     was_there: bool,
 }
 
@@ -190,7 +190,7 @@ struct Listener<'a> {
     map: SurfaceMap,
     lost: &'a mut u64,
     waiting: &'a mut Option<TrackerFixation>,
-    /// Whether the display was said to be seen.
+    /// Whether the display has been reported as detected.
     sees: Option<bool>,
 }
 
@@ -202,7 +202,7 @@ impl Listener<'_> {
         }
     }
 
-    /// Passes on what was read; what nobody takes in time is counted, so that Capture is never kept waiting.
+    /// Passes on a parsed message. If the queue is full, messages are counted and dropped, so that Capture is never blocked.
     fn pass(&mut self, told: PupilMessage, clock: &Mutex<PupilClock>) {
         let mut malformed = told.malformed;
         let taken = |timestamp: f64| SampleTime { device_ns: (timestamp * 1e9) as u64, at: moment(clock, timestamp) };
@@ -227,7 +227,7 @@ impl Listener<'_> {
                 confidence: found.confidence,
                 began,
             };
-            // The same id lasts on; another one says that the last is over.
+            // The same id continues the fixation; another id ends it.
             if let Some(over) = self.waiting.replace(fixation).filter(|over| over.id != fixation.id) {
                 self.offer(GazeNews::Fixation(over));
             }
@@ -278,7 +278,7 @@ fn port_of(answer: &str) -> io::Result<u16> {
     answer.trim().parse().map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "a port that is none"))
 }
 
-/// Who asks Capture for its time and tells it what to do.
+/// Sends time requests and other requests to Capture.
 struct Desk {
     remote: ZmtpConnection,
     annotations: ZmtpConnection,
@@ -292,7 +292,7 @@ impl Desk {
         recording: &mut Option<String>,
         clock: &Mutex<PupilClock>,
     ) -> io::Error {
-        // One that began again records on.
+        // After a restart of Capture the recording is started again.
         if let Some(name) = recording.clone()
             && let Err(reason) = self.record(&name).await
         {

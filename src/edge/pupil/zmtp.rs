@@ -1,6 +1,5 @@
-//! As much of ZeroMQ's wire protocol (ZMTP 3.0, <https://rfc.zeromq.org/spec/23/>, without security) as it takes to ask
-//! Pupil Remote, to subscribe to Capture's messages, and to publish annotations. What the other side sends is bounded: no
-//! length that it claims is believed before the bytes are there.
+//! The part of ZeroMQ's wire protocol (ZMTP 3.0, <https://rfc.zeromq.org/spec/23/>, without security) that Pupil Remote,
+//! subscriptions and annotations need. Input is bounded: memory is allocated for received bytes, never for claimed lengths.
 
 use std::io;
 use std::time::Duration;
@@ -12,10 +11,10 @@ use tokio::time::timeout;
 /// The frames of a message.
 pub type ZmtpMessage = Vec<Vec<u8>>;
 
-/// No message is longer, in bytes of all its frames, and none has more frames.
+/// Longest message, in bytes of all frames, and largest number of frames.
 const MAX_MESSAGE: usize = 1 << 20;
 const MAX_FRAMES: usize = 16;
-/// So long the other side may take for what is due at once.
+/// Time limit of the other side for immediate answers.
 const PATIENCE: Duration = Duration::from_secs(2);
 const GREETING: usize = 64;
 
@@ -23,14 +22,14 @@ const MORE: u8 = 1;
 const LONG: u8 = 2;
 const COMMAND: u8 = 4;
 
-/// What a socket is for.
+/// Role of a socket.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SocketRole {
-    /// Asks, and is answered.
+    /// Sends requests and receives replies.
     Req,
-    /// Receives what it subscribed to.
+    /// Receives subscribed messages.
     Sub,
-    /// Sends to whoever subscribed.
+    /// Sends to subscribers.
     Pub,
 }
 
@@ -48,28 +47,28 @@ fn broken(what: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, what)
 }
 
-/// Puts messages together from bytes as they come.
+/// Assembles messages from received bytes.
 #[derive(Debug, Default)]
 pub struct FrameAssembler {
     bytes: Vec<u8>,
-    /// Up to here they were read.
+    /// Number of bytes already consumed.
     read: usize,
     frames: ZmtpMessage,
     size: usize,
 }
 
 impl FrameAssembler {
-    /// Takes bytes that arrived.
+    /// Adds received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.drain(..self.read);
         self.read = 0;
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// The next message that is complete; commands are left out.
+    /// The next complete message; commands are skipped.
     ///
     /// # Errors
-    /// What came is no message, or a larger one than there are.
+    /// The bytes are not a message, or the message is too large.
     pub fn next_message(&mut self) -> io::Result<Option<ZmtpMessage>> {
         while let Some((flags, body)) = self.next_frame()? {
             if flags & COMMAND != 0 {
@@ -122,10 +121,10 @@ pub struct ZmtpConnection {
 }
 
 impl ZmtpConnection {
-    /// Connects, and agrees on the protocol.
+    /// Connects and performs the handshake.
     ///
     /// # Errors
-    /// Nobody listens there, or nobody who speaks it.
+    /// Nothing listens at the address, or it does not speak the protocol.
     pub async fn open(address: &str, port: u16, role: SocketRole) -> io::Result<ZmtpConnection> {
         let late = |_| io::Error::new(io::ErrorKind::TimedOut, "no answer");
         timeout(PATIENCE, ZmtpConnection::agree(address, port, role)).await.map_err(late)?
@@ -177,10 +176,10 @@ impl ZmtpConnection {
         }
     }
 
-    /// The next message. Nothing is lost if it is given up in between.
+    /// Waits for the next message; cancel safe.
     ///
     /// # Errors
-    /// The connection ended, or what came is no message.
+    /// The connection ended, or the bytes are not a message.
     pub async fn receive(&mut self) -> io::Result<ZmtpMessage> {
         loop {
             if let Some(message) = self.inbox.next_message()? {
@@ -193,7 +192,7 @@ impl ZmtpConnection {
     /// Sends a message.
     ///
     /// # Errors
-    /// The connection ended, or the other side takes nothing any more.
+    /// The connection ended, or the other side accepts no data.
     pub async fn send(&mut self, frames: &[&[u8]]) -> io::Result<()> {
         let mut bytes = Vec::new();
         for (index, frame) in frames.iter().enumerate() {
@@ -211,18 +210,18 @@ impl ZmtpConnection {
         timeout(PATIENCE, self.stream.write_all(&bytes)).await.map_err(late)?
     }
 
-    /// Asks for all messages whose first frame begins so.
+    /// Subscribes to messages whose first frame has this prefix.
     ///
     /// # Errors
-    /// Those of [`ZmtpConnection::send`].
+    /// Errors of [`ZmtpConnection::send`].
     pub async fn subscribe(&mut self, topic: &str) -> io::Result<()> {
         self.send(&[&[b"\x01", topic.as_bytes()].concat()]).await
     }
 
-    /// Asks, and waits for the answer.
+    /// Sends a request and waits for the reply.
     ///
     /// # Errors
-    /// Those of [`ZmtpConnection::send`], no answer in time, or one that is no text.
+    /// Errors of [`ZmtpConnection::send`], no reply in time, or a reply that is not text.
     pub async fn ask(&mut self, frames: &[&[u8]]) -> io::Result<String> {
         self.send(&[&[b"".as_slice()], frames].concat()).await?;
         let late = |_| io::Error::new(io::ErrorKind::TimedOut, "no answer");

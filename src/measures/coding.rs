@@ -1,6 +1,5 @@
-//! What raters say about errors: why each press was one. For people nobody knows what they believed, so two raters code the
-//! errors of a trial, each for oneself, and Cohen's kappa (1960, "A coefficient of agreement for nominal scales") says how far
-//! they agree.
+//! Rater codes of error causes. Beliefs of people are unknown, so two raters independently code the errors of a trial, and
+//! Cohen's kappa (1960, "A coefficient of agreement for nominal scales") measures their agreement.
 
 use std::collections::BTreeMap;
 
@@ -11,19 +10,19 @@ use super::judged_press::JudgedPress;
 use super::matching::kappa;
 use crate::kitchen::{Kitchen, LocationKind, OrderContent, State};
 
-/// Why a press was an error, in a rater's eyes.
+/// Cause of an error as coded by a rater.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Code {
-    /// Something was believed wrong: an order and the recipe of its dish, or a place, by the location's name.
+    /// A false belief; holds the location's name. An order location stands for the recipe of its dish.
     Belief(String),
-    /// Nothing was; the hand or the attention slipped.
+    /// A slip of hand or attention, without a false belief.
     Slip,
-    /// The robot was quicker.
+    /// A race: the robot changed the location shortly before the press.
     Race,
     Other,
 }
 
-/// The kinds of causes, without what is believed wrong.
+/// Kinds of causes, without the aspect of a false belief.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CauseKind {
@@ -34,10 +33,10 @@ pub enum CauseKind {
 }
 
 impl CauseKind {
-    /// All of them, in the order of the keys that code them.
+    /// All kinds of causes, in the order of the keys that code them.
     pub const ALL: [CauseKind; 4] = [CauseKind::Belief, CauseKind::Slip, CauseKind::Race, CauseKind::Other];
 
-    /// As it stands in files.
+    /// Name in files.
     pub fn name(self) -> &'static str {
         match self {
             CauseKind::Belief => "belief",
@@ -47,14 +46,14 @@ impl CauseKind {
         }
     }
 
-    /// The kind of this name.
+    /// The kind with this name.
     pub fn named(name: &str) -> Option<CauseKind> {
         CauseKind::ALL.into_iter().find(|kind| kind.name() == name)
     }
 }
 
 impl Code {
-    /// The code of a kind; `aspect` is what is believed wrong, of beliefs alone.
+    /// The code of a kind; `aspect` names the location of a false belief and is given for beliefs only.
     pub fn new(kind: CauseKind, aspect: Option<&str>) -> Option<Code> {
         match (kind, aspect) {
             (CauseKind::Belief, Some(aspect)) => Some(Code::Belief(aspect.to_string())),
@@ -74,7 +73,7 @@ impl Code {
         }
     }
 
-    /// The name of the location that was believed wrong.
+    /// Name of the location that the false belief is about.
     pub fn aspect(&self) -> Option<&str> {
         match self {
             Code::Belief(aspect) => Some(aspect),
@@ -82,7 +81,7 @@ impl Code {
         }
     }
 
-    /// What was believed wrong, in the state that the press met; none where nothing was.
+    /// Target of the false belief, in the state before the press; `None` for other causes.
     pub fn target(&self, kitchen: &Kitchen, state: State) -> Option<Target> {
         let location = kitchen.location_named(self.aspect()?)?;
         Some(match (kitchen.location(location).kind, state.order(location)) {
@@ -93,12 +92,12 @@ impl Code {
     }
 }
 
-/// What codes of a recording can be about.
+/// Errors and locations that rater codes of one recording can refer to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Codable {
-    /// The numbers of the presses that were errors, in order.
+    /// Log numbers of the presses that were errors, in ascending order.
     pub errors: Vec<u64>,
-    /// The names of the kitchen's locations.
+    /// Names of the kitchen's locations.
     pub places: Vec<String>,
 }
 
@@ -111,7 +110,7 @@ impl Codable {
         }
     }
 
-    /// What cannot be of a code for the press with this number, and what would be right.
+    /// The fault of a code for the press with this log number and its remedy; `None` for a valid code.
     pub fn fault(&self, press: u64, code: &Code) -> Option<(String, String)> {
         if !self.errors.contains(&press) {
             return Some((format!("press {press}, which was no error"), self.nearest(press)));
@@ -120,7 +119,7 @@ impl Codable {
         Some((format!("the aspect \"{aspect}\""), format!("one of {}", self.places.join(", "))))
     }
 
-    /// The errors around a press, in words.
+    /// Log numbers of the errors closest to a press, as text.
     fn nearest(&self, press: u64) -> String {
         let after = self.errors.partition_point(|&error| error < press);
         let around = [after.checked_sub(1).map(|before| self.errors[before]), self.errors.get(after).copied()];
@@ -132,12 +131,12 @@ impl Codable {
     }
 }
 
-/// What one rater says about the errors of a recording, by the numbers of their presses in its log.
+/// Codes of one rater for one recording, by log number of the erroneous press.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Codes(pub BTreeMap<u64, Code>);
 
 impl Codes {
-    /// What somebody would say who knows what was believed: of simulated participants, to try raters on.
+    /// The true codes of a simulated participant's errors, for comparison with raters.
     pub fn known(kitchen: &Kitchen, presses: &[JudgedPress]) -> Codes {
         let code = |press: &JudgedPress| {
             Some(match press.cause? {
@@ -145,46 +144,46 @@ impl Codes {
                 Cause::Belief { target: Target::Order(location, _) | Target::Place(location), .. } => {
                     Code::Belief(kitchen.location(location).name.clone())
                 }
-                // The recipe of a dish that no order wants has no place.
+                // A false recipe belief has no location if no order requests the dish.
                 Cause::Belief { target: Target::Recipe(_), .. } => Code::Other,
             })
         };
         Codes(presses.iter().filter_map(|press| Some((press.seq, code(press)?))).collect())
     }
 
-    /// The errors about which both say the same, as they say it.
+    /// The errors to which both raters gave the same code.
     pub fn agreed(&self, other: &Codes) -> Codes {
         let same = self.0.iter().filter(|(press, code)| other.0.get(press) == Some(code));
         Codes(same.map(|(press, code)| (*press, code.clone())).collect())
     }
 }
 
-/// How far two raters agree, over the errors that both have coded; of several recordings add them up.
+/// Contingency table of two raters' codes over the errors that both coded; recordings are added to it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AgreementTable {
     kinds: BTreeMap<(CauseKind, CauseKind), u64>,
-    /// By numbers, of the errors that both put down to a belief: each different location has one.
+    /// Counts of location pairs (as indices of names) for errors that both raters coded as false beliefs.
     aspects: BTreeMap<(usize, usize), u64>,
     names: Vec<String>,
 }
 
-/// The agreement of two raters.
+/// Agreement of two raters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Agreement {
-    /// Errors that both have coded, and those about which they say the same cause.
+    /// Number of errors that both coded, and number of these with the same cause.
     pub errors: u64,
     pub same_cause: u64,
-    /// Cohen's kappa of the cause over {belief, slip, race, other}; null: nothing was coded, or always the same.
+    /// Cohen's kappa of the cause over {belief, slip, race, other}; null without codes, or if all codes are equal.
     pub kappa_cause: Option<f64>,
-    /// Errors that both put down to a belief, and those where they say the same is believed wrong.
+    /// Number of errors that both coded as false beliefs, and number of these with the same location.
     pub beliefs: u64,
     pub same_aspect: u64,
-    /// Cohen's kappa of what is believed wrong, over the locations.
+    /// Cohen's kappa of the false belief's location.
     pub kappa_aspect: Option<f64>,
 }
 
 impl AgreementTable {
-    /// Adds a recording that both have coded.
+    /// Adds the codes of one recording by both raters.
     pub fn add(&mut self, one: &Codes, other: &Codes) {
         for (press, a) in &one.0 {
             let Some(b) = other.0.get(press) else { continue };
@@ -206,7 +205,7 @@ impl AgreementTable {
         }
     }
 
-    /// What comes of it.
+    /// Computes the agreement from the table.
     pub fn agreement(&self) -> Agreement {
         Agreement {
             errors: self.kinds.values().sum(),

@@ -1,6 +1,6 @@
-//! How well a model predicts the presses of the human: log probability per press, beside two humans who need no
-//! inference: one who knows everything, with the strictness and the share of slips that suit these presses best, and one
-//! who presses anything.
+//! Predictive accuracy of the human model: mean log probability per press, compared with two baselines that need no inference:
+//! an informed human, who knows the true world, with softmax temperature and lapse rate fitted to these presses, and a human who
+//! presses random buttons.
 
 use rand::RngExt;
 use serde::Serialize;
@@ -13,34 +13,34 @@ use crate::kitchen::{Agent, Kitchen, WeightedWorlds, World};
 use crate::mind::ChoiceModel;
 use crate::mind::decision::DecisionModel;
 
-/// Resamples of the bootstrap.
+/// Number of bootstrap resamples.
 const RESAMPLES: usize = 2000;
-/// The ends of the bootstrap's interval, as shares of the resamples.
+/// Quantiles of the bootstrap distribution that bound the interval.
 const INTERVAL: [f64; 2] = [0.025, 0.975];
-/// The fit of the informed human is done when no better fit is in sight by so many nats per press.
+/// Tolerance of the informed human's fit, in nats per press.
 const TOLERANCE_NATS: f64 = 1e-6;
-/// It takes at most so many tries.
-const MOST_TRIES: usize = 200;
+/// Largest number of iterations of the informed human's fit.
+const MOST_ITERATIONS: usize = 200;
 
 /// Mean log probability of a press, in nats.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LogLikelihood {
-    /// Under the estimate from before the press; null where nothing estimates.
+    /// Under the estimated belief before the press; null without an estimate.
     pub model: Option<f64>,
-    /// Of a human who knows everything, fitted to these presses.
+    /// Under an informed human, who knows the true world, fitted to these presses.
     pub informed: Option<f64>,
-    /// Of a human who presses any button.
+    /// Under a human who presses random buttons.
     pub uniform: Option<f64>,
-    /// By how much the model is better than the informed human, and the interval of 95 % that a bootstrap over trials gives.
+    /// Difference between model and informed human, and its 95 % bootstrap interval over trials.
     pub gain: Option<f64>,
     pub gain_interval: Option<[f64; 2]>,
-    /// What fits the informed human best.
+    /// Fitted parameters of the informed human.
     pub informed_tau: Option<f64>,
     pub informed_lapse: Option<f64>,
 }
 
 impl LogLikelihood {
-    /// Of all presses of these trials. Random numbers of the bootstrap follow from `seed`.
+    /// Computes the log likelihoods of all presses of these trials. The bootstrap's random stream is seeded by `seed`.
     pub fn from_trials(
         kitchen: &Kitchen,
         cost: &mut CostToGo,
@@ -59,7 +59,7 @@ impl LogLikelihood {
         let with = |at: &[f64]| DecisionModel { tau: at[0].exp(), lapse: logistic(at[1]), ..model.clone() };
         let start = [model.tau.ln(), logit(model.lapse)];
         let loss = |at: &[f64]| -total(&with(at), cost).iter().sum::<f64>() / presses;
-        let best = with(&minimise(loss, &start, &[-0.5, 0.5], TOLERANCE_NATS, MOST_TRIES).at);
+        let best = with(&minimise(loss, &start, &[-0.5, 0.5], TOLERANCE_NATS, MOST_ITERATIONS).at);
         let informed = total(&best, cost);
         let estimated: Option<Vec<f64>> = trials
             .iter()
@@ -81,7 +81,7 @@ impl LogLikelihood {
     }
 }
 
-/// The log probability of a press for somebody who knows everything.
+/// Log probability of a press under a human who knows the true world.
 fn log_p(kitchen: &Kitchen, cost: &mut CostToGo, model: &ChoiceModel, press: &PressView) -> f64 {
     let truth = WeightedWorlds::certain(World::with_true_recipes(kitchen, press.state));
     model.probabilities(cost, &truth).press[press.button.index()].ln()
@@ -96,7 +96,7 @@ fn logistic(x: f64) -> f64 {
     1.0 / (1.0 + (-x).exp())
 }
 
-/// The sum of the first over the sum of the second.
+/// Ratio of the sum of the first elements to the sum of the second elements.
 fn ratio<'a>(pairs: impl Iterator<Item = &'a (f64, f64)>) -> f64 {
     let (gain, presses) = pairs.fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
     gain / presses

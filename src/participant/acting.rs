@@ -1,4 +1,4 @@
-//! The participant in time: what it does when, and how it takes up what happens around it.
+//! Timed behaviour of the simulated participant: actions that are due, and reactions to events of the session.
 
 use rand::RngExt;
 
@@ -10,7 +10,7 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, LocationId, Press, State};
 
 impl SimulatedParticipant {
-    /// The trial starts: the kitchen is seen to be empty.
+    /// Starts the trial; the participant sees that the kitchen is empty.
     pub fn on_trial_start(&mut self, now: SessionTime, state: State) {
         self.is_started = true;
         self.display = state;
@@ -21,7 +21,7 @@ impl SimulatedParticipant {
         self.press_at = now + self.reaction();
     }
 
-    /// Does what is due now. `state` is the truth: only what the eyes rest on is taken from it, and the record's P(truth).
+    /// Performs the next due action. `state` is the true state; only fixated locations and the recorded P(truth) are taken from it.
     pub fn act(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<ParticipantAction> {
         if !self.is_started {
             return None;
@@ -40,7 +40,7 @@ impl SimulatedParticipant {
         Some(ParticipantAction::Gaze(self.eyes.sample(now)))
     }
 
-    /// An agent pressed a button: of the robot's press only that it happened is noticed.
+    /// Reacts to a press. The participant notices that the robot pressed, but not which button.
     pub fn on_press(&mut self, now: SessionTime, press: &Press) {
         match press.agent {
             Agent::Robot => {
@@ -57,7 +57,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// A signal appears: mostly it is noticed, and read after a moment.
+    /// Reacts to a signal: the participant probably notices it and looks at it after a short delay.
     pub fn on_signal(&mut self, now: SessionTime, location: LocationId, signal: &Signal, _state: State) {
         let [least, most] = self.population.signal_after_s;
         let after_s = least + (most - least) * self.mind.random::<f64>();
@@ -65,7 +65,7 @@ impl SimulatedParticipant {
         self.signal = is_noticed.then(|| (now + SessionTime::from_secs_f64(after_s), location, signal.clone()));
     }
 
-    /// The signal vanishes; what was not read yet is not read any more.
+    /// Removes the signal; the participant cannot read it any more.
     pub fn on_signal_end(&mut self, _now: SessionTime) {
         self.signal = None;
     }

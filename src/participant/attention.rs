@@ -1,14 +1,14 @@
-//! The places that the participant keeps in mind to look at.
+//! Queue of locations that the simulated participant intends to look at.
 
 use std::collections::VecDeque;
 
 use crate::base::time::SessionTime;
 use crate::kitchen::LocationId;
 
-/// At most so many places are kept in mind to look at next.
+/// Capacity of the queue of locations to look at.
 const MOST_GLANCES: usize = 6;
 
-/// The places to look at next, and when each was read last.
+/// Queue of locations to look at, and the time of the last reading of each location.
 #[derive(Clone, Debug, Default)]
 pub struct Attention {
     pub glances: VecDeque<LocationId>,
@@ -17,14 +17,14 @@ pub struct Attention {
 }
 
 impl Attention {
-    /// The next look goes there.
+    /// Puts a location at the front of the queue.
     pub fn first(&mut self, location: LocationId) {
         self.glances.retain(|&other| other != location);
         self.glances.push_front(location);
         self.glances.truncate(MOST_GLANCES);
     }
 
-    /// A look goes there in time.
+    /// Puts a location at the end of the queue.
     pub fn later(&mut self, location: LocationId) {
         if !self.glances.contains(&location) && self.glances.len() < MOST_GLANCES {
             self.glances.push_back(location);

@@ -1,18 +1,18 @@
-//! The participant's own beliefs: one categorical distribution per state aspect, and how they are changed.
+//! Beliefs of the simulated participant: one categorical distribution per state aspect, with operations that change it.
 
 use crate::kitchen::{AspectId, AspectKind, DishId, Kitchen, LocationId, OrderContent, Recipes, State};
 
-/// What a person believes. Every distribution sums to 1 and holds no value for impossible.
+/// Beliefs of a simulated participant. Every distribution sums to 1, and every value has a positive probability.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParticipantBeliefs {
     of: Vec<Vec<f64>>,
 }
 
-/// No value is ever believed impossible: what is left to each when the others take all.
+/// Probability spread evenly over all values of an aspect, so that no value becomes impossible.
 const RESIDUE: f64 = 1e-6;
 
 impl ParticipantBeliefs {
-    /// Everything as `state` shows it, `sure` of it; recipes as they truly are, to be changed by memory.
+    /// Beliefs with probability `sure` on each value in `state` and on the true recipes; memory changes the recipes afterwards.
     pub fn of_state(kitchen: &Kitchen, state: State, sure: f64) -> ParticipantBeliefs {
         let mut beliefs = ParticipantBeliefs { of: kitchen.aspects.iter().map(|a| uniform(a.values.len())).collect() };
         for index in 0..kitchen.aspects.len() {
@@ -22,23 +22,23 @@ impl ParticipantBeliefs {
         beliefs
     }
 
-    /// The distribution over the values of an aspect.
+    /// Distribution over the values of an aspect.
     pub fn distribution(&self, aspect: AspectId) -> &[f64] {
         &self.of[aspect.index()]
     }
 
-    /// The index of the value that is held most likely; the first of equals.
+    /// Index of the most probable value; ties go to the first.
     pub fn most_likely(&self, aspect: AspectId) -> usize {
         let values = self.distribution(aspect);
         (1..values.len()).fold(0, |best, index| if values[index] > values[best] { index } else { best })
     }
 
-    /// How sure the person is of what it holds most likely.
+    /// Probability of the most probable value.
     pub fn certainty(&self, aspect: AspectId) -> f64 {
         self.distribution(aspect)[self.most_likely(aspect)]
     }
 
-    /// Becomes `sure` of one value; what is left goes to the others as it was spread among them.
+    /// Sets the probability of one value to `sure`; the others share the rest in their present proportions.
     pub fn settle(&mut self, aspect: AspectId, value: usize, sure: f64) {
         let values = &mut self.of[aspect.index()];
         let others = 1.0 - values[value];
@@ -53,7 +53,7 @@ impl ParticipantBeliefs {
         normalise(values);
     }
 
-    /// Gives way by `weight` towards another distribution, given as weights.
+    /// Moves a distribution by the share `weight` towards another distribution, which is given as unnormalized weights.
     pub fn mix(&mut self, aspect: AspectId, towards: &[f64], weight: f64) {
         let total: f64 = towards.iter().sum();
         if total <= 0.0 {
@@ -66,7 +66,7 @@ impl ParticipantBeliefs {
         normalise(values);
     }
 
-    /// Multiplies every value by a factor.
+    /// Multiplies the probability of each value by a factor, then normalizes.
     pub fn weigh(&mut self, aspect: AspectId, factor: impl Fn(usize) -> f64) {
         let values = &mut self.of[aspect.index()];
         for (index, p) in values.iter_mut().enumerate() {
@@ -75,12 +75,12 @@ impl ParticipantBeliefs {
         normalise(values);
     }
 
-    /// Replaces a distribution by weights.
+    /// Replaces a distribution by unnormalized weights.
     pub fn replace(&mut self, aspect: AspectId, weights: &[f64]) {
         self.mix(aspect, weights, 1.0);
     }
 
-    /// What is held most likely, as a state and recipes of the task.
+    /// The most probable state and recipes.
     pub fn point(&self, kitchen: &Kitchen) -> (State, Recipes) {
         let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
         for (index, aspect) in kitchen.aspects.iter().enumerate() {
@@ -93,13 +93,13 @@ impl ParticipantBeliefs {
         (state, recipes)
     }
 
-    /// The probability that the person gives to the truth about an aspect.
+    /// Probability that the participant assigns to the true value of an aspect.
     pub fn p_truth(&self, kitchen: &Kitchen, state: State, aspect: AspectId) -> f64 {
         self.distribution(aspect)[kitchen.true_value(state, aspect)]
     }
 }
 
-/// The dish that an order is believed to want.
+/// The dish that the participant believes an order requests.
 pub fn wanted_dish(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, order: LocationId) -> Option<DishId> {
     let aspect = AspectId::of_location(order);
     match OrderContent::from_code(kitchen.aspects[aspect.index()].values[beliefs.most_likely(aspect)]) {

@@ -1,4 +1,4 @@
-//! What the participant decides to do: a sub-goal for the state that it believes in, kept to for a while.
+//! Decisions of the simulated participant: a sub-goal for the believed state, which is pursued for some seconds.
 
 use std::collections::VecDeque;
 
@@ -11,28 +11,28 @@ use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, Recipes, State};
 
-/// Presses that are thought out ahead: until the hand is free again, but not more than this.
+/// Maximum number of presses planned ahead; a plan ends earlier where the hand becomes empty.
 const FORESIGHT: usize = 5;
-/// Chance to begin with the order that is nearer to its end.
+/// Probability to choose the order with the lowest cost to go; otherwise the order is random.
 const PREFERS_NEARER: f64 = 0.75;
-/// Chance to stay with the order at hand where both could be served by the next press.
-const STAYS: f64 = 0.85;
+/// Probability to consider only presses that reduce the cost to go of the order in progress.
+const STAYS_WITH_ORDER: f64 = 0.85;
 
-/// What the person is up to.
+/// Current plan of the simulated participant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Intent {
-    /// The next presses of its own, as thought out.
+    /// Planned next presses of the participant.
     pub plan: VecDeque<ButtonId>,
-    /// The order that it works on, and until when it stays with it.
+    /// The order that the participant works on, and the time until which it stays with this order.
     pub order: Option<(LocationId, SessionTime)>,
-    /// What it has just tried because nothing went on: not to be undone at once.
+    /// The last press that was tried without a plan; it is not undone immediately.
     pub tried: Option<ButtonId>,
 }
 
-/// A press and the state that it is believed to lead to.
+/// A button and the state that the participant believes to result from pressing it.
 type Step = (ButtonId, State);
 
-/// Chooses what to do next; leaves the plan empty if there is nothing to do.
+/// Plans the next presses; the plan stays empty if no press is useful.
 pub fn think(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -65,13 +65,13 @@ pub fn think(
     }
     let mut choices: Vec<Step> = good.clone();
     if let Some((order, _)) = intent.order
-        && chance(random, STAYS)
+        && chance(random, STAYS_WITH_ORDER)
     {
         let here = cost.order(state, &recipes, order);
         choices.retain(|(_, next)| cost.order(*next, &recipes, order) < here);
     }
     let mut choices = if choices.is_empty() { good } else { choices };
-    // One does not take up what one could only stand about with.
+    // An item is not picked up if no press would be useful afterwards.
     let goes_on = |cost: &mut CostToGo, next: State| {
         kitchen.wanted(next).next().is_none() || !good_presses(kitchen, cost, next, &recipes).is_empty()
     };
@@ -109,7 +109,7 @@ fn choose_order(
     }
 }
 
-/// The presses of the human that bring the end nearer, if everything is as `state` and `recipes` say.
+/// Human presses that reduce the cost to go, given `state` and `recipes`.
 pub fn good_presses(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes) -> Vec<Step> {
     let here = cost.all_orders(state, recipes);
     let mut good = effective_presses(kitchen, state, recipes);
@@ -117,7 +117,7 @@ pub fn good_presses(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipe
     good
 }
 
-/// The presses of the human that would do something.
+/// Human presses that change the state, given `state` and `recipes`.
 pub fn effective_presses(kitchen: &Kitchen, state: State, recipes: &Recipes) -> Vec<Step> {
     let step = |index: usize| {
         let button = ButtonId(index as u8);
@@ -126,7 +126,7 @@ pub fn effective_presses(kitchen: &Kitchen, state: State, recipes: &Recipes) -> 
     (0..kitchen.buttons[Agent::Human.index()].len()).filter_map(step).collect()
 }
 
-/// Nothing seems to help: the press that does the least harm; one throws away only what nothing else can be done with.
+/// Chooses the press that increases the cost to go least when no press reduces it; discarding an item is the last resort.
 pub fn try_something(
     kitchen: &Kitchen,
     cost: &mut CostToGo,

@@ -1,4 +1,4 @@
-//! The participant's eyes as a tracker sees them: fixations, saccades, blinks, noise; 120 samples a second.
+//! Simulated eye tracking: fixations, saccades, blinks and noise at 120 samples per second.
 
 use rand::RngExt;
 
@@ -7,39 +7,39 @@ use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 
-/// Samples a second, the rate of a Pupil Core.
+/// Gaze samples per second: the rate of a Pupil Core eye tracker.
 pub const RATE_HZ: u64 = 120;
-/// From landing on something to having read it, in seconds: about half of a usual fixation.
+/// Time from the start of a fixation until its location has been read, in seconds: about half of a usual fixation.
 const READING_S: f64 = 0.14;
-/// A fixation lasts at least so long, in seconds.
+/// Shortest duration of a fixation, in seconds.
 const SHORTEST_FIXATION_S: f64 = 0.16;
-/// Where a saccade lands around its goal, and how restless a fixation is: standard deviations in metres.
+/// Standard deviations in metres on the display: of a saccade's landing point, and of the jitter during a fixation.
 const LANDING_M: f64 = 0.012;
 const TREMOR_M: f64 = 0.004;
-/// The tracker's offset drifts by so much a second, as a share of its size (standard deviation, per root second).
+/// Drift of the tracker's offset, as a share of its size (standard deviation per root second).
 const DRIFT: f64 = 0.05;
-/// Mean time between blinks, and their shortest and longest duration, in seconds.
+/// Mean time between blinks, and shortest and longest duration of a blink, in seconds.
 const BLINK_EVERY_S: f64 = 4.5;
 const BLINK_S: [f64; 2] = [0.1, 0.2];
 
-/// What the eyes just did.
+/// Progress of the present fixation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FixationProgress {
-    /// On the way, or still looking.
+    /// The saccade is under way, or the fixation continues.
     Nothing,
-    /// Looked long enough to have read what is there.
+    /// The fixation has lasted long enough for its location to be read.
     Read,
-    /// Ready to look elsewhere.
+    /// The fixation is over.
     Done,
 }
 
-/// The eyes of one person and the tracker in front of them.
+/// The eyes of one simulated participant, with the error of the eye tracker.
 #[derive(Clone, Debug)]
 pub struct Eyes {
     random: Stream,
     display_m: [f64; 2],
     fixation_s: f64,
-    /// The tracker's present offset, in metres.
+    /// Present offset of the eye tracker, in metres on the display.
     offset_m: [f64; 2],
     offset_size_m: f64,
     started: SessionTime,
@@ -54,7 +54,7 @@ pub struct Eyes {
 }
 
 impl Eyes {
-    /// Eyes that rest on the middle of the display.
+    /// Creates eyes that fixate the middle of the display.
     pub fn new(mut random: Stream, display_m: [f64; 2], individual: &Individual, offset_size_m: f64) -> Eyes {
         let offset_m = [normal(&mut random) * offset_size_m, normal(&mut random) * offset_size_m];
         let zero = SessionTime::ZERO;
@@ -76,7 +76,7 @@ impl Eyes {
         }
     }
 
-    /// The trial begins: the first sample is due now.
+    /// Starts the trial; the first sample is due now.
     pub fn start(&mut self, now: SessionTime) {
         self.started = now;
         self.samples = 0;
@@ -84,12 +84,12 @@ impl Eyes {
         self.look_at(now, self.goal);
     }
 
-    /// When the next sample is due.
+    /// Time at which the next sample is due.
     pub fn due(&self) -> SessionTime {
         self.started + SessionTime(self.samples * 1_000_000_000 / RATE_HZ)
     }
 
-    /// Everything later by `by`.
+    /// Postpones all planned eye movements and samples by `by`.
     pub fn postpone(&mut self, by: SessionTime) {
         for time in [&mut self.started, &mut self.leaves, &mut self.lands, &mut self.ends] {
             *time = *time + by;
@@ -98,7 +98,7 @@ impl Eyes {
         self.reads = self.reads.map(|time| time + by);
     }
 
-    /// Sets out to look at a display point.
+    /// Starts a saccade to a point of the display.
     pub fn look_at(&mut self, now: SessionTime, point: [f64; 2]) {
         self.from = self.position(now);
         let landing = |goal: f64, length_m: f64, random: &mut Stream| goal + normal(random) * LANDING_M / length_m;
@@ -108,7 +108,7 @@ impl Eyes {
         ];
         let dx = (self.goal[0] - self.from[0]) * self.display_m[0];
         let dy = (self.goal[1] - self.from[1]) * self.display_m[1];
-        // The main sequence of saccades: 20 ms and 2 ms more a degree; a degree is 35 mm at 2 m.
+        // Saccade duration (main sequence): 20 ms plus 2 ms per degree; one degree is 35 mm at a distance of 2 m.
         let saccade_s = 0.02 + 0.002 * dx.hypot(dy) / 0.035;
         let fixation_s = (self.fixation_s * (0.35 * normal(&mut self.random)).exp()).max(SHORTEST_FIXATION_S);
         self.leaves = now;
@@ -117,7 +117,7 @@ impl Eyes {
         self.ends = self.lands + SessionTime::from_secs_f64(fixation_s);
     }
 
-    /// What has come of the present look by now.
+    /// Advances the present fixation to `now` and returns its progress.
     pub fn advance(&mut self, now: SessionTime) -> FixationProgress {
         if let Some(reads) = self.reads
             && now >= reads
@@ -129,28 +129,28 @@ impl Eyes {
         if now >= self.ends { FixationProgress::Done } else { FixationProgress::Nothing }
     }
 
-    /// What is looked at has just changed: it has to be read again.
+    /// Restarts the reading time, because the content at the fixated location has just changed.
     pub fn look_again(&mut self, now: SessionTime) {
         let read = now + SessionTime::from_secs_f64(READING_S);
         self.reads = Some(read);
         self.ends = self.ends.max(read);
     }
 
-    /// Whether the eyes rest on their goal.
+    /// Whether the saccade has ended.
     pub fn has_landed(&self, now: SessionTime) -> bool {
         now >= self.lands && !self.is_closed(now)
     }
 
-    /// Where the eyes are, as fractions of the display.
+    /// True gaze point, as fractions of the display's width and height.
     pub fn position(&self, now: SessionTime) -> [f64; 2] {
         let duration = self.lands.secs_since(self.leaves);
         let part = if duration > 0.0 { (now.secs_since(self.leaves) / duration).min(1.0) } else { 1.0 };
-        // Saccades start and end softly.
+        // Saccades accelerate and decelerate smoothly.
         let part = part * part * (3.0 - 2.0 * part);
         [0, 1].map(|axis| self.from[axis] + (self.goal[axis] - self.from[axis]) * part)
     }
 
-    /// The sample that is due, as the tracker sends it.
+    /// The sample that is due, with the eye tracker's offset, noise and confidence.
     pub fn sample(&mut self, now: SessionTime) -> GazeSample {
         self.samples += 1;
         if now >= self.blink.1 {
@@ -171,7 +171,7 @@ impl Eyes {
             true => 0.3 * self.random.random::<f64>(),
             false => (0.95 - 0.04 * normal(&mut self.random).abs()).clamp(0.0, 1.0),
         };
-        // Trackers send no more digits than they can know; the log is the shorter for it.
+        // Four decimals are below the accuracy of eye trackers and shorten the log.
         let rounded = |value: f64| (value * 1e4).round() / 1e4;
         GazeSample::new(rounded(seen[0]), rounded(seen[1]), rounded(confidence))
     }
@@ -183,7 +183,7 @@ impl Eyes {
     fn next_blink(&mut self, now: SessionTime) -> (SessionTime, SessionTime) {
         let wait_s = -BLINK_EVERY_S * (1.0 - self.random.random::<f64>()).ln();
         let length_s = BLINK_S[0] + (BLINK_S[1] - BLINK_S[0]) * self.random.random::<f64>();
-        // Now and then a second blink follows at once.
+        // A second blink occasionally follows immediately.
         let wait_s = if chance(&mut self.random, 0.05) { 0.1 } else { wait_s.max(0.3) };
         let shut = now + SessionTime::from_secs_f64(wait_s);
         (shut, shut + SessionTime::from_secs_f64(length_s))

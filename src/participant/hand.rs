@@ -1,4 +1,4 @@
-//! The participant's hand: presses in time, slips, and what it does when there is nothing to do.
+//! Hand of the simulated participant: timed presses, slips, and behaviour while no press is useful.
 
 use rand::RngExt;
 
@@ -10,24 +10,24 @@ use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, DishId, LocationId, State};
 
-/// Below this certainty of a place one looks before using it.
-const UNSURE: f64 = 0.6;
-/// How long a press waits for such a look, in seconds, and how often.
+/// Certainty about a location below which the participant looks at it before using it.
+const UNSURE_BELOW: f64 = 0.6;
+/// Delay of a press by a look at a location that it uses, in seconds, and maximum number of such looks per press.
 const LOOK_FIRST_S: f64 = 0.4;
 const MOST_LOOKS_FIRST: u32 = 2;
-/// What was read so many seconds ago may be otherwise by now.
+/// Time since its last reading, in seconds, after which a location may be looked at again before it is used.
 const FRESH_S: f64 = 0.8;
-/// While there is nothing to do one thinks again after this time, in seconds.
+/// Interval between decisions while no press is useful, in seconds: shortest and longest.
 const THINK_AGAIN_S: [f64; 2] = [0.4, 0.8];
-/// After its patience without a press of anybody, or so many times that without anything to do, a person tries something.
-const DESPAIR: f64 = 3.0;
-/// Chance that it then asks itself whether it has a recipe right, before it tries something.
-const WONDERS: f64 = 0.5;
-/// What is left of the belief in a recipe when nothing goes on.
-const STANDSTILL_LEAVES: f64 = 0.4;
+/// Multiple of the patience time without a useful press after which the participant tries a press that seems useless.
+const PATIENCE_FACTOR: f64 = 3.0;
+/// Probability to doubt a recipe instead of trying a press that seems useless.
+const DOUBTS_RECIPE: f64 = 0.5;
+/// Share of the belief in a recipe that remains after the participant doubts it because no press was useful.
+const STANDSTILL_TRUST: f64 = 0.4;
 
 impl SimulatedParticipant {
-    /// Presses, or waits for something to do.
+    /// Presses the planned button, or waits while no press is planned.
     pub(super) fn move_hand(
         &mut self,
         now: SessionTime,
@@ -55,13 +55,13 @@ impl SimulatedParticipant {
         Some(self.press(now, state, pressed, cause))
     }
 
-    /// A place to look at before pressing: one that the person is unsure of, or one that it has not seen for a while, if
-    /// it is careful. Before fetching something one looks whether the robot does so already.
+    /// The location to look at before a press: the participant is unsure of it, or cautious and has not read it for a while.
+    /// Before an item is taken from a storage, the robot's hand is looked at, because the robot may be fetching the same item.
     fn worth_a_look(&mut self, now: SessionTime, button: ButtonId) -> Option<LocationId> {
         let kitchen = self.kitchen.clone();
         let own = kitchen.hands[Agent::Human.index()];
         let mut places = kitchen.involved(Agent::Human, button);
-        let unsure = places.iter().find(|&&place| self.beliefs.certainty(AspectId::of_location(place)) < UNSURE);
+        let unsure = places.iter().find(|&&place| self.beliefs.certainty(AspectId::of_location(place)) < UNSURE_BELOW);
         if unsure.is_some() {
             return unsure.copied();
         }
@@ -81,7 +81,7 @@ impl SimulatedParticipant {
         ParticipantAction::Press { button, belief: witness::witness(&self.kitchen, &self.beliefs, state, cause) }
     }
 
-    /// The hand does not always press what was meant: the button pressed instead, and why.
+    /// Samples a slip: the button pressed instead of the intended one, and its description.
     fn slip(&mut self, button: ButtonId) -> (ButtonId, Option<String>) {
         let kitchen = self.kitchen.clone();
         let name = |button| kitchen.button(Agent::Human, button).name.clone();
@@ -115,7 +115,7 @@ impl SimulatedParticipant {
         (pressed, Some(cause))
     }
 
-    /// There is nothing to do: looks around, begins to doubt what it remembers, and at last tries something.
+    /// Waits while no press is useful: looks around, then doubts its recipes, and at last tries a press.
     fn wait(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<ParticipantAction> {
         let kitchen = self.kitchen.clone();
         let since = *self.idle_since.get_or_insert(now);
@@ -132,16 +132,16 @@ impl SimulatedParticipant {
         for &location in stale.iter().take(3) {
             self.attention.later(location);
         }
-        if idle_s < self.person.patience_s * DESPAIR && standstill_s < self.person.patience_s {
+        if idle_s < self.person.patience_s * PATIENCE_FACTOR && standstill_s < self.person.patience_s {
             return None;
         }
-        if chance(&mut self.mind, WONDERS) {
+        if chance(&mut self.mind, DOUBTS_RECIPE) {
             self.idle_since = Some(now);
             let wanted = kitchen.orders.iter().filter_map(|&order| wanted_dish(&kitchen, &self.beliefs, order));
             let wanted: Vec<DishId> = wanted.collect();
             if !wanted.is_empty() {
                 let dish = wanted[self.mind.random_range(0..wanted.len())];
-                self.memory.doubt(&kitchen, &mut self.beliefs, dish, STANDSTILL_LEAVES, |_| false);
+                self.memory.doubt(&kitchen, &mut self.beliefs, dish, STANDSTILL_TRUST, |_| false);
             }
             return None;
         }
@@ -153,7 +153,7 @@ impl SimulatedParticipant {
         Some(self.press(now, state, button, "tries something, as nothing goes on".to_string()))
     }
 
-    /// From one press to the next: log-normal, faster with practice.
+    /// Time from one press to the next: log-normal, shorter with practice.
     pub(super) fn reaction(&mut self) -> SessionTime {
         let population = &self.population;
         let novice = population.novice_slowdown * 0.5_f64.powf(f64::from(self.presses) / population.practice_presses);

@@ -1,16 +1,16 @@
-//! What the participant learns from its own presses, whether they had an effect or not.
+//! Belief changes of the simulated participant after its own effective and ineffective presses.
 
 use super::beliefs::ParticipantBeliefs;
 use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, LocationId, State};
 
-/// Belief in what one has done oneself.
-const DONE: f64 = 0.97;
-/// So much rather than the own hand another place is blamed.
-const FELT: f64 = 0.3;
-/// What is left of values that an outcome speaks against.
-const SPOKEN_AGAINST: f64 = 0.04;
+/// Probability that the participant assigns to the expected result of its own effective press.
+const ACTED_CERTAINTY: f64 = 0.97;
+/// Certainty added to the own hand when an ineffective press is explained, because the participant feels what it holds.
+const FELT_CERTAINTY: f64 = 0.3;
+/// Factor on the probability of values with which an ineffective press would have been effective.
+const CONTRADICTED_FACTOR: f64 = 0.04;
 
-/// The press that the person means to have made had an effect, or none. True if that was a surprise.
+/// Updates the beliefs after a press that was effective or not. Returns true if the effect contradicted the beliefs.
 pub fn learn(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: ButtonId, effective: bool) -> bool {
     let (state, recipes) = beliefs.point(kitchen);
     let expected = kitchen.press(state, &recipes, Agent::Human, button);
@@ -23,10 +23,11 @@ pub fn learn(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: Button
     expected.is_some() != effective
 }
 
-/// It went as expected: everything involved is as the rules say, as surely as it was known before.
+/// An expected effect: the locations involved take the values that the rules predict, with the certainty before the press.
 fn carry_out(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: ButtonId, next: State) {
     let places = kitchen.involved(Agent::Human, button);
-    let sure = places.iter().map(|&place| beliefs.certainty(AspectId::of_location(place))).fold(DONE, f64::min);
+    let sure =
+        places.iter().map(|&place| beliefs.certainty(AspectId::of_location(place))).fold(ACTED_CERTAINTY, f64::min);
     for place in places {
         settle(kitchen, beliefs, place, next, sure);
     }
@@ -39,24 +40,24 @@ fn settle(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, place: LocationId
     }
 }
 
-/// Something happened that should not have been possible: what is certain all the same is taken over, the rest is open.
+/// An unexpected effect: values that it implies are adopted, other values at the involved locations become uncertain.
 fn make_sense(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: ButtonId) {
     let hand = kitchen.hands[Agent::Human.index()];
     let (mut state, _) = beliefs.point(kitchen);
     match kitchen.button(Agent::Human, button).action {
         ButtonAction::Take(item) => {
             state.set_content(hand, item);
-            settle(kitchen, beliefs, hand, state, DONE);
+            settle(kitchen, beliefs, hand, state, ACTED_CERTAINTY);
         }
         ButtonAction::Trash => {
             state.set_content(hand, crate::kitchen::ContentId::EMPTY);
-            settle(kitchen, beliefs, hand, state, DONE);
+            settle(kitchen, beliefs, hand, state, ACTED_CERTAINTY);
         }
         ButtonAction::Serve(order) => {
             state.set_content(kitchen.plate, crate::kitchen::ContentId::EMPTY);
             state.set_order(order, crate::kitchen::OrderContent::Served);
-            settle(kitchen, beliefs, kitchen.plate, state, DONE);
-            settle(kitchen, beliefs, order, state, DONE);
+            settle(kitchen, beliefs, kitchen.plate, state, ACTED_CERTAINTY);
+            settle(kitchen, beliefs, order, state, ACTED_CERTAINTY);
         }
         ButtonAction::Use(_) | ButtonAction::Process(_) => {
             for place in kitchen.involved(Agent::Human, button) {
@@ -68,17 +69,18 @@ fn make_sense(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: Butto
     }
 }
 
-/// Nothing happened though something should have: the least certain of the places involved must be otherwise.
+/// An unexpected lack of effect: the least certain of the locations involved loses the belief in its value.
 fn blame(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, state: State, button: ButtonId) {
     if matches!(kitchen.button(Agent::Human, button).action, ButtonAction::Serve(_)) {
-        // What stands on the plate is plain to see: it is the recipe that comes into doubt, see `Memory::doubt`.
+        // The plate's content is visible, so the recipe comes into doubt instead; see `Memory::doubt`.
         return;
     }
     let recipes = kitchen.true_recipes();
     let mut places = kitchen.involved(Agent::Human, button);
-    // What one holds one feels.
+    // The participant feels what its hand holds.
     let hand = kitchen.hands[Agent::Human.index()];
-    let trust = |place| beliefs.certainty(AspectId::of_location(place)) + if place == hand { FELT } else { 0.0 };
+    let trust =
+        |place| beliefs.certainty(AspectId::of_location(place)) + if place == hand { FELT_CERTAINTY } else { 0.0 };
     places.sort_by(|&a, &b| trust(a).total_cmp(&trust(b)));
     let Some(&place) = places.first() else { return };
     let aspect = AspectId::of_location(place);
@@ -87,5 +89,5 @@ fn blame(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, state: State, butt
         other.set_code(place, kitchen.aspects[aspect.index()].values[value]);
         kitchen.press(other, &recipes, Agent::Human, button).is_some()
     };
-    beliefs.weigh(aspect, |value| if would_work(value) { SPOKEN_AGAINST } else { 1.0 });
+    beliefs.weigh(aspect, |value| if would_work(value) { CONTRADICTED_FACTOR } else { 1.0 });
 }

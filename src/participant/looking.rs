@@ -1,4 +1,4 @@
-//! Where the participant looks, what it reads there, and what draws its eye.
+//! Gaze control of the simulated participant: targets of fixations, reading of locations, attention capture by changes.
 
 use rand::RngExt;
 
@@ -10,23 +10,23 @@ use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::kitchen::{Agent, AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
 
-/// Belief in what was just read.
-const READ: f64 = 0.97;
-/// Expecting the look-alike makes it so much more likely to be seen, expecting the right thing so much less.
-const EXPECTATION: f64 = 4.0;
-/// A change draws the eye the less, the farther away it is: half as often at this distance, in metres.
+/// Probability that the participant assigns to the content that it has just read.
+const READ_CERTAINTY: f64 = 0.97;
+/// Factor on the probability of a misreading if the look-alike is expected; divisor if the true content is expected.
+const EXPECTATION_FACTOR: f64 = 4.0;
+/// Distance at which a change captures attention half as often as at the fixation point, in metres on the display.
 const CAPTURE_REACH_M: f64 = 0.6;
-/// A place of the next press has so many chances to draw the eye.
-const WATCHED: i32 = 3;
-/// So many presses ahead one looks at the places that will be used.
+/// Number of independent capture attempts by a change at a location of the next presses.
+const WATCHED_ATTEMPTS: i32 = 3;
+/// Number of planned presses whose locations are looked at.
 const LOOKS_AHEAD: usize = 2;
-/// After this many seconds a place is as worth looking at as it gets.
+/// Time constant with which the weight of a location as a fixation target grows after its last reading, in seconds.
 const STALE_S: f64 = 6.0;
-/// What is left of the belief in a recipe when the robot's doings speak against it.
-const HINT_LEAVES: f64 = 0.2;
+/// Share of the belief in a recipe that remains when the robot's behaviour contradicts it.
+const HINT_TRUST: f64 = 0.2;
 
 impl SimulatedParticipant {
-    /// The eyes move on: changes draw them, what was looked at long enough is read, and then it is the next one's turn.
+    /// Moves the eyes: changes capture attention, a completed fixation is read, then the next target is chosen.
     pub(super) fn look(&mut self, now: SessionTime, state: State) {
         self.notice_changes(now, state);
         match self.eyes.advance(now) {
@@ -48,7 +48,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// What changes on the display may draw the eye, and is read anew where one is looking anyway.
+    /// Changes on the display may capture attention; a change at the fixated location is read again.
     fn notice_changes(&mut self, now: SessionTime, state: State) {
         if state == self.display {
             return;
@@ -71,8 +71,8 @@ impl SimulatedParticipant {
             };
             let distance_m = location.display.distance_m(eye, kitchen.display_m);
             let seen = strength * 0.5_f64.powf(distance_m / CAPTURE_REACH_M);
-            // What one is about to use one has half an eye on.
-            let seen = if needed.contains(&id) { 1.0 - (1.0 - seen).powi(WATCHED) } else { seen };
+            // Locations that the next presses use are watched in peripheral vision.
+            let seen = if needed.contains(&id) { 1.0 - (1.0 - seen).powi(WATCHED_ATTEMPTS) } else { seen };
             if chance(&mut self.mind, seen) {
                 self.attention.first(id);
             }
@@ -80,7 +80,7 @@ impl SimulatedParticipant {
         self.display = state;
     }
 
-    /// The next place to look at; `None`: somewhere else.
+    /// The next location to look at; `None`: a point that is no task location.
     fn choose_target(&mut self, now: SessionTime) -> Option<LocationId> {
         if let Some(location) = self.attention.glances.pop_front() {
             return Some(location);
@@ -116,7 +116,7 @@ impl SimulatedParticipant {
             .map(|index| LocationId(index as u8))
     }
 
-    /// The places of the next press and of the one after it, but not the own hand, which one feels.
+    /// Locations of the next two planned presses, except the own hand, whose content is felt.
     pub(super) fn needed(&self) -> Vec<LocationId> {
         let next = self.intent.plan.iter().take(LOOKS_AHEAD);
         let mut places: Vec<LocationId> =
@@ -125,7 +125,7 @@ impl SimulatedParticipant {
         places
     }
 
-    /// A point that is no place of the task: a storage, or anywhere.
+    /// A point that is no task location: a storage, or a random point of the display.
     fn elsewhere(&mut self) -> [f64; 2] {
         let storages: Vec<[f64; 2]> = self.kitchen.storages.iter().map(|storage| storage.display.centre()).collect();
         match storages.is_empty() || chance(&mut self.mind, 0.4) {
@@ -134,7 +134,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Reads what a place shows, sometimes as something that looks like it.
+    /// Reads the content of a location, occasionally as a look-alike.
     pub(super) fn read(&mut self, now: SessionTime, location: LocationId, state: State) {
         let kitchen = self.kitchen.clone();
         let aspect = AspectId::of_location(location);
@@ -146,8 +146,8 @@ impl SimulatedParticipant {
         let mut seen = shown;
         for other in alike {
             let bias = match believed {
-                expected if expected == other => EXPECTATION,
-                expected if expected == shown => 1.0 / EXPECTATION,
+                expected if expected == other => EXPECTATION_FACTOR,
+                expected if expected == shown => 1.0 / EXPECTATION_FACTOR,
                 _ => 1.0,
             };
             if chance(&mut self.mind, (self.person.misreads * bias).min(0.5)) {
@@ -155,7 +155,7 @@ impl SimulatedParticipant {
             }
         }
         self.attention.read_at[location.index()] = now;
-        self.beliefs.settle(aspect, seen, READ);
+        self.beliefs.settle(aspect, seen, READ_CERTAINTY);
         if seen != believed {
             self.rethink = true;
             self.on_news(location, values.values[believed], values.values[seen]);
@@ -183,7 +183,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Something is otherwise than it was believed to be.
+    /// Reacts to a content that differs from the believed content.
     fn on_news(&mut self, location: LocationId, believed: u8, code: u8) {
         let kitchen = self.kitchen.clone();
         let wanted: Vec<_> = kitchen
@@ -200,7 +200,7 @@ impl SimulatedParticipant {
             }
             return;
         }
-        // The robot knows the recipes: what it carries, stacks or throws away is a hint.
+        // The robot knows the true recipes, so what it carries, stacks or discards is a hint at them.
         let (_, recipes) = self.beliefs.point(&kitchen);
         let (before, now) = (ContentId(believed), ContentId(code));
         let has_place =
@@ -216,7 +216,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Whether everything in `content` seems to be somewhere in the kitchen.
+    /// Whether all items of `content` are believed to be in the kitchen.
     fn is_about(&self, content: ContentId) -> bool {
         let kitchen = &self.kitchen;
         let (state, _) = self.beliefs.point(kitchen);
@@ -227,7 +227,7 @@ impl SimulatedParticipant {
         kitchen.content(content).items.iter().all(|item| lying.contains(item))
     }
 
-    /// What the robot does fits none of the recipes that are held: perhaps one of them is another one, as `fits` says.
+    /// Reacts to a hint: no believed recipe explains the robot's press, so another version that `fits` the press may be recalled.
     fn take_hint(&mut self, wanted: &[DishId], fits: impl Fn(ContentId) -> bool) {
         if !chance(&mut self.mind, self.person.takes_hints) {
             return;
@@ -235,18 +235,18 @@ impl SimulatedParticipant {
         let kitchen = self.kitchen.clone();
         let candidates = wanted.iter().filter(|&&dish| kitchen.dish(dish).variants.iter().any(|&v| fits(v)));
         if let Some(dish) = self.least_sure(candidates.copied()) {
-            self.memory.doubt(&kitchen, &mut self.beliefs, dish, HINT_LEAVES, fits);
+            self.memory.doubt(&kitchen, &mut self.beliefs, dish, HINT_TRUST, fits);
         }
     }
 
-    /// The dish whose recipe is held least surely.
+    /// The dish with the least certain recipe.
     pub(super) fn least_sure(&self, dishes: impl Iterator<Item = DishId>) -> Option<DishId> {
         let sure = |dish| self.beliefs.certainty(self.kitchen.aspect_of_dish(dish));
         dishes.min_by(|&a, &b| sure(a).total_cmp(&sure(b)))
     }
 }
 
-/// The codes of what could be taken for what a location shows.
+/// Codes of the contents that look like the true content of a location.
 fn look_alike_codes(kitchen: &Kitchen, location: LocationId, state: State) -> Vec<u8> {
     if kitchen.location(location).kind != LocationKind::Order {
         return kitchen.content(state.content(location)).look_alikes.iter().map(|alike| alike.0).collect();
@@ -257,7 +257,7 @@ fn look_alike_codes(kitchen: &Kitchen, location: LocationId, state: State) -> Ve
     dishes.map(|(index, _)| OrderContent::Dish(DishId(index as u8)).code()).collect()
 }
 
-/// Whether everything in `content` has its place in `stack`: a stack's items as they are, a single item by its ingredient.
+/// Whether `content` can become part of `stack`: all items of a stack must occur in it, of a single item only its ingredient.
 fn could_become(kitchen: &Kitchen, content: ContentId, stack: ContentId) -> bool {
     let (content, stack) = (kitchen.content(content), kitchen.content(stack));
     match content.is_stack() {

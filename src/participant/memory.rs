@@ -1,5 +1,5 @@
-//! Memory of the recipes: learned in the instruction, half forgotten when unused, recalled (rightly or not) when an order
-//! asks for them, doubted when the work does not go as it should.
+//! Memory of recipes: learned in the instruction, fades without use, is recalled (rightly or wrongly) for an order, and
+//! is doubted after unexpected events.
 
 use rand::RngExt;
 
@@ -9,33 +9,33 @@ use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::{ContentId, DishId, Kitchen};
 
-/// Belief in what was just recalled: people do not hedge.
-const RECALLED: f64 = 0.92;
-/// Belief in a recipe that was just shown, or that has just been served.
-const CONFIRMED: f64 = 0.97;
-/// What is left of the belief in a recipe when what it says cannot be served.
-const FAILED: f64 = 0.05;
-/// The length of menu that the population's memory parameters are for.
-const USUAL_MENU: f64 = 6.0;
-/// How much more a variant is thought of that fits what was seen.
-const FITS: f64 = 4.0;
+/// Probability of the version of a recipe that was just recalled: people do not hedge.
+const RECALLED_CERTAINTY: f64 = 0.92;
+/// Probability of a recipe that was just shown or served.
+const CONFIRMED_CERTAINTY: f64 = 0.97;
+/// Share of the belief in a recipe that remains after a stack made by it could not be served.
+const FAILED_TRUST: f64 = 0.05;
+/// Number of dishes for which the population's memory parameters hold.
+const USUAL_MENU_DISHES: f64 = 6.0;
+/// Factor on the weight of recipe versions that agree with an observation.
+const FITTING_FACTOR: f64 = 4.0;
 
-/// The memory of one person for the recipes.
+/// Memory of one simulated participant for the recipes.
 #[derive(Clone, Debug)]
 pub struct Memory {
     random: Stream,
-    /// What each dish's memory decays to, over its variants.
+    /// Distribution over the versions of each dish's recipe to which its memory fades.
     faded: Vec<Vec<f64>>,
-    /// What was learned in the instruction: it comes back when the person stops to think.
+    /// Distribution over the versions of each dish's recipe after the instruction; doubting a recipe restores it.
     learned: Vec<Vec<f64>>,
-    /// What is left of each version of a recipe after it was doubted, until one is confirmed.
+    /// Remaining weight of each version of a recipe after doubts; reset when a version is confirmed.
     left: Vec<Vec<f64>>,
     half_life_s: f64,
     last: SessionTime,
 }
 
 impl Memory {
-    /// A memory after the instruction; writes the recipe aspects of `beliefs`.
+    /// Memory after the instruction; it sets the recipe aspects of `beliefs`.
     pub fn new(
         kitchen: &Kitchen,
         population: &Population,
@@ -44,8 +44,8 @@ impl Memory {
         beliefs: &mut ParticipantBeliefs,
     ) -> Memory {
         let (mut faded, mut learned) = (Vec::new(), Vec::new());
-        // A short menu is easier to remember.
-        let ease = USUAL_MENU / kitchen.dishes.len() as f64;
+        // Fewer dishes are easier to remember.
+        let ease = USUAL_MENU_DISHES / kitchen.dishes.len() as f64;
         let odds_of = |p: f64| p / (1.0 - p) * ease;
         for (index, dish) in kitchen.dishes.iter().enumerate() {
             let alike = &kitchen.content(dish.stack()).look_alikes;
@@ -57,7 +57,7 @@ impl Memory {
             let with_truth = |p_truth: f64| -> Vec<f64> {
                 std::iter::once(p_truth).chain(weights.iter().map(|w| w / total * (1.0 - p_truth))).collect()
             };
-            // Some dishes are remembered better than others.
+            // Individual dishes differ in how well they are remembered.
             let odds = odds_of(person.learned) * (0.5 * normal(&mut random)).exp();
             let known = with_truth(odds / (1.0 + odds));
             beliefs.replace(kitchen.aspect_of_dish(DishId(index as u8)), &known);
@@ -69,7 +69,7 @@ impl Memory {
         Memory { random, faded, learned, left, half_life_s: person.half_life_s, last: SessionTime::ZERO }
     }
 
-    /// Time passes: memories of dishes that are not being made fade.
+    /// Lets memories fade for dishes that are not in preparation.
     pub fn fade(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, now: SessionTime, in_use: &[DishId]) {
         let lost = 1.0 - 0.5_f64.powf(now.secs_since(self.last) / self.half_life_s);
         self.last = now;
@@ -81,17 +81,17 @@ impl Memory {
         }
     }
 
-    /// Seconds since memories last faded.
+    /// Seconds since the last fading.
     pub fn since_s(&self, now: SessionTime) -> f64 {
         now.secs_since(self.last)
     }
 
-    /// A pause: nothing fades meanwhile.
+    /// Postpones fading by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         self.last = self.last + by;
     }
 
-    /// An order asks for the dish: one version of its recipe comes to mind and is held for the true one.
+    /// Recalls one version of the recipe of an ordered dish and believes it.
     pub fn recall(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId) {
         let aspect = kitchen.aspect_of_dish(dish);
         let mut draw = self.random.random::<f64>();
@@ -100,18 +100,18 @@ impl Memory {
             draw -= p;
             draw < 0.0
         });
-        let sure = RECALLED.max(beliefs.certainty(aspect).min(CONFIRMED));
+        let sure = RECALLED_CERTAINTY.max(beliefs.certainty(aspect).min(CONFIRMED_CERTAINTY));
         beliefs.settle(aspect, recalled.unwrap_or(0), sure);
     }
 
-    /// The thread is lost in the middle of the work: the recipe is recalled from a memory that has half faded.
+    /// Forgets the recipe during the work on its order: it is recalled again from a partly faded memory.
     pub fn lose_thread(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId) {
         beliefs.mix(kitchen.aspect_of_dish(dish), &self.faded[dish.index()], 0.5);
         self.recall(kitchen, beliefs, dish);
     }
 
-    /// What is held for the recipe may be wrong: one stops to think, and another version comes to mind, rather one that
-    /// `fits`. `trust` is what is left of the belief in the one that was held.
+    /// Doubts the believed version of a recipe and recalls another, preferably one that `fits` an observation.
+    /// `trust` is the share of the belief in the doubted version that remains.
     pub fn doubt(
         &mut self,
         kitchen: &Kitchen,
@@ -128,20 +128,20 @@ impl Memory {
         left[held] *= trust;
         beliefs.weigh(aspect, |value| match (value == held, fits(variants[value])) {
             (true, _) => left[value],
-            (false, true) => FITS * left[value],
+            (false, true) => FITTING_FACTOR * left[value],
             (false, false) => left[value],
         });
         self.recall(kitchen, beliefs, dish);
     }
 
-    /// What is held for the recipe could not be served: it is another one.
+    /// Rejects the believed version of a recipe, because a stack made by it could not be served.
     pub fn fail(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId) {
-        self.doubt(kitchen, beliefs, dish, FAILED, |_| false);
+        self.doubt(kitchen, beliefs, dish, FAILED_TRUST, |_| false);
     }
 
-    /// The recipe was shown, or what it says was served.
+    /// Confirms a version of a recipe that was shown or served.
     pub fn confirm(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId, variant: usize) {
         self.left[dish.index()].fill(1.0);
-        beliefs.settle(kitchen.aspect_of_dish(dish), variant, CONFIRMED);
+        beliefs.settle(kitchen.aspect_of_dish(dish), variant, CONFIRMED_CERTAINTY);
     }
 }

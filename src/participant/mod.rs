@@ -1,13 +1,13 @@
-//! Simulated participants: people for tests, who err for reasons that one can name.
+//! Simulated participants for tests and simulated studies, with errors of known cause.
 //!
-//! A simulated participant is not the assistant's model of a human: it holds one version of the world for true and acts on
-//! it, it thinks in sub-goals and keeps to them, it sees only what it looks at, and its memory of recipes fails in steps.
+//! A simulated participant differs from the assistant's human model: it acts on one most probable world, plans sub-goals and
+//! pursues them for some seconds, sees only fixated locations, and forgets recipes in steps.
 //!
-//! The files from the ground up:
+//! Modules from the ground up:
 //!
-//! - What a person consists of: [`population`] (whom one draws), [`beliefs`], `memory` (of recipes), `eyes`, `attention`.
-//! - What follows from beliefs: `decision` (the next presses), `learning` (from the own presses), `witness` (for the record).
-//! - The person: `simulated` (state), then what it does: `targets`, `looking`, `thinking`, `hand`, `acting` (in time).
+//! - Components: [`population`] (distribution of traits), [`beliefs`], `memory` (of recipes), `eyes`, `attention`.
+//! - Consequences of beliefs: `decision` (next presses), `learning` (from own presses), `witness` (for the recording).
+//! - The participant: `simulated` (its data), then its behaviour: `targets`, `looking`, `thinking`, `hand`, `acting` (in time).
 
 mod acting;
 mod attention;

@@ -1,4 +1,4 @@
-//! What people differ in: the parameters of the population, and one individual drawn from it.
+//! Population of simulated participants: distributions of traits, and individuals drawn from them.
 
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::base::rng::Stream;
 
-/// How one trait is distributed: around a median, with a spread that is relative to it.
+/// Distribution of one trait over the population: median and relative spread.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TraitSpread {
     pub median: f64,
-    /// Standard deviation of the logarithm (of the odds, for a probability).
+    /// Standard deviation of the logarithm of the trait (of the logit, for a probability).
     pub sigma: f64,
 }
 
@@ -20,12 +20,12 @@ impl TraitSpread {
         TraitSpread { median, sigma }
     }
 
-    /// A positive quantity: log-normal, within three sigma.
+    /// Draws a positive trait: log-normal, cut at three sigma.
     fn draw(self, random: &mut Stream) -> f64 {
         self.median * (self.sigma * normal(random).clamp(-3.0, 3.0)).exp()
     }
 
-    /// A probability: logit-normal, within three sigma.
+    /// Draws a probability: logit-normal, cut at three sigma.
     fn draw_chance(self, random: &mut Stream) -> f64 {
         let odds = self.median / (1.0 - self.median) * (self.sigma * normal(random).clamp(-3.0, 3.0)).exp();
         odds / (1.0 + odds)
@@ -42,84 +42,83 @@ pub(super) fn chance(random: &mut Stream, p: f64) -> bool {
     random.random::<f64>() < p
 }
 
-/// Parameters of the simulated population. The defaults are calibrated to the rates of the paper's participants
-/// (study: 11 to 13 % errors per human press, 82 % of them from false beliefs, 3.1 errors a sequence).
+/// Parameters of the simulated population. The defaults are calibrated to the error rates of the paper's participants
+/// (study: 11 to 13 % errors per human press, 82 % of them from false beliefs, 3.1 errors per sequence).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Population {
-    /// From one press to the next, in seconds, for somebody with some practice.
+    /// Time from one press to the next, in seconds, of a participant with some practice.
     pub press_s: TraitSpread,
-    /// Standard deviation of the logarithm of one person's times between presses.
+    /// Standard deviation of the logarithm of one participant's times between presses.
     pub press_jitter: f64,
-    /// How much slower the first presses are (0.3: by 30 %), and after how many presses half of that is gone.
+    /// Slowdown of the first presses (0.3: 30 % slower), and number of presses after which half of it is gone.
     pub novice_slowdown: f64,
     pub practice_presses: f64,
-    /// Chance to hit the neighbouring button on the table.
+    /// Probability of pressing the neighbouring button on the table.
     pub slip: TraitSpread,
-    /// Chance to take the look-alike from the storage.
+    /// Probability of taking the look-alike ingredient from the storage.
     pub look_alike_slip: TraitSpread,
-    /// Chance of a press without a thought: something that can be done, but helps nothing.
+    /// Probability of an effective but useless press.
     pub thoughtless: TraitSpread,
-    /// Chance to notice that the own hand slipped.
+    /// Probability of noticing an own slip.
     pub notices_slip: f64,
-    /// Chance to press again, as if it had not been pressed well, what should have done something and did not, before asking
-    /// oneself why (perseveration).
+    /// Probability of repeating an unexpectedly ineffective press before searching for its cause (perseveration).
     pub insists: f64,
-    /// Chance to look at a place right before using it.
+    /// Probability of looking at a location right before using it.
     pub checks: TraitSpread,
-    /// Chance to look once more before a press if the last look is some time ago.
+    /// Probability of another look before a press if the last look at its location is some time ago.
     pub makes_sure: TraitSpread,
-    /// Chance that a change anywhere on the display draws the eye.
+    /// Probability that a change anywhere on the display captures attention.
     pub capture: TraitSpread,
-    /// Chance that a new order draws the eye.
+    /// Probability that a new order captures attention.
     pub order_capture: TraitSpread,
-    /// Chance that a look goes to no place of the task.
+    /// Probability that a fixation is at no task location.
     pub wanders: TraitSpread,
-    /// Weight of the robot's hand among the places worth watching (a place of the next press has 1).
+    /// Weight of the robot's hand in the choice of fixation targets (1: as a location of the next press).
     pub watches_robot: TraitSpread,
-    /// Length of a fixation in seconds.
+    /// Duration of a fixation, in seconds.
     pub fixation_s: TraitSpread,
-    /// Chance to take a content for one that looks like it.
+    /// Probability of reading a content as one that looks like it.
     pub misreads: TraitSpread,
-    /// How much belief in an unseen robot's hand gives way when the robot presses something.
+    /// Share of the belief in the unseen content of the robot's hand that is lost when the robot presses.
     pub doubts_robot_hand: TraitSpread,
-    /// The same for an unseen shared place.
+    /// Share of the belief in the unseen content of a shared location that is lost when the robot presses.
     pub doubts_places: TraitSpread,
-    /// Belief in the true recipe after the instruction, on a menu of six.
+    /// Probability of the true recipe after the instruction, on a menu of six dishes.
     pub learned: TraitSpread,
-    /// Belief in the true recipe to which an unused memory of it decays, on a menu of six.
+    /// Probability of the true recipe to which an unused memory fades, on a menu of six dishes.
     pub half_forgotten: TraitSpread,
-    /// Half-life of that decay in seconds.
+    /// Half-life of memory fading, in seconds.
     pub half_life_s: TraitSpread,
-    /// How often the thread is lost while working on an order, per minute: its recipe is recalled anew.
+    /// Rate per minute of forgetting the recipe during the work on its order; the recipe is then recalled again.
     pub loses_thread_per_min: TraitSpread,
-    /// Weight of a look-alike topping among the false memories of a recipe (another one has 1).
+    /// Weight of a look-alike topping among the false memories of a recipe (another topping has weight 1).
     pub confuses_look_alikes: f64,
-    /// Chance to question the own recipe when what the robot does or makes does not fit it.
+    /// Probability of doubting a recipe when the robot's behaviour contradicts it.
     pub takes_hints: TraitSpread,
-    /// After so many seconds without anything to do the person looks around and doubts its recipes.
+    /// Time without a useful press after which the participant looks around and doubts its recipes, in seconds.
     pub patience_s: TraitSpread,
-    /// How long the person stays with one order, in seconds.
+    /// Time for which the participant stays with one order, in seconds.
     pub commitment_s: TraitSpread,
-    /// Chance to notice a signal; at most 0.85.
+    /// Probability of noticing a signal; at most 0.85.
     pub notices_signal: TraitSpread,
-    /// From a signal to its reading, least and most, in seconds.
+    /// Shortest and longest time from a signal to its reading, in seconds.
     pub signal_after_s: [f64; 2],
-    /// Chance to read a shown recipe wrongly.
+    /// Probability of reading a shown recipe wrongly.
     pub misreads_signal: f64,
-    /// How the odds of knowing a recipe grow with every trial that the person has had (1: each begins as the first did).
+    /// Factor per earlier trial on the odds of knowing a recipe (1: no learning between trials).
     pub recipes_gained: f64,
-    /// The share of the presses in earlier trials that count as practice (0: each begins as the first did).
+    /// Share of the presses of earlier trials that count as practice (0: no practice is kept).
     pub practice_kept: f64,
-    /// Accuracy of the tracker on this person, in metres on the display (1 deg at 2 m is 0.035 m).
+    /// Offset of the eye tracker for this participant, in metres on the display (1 deg at 2 m is 0.035 m).
     pub tracker_offset_m: f64,
 }
 
-/// The trials that a person has had before the present one.
+/// Trials of a participant before the present one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Experience {
     pub trials: u32,
-    /// The presses that it made in them.
+    /// Number of own presses in the earlier trials.
     pub presses: f64,
 }
 
@@ -163,7 +162,7 @@ impl Default for Population {
     }
 }
 
-/// One person: what was drawn from the population. Meanings and units as in [`Population`].
+/// Traits of one simulated participant, drawn from the population. Meanings and units as in [`Population`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Individual {
     pub press_s: f64,
@@ -190,17 +189,17 @@ pub struct Individual {
     pub notices_signal: f64,
 }
 
-/// What would be right of a trait that is a probability, and of one that is a quantity.
+/// Valid range of a trait, for error messages: of a probability, and of a positive quantity.
 const CHANCE_SPREAD: &str = "{ median = …, sigma = … }: a median between 0 and 1, a spread from 0 to 2";
 const AMOUNT_SPREAD: &str = "{ median = …, sigma = … }: a median above 0, a spread from 0 to 2";
-/// No trait spreads wider: beyond it, hardly anybody would be like anybody else.
+/// Largest spread of a trait; larger spreads give implausible individuals.
 const MOST_SIGMA: f64 = 2.0;
 
-/// More is not asked of anybody's attention (study, "Simulated participants").
+/// Upper bound of the probability of noticing a signal (study, "Simulated participants").
 const MOST_SIGNALS_NOTICED: f64 = 0.85;
 
 impl Population {
-    /// The first parameter that cannot be: its name in a session file, what it is, and what would be right.
+    /// The first invalid parameter: its name in a session file, its value, and its valid range.
     pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
         let chances = [
             ("slip", self.slip),
@@ -243,7 +242,7 @@ impl Population {
         self.fault_of_number()
     }
 
-    /// The same of those that do not differ from person to person.
+    /// The first invalid parameter among those that are equal for all participants.
     fn fault_of_number(&self) -> Option<(&'static str, String, &'static str)> {
         let share = |key, value: f64| (key, value, (0.0..=1.0).contains(&value), "a number from 0 to 1");
         let above = |key, value: f64| (key, value, value.is_finite() && value > 0.0, "a number above 0");
@@ -267,7 +266,7 @@ impl Population {
         wrong.map(|(key, value, _, remedy)| (key, format!("{key} = {value}"), remedy))
     }
 
-    /// Draws one person.
+    /// Draws one individual.
     pub fn draw(&self, random: &mut Stream) -> Individual {
         Individual {
             press_s: self.press_s.draw(random),
@@ -297,7 +296,7 @@ impl Population {
 }
 
 impl Individual {
-    /// The same person after some trials: it knows the recipes better.
+    /// The same individual after some trials: it knows the recipes better.
     pub fn after(self, experience: Experience, population: &Population) -> Individual {
         let gain = population.recipes_gained.powi(experience.trials as i32);
         let better = |p: f64| gain * p / (1.0 - p + gain * p);

@@ -1,4 +1,4 @@
-//! A simulated participant: who it is, what it has in mind, and what it is about to do.
+//! Data of a simulated participant: traits, beliefs, plan and the times of its next actions.
 
 use std::sync::Arc;
 
@@ -15,15 +15,15 @@ use crate::gaze::GazeSample;
 use crate::kitchen::{ButtonId, Kitchen, LocationId, State};
 use crate::mind::BeliefWitness;
 
-/// Belief in what the empty kitchen looks like at the start.
+/// Probability that the participant assigns to the empty kitchen at the start of a trial.
 const SURE_AT_START: f64 = 0.97;
 
-/// Something that the participant does.
+/// Action of a simulated participant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ParticipantAction {
-    /// What an eye tracker sees of it.
+    /// A gaze sample of its eye tracker.
     Gaze(GazeSample),
-    /// It presses a button; `belief` is what it believes at this moment, and why it presses.
+    /// A press of a button; `belief` records the participant's beliefs at the press and the cause of the press.
     Press { button: ButtonId, belief: BeliefWitness },
 }
 
@@ -36,33 +36,33 @@ pub struct SimulatedParticipant {
     pub(super) beliefs: ParticipantBeliefs,
     pub(super) memory: Memory,
     pub(super) eyes: Eyes,
-    /// While the calibration is checked.
+    /// Copy of the eyes that looks at the targets of a calibration check; present only during the check.
     pub(super) at_targets: Option<Eyes>,
     pub(super) attention: Attention,
     pub(super) intent: Intent,
-    /// The mind's chances: attention, reading, thinking; and the hand's: times and slips.
+    /// Random streams: of the mind (attention, reading, thinking), and of the hand (press times, slips).
     pub(super) mind: Stream,
     pub(super) hand: Stream,
     pub(super) is_started: bool,
-    /// The display as it was when changes were last looked out for.
+    /// State at the last comparison of the display for changes.
     pub(super) display: State,
     pub(super) rethink: bool,
     pub(super) press_at: SessionTime,
     pub(super) presses: u32,
     pub(super) looks_first: u32,
     pub(super) idle_since: Option<SessionTime>,
-    /// When the robot last pressed something.
+    /// Time of the robot's last press.
     pub(super) robot_pressed_at: SessionTime,
-    /// The press under way: what was meant, if the person takes it for done.
+    /// Intended button of a slip that the participant has not noticed; `None` otherwise.
     pub(super) meant: Option<ButtonId>,
     pub(super) signal: Option<(SessionTime, LocationId, Signal)>,
-    /// Orders that were served and will be gone at this time.
+    /// Served orders with the time at which each disappears.
     pub(super) clearing: Vec<(SessionTime, LocationId)>,
 }
 
 impl SimulatedParticipant {
-    /// The participant of this trial, drawn from a population. Who it is follows from `person`, what it happens to do from
-    /// `trial`: one person may have several trials. What the earlier ones taught it, `experience` says.
+    /// Draws the participant of a trial from a population. Traits are seeded by `person`, random events of the trial by `trial`,
+    /// so one person can have several trials. `experience` describes the earlier ones.
     pub fn new(
         kitchen: Arc<Kitchen>,
         population: &Population,
@@ -105,28 +105,28 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Who it is.
+    /// Traits of the participant.
     pub fn person(&self) -> &Individual {
         &self.person
     }
 
-    /// What it believes.
+    /// Present beliefs of the participant.
     pub fn beliefs(&self) -> &ParticipantBeliefs {
         &self.beliefs
     }
 
-    /// When it does something next; nothing before the trial's start.
+    /// Time of the next action; `None` before the trial's start.
     pub fn next_due(&self) -> Option<SessionTime> {
         self.is_started.then(|| self.press_at.min(self.eyes.due()))
     }
 
-    /// The press that it means to make next, and when, as far as that is decided.
+    /// The planned next press and its time, if already decided.
     pub fn next_press(&self) -> Option<(ButtonId, SessionTime)> {
         let button = self.intent.plan.front().filter(|_| self.is_started)?;
         Some((*button, self.press_at))
     }
 
-    /// Everything that it meant to do happens later by `by`.
+    /// Postpones all planned actions by `by`.
     pub fn postpone(&mut self, by: SessionTime) {
         self.eyes.postpone(by);
         self.memory.postpone(by);

@@ -1,12 +1,12 @@
-//! What a simulated participant does while its tracker's calibration is checked: it looks at the targets.
+//! Behaviour of a simulated participant during a check of its eye tracker's calibration: it looks at the targets.
 
 use super::simulated::SimulatedParticipant;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 
 impl SimulatedParticipant {
-    /// A target is shown, or none any more. The eyes that look at targets are copies, so that a check, which comes before or
-    /// between what happens in the trial, changes nothing in it; the tracker's offset is the same.
+    /// Shows a calibration target, or removes it. Copies of the eyes look at targets, so a check changes nothing in the trial;
+    /// the copies have the same tracker offset.
     pub fn on_target(&mut self, now: SessionTime, target: Option<[f64; 2]>) {
         match (target, &mut self.at_targets) {
             (None, eyes) => *eyes = None,
@@ -20,12 +20,12 @@ impl SimulatedParticipant {
         }
     }
 
-    /// When the next sample of a check is due.
+    /// Time at which the next sample of the calibration check is due.
     pub fn target_due(&self) -> Option<SessionTime> {
         self.at_targets.as_ref().map(|eyes| eyes.due())
     }
 
-    /// The sample of a check that is due now.
+    /// The sample of the calibration check that is due now.
     pub fn look_at_target(&mut self, now: SessionTime) -> Option<GazeSample> {
         self.at_targets.as_mut().map(|eyes| eyes.sample(now))
     }

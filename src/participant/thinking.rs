@@ -1,5 +1,4 @@
-//! What the participant makes of what happens: of its own presses and the robot's, of the time that passes; and what it
-//! decides to do next.
+//! Interpretation of events by the simulated participant (own presses, robot presses, passing time), and decisions on next presses.
 
 use super::beliefs::wanted_dish;
 use super::population::chance;
@@ -11,15 +10,15 @@ use crate::kitchen::{
     Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, LocationId, LocationKind, OrderContent, State,
 };
 
-/// Chance to glance at what the last press changed.
+/// Probability of looking at the location that the last press changed.
 const LOOKS_AT_RESULT: f64 = 0.5;
-/// What was read so many seconds ago one takes for granted.
+/// Time since reading a location during which the participant relies on the content that it read, in seconds.
 const SEEN_JUST_NOW_S: f64 = 5.0;
-/// Belief that an order which was served is gone after the usual time.
+/// Probability that the participant assigns to the disappearance of a served order after the usual time.
 const EXPECTED: f64 = 0.8;
 
 impl SimulatedParticipant {
-    /// The robot pressed something: what is out of sight may be otherwise now.
+    /// Reacts to a robot press: beliefs about unseen locations become uncertain.
     pub(super) fn wonder(&mut self) {
         let kitchen = self.kitchen.clone();
         let hand = kitchen.hands[Agent::Robot.index()];
@@ -52,7 +51,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// The own press did something, or not.
+    /// Reacts to an own press that was effective or not.
     pub(super) fn take_in(&mut self, now: SessionTime, button: ButtonId, effective: bool) {
         let kitchen = self.kitchen.clone();
         let action = kitchen.button(Agent::Human, button).action;
@@ -78,7 +77,7 @@ impl SimulatedParticipant {
                     let gone = now + SessionTime::from_secs_f64(kitchen.served_shown_s);
                     self.clearing.push((gone, order));
                 }
-                // Was it on the plate at all? Only who has just seen it there asks himself about the recipe.
+                // The plate's content itself is doubted first; the recipe is doubted only if the plate has just been seen.
                 false if now.secs_since(self.attention.read_at[kitchen.plate.index()]) < SEEN_JUST_NOW_S => {
                     self.memory.fail(&kitchen, &mut self.beliefs, dish);
                 }
@@ -88,7 +87,7 @@ impl SimulatedParticipant {
         self.rethink = true;
     }
 
-    /// Thinks about what to do next, and looks where that will happen.
+    /// Decides on the next presses and queues looks at their locations.
     pub(super) fn think(&mut self, now: SessionTime, cost: &mut CostToGo) {
         self.rethink = false;
         let kitchen = self.kitchen.clone();
@@ -106,7 +105,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Memories fade, threads are lost, served orders are expected to be gone.
+    /// Applies passing time: memories fade, recipes in use are forgotten, served orders are expected to disappear.
     fn pass_time(&mut self, now: SessionTime) {
         let kitchen = self.kitchen.clone();
         let orders = kitchen.orders.iter();
@@ -134,7 +133,7 @@ impl SimulatedParticipant {
     }
 }
 
-/// What a serve button would serve.
+/// Content of the order that a serve button serves; no order for other buttons.
 fn serve_of(action: ButtonAction, state: State) -> OrderContent {
     match action {
         ButtonAction::Serve(order) => state.order(order),

@@ -1,4 +1,4 @@
-//! What a participant believes when it presses, and why it presses what it presses, for the record.
+//! Record of a participant's beliefs at a press, and of the cause of the press.
 
 use super::beliefs::ParticipantBeliefs;
 use super::decision::good_presses;
@@ -6,8 +6,7 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{AspectId, AspectKind, ButtonId, ContentId, Kitchen, Recipes, State};
 use crate::mind::{AspectBelief, BeliefWitness, WORTH_TELLING};
 
-/// Writes down every aspect: the value held most likely, the probability that is given to the truth, and those of all
-/// values that are worth telling.
+/// Records every aspect: its most probable value, the probability of the true value, and all other probabilities worth logging.
 pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, cause: String) -> BeliefWitness {
     let of = |index: usize| {
         let (aspect, id) = (&kitchen.aspects[index], AspectId(index as u8));
@@ -22,13 +21,12 @@ pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, ca
     BeliefWitness { aspects: (0..kitchen.aspects.len()).map(of).collect(), cause }
 }
 
-/// Six digits are enough for a probability in a log.
+/// Rounds a probability to six decimals for the log.
 fn rounded(p: f64) -> f64 {
     (p * 1e6).round() / 1e6
 }
 
-/// Why the person presses what it believes to help: because it does, or because of the belief without which it would not
-/// seem to.
+/// The cause of a useful press for the recording: "goal", or the belief without which the press would not seem useful.
 pub fn cause(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -51,16 +49,16 @@ pub fn cause(
         if value == kitchen.true_value(state, id) {
             continue;
         }
-        let said = format!("believes {}: {}", aspect.name, aspect.labels[value]);
+        let description = format!("believes {}: {}", aspect.name, aspect.labels[value]);
         let (mut mended, mut recalled) = (believed, held);
         match aspect.kind {
             AspectKind::Location(location) => mended.set_code(location, state.code(location)),
             AspectKind::Recipe(dish) => recalled.set(dish, ContentId(aspect.values[0])),
         }
         if !is_good(cost, mended, &recalled) {
-            return said;
+            return description;
         }
-        wrong.push(said);
+        wrong.push(description);
     }
     match wrong.is_empty() {
         true => "as it is, by a detour".to_string(),

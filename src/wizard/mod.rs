@@ -1,15 +1,15 @@
-//! A scripted wizard: sends signals in simulated studies as a person at the console would, who sees kitchen, presses and
-//! gaze and knows the recipes, but does not see into the participant's head.
+//! Scripted wizard for simulated studies. It sends signals as a person at the console would, who observes kitchen, presses and gaze
+//! and knows the recipes, but not the participant's beliefs.
 //!
-//! It keeps in mind what the participant has seen of each place, and the last presses. When a press was an error, it may see
-//! that, and asks itself which single false belief would make the press a good one: a place that is held for what it was when
-//! it was last seen, or a recipe; of several the one that explains most of the last presses. When somebody else changed a
-//! place, and that goes unseen, it may see that the participant is about to err. It thinks of one thing at a time, takes its
-//! time, errs about the cause now and then, and gives up what would mislead nobody any more. So it is late, misses, and is
-//! wrong, as people are.
+//! The wizard remembers the last seen content of each location and the last presses. It notices an error with a set probability,
+//! and then searches for a single false belief that explains the press: the last seen content of a location, or another recipe.
+//! Among several explanations it prefers those that explain most of the last presses. When the robot changes a location and the
+//! participant does not look there, the wizard may foresee an error. It handles one false belief at a time, reacts after a delay,
+//! sometimes signals about another aspect, and drops a planned signal once the false belief would mislead nobody. Its signals are
+//! therefore sometimes late, missing or wrong, as a person's are.
 //!
-//! The files from the ground up: [`settings`], `thought` (what is taken for believed wrong), `seen` (what the participant has
-//! seen, and what would explain a press), `scripted` (the wizard itself).
+//! Modules from the ground up: [`settings`], `thought` (suspected false beliefs), `seen` (what the participant has seen, and
+//! explanations of a press), `scripted` (the wizard itself).
 
 mod scripted;
 mod seen;

@@ -1,4 +1,4 @@
-//! The scripted wizard in one trial: what it keeps in mind, and when it sends what.
+//! The scripted wizard in one trial: its memory, and the times of its signals.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -15,10 +15,10 @@ use crate::communication::{self, Signal};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Kitchen, LocationId, OrderContent, Press, State};
 
-/// So many presses are kept in mind.
-const KEPT: usize = 6;
+/// Number of the participant's last presses that the wizard remembers.
+const REMEMBERED_PRESSES: usize = 6;
 
-/// A scripted wizard in one trial.
+/// State of the scripted wizard in one trial.
 #[derive(Clone, Debug)]
 pub struct ScriptedWizard {
     kitchen: Arc<Kitchen>,
@@ -26,32 +26,32 @@ pub struct ScriptedWizard {
     own_hand: bool,
     random: Stream,
     seen: SeenKitchen,
-    /// The participant's last presses, the newest last.
+    /// The participant's last presses, newest last.
     presses: VecDeque<ObservedPress>,
-    /// What it is about to say, and when its finger is on the key.
+    /// Time of the next signal, and the suspected false belief that it is about.
     about_to: Option<(SessionTime, Thought)>,
-    /// Changes by others that it will look after, and when.
+    /// Locations changed by others, with the times at which the wizard checks whether the participant has seen the change.
     watched: Vec<(SessionTime, LocationId)>,
     signalled_at: Option<SessionTime>,
 }
 
 impl ScriptedWizard {
-    /// The wizard of a trial; what it happens to see and miss follows from seed and trial.
+    /// Creates the wizard of a trial; its random stream is seeded by (seed, trial).
     pub fn new(kitchen: Arc<Kitchen>, spec: WizardSpec, own_hand: bool, seed: u64, trial: u64) -> ScriptedWizard {
         let seen = SeenKitchen::new(kitchen.empty_state());
         let random = stream(seed, "wizard", trial);
         let (about_to, watched, signalled_at) = (None, Vec::new(), None);
-        let presses = VecDeque::with_capacity(KEPT);
+        let presses = VecDeque::with_capacity(REMEMBERED_PRESSES);
         ScriptedWizard { kitchen, spec, own_hand, random, seen, presses, about_to, watched, signalled_at }
     }
 
-    /// When it does something next, or looks after something.
+    /// Time of the next signal or check; `None` if nothing is planned.
     pub fn next_due(&self) -> Option<SessionTime> {
         let watched = self.watched.iter().map(|(time, _)| *time);
         watched.chain(self.about_to.map(|(time, _)| time)).min()
     }
 
-    /// The trial starts: everybody sees the empty kitchen.
+    /// Starts the trial; the participant and the wizard see the empty kitchen.
     pub fn on_trial_start(&mut self, state: State) {
         self.seen = SeenKitchen::new(state);
         (self.about_to, self.signalled_at) = (None, None);
@@ -59,15 +59,15 @@ impl ScriptedWizard {
         self.presses.clear();
     }
 
-    /// The participant's gaze is on this place, or on none.
+    /// Reacts to the participant's gaze on a location, or on none.
     pub fn on_gaze(&mut self, now: SessionTime, location: Option<LocationId>, state: State) {
         self.seen.gaze(now, location, state, self.spec.look_s);
     }
 
-    /// The participant pressed something; `is_error`: it cost more than the best press would have.
+    /// Reacts to a press of the participant; `is_error`: the press had more regret than the best press.
     pub fn on_human_press(&mut self, now: SessionTime, press: &Press, is_error: bool, cost: &mut CostToGo) {
         let &Press { button, before, after, .. } = press;
-        if self.presses.len() == KEPT {
+        if self.presses.len() == REMEMBERED_PRESSES {
             self.presses.pop_front();
         }
         self.presses.push_back(ObservedPress { truth: before, seen: self.seen.state, button });
@@ -78,13 +78,13 @@ impl ScriptedWizard {
                 self.think_of(now, cause, after);
             }
         }
-        // What somebody has done itself it knows.
+        // The participant knows the effects of its own press.
         for location in self.kitchen.changed(before, after) {
             self.seen.told(location, after);
         }
     }
 
-    /// Something changed, and not by the participant's hand.
+    /// Reacts to a change of the state that was not caused by the participant.
     pub fn on_change(&mut self, now: SessionTime, before: State, after: State) {
         let due = now + SessionTime::from_secs_f64(self.spec.overlooked_after_s);
         for location in self.kitchen.changed(before, after) {
@@ -93,13 +93,13 @@ impl ScriptedWizard {
         }
     }
 
-    /// A signal about this place is on the display.
+    /// Reacts to a signal about a location that appears on the display.
     pub fn on_signal(&mut self, now: SessionTime, location: LocationId, state: State) {
         self.seen.told(location, state);
         self.signalled_at = Some(now);
     }
 
-    /// A pause: what was to come comes later by `by`.
+    /// Postpones planned signals and checks by the duration `by` of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         self.seen.postpone(by);
         self.about_to = self.about_to.map(|(time, thought)| (time + by, thought));
@@ -107,7 +107,7 @@ impl ScriptedWizard {
         self.signalled_at = self.signalled_at.map(|time| time + by);
     }
 
-    /// Does what is due now: sends a signal, or looks after a change.
+    /// Performs what is due now: sends a signal, or checks whether a change was seen.
     pub fn act(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<Signal> {
         if let Some((_, thought)) = self.about_to.take_if(|(time, _)| *time <= now) {
             return self.say(now, thought, state, cost);
@@ -125,7 +125,7 @@ impl ScriptedWizard {
         None
     }
 
-    /// Has found a cause, the right one or another, and sets out to tell.
+    /// Plans a signal about a suspected false belief, or, with a set probability, about another aspect.
     fn think_of(&mut self, now: SessionTime, cause: Thought, state: State) {
         let thought = match self.chance(self.spec.guesses_wrong) {
             true => self.another(cause, state).unwrap_or(cause),
@@ -136,17 +136,19 @@ impl ScriptedWizard {
         self.about_to = Some((now + SessionTime::from_secs_f64(reaction_s), thought));
     }
 
-    /// Something else that the participant could be wrong about: another recipe that is wanted, or a place that was not looked
-    /// at since it changed.
+    /// Another aspect that the participant may be wrong about: a different requested recipe, or a location that it has not seen
+    /// since its last change.
     fn another(&mut self, cause: Thought, state: State) -> Option<Thought> {
-        let told = cause.location();
+        let suspected = cause.location();
         let could_be = |at: LocationId| match state.order(at) {
             OrderContent::Dish(_) if self.kitchen.orders.contains(&at) => true,
             _ => !self.seen.knows(at, state),
         };
         let others: Vec<LocationId> = communication::signals(&self.kitchen, self.own_hand)
             .into_iter()
-            .filter(|(at, signal)| *at != told && communication::unavailable(&self.kitchen, state, signal).is_none())
+            .filter(|(at, signal)| {
+                *at != suspected && communication::unavailable(&self.kitchen, state, signal).is_none()
+            })
             .map(|(location, _)| location)
             .filter(|&location| could_be(location))
             .collect();
@@ -156,7 +158,7 @@ impl ScriptedWizard {
         }
     }
 
-    /// Presses the key, unless what was to be told is known or gone by now, or misleads nobody any more.
+    /// Sends a planned signal, unless the false belief has ended, its order is gone, or it would no longer mislead anybody.
     fn say(&mut self, now: SessionTime, thought: Thought, state: State, cost: &mut CostToGo) -> Option<Signal> {
         let holds = match thought {
             Thought::Place(location) => !self.seen.knows(location, state),

@@ -1,16 +1,15 @@
-//! What the participant has seen, as far as somebody can tell who sees kitchen and gaze; and which false belief would
-//! explain a press.
+//! The participant's knowledge as an observer of kitchen and gaze can infer it, and false beliefs that explain a press.
 
 use super::thought::Thought;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, Recipes, State};
 
-/// The kitchen as the participant last saw it, place by place.
+/// The kitchen as the participant last saw it, location by location.
 #[derive(Clone, Debug)]
 pub struct SeenKitchen {
     pub state: State,
-    /// Where the gaze rests, and since when.
+    /// Location that the gaze rests on, and the time at which it arrived there.
     resting: Option<(LocationId, SessionTime)>,
 }
 
@@ -19,7 +18,7 @@ impl SeenKitchen {
         SeenKitchen { state, resting: None }
     }
 
-    /// The gaze is on a place, or on none; it has read the place after `look_s` seconds.
+    /// Updates the gaze location; a location counts as read once the gaze has rested on it for `look_s` seconds.
     pub fn gaze(&mut self, now: SessionTime, location: Option<LocationId>, truth: State, look_s: f64) {
         self.resting = location.map(|at| match self.resting {
             Some((before, since)) if before == at => (at, since),
@@ -32,23 +31,23 @@ impl SeenKitchen {
         }
     }
 
-    /// A place is known: it was read, shown, or changed by the participant's own hand.
+    /// Marks the content of a location as known: it was read, signalled, or changed by the participant.
     pub fn told(&mut self, location: LocationId, truth: State) {
         self.state.set_code(location, truth.code(location));
     }
 
-    /// Whether the participant knows what is at a place.
+    /// Whether the participant knows the content of a location.
     pub fn knows(&self, location: LocationId, truth: State) -> bool {
         self.state.code(location) == truth.code(location)
     }
 
-    /// A pause: everything is later.
+    /// Postpones the gaze's arrival time by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         self.resting = self.resting.map(|(location, since)| (location, since + by));
     }
 }
 
-/// A press of the participant, with what was true then, and what had been seen of it.
+/// A press of the participant, with the true state and the last seen state at that time.
 #[derive(Clone, Copy, Debug)]
 pub struct ObservedPress {
     pub truth: State,
@@ -56,9 +55,9 @@ pub struct ObservedPress {
     pub button: ButtonId,
 }
 
-/// Which single false beliefs would make the last of these presses a good one: a place that is held for what it was when it was
-/// last seen, or another version of a wanted recipe; of these, those that explain most of the presses. Nothing, if the press
-/// would help nobody who believes any of that.
+/// Single false beliefs that make the last press useful: the last seen content of a location, or another version of a requested
+/// recipe. Of these, the ones that explain most of the presses are returned; an empty list if no single false belief makes
+/// the last press useful.
 pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[ObservedPress]) -> Vec<Thought> {
     let Some(last) = presses.last() else { return Vec::new() };
     let places = kitchen.changed(last.seen, last.truth).map(Thought::Place);
@@ -78,16 +77,16 @@ pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[ObservedPress]
     let most = causes.iter().map(|(explained, _)| *explained).max();
     let mut best: Vec<Thought> =
         causes.into_iter().filter(|(explained, _)| Some(*explained) == most).map(|(_, thought)| thought).collect();
-    // Several versions of a recipe are told by the same signal.
+    // The same signal corrects all false versions of a recipe.
     best.dedup_by_key(|thought| thought.location());
-    // Several places together: the first of them is a beginning.
+    // False beliefs about several locations together explain the press; the first of them is returned.
     if best.is_empty() && helps(kitchen, cost, last.seen, &kitchen.true_recipes(), last.button) {
         best.extend(kitchen.changed(last.seen, last.truth).next().map(Thought::Place));
     }
     best
 }
 
-/// Whether somebody who knows everything but this would now press what does not help.
+/// Whether a press seems useful with this one false belief but does not reduce the true cost to go.
 pub fn misleads(kitchen: &Kitchen, cost: &mut CostToGo, seen: &SeenKitchen, truth: State, thought: Thought) -> bool {
     let (state, recalled) = believed(kitchen, thought, truth, seen.state);
     let recipes = kitchen.true_recipes();
@@ -96,7 +95,7 @@ pub fn misleads(kitchen: &Kitchen, cost: &mut CostToGo, seen: &SeenKitchen, trut
         .any(|button| helps(kitchen, cost, state, &recalled, button) && !helps(kitchen, cost, truth, &recipes, button))
 }
 
-/// What somebody believes who is wrong about this alone.
+/// Believed state and recipes of a person with this one false belief.
 fn believed(kitchen: &Kitchen, thought: Thought, truth: State, seen: State) -> (State, Recipes) {
     let (mut state, mut recipes) = (truth, kitchen.true_recipes());
     match thought {
@@ -107,7 +106,7 @@ fn believed(kitchen: &Kitchen, thought: Thought, truth: State, seen: State) -> (
     (state, recipes)
 }
 
-/// Whether a press of the human brings the end nearer, if everything is as `state` and `recipes` say.
+/// Whether a human press reduces the cost to go, given `state` and `recipes`.
 fn helps(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes, button: ButtonId) -> bool {
     let next = kitchen.press(state, recipes, Agent::Human, button);
     next.is_some_and(|next| cost.all_orders(next, recipes) < cost.all_orders(state, recipes))

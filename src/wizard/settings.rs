@@ -1,36 +1,36 @@
-//! What a session file says about the wizard.
+//! Settings of the wizard in a session file.
 
 use serde::{Deserialize, Serialize};
 
-/// The wizard: a person at the console, or a script with a person's limits.
+/// Settings of the wizard: a person at the console, or a script with human limits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct WizardSpec {
     pub kind: WizardKind,
-    /// From seeing to pressing the key, in seconds: the median, and the standard deviation of the logarithm.
+    /// Time from noticing a false belief to sending the signal, in seconds: median, and standard deviation of the logarithm.
     pub reaction_s: f64,
     pub reaction_spread: f64,
-    /// Chance to see that a press of the participant was an error, and to ask oneself why.
+    /// Probability of noticing that a press of the participant was an error.
     pub sees_errors: f64,
-    /// Chance to see that the participant overlooks a change and is about to err because of it.
+    /// Probability of noticing that the participant overlooks a change and may err because of it.
     pub sees_overlooked: f64,
-    /// For so long a change may go unseen before anybody wonders, in seconds.
+    /// Time after a change at which the wizard checks whether the participant has seen it, in seconds.
     pub overlooked_after_s: f64,
-    /// Gaze that rests on a place for so long has read it, as far as the wizard can tell, in seconds.
+    /// Duration of gaze on a location after which the wizard assumes that the participant has read it, in seconds.
     pub look_s: f64,
-    /// Chance to take something else for the cause that could be it as well.
+    /// Probability of signalling about another plausible aspect instead of the suspected one.
     pub guesses_wrong: f64,
-    /// From one signal to the next at least, in seconds.
+    /// Shortest time between two signals, in seconds.
     pub rest_s: f64,
 }
 
-/// Who the wizard is.
+/// Who acts as the wizard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WizardKind {
-    /// Somebody at the console.
+    /// A person at the console.
     Person,
-    /// The program, for simulated studies.
+    /// The scripted wizard, for simulated studies.
     Scripted,
 }
 
@@ -51,12 +51,12 @@ impl Default for WizardSpec {
 }
 
 impl WizardSpec {
-    /// Whether nothing is said about the wizard.
+    /// Whether all settings have their defaults.
     pub fn is_default(&self) -> bool {
         *self == WizardSpec::default()
     }
 
-    /// The first setting that cannot be: its name, what it is, and what would be right.
+    /// The first invalid setting: its name, its value, and its valid range.
     pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
         let chance = |key, value: f64| (key, value, (0.0..=1.0).contains(&value), "a number from 0 to 1");
         let seconds = |key, value: f64| (key, value, (0.0..=60.0).contains(&value), "seconds from 0 to 60");

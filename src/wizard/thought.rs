@@ -1,20 +1,20 @@
-//! What a scripted wizard takes for believed wrong.
+//! False beliefs that a scripted wizard suspects.
 
 use crate::kitchen::{ContentId, DishId, LocationId};
 
-/// What the wizard takes for believed wrong, and wants to say.
+/// A false belief that the wizard suspects and wants to correct.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Thought {
-    /// What is at a place.
+    /// A false belief about the content of a location.
     Place(LocationId),
-    /// The recipe of the dish that an order wants, which is held for this one.
+    /// A false belief about a recipe: the order, its dish, and the stack that the participant takes for the recipe.
     Recipe(LocationId, DishId, ContentId),
-    /// Something about this place, which is not the cause but might have been.
+    /// A wrong guess: a location that is not the cause of the error, but plausible.
     Guess(LocationId),
 }
 
 impl Thought {
-    /// The place that the signal is about.
+    /// The location that the correcting signal is about.
     pub fn location(self) -> LocationId {
         match self {
             Thought::Place(location) | Thought::Recipe(location, ..) | Thought::Guess(location) => location,

@@ -1,13 +1,13 @@
 //! `tomcom codes` and `tomcom forget`.
 
-use std::io::{BufRead, IsTerminal, Write};
+use std::io::{BufRead, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::output::{OutputFormat, print, progress};
+use super::output::{OutputFormat, print, progress, put_aside};
 use crate::base::words::count;
 use crate::edge::forget::{self, ParticipantData};
 use crate::run::codes::{self, CodedRecording, CodesSummary};
@@ -117,14 +117,13 @@ pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
 
 /// Shows what would be deleted, and asks for the code.
 fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure> {
-    let (mut out, input) = (std::io::stderr(), std::io::stdin());
-    writeln!(out, "{}", listed(found))?;
+    let input = std::io::stdin();
+    put_aside(&format!("{}\n", listed(found)));
     if !input.is_terminal() {
         let help = "--yes, or a terminal to answer at";
         return Err(Failure::Wrong(miette::miette!(help = help, "found nobody to ask whether this is to be deleted")));
     }
-    write!(out, "It cannot be brought back. To delete it, type the code {} again: ", args.code)?;
-    out.flush()?;
+    put_aside(&format!("It cannot be brought back. To delete it, type the code {} again: ", args.code));
     let mut answer = String::new();
     input.lock().read_line(&mut answer)?;
     Ok(answer.trim() == args.code)

@@ -1,13 +1,13 @@
 //! Finds and deletes everything about one participant (or one wizard) below a folder: recordings with all that is beside
 //! their logs, rows of tables, reports, records of training.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::file_error::{FileError, FileResult};
+use super::file_error::{FileError, FileResult, open_regular, read_regular};
 use super::log::{LOG_NAME, RecordingLock, SETTINGS_NAME, WriteError};
 use crate::analysis::training_record::{JudgedRecording, TrainingRecord};
 
@@ -184,12 +184,12 @@ fn walk(folder: &Path, code: &str, found: &mut ParticipantData, others: &mut Vec
 fn code_of(folder: &Path) -> Option<String> {
     let of_log = || -> Option<String> {
         let mut line = String::new();
-        BufReader::new(File::open(folder.join(LOG_NAME)).ok()?).read_line(&mut line).ok()?;
+        BufReader::new(open_regular(&folder.join(LOG_NAME)).ok()?).read_line(&mut line).ok()?;
         let header: serde_json::Value = serde_json::from_str(&line).ok()?;
         Some(header.get("session")?.get("participant")?.get("code")?.as_str()?.to_string())
     };
     let of_settings = || -> Option<String> {
-        let settings: toml::Table = fs::read_to_string(folder.join(SETTINGS_NAME)).ok()?.parse().ok()?;
+        let settings: toml::Table = read_regular(&folder.join(SETTINGS_NAME)).ok()?.parse().ok()?;
         Some(settings.get("participant")?.get("code")?.as_str()?.to_string())
     };
     of_log().or_else(of_settings)

@@ -5,6 +5,7 @@ mod cohort;
 mod console;
 mod cost_to_go;
 mod display;
+mod escapes;
 mod examples;
 mod gaze;
 mod inference;

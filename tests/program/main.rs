@@ -2,9 +2,12 @@
 //! run one after another.
 
 mod commands;
+mod damage;
 mod docs;
+mod escapes;
 mod forgetting;
 mod plan;
+mod stuck_terminal;
 mod survival;
 mod terminal;
 mod tmux;

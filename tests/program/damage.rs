@@ -196,7 +196,7 @@ fn a_log_without_its_header_is_moved_aside_and_made_again() {
     assert!(first.status.success(), "{first:?}");
     let whole = logs(&out);
     let recording = |trial: u32| Path::new(&out).join(format!("seed3-S{trial:03}"));
-    let header = whole[1].1[..200].as_bytes();
+    let header = &whole[1].1.as_bytes()[..200];
     let damaged: [&[u8]; 3] = [b"", header, &[0; 4096]];
     for (trial, bytes) in (1..).zip(damaged) {
         fs::write(recording(trial).join(LOG_NAME), bytes).expect("written");

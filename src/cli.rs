@@ -27,7 +27,7 @@ use miette::MietteHandlerOpts;
 
 use self::args::*;
 use self::failure::{Failure, wrong_argument};
-use self::output::{OutputFormat, print};
+use self::output::{OutputFormat, print, put, put_error};
 use crate::analysis::kitchen_summary::{self, KitchenSummary};
 use crate::analysis::recording_summary::RecordingSummary;
 use crate::analysis::{event_lines, timing_summary};
@@ -84,7 +84,7 @@ pub fn main() -> ExitCode {
         Err(Failure::Failed(report)) => (FAILED, report),
         Err(Failure::Wrong(report)) => (WRONG, report),
     };
-    eprintln!("{report:?}");
+    put_error(report);
     ExitCode::from(code)
 }
 
@@ -127,14 +127,14 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     let mut replay = Replay::open(recording)?;
     let mut events = 0;
     if args.format == OutputFormat::Text {
-        writeln!(std::io::stdout(), "{}", event_lines::HEADING)?;
+        put(&format!("{}\n", event_lines::HEADING))?;
     }
     loop {
         while let Some(event) = replay.step()? {
             events += 1;
             if let (OutputFormat::Text, Some(line)) = (args.format, event_lines::line(&event.stamped, &replay.follower))
             {
-                writeln!(std::io::stdout(), "{line}")?;
+                put(&format!("{line}\n"))?;
             }
         }
         if !args.follow || !replay.log().is_cut() {
@@ -179,7 +179,7 @@ fn keys(args: &KeysArgs) -> Result<(), Failure> {
     let map = key_file::key_map(files.keys.as_ref())?;
     let lines = console::keys::lines(&files.kitchen.kitchen, &map)
         .map_err(|error| Failure::Wrong(miette::miette!(help = error.remedy, "{}", error.found)))?;
-    Ok(std::io::stdout().write_all(console::keymap::write(&lines).as_bytes())?)
+    Ok(put(&console::keymap::write(&lines))?)
 }
 
 fn completions(args: &CompletionsArgs) -> Result<(), Failure> {

@@ -1,6 +1,7 @@
 //! A recording in words: one line for each thing that happened, for pipes and plain terminals.
 
 use super::follower::Follower;
+use crate::base::printable::printable;
 use crate::base::words::count;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
@@ -85,7 +86,8 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::ParticipantBelieves(belief) => believes(belief),
         Event::SessionEnded => "session over".to_string(),
     };
-    let session = &follower.session;
+    // Notes and names of devices may hold anything.
+    let (words, session) = (printable(&words), &follower.session);
     Some(match session.phase {
         Phase::Ready => format!("{:>11}  {words}", "before"),
         _ => format!("{:>9.3} s  {words}", session.trial_clock(stamped.time).as_secs_f64()),

@@ -167,6 +167,9 @@ pub struct SimulationSummary {
     pub excluded: u64,
     /// Number of complete recordings that existed already and were read instead of simulated.
     pub found: u64,
+    /// New paths of logs that ended before the end of their header, as after a power failure; their trials were simulated
+    /// again.
+    pub moved: Vec<String>,
     /// Totals by condition.
     pub conditions: Vec<ConditionSummary>,
     pub recordings: Vec<String>,

@@ -1,8 +1,9 @@
-//! Basics that every room may use: session time, random streams, bit sets, words.
+//! Basics that every room may use: session time, random streams, bit sets, words, printable text.
 
 pub mod bits;
 pub mod features;
 pub mod minimise;
+pub mod printable;
 pub mod rng;
 pub mod time;
 pub mod words;

@@ -1,13 +1,13 @@
 //! `tomcom codes` and `tomcom forget`.
 
-use std::io::{BufRead, IsTerminal, Write};
+use std::io::{BufRead, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::output::{OutputFormat, print, progress};
+use super::output::{OutputFormat, print, progress, put_aside};
 use crate::base::words::count;
 use crate::edge::forget::{self, ParticipantData};
 use crate::run::codes::{self, CodedRecording, CodesSummary};
@@ -157,8 +157,8 @@ pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
 
 /// Shows what would be deleted, and asks for the code.
 fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure> {
-    let (mut out, input) = (std::io::stderr(), std::io::stdin());
-    writeln!(out, "to be deleted:\n{}{}", listed(found), left(found))?;
+    let input = std::io::stdin();
+    put_aside(&format!("to be deleted:\n{}{}\n", listed(found), left(found)));
     if !input.is_terminal() {
         if args.format == OutputFormat::Json {
             print(args.format, &ForgetSummary::new(found, false), String::new)?;
@@ -166,8 +166,7 @@ fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure>
         let help = "--yes, or a terminal to answer at";
         return Err(Failure::Wrong(miette::miette!(help = help, "found nobody to ask whether this is to be deleted")));
     }
-    write!(out, "It cannot be brought back. To delete it, type the code {} again: ", args.code)?;
-    out.flush()?;
+    put_aside(&format!("It cannot be brought back. To delete it, type the code {} again: ", args.code));
     let mut answer = String::new();
     input.lock().read_line(&mut answer)?;
     Ok(answer.trim() == args.code)

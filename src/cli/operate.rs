@@ -1,6 +1,5 @@
 //! `tomcom operate`.
 
-use std::io::Write;
 use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 
@@ -8,6 +7,7 @@ use clap::Args;
 
 use super::choices::{ArmArg, ConceptArg, ConditionArg, GazeArg, ParticipantArg};
 use super::failure::{Failure, wrong_setting};
+use super::output::put;
 use crate::analysis::watcher::CompareRequest;
 use crate::base::features::Feature;
 use crate::communication::concept::ConceptName;
@@ -75,7 +75,7 @@ pub(super) fn operate(args: &OperateArgs) -> Result<(), Failure> {
         Some(recording) => series::operate(SessionStart::Continued(recording.clone()), None)?,
         None => new_session(args.session.as_deref(), &args.flags, None)?,
     };
-    Ok(write!(std::io::stdout(), "{}", series::describe(&done))?)
+    Ok(put(&series::describe(&done))?)
 }
 
 /// Runs a session of a file, optionally with a comparison of wizard and assistants.

@@ -1,12 +1,18 @@
-//! Output of commands: summaries and progress bars.
+//! Output of commands: summaries, errors and progress bars. Control characters are written out, since texts come from files,
+//! too.
 
-use std::io::{IsTerminal, Write};
+use std::error::Error;
+use std::fmt::{self, Display, Formatter};
+use std::io::{self, IsTerminal};
 
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
+use miette::{Diagnostic, LabeledSpan, Report, Severity, SourceCode};
 use serde::Serialize;
 
 use super::failure::Failure;
+use crate::base::printable::printable_lines;
+use crate::edge::terminal;
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -23,20 +29,65 @@ pub(super) fn print(
     figures: &impl Serialize,
     text: impl FnOnce() -> String,
 ) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
-    match format {
-        OutputFormat::Json => {
-            writeln!(out, "{}", serde_json::to_string_pretty(figures).map_err(std::io::Error::other)?)?
-        }
-        OutputFormat::Text => write!(out, "{}", text())?,
+    let text = match format {
+        OutputFormat::Json => serde_json::to_string_pretty(figures).map_err(io::Error::other)? + "\n",
+        OutputFormat::Text => text(),
+    };
+    Ok(put(&text)?)
+}
+
+/// Prints a text of whole lines.
+pub(super) fn put(text: &str) -> io::Result<()> {
+    terminal::print(false, printable_lines(text).into_owned().into_bytes())
+}
+
+/// Prints a text of whole lines on standard error.
+pub(super) fn put_aside(text: &str) {
+    // Where that is gone there is nobody to tell it to.
+    let _ = terminal::print(true, printable_lines(text).into_owned().into_bytes());
+}
+
+/// Prints an error on standard error, with its place in the file and what would be right.
+pub(super) fn put_error(report: Report) {
+    let report = Report::new(PrintableReport(report));
+    // Where that is gone there is nobody to tell it to.
+    let _ = terminal::print(true, format!("{report:?}\n").into_bytes());
+}
+
+/// An error whose texts are written out; the excerpt of a file is that already.
+#[derive(Debug)]
+struct PrintableReport(Report);
+
+impl Display for PrintableReport {
+    fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
+        out.write_str(&printable_lines(&self.0.to_string()))
     }
-    Ok(out.flush()?)
+}
+
+impl Error for PrintableReport {}
+
+impl Diagnostic for PrintableReport {
+    fn severity(&self) -> Option<Severity> {
+        self.0.severity()
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        self.0.help().map(|help| Box::new(printable_lines(&help.to_string()).into_owned()) as Box<dyn Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.0.source_code()
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        self.0.labels()
+    }
 }
 
 /// A progress bar on stderr; hidden if stderr is not a terminal.
 pub(super) fn progress(of: u64, what: &str) -> ProgressBar {
     let bar = ProgressBar::new(of);
-    if std::io::stderr().is_terminal()
+    if io::stderr().is_terminal()
         && let Ok(style) = ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {what}, {{eta}} left"))
     {
         bar.set_style(style);

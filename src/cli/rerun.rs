@@ -1,9 +1,9 @@
 //! Opening recordings in Rerun, and messages about it.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
+use super::output::put;
 use crate::base::time::SessionTime;
 use crate::run::rerun::{
     OngoingRecording, RerunError, ReviewOutcome, ReviewRequest, SavedStream, review, running, save, until_asked_to_end,
@@ -34,23 +34,23 @@ pub(super) fn open(
     web: bool,
     at: Option<SessionTime>,
 ) -> Result<(), Failure> {
-    let mut out = std::io::stdout();
     for one in running(&recordings)? {
-        write!(out, "{}", still_running(&one))?;
+        put(&still_running(&one))?;
     }
     let asked = ReviewRequest { recordings, save, web, at };
     match review(&asked)? {
         ReviewOutcome::Saved(file) => {
             let how = if file.made { "made from the log" } else { "is there already" };
-            writeln!(out, "{} {how}{}", file.path.display(), because(&file))?;
+            put(&format!("{} {how}{}\n", file.path.display(), because(&file)))?;
         }
-        ReviewOutcome::Opened(file) => writeln!(out, "the viewer opens {}{}", file.path.display(), because(&file))?,
+        ReviewOutcome::Opened(file) => {
+            put(&format!("the viewer opens {}{}\n", file.path.display(), because(&file)))?;
+        }
         ReviewOutcome::Served { url, because, _serving } => {
-            writeln!(out, "{because}: it is served here, for a browser on this machine, until ctrl+c\n{url}")?;
+            put(&format!("{because}: it is served here, for a browser on this machine, until ctrl+c\n{url}\n"))?;
             if let Some(at) = at {
-                writeln!(out, "what comes from {at} on is marked in its time line: a click there goes to it")?;
+                put(&format!("what comes from {at} on is marked in its time line: a click there goes to it\n"))?;
             }
-            out.flush()?;
             until_asked_to_end()?;
         }
     }

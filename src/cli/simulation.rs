@@ -2,7 +2,7 @@
 
 use super::args::SimulateArgs;
 use super::failure::{Failure, wrong_argument};
-use super::output::{print, progress};
+use super::output::{print, progress, put_aside};
 use super::rerun::save_all;
 use crate::base::features::Feature;
 use crate::communication::concept::ConceptName;
@@ -82,7 +82,8 @@ fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
     let unused =
         [(acts, "condition = \"assistant\"", "--condition assistant"), (advises, "shadow = \"on\"", "--shadow")];
     for (_, found, option) in unused.iter().filter(|(is_unused, ..)| *is_unused) {
-        eprintln!("{}: {found} holds at the console; trials are simulated with it by {option}", args.session.display());
+        let session = args.session.display();
+        put_aside(&format!("{session}: {found} holds at the console; trials are simulated with it by {option}\n"));
     }
 }
 

@@ -1,6 +1,5 @@
 //! Commands about the wizard: comparison with assistants, and training.
 
-use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -8,7 +7,7 @@ use clap::Args;
 use super::choices::ConceptArg;
 use super::failure::Failure;
 use super::operate::{OperateFlags, new_session};
-use super::output::{OutputFormat, print, progress};
+use super::output::{OutputFormat, print, progress, put};
 use crate::analysis::comparison_summary::{self, ComparisonSummary};
 use crate::analysis::lesson_report::{self, TrainingSummary};
 use crate::analysis::watcher::CompareRequest;
@@ -108,7 +107,7 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     check_flags(args, session.is_some() && !args.follow)?;
     if let Some(session) = session.filter(|_| !args.follow) {
         let done = new_session(session, &args.flags, Some(request(args.window)))?;
-        return Ok(write!(std::io::stdout(), "{}", series::describe(&done))?);
+        return Ok(put(&series::describe(&done))?);
     }
     if args.follow {
         let [recording] = &args.paths[..] else {
@@ -135,7 +134,7 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     }
     bar.finish_and_clear();
     match args.open {
-        Some(number) => Ok(write!(std::io::stdout(), "{}", similarity::open(&first, number)?)?),
+        Some(number) => Ok(put(&similarity::open(&first, number)?)?),
         None => print(args.format, &figures, || comparison_summary::describe(&figures, &request(windows[0]))),
     }
 }
@@ -188,7 +187,7 @@ pub(super) fn train(args: &TrainArgs) -> Result<(), Failure> {
         speed: SPEEDS.iter().position(|speed| speed.to_string() == args.speed).unwrap_or(2),
     };
     let (record, path) = train::train(&lesson)?;
-    Ok(write!(std::io::stdout(), "{}", lesson_report::describe(&record, &path))?)
+    Ok(put(&lesson_report::describe(&record, &path))?)
 }
 
 /// A wizard's code.

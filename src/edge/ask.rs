@@ -18,14 +18,17 @@ pub fn ask(question: &str) -> Option<String> {
     use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
     let mut terminal = std::fs::OpenOptions::new().read(true).write(true).open("/dev/tty").ok()?;
-    terminal.write_all(question.as_bytes()).and_then(|()| terminal.write_all(LAST.as_bytes())).ok()?;
     let until = Instant::now() + PATIENCE;
+    // A terminal that nobody reads is full some day: writing to it would wait for ever.
+    let is_in_time = |terminal: &std::fs::File, what: PollFlags| {
+        let left = Timespec::try_from(until.saturating_duration_since(Instant::now())).ok()?;
+        poll(&mut [PollFd::new(terminal, what)], Some(&left)).ok().filter(|&ready| ready > 0)
+    };
+    is_in_time(&terminal, PollFlags::OUT)?;
+    terminal.write_all(question.as_bytes()).and_then(|()| terminal.write_all(LAST.as_bytes())).ok()?;
     let mut answer = Vec::new();
     while !is_whole(&answer) {
-        let left = Timespec::try_from(until.saturating_duration_since(Instant::now())).ok()?;
-        if poll(&mut [PollFd::new(&terminal, PollFlags::IN)], Some(&left)).ok()? == 0 {
-            return None;
-        }
+        is_in_time(&terminal, PollFlags::IN)?;
         let mut bytes = [0; 256];
         match terminal.read(&mut bytes).ok()? {
             0 => return None,

@@ -1,6 +1,7 @@
 //! What is wrong with a file: which file, the line, what was found and what would be right.
 
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -9,6 +10,7 @@ use miette::{Diagnostic, NamedSource, SourceSpan};
 
 use super::place::place_of;
 use crate::base::features::{Feature, NotBuilt};
+use crate::base::printable::{printable, printable_lines};
 
 /// What reading a file gives.
 pub type FileResult<T> = Result<T, FileError>;
@@ -46,18 +48,23 @@ pub enum FileError {
 }
 
 impl FileError {
-    /// An error at a place of a file's text.
+    /// An error at a place of a file's text, whose control characters are written out.
     pub fn at(path: &Path, text: &str, span: Option<Range<usize>>, found: String, remedy: String) -> FileError {
-        let name = path.display().to_string();
-        let start = span.as_ref().map_or(0, |span| span.start.min(text.len()));
+        let name = name_of(path);
+        let boundary = |at: usize| (0..=at.min(text.len())).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0);
+        let start = span.as_ref().map_or(0, |span| boundary(span.start));
         let line = text.as_bytes()[..start].iter().filter(|&&byte| byte == b'\n').count() + 1;
-        let source = NamedSource::new(&name, text.to_string());
-        FileError::Wrong { name, line, found, text: Arc::new(source), span: span.map(SourceSpan::from), remedy }
+        let span = span.map(|span| {
+            let length = printable_lines(&text[start..boundary(span.end).max(start)]).len();
+            SourceSpan::from((printable_lines(&text[..start]).len(), length))
+        });
+        let source = NamedSource::new(&name, printable_lines(text).into_owned());
+        FileError::Wrong { name, line, found: one_line(found), text: Arc::new(source), span, remedy }
     }
 
     /// An error that has no place in a text: of a folder, an option, a file as a whole.
     pub fn from_finding(what: &Path, found: String, remedy: String) -> FileError {
-        FileError::Unfit { name: what.display().to_string(), found, remedy }
+        FileError::Unfit { name: name_of(what), found: one_line(found), remedy }
     }
 
     /// The error about a session or a recording that takes a part of the program which this build does not have.
@@ -85,6 +92,36 @@ pub(super) fn missing(
     let key = path.rsplit('.').next().unwrap_or(path);
     let found = format!("{key} = \"{file}\", which cannot be read: {reason}");
     FileError::at(session, text, place_of(text, path, nth), found, remedy.to_string())
+}
+
+fn name_of(path: &Path) -> String {
+    one_line(path.display().to_string())
+}
+
+fn one_line(text: String) -> String {
+    printable(&text).into_owned()
+}
+
+/// Opens a file in the folder of a recording. Reading a pipe or a device that stands in its place could wait for ever.
+///
+/// # Errors
+/// There is none, it cannot be opened, or it is no regular file.
+pub fn open_regular(path: &Path) -> io::Result<File> {
+    match fs::metadata(path)?.is_file() {
+        true => File::open(path),
+        false => {
+            Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file, but a pipe, device or folder"))
+        }
+    }
+}
+
+/// The text of a file in the folder of a recording; see [`open_regular`].
+///
+/// # Errors
+/// Those of [`open_regular`], or it is no text in UTF-8.
+pub fn read_regular(path: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    open_regular(path)?.read_to_string(&mut text).map(|_| text)
 }
 
 /// The text of a file.

@@ -11,6 +11,7 @@ pub mod export;
 pub mod file_error;
 pub mod files;
 pub mod forget;
+mod frames;
 pub mod gaze_file;
 pub mod gaze_input;
 pub mod gaze_json;

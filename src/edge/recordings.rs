@@ -1,11 +1,11 @@
 //! What recordings say of themselves: a look over a folder of them, without running any of them again.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-use super::file_error::{FileError, FileResult};
+use super::file_error::{FileError, FileResult, open_regular};
 use super::log::{LOG_NAME, ruling};
 use crate::session::plan::{PlanRecording, RecordingOutcome, StepSpec};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
@@ -66,7 +66,7 @@ pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
     let mut continued = Vec::new();
     for path in &found {
         let log = path.join(LOG_NAME);
-        let file = File::open(&log).map_err(|reason| FileError::unreadable(&log, reason, remedy))?;
+        let file = open_regular(&log).map_err(|reason| FileError::unreadable(&log, reason, remedy))?;
         let mut line = String::new();
         // What is wrong with a header is told where the recording is read.
         let read = BufReader::new(file).read_line(&mut line).ok();
@@ -100,7 +100,7 @@ struct Part {
 impl Part {
     /// Reads a log; nothing if it is none of this plan.
     fn read(path: &Path, plan: &str) -> FileResult<Option<Part>> {
-        let Ok(file) = File::open(path) else { return Ok(None) };
+        let Ok(file) = open_regular(path) else { return Ok(None) };
         let mut lines = BufReader::with_capacity(1 << 16, file);
         let mut line = Vec::new();
         let mut next = |line: &mut Vec<u8>| {

@@ -21,18 +21,16 @@ use re_sdk_types::archetypes;
 use re_sdk_types::components::{Color, FillMode, InterpolationMode, MarkerShape, TextLogLevel};
 use re_sdk_types::datatypes::Quaternion;
 
-use self::layout::{ViewerLayout, ViewerStart};
+use self::layout::{APPLICATION, ViewerLayout, ViewerStart};
+pub use self::layout::{StreamLane, TRIAL_TIME};
 use crate::arm::link::{CollisionSolid, LinkShape};
+use crate::base::printable::{printable, printable_lines};
 use crate::base::time::SessionTime;
 use crate::scene::shown::{LogLevel, SceneArea, SceneDisc, ScenePoint, SceneSeries};
 use crate::scene::{EntityData, EntityUpdate, SceneUpdate};
 
 /// The version of Rerun that streams are written with; viewers of the same version read them.
 pub const VERSION: &str = "0.36.3";
-/// All recordings share one blueprint.
-const APPLICATION: &str = "tomcom";
-/// The timeline that viewers open with: the trial's clock, as the console shows it.
-pub const TRIAL_TIME: &str = "trial_time";
 /// In nanoseconds.
 const MS: u64 = 1_000_000;
 /// What viewers see is so old at most.
@@ -65,15 +63,6 @@ pub struct StreamOutlets {
     pub server: Option<(SocketAddr, bool)>,
     /// Viewers that connect play from this moment of the trial's clock on; else they wait at the beginning, or follow.
     pub at: Option<SessionTime>,
-}
-
-/// One of the recordings in a stream.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct StreamLane {
-    /// Its entities are below this one; empty: at the top.
-    pub root: String,
-    /// What the viewer calls it among others.
-    pub title: String,
 }
 
 /// A stream that is being written: to each of its outlets by itself, so that none holds up another.
@@ -221,10 +210,10 @@ fn parts(shown: &EntityData) -> Vec<Part> {
                 LogLevel::Warning => TextLogLevel::WARN,
                 LogLevel::Error => TextLogLevel::ERROR,
             };
-            vec![Box::new(archetypes::TextLog::new(text.as_str()).with_level(level).with_color(colour_of(*colour)))]
+            vec![Box::new(archetypes::TextLog::new(&*printable(text)).with_level(level).with_color(colour_of(*colour)))]
         }
-        EntityData::Page(text) => vec![Box::new(archetypes::TextDocument::from_markdown(text.as_str()))],
-        EntityData::State(text) => vec![Box::new(archetypes::StateChange::single(text.as_str()))],
+        EntityData::Page(text) => vec![Box::new(archetypes::TextDocument::from_markdown(&*printable_lines(text)))],
+        EntityData::State(text) => vec![Box::new(archetypes::StateChange::single(&*printable(text)))],
     }
 }
 

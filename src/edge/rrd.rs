@@ -1,12 +1,13 @@
 //! What a file of Rerun says of itself, and what is said of it beside it: whether it is whole, what wrote it, whether it is
 //! as it was written, and whether it shows the log as that is now.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::file_error::{open_regular, read_regular};
 pub use super::log::RRD_NAME;
 use super::rerun::VERSION;
 use super::stream_head::{BEGINS, MARK, MARK_END};
@@ -68,7 +69,7 @@ struct Sum {
 
 impl Sum {
     fn from_file(path: &Path) -> io::Result<Sum> {
-        let mut file = File::open(path)?;
+        let mut file = open_regular(path)?;
         let (mut hasher, mut bytes, mut piece) = (crc32fast::Hasher::new(), 0, vec![0; PIECE]);
         loop {
             match file.read(&mut piece)? {
@@ -100,7 +101,7 @@ impl Seal {
 
     /// None where there is none that can be read: then the stream is made anew.
     fn read(stream: &Path) -> Option<Seal> {
-        toml::from_str(&fs::read_to_string(Seal::path(stream)).ok()?).ok()
+        toml::from_str(&read_regular(&Seal::path(stream)).ok()?).ok()
     }
 }
 
@@ -119,7 +120,7 @@ pub fn seal(stream: &Path, logs: &[PathBuf]) -> io::Result<()> {
 /// # Errors
 /// It is there and cannot be read, or a log cannot.
 pub fn state(path: &Path, logs: &[PathBuf]) -> io::Result<RrdState> {
-    let mut file = match File::open(path) {
+    let mut file = match open_regular(path) {
         Ok(file) => file,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(RrdState::Missing),
         Err(error) => return Err(error),

@@ -1,10 +1,9 @@
 //! The terminal: taken over for the console, given back whole on every way out, its keys and mouse as messages, and
-//! frames written by a thread of its own, so that nothing waits for a slow terminal.
+//! frames that nothing waits for.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{SyncSender, sync_channel};
-use std::sync::{Arc, Mutex, Once, TryLockError};
+use std::sync::{Arc, Mutex, Once};
 use std::time::Duration;
 
 use crossterm::event::{
@@ -16,12 +15,13 @@ use crossterm::terminal::{
     BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode,
     enable_raw_mode, size,
 };
-use crossterm::{cursor, execute, queue};
+use crossterm::{cursor, queue};
 use futures::StreamExt;
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 
 use super::ask::ground;
+use super::frames::{FrameWriter, write_within};
 use crate::console::question::QuestionPage;
 use crate::console::view::sheet::draw_question;
 use crate::console::view::theme::{TerminalBackground, Theme};
@@ -29,35 +29,39 @@ use crate::console::{ConsoleMessage, ConsoleModel, view};
 use crate::session::Session;
 use crate::session::settings::{ConsoleSpec, ThemeChoice};
 
-/// Whether the terminal is ours now; held while something is written to it.
-static TAKEN: Mutex<bool> = Mutex::new(false);
+/// The way to the terminal while that is ours.
+static TAKEN: Mutex<Option<Arc<FrameWriter>>> = Mutex::new(None);
+/// The terminal did not take what gives it back.
+static OUT_OF_REACH: AtomicBool = AtomicBool::new(false);
+/// Set when the terminal is first taken: then panics give it back.
 static HOOK: Once = Once::new();
+/// So long what is printed after a session may take.
+const LAST_WORDS: Duration = Duration::from_millis(300);
+/// So long the program may take to end after a signal has asked it to; whoever reads its terminal or its streams may be
+/// stuck, and a recording is closed in milliseconds.
+const ENDING: Duration = Duration::from_millis(1800);
 
 /// The console's terminal. It is given back when this is dropped, and when anything panics.
 #[derive(Debug)]
 pub struct TerminalScreen {
-    terminal: Terminal<CrosstermBackend<Frame>>,
+    terminal: Terminal<CrosstermBackend<ComposedFrame>>,
     /// The terminal's background; dark, if it does not say.
     pub ground: TerminalBackground,
-    composed: Frame,
-    frames: SyncSender<Vec<u8>>,
-    /// The last frame is still being written.
-    busy: Arc<AtomicBool>,
-    /// The terminal is gone.
-    lost: Arc<AtomicBool>,
+    composed: ComposedFrame,
+    frames: Arc<FrameWriter>,
 }
 
 /// The bytes of the frame that is being composed.
 #[derive(Clone, Debug, Default)]
-struct Frame(Arc<Mutex<Vec<u8>>>);
+struct ComposedFrame(Arc<Mutex<Vec<u8>>>);
 
-impl Frame {
+impl ComposedFrame {
     fn take(&self) -> Vec<u8> {
         std::mem::take(&mut *self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
     }
 }
 
-impl Write for Frame {
+impl Write for ComposedFrame {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).extend_from_slice(bytes);
         Ok(bytes.len())
@@ -80,26 +84,20 @@ impl TerminalScreen {
         HOOK.call_once(|| {
             let then = std::panic::take_hook();
             std::panic::set_hook(Box::new(move |panic| {
-                give_back();
-                then(panic);
+                // To a terminal that takes nothing the message could wait for ever.
+                if give_back() || !io::stderr().is_terminal() {
+                    then(panic);
+                }
             }));
         });
+        let frames = FrameWriter::start()?;
         enable_raw_mode()?;
-        *TAKEN.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = true;
+        *TAKEN.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(frames.clone());
         let ground = ground().unwrap_or(TerminalBackground::Dark);
-        let mut out = io::stdout();
-        // All keys as escape codes: only then terminals report repeats and releases of letters, too.
-        let keys = KeyboardEnhancementFlags::DISAMBIGUATE_ESCAPE_CODES
-            | KeyboardEnhancementFlags::REPORT_EVENT_TYPES
-            | KeyboardEnhancementFlags::REPORT_ALTERNATE_KEYS
-            | KeyboardEnhancementFlags::REPORT_ALL_KEYS_AS_ESCAPE_CODES;
-        execute!(out, EnterAlternateScreen, cursor::Hide, EnableFocusChange, PushKeyboardEnhancementFlags(keys))?;
-        execute!(out, EnableMouseCapture)?;
-        let (busy, lost) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
-        let frames = write_frames(busy.clone(), lost.clone());
-        let composed = Frame::default();
+        frames.show(way_in()?);
+        let composed = ComposedFrame::default();
         let terminal = Terminal::new(CrosstermBackend::new(composed.clone()))?;
-        Ok(TerminalScreen { terminal, ground, composed, frames, busy, lost })
+        Ok(TerminalScreen { terminal, ground, composed, frames })
     }
 
     /// Columns and rows of the terminal.
@@ -112,12 +110,12 @@ impl TerminalScreen {
 
     /// Whether the terminal has taken the last frame.
     pub fn is_ready(&self) -> bool {
-        !self.busy.load(Ordering::Acquire)
+        self.frames.is_ready()
     }
 
-    /// Whether the terminal is gone.
+    /// Whether the terminal is gone, or was given back because something panicked.
     pub fn is_lost(&self) -> bool {
-        self.lost.load(Ordering::Acquire)
+        self.frames.is_lost()
     }
 
     /// Composes a frame and leaves the writing to the thread. Nothing is drawn while the last frame is on its way.
@@ -143,10 +141,7 @@ impl TerminalScreen {
         queue!(self.terminal.backend_mut(), BeginSynchronizedUpdate)?;
         self.terminal.draw(draw)?;
         queue!(self.terminal.backend_mut(), EndSynchronizedUpdate)?;
-        self.busy.store(true, Ordering::Release);
-        if self.frames.try_send(self.composed.take()).is_err() {
-            self.lost.store(true, Ordering::Release);
-        }
+        self.frames.show(self.composed.take());
         Ok(())
     }
 }
@@ -157,51 +152,58 @@ impl Drop for TerminalScreen {
     }
 }
 
-/// The thread that writes frames while the terminal is ours.
-fn write_frames(busy: Arc<AtomicBool>, lost: Arc<AtomicBool>) -> SyncSender<Vec<u8>> {
-    let (sender, receiver) = sync_channel::<Vec<u8>>(1);
-    std::thread::spawn(move || {
-        while let Ok(bytes) = receiver.recv() {
-            let taken = TAKEN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-            if *taken {
-                let mut out = io::stdout().lock();
-                if out.write_all(&bytes).and_then(|()| out.flush()).is_err() {
-                    lost.store(true, Ordering::Release);
-                }
-            }
-            drop(taken);
-            busy.store(false, Ordering::Release);
-        }
-    });
-    sender
+/// Gives the terminal back as it was, and says whether it took that; nothing is left to do where that was done already. It
+/// never waits long: a terminal that takes no bytes must not keep the program from ending.
+fn give_back() -> bool {
+    let taken = TAKEN.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take();
+    let Some(frames) = taken else { return !OUT_OF_REACH.load(Ordering::Acquire) };
+    let took = frames.end(way_out());
+    OUT_OF_REACH.store(!took, Ordering::Release);
+    // Its modes can be set also where it takes no bytes.
+    let _ = disable_raw_mode();
+    took
 }
 
-/// Gives the terminal back as it was; does nothing if that was done already. It never waits long: a terminal that takes
-/// no bytes must not keep the program from ending.
-fn give_back() {
-    for _ in 0..20 {
-        match TAKEN.try_lock() {
-            Ok(mut taken) => {
-                if std::mem::replace(&mut *taken, false) {
-                    write_way_out();
-                }
-                return;
-            }
-            Err(TryLockError::Poisoned(poisoned)) => {
-                *poisoned.into_inner() = false;
-                return write_way_out();
-            }
-            Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(5)),
+/// Writes to standard output or standard error. After a session at the console it waits no longer than a moment, as whoever
+/// has stopped reading the terminal would otherwise keep the program from ending; to a terminal that did not even take what
+/// gives it back it writes nothing.
+///
+/// # Errors
+/// It cannot be written.
+pub fn print(to_errors: bool, bytes: Vec<u8>) -> io::Result<()> {
+    let is_terminal = !to_errors || io::stderr().is_terminal();
+    let write = move || match to_errors {
+        true => io::stderr().write_all(&bytes),
+        false => {
+            let mut out = io::stdout().lock();
+            out.write_all(&bytes)?;
+            out.flush()
         }
+    };
+    match HOOK.is_completed() {
+        true if is_terminal && OUT_OF_REACH.load(Ordering::Acquire) => Ok(()),
+        true => write_within(LAST_WORDS, write),
+        false => write(),
     }
-    write_way_out();
 }
 
-fn write_way_out() {
-    let mut out = io::stdout();
-    // What cannot be written to a terminal that is gone need not be.
-    let _ = execute!(
-        out,
+fn way_in() -> io::Result<Vec<u8>> {
+    // All keys as escape codes: only then terminals report repeats and releases of letters, too.
+    let keys = KeyboardEnhancementFlags::DISAMBIGUATE_ESCAPE_CODES
+        | KeyboardEnhancementFlags::REPORT_EVENT_TYPES
+        | KeyboardEnhancementFlags::REPORT_ALTERNATE_KEYS
+        | KeyboardEnhancementFlags::REPORT_ALL_KEYS_AS_ESCAPE_CODES;
+    let mut bytes = Vec::new();
+    queue!(bytes, EnterAlternateScreen, cursor::Hide, EnableFocusChange, PushKeyboardEnhancementFlags(keys))?;
+    queue!(bytes, EnableMouseCapture)?;
+    Ok(bytes)
+}
+
+fn way_out() -> Vec<u8> {
+    let mut bytes = Vec::new();
+    // Writing to memory cannot fail.
+    let _ = queue!(
+        bytes,
         EndSynchronizedUpdate,
         PopKeyboardEnhancementFlags,
         DisableMouseCapture,
@@ -209,7 +211,7 @@ fn write_way_out() {
         LeaveAlternateScreen,
         cursor::Show
     );
-    let _ = disable_raw_mode();
+    bytes
 }
 
 /// What somebody does at the terminal.
@@ -273,12 +275,30 @@ pub fn outlive_file_limits() -> io::Result<()> {
     Ok(())
 }
 
-/// Waits until the program is asked to end by a signal (terminate, interrupt, hang up).
+/// Waits until the program is asked to end by a signal (terminate, interrupt, hang up). From then on it has little time: if
+/// it is still there after that, because something waits for whoever is to read it, it ends all the same.
 ///
 /// # Errors
 /// Signals cannot be received.
-#[cfg(unix)]
 pub async fn asked_to_end() -> io::Result<()> {
+    let (sender, asked) = tokio::sync::oneshot::channel();
+    // On a thread of its own it is heard whatever the others wait for.
+    std::thread::Builder::new().name("signals".to_string()).spawn(move || {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+        let signal = runtime.and_then(|runtime| runtime.block_on(next_signal()));
+        let is_asked = signal.is_ok();
+        // Whoever no longer waits for it is about to end.
+        let _ = sender.send(signal);
+        if is_asked {
+            std::thread::sleep(ENDING);
+            std::process::exit(1);
+        }
+    })?;
+    asked.await.unwrap_or_else(|gone| Err(io::Error::other(gone)))
+}
+
+#[cfg(unix)]
+async fn next_signal() -> io::Result<()> {
     use tokio::signal::unix::{SignalKind, signal};
     let mut terminate = signal(SignalKind::terminate())?;
     let mut interrupt = signal(SignalKind::interrupt())?;
@@ -291,11 +311,7 @@ pub async fn asked_to_end() -> io::Result<()> {
     Ok(())
 }
 
-/// Waits until the program is asked to end.
-///
-/// # Errors
-/// Signals cannot be received.
 #[cfg(not(unix))]
-pub async fn asked_to_end() -> io::Result<()> {
+async fn next_signal() -> io::Result<()> {
     tokio::signal::ctrl_c().await
 }

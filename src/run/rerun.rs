@@ -4,11 +4,12 @@ use std::fs;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use super::replay::Replay;
 use crate::base::time::SessionTime;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LOG_NAME, LogReader, RecordingLock};
+use crate::edge::log::{LOG_NAME, LogReader, RecordingLock, WriteError};
 use crate::edge::overwrite;
 use crate::edge::rerun::{RerunWriter, StreamIdentity, StreamLane, StreamOutlets, WebViewer, uri};
 use crate::edge::rrd::{self, RRD_NAME, RrdState};
@@ -24,6 +25,8 @@ use crate::session::Stamped;
 /// First ports of the server and of the web viewer.
 const SERVER_PORT: u16 = 9878;
 const WEB_PORT: u16 = 9090;
+/// A stream that another program makes is looked at so often.
+const LOOK: Duration = Duration::from_millis(50);
 
 /// Why a recording could not be reviewed.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -40,6 +43,9 @@ pub enum RerunError {
          listens there"
     ))]
     Web(io::Error),
+    #[error("{}: another program writes this recording, and its stream", folder.display())]
+    #[diagnostic(help("--save=FILE, for what is there up to now"))]
+    InUse { folder: PathBuf },
     #[error("{}: the viewer cannot be started: {reason}", path.display())]
     #[diagnostic(help("--web serves one for a browser"))]
     Viewer { path: PathBuf, reason: io::Error },
@@ -112,9 +118,12 @@ pub enum ReviewOutcome {
 pub fn review(asked: &ReviewRequest) -> Result<ReviewOutcome, RerunError> {
     let viewer = if asked.web { Viewer::None } else { Viewer::find() };
     match (&asked.save, viewer) {
-        (Some(place), _) => Ok(ReviewOutcome::Saved(saved(&asked.recordings, place.as_deref())?)),
+        (Some(place), _) => {
+            let place = place.as_deref().map_or(StreamPlace::BesideLog, StreamPlace::File);
+            Ok(ReviewOutcome::Saved(saved(&asked.recordings, place)?))
+        }
         (None, Viewer::Ready(viewer)) => {
-            let file = saved(&asked.recordings, None)?;
+            let file = saved(&asked.recordings, StreamPlace::Anywhere)?;
             let opened = viewer::open(&viewer, &file.path, asked.at.map(|at| at.0));
             opened.map_err(|reason| RerunError::Viewer { path: viewer, reason })?;
             Ok(ReviewOutcome::Opened(file))
@@ -140,12 +149,28 @@ pub fn until_asked_to_end() -> io::Result<()> {
     runtime.block_on(asked_to_end())
 }
 
-/// The stream file of a recording: the file beside its log if it is up to date, else rebuilt from the log.
+/// The stream file of a recording beside its log: rebuilt from the log unless it is up to date. Waits for another program
+/// that writes it.
 ///
 /// # Errors
 /// The recording cannot be read, or the file not be written.
 pub fn save(recording: &Path) -> Result<PathBuf, RerunError> {
-    Ok(saved(&[recording.to_path_buf()], None)?.path)
+    loop {
+        match saved(&[recording.to_path_buf()], StreamPlace::BesideLog) {
+            Err(RerunError::InUse { .. }) => std::thread::sleep(LOOK),
+            saved => return Ok(saved?.path),
+        }
+    }
+}
+
+/// Where the file of a stream goes.
+#[derive(Clone, Copy)]
+enum StreamPlace<'a> {
+    File(&'a Path),
+    /// Beside the log of a recording that nobody writes; several recordings have no such place.
+    BesideLog,
+    /// Beside the log, or else below the system's folder for temporary files, for a viewer to read.
+    Anywhere,
 }
 
 /// Streams recordings to a server, and serves the viewer for browsers.
@@ -174,11 +199,11 @@ fn ports() -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
 }
 
 /// The stream file of these recordings: the file beside the log if it is up to date, else rebuilt from the logs.
-fn saved(recordings: &[PathBuf], place: Option<&Path>) -> Result<SavedStream, RerunError> {
+fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<SavedStream, RerunError> {
     let (mut locked, mut because, mut logs) = (None, None, None);
     let path = match (place, recordings) {
-        (Some(place), _) => place.to_path_buf(),
-        (None, [recording]) => {
+        (StreamPlace::File(place), _) => place.to_path_buf(),
+        (_, [recording]) => {
             let log = LogReader::open(recording)?;
             let (folder, parts) = (log.folder().to_path_buf(), log.logs());
             let path = folder.join(RRD_NAME);
@@ -186,16 +211,21 @@ fn saved(recordings: &[PathBuf], place: Option<&Path>) -> Result<SavedStream, Re
             if state == RrdState::Whole {
                 return Ok(SavedStream { path, made: false, because: None });
             }
-            // If another program writes the file, or the folder is not writable, the stream goes to a temporary file.
-            locked = RecordingLock::take(&folder).ok();
-            if locked.is_some() {
-                (because, logs) = (state.reason(), Some(parts));
-                path
-            } else {
-                elsewhere(recordings)
+            match (RecordingLock::take(&folder), place) {
+                (Ok(lock), _) => {
+                    (locked, because, logs) = (Some(lock), state.reason(), Some(parts));
+                    path
+                }
+                (Err(WriteError::InUse { folder, .. }), StreamPlace::BesideLog) => {
+                    return Err(RerunError::InUse { folder });
+                }
+                (Err(WriteError::Unwritable { path, reason, .. }), StreamPlace::BesideLog) => {
+                    return Err(RerunError::Unwritable { path, reason });
+                }
+                _ => elsewhere(recordings),
             }
         }
-        (None, several) => elsewhere(several),
+        (_, several) => elsewhere(several),
     };
     let sealed = put(recordings, &path)?.and_then(|()| logs.map_or(Ok(()), |logs| rrd::seal(&path, &logs)));
     drop(locked);

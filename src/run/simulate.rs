@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::engine::Engine;
 use super::error::RunError;
@@ -19,7 +19,7 @@ use crate::base::words::count;
 use crate::communication::settings::Shadow;
 use crate::edge::file_error::FileError;
 use crate::edge::files::SessionFiles;
-use crate::edge::log::{LogReader, LogWriter, check_simulated, is_whole, ruling};
+use crate::edge::log::{LogReader, RecordingLock, SimulatedLog, WriteError, check_simulated, ruling};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::settings::{Condition, ParticipantSpec, SessionSpec};
@@ -70,6 +70,8 @@ impl FromStr for Shard {
 
 /// Largest number of shards.
 const MAX_SHARDS: u64 = 100_000;
+/// Interval at which a trial that another program simulates is looked at.
+const LOOK: Duration = Duration::from_millis(50);
 /// Number of trials that are simulated before their results are summed up, which bounds memory.
 const BLOCK: usize = 256;
 
@@ -97,8 +99,9 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
         &simulation.files.kitchen.kitchen,
         &mut CostToGo::new(Arc::new(simulation.files.kitchen.kitchen.clone())),
     );
-    let (mut excluded, mut found, mut recordings) = (0, 0, Vec::new());
+    let (mut excluded, mut found, mut recordings, mut moved) = (0, 0, Vec::new(), Vec::new());
     each_trial(simulation, done, |trial| {
+        moved.extend(trial.moved.map(|log| log.display().to_string()));
         recordings.push(trial.folder.display().to_string());
         found += u64::from(trial.found);
         // An existing recording can be excluded.
@@ -109,7 +112,7 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
         Ok(())
     })?;
     let wall_s = began.elapsed().as_secs_f64();
-    Ok(SimulationSummary { excluded, found, recordings, wall_s, ..sums.figures() })
+    Ok(SimulationSummary { excluded, found, recordings, moved, wall_s, ..sums.figures() })
 }
 
 /// A simulated trial.
@@ -117,11 +120,14 @@ pub struct SimulatedTrial {
     pub folder: PathBuf,
     pub condition: Condition,
     pub figures: TrialSummary,
-    /// Whether its recording existed already.
+    /// Whether its recording existed already, or another program made it meanwhile.
     pub found: bool,
+    /// Where a log went that ended before the end of its header.
+    pub moved: Option<PathBuf>,
 }
 
-/// Simulates the trials on all processors and passes them on one by one, in order.
+/// Simulates the trials on all processors and passes them on one by one, in order. Trials that another program simulates in
+/// this folder are waited for after all others.
 ///
 /// # Errors
 /// Errors of [`simulate`], and the first error of `take`.
@@ -145,14 +151,34 @@ pub fn each_trial(
             return Ok(());
         }
         let one = |own: &mut Option<CostToGo>, trial: &u64| {
-            let mine = own.take().unwrap_or_else(|| cost.clone());
-            let (simulated, used) = simulate_trial(simulation, &kitchen, *trial, mine)?;
-            *own = Some(used);
-            Ok(simulated)
+            let simulated = simulate_trial(simulation, &kitchen, *trial, (own, &cost));
+            if simulated.is_ok() {
+                done();
+            }
+            simulated
         };
-        for simulated in workers.each(&block, one, &done) {
-            simulated.and_then(&mut take)?;
+        let mut simulated = workers.each(&block, one, || ());
+        let is_elsewhere =
+            |one: &Result<SimulatedTrial, RunError>| matches!(one, Err(RunError::Recording(WriteError::InUse { .. })));
+        let mut elsewhere: Vec<usize> = (0..block.len()).filter(|&index| is_elsewhere(&simulated[index])).collect();
+        while !elsewhere.is_empty() {
+            let trials: Vec<u64> = elsewhere.iter().map(|&index| block[index]).collect();
+            wait_for_any(simulation, &trials);
+            let again = workers.each(&trials, one, || ());
+            elsewhere.iter().zip(again).for_each(|(&index, one)| simulated[index] = one);
+            elsewhere.retain(|&index| is_elsewhere(&simulated[index]));
         }
+        for one in simulated {
+            one.and_then(&mut take)?;
+        }
+    }
+}
+
+/// Waits until nobody writes one of the recordings of these trials.
+fn wait_for_any(simulation: &SimulationRequest, trials: &[u64]) {
+    let folders: Vec<PathBuf> = trials.iter().map(|&trial| folder_of(simulation, trial)).collect();
+    while folders.iter().all(|folder| RecordingLock::holder(folder).is_some()) {
+        std::thread::sleep(LOOK);
     }
 }
 
@@ -195,32 +221,38 @@ fn header_of_trial(simulation: &SimulationRequest, trial: u64) -> Header {
     Header::new(spec, trial, files.layout.clone(), files.recipes.clone())
 }
 
+fn folder_of(simulation: &SimulationRequest, trial: u64) -> PathBuf {
+    folder_of_trial(&simulation.out, &header_of_trial(simulation, trial).session)
+}
+
+/// Simulates a trial, or reads it where it is there already, with a cost to go that was used before or one that was not.
 fn simulate_trial(
     simulation: &SimulationRequest,
     kitchen: &Arc<Kitchen>,
     trial: u64,
-    cost: CostToGo,
-) -> Result<(SimulatedTrial, CostToGo), RunError> {
+    (own, unused): (&mut Option<CostToGo>, &CostToGo),
+) -> Result<SimulatedTrial, RunError> {
     let header = header_of_trial(simulation, trial);
     let condition = header.session.trial.condition;
     let folder = folder_of_trial(&simulation.out, &header.session);
-    let found = is_whole(&folder, &header);
-    let follower = match found {
-        true => {
+    let opened = SimulatedLog::open(&folder, &header)?;
+    let cost = own.take().unwrap_or_else(|| unused.clone());
+    let (follower, found, moved) = match opened {
+        SimulatedLog::Whole => {
             let mut replay = Replay::over(LogReader::open(&folder).map_err(Box::new)?, cost);
             replay.run().map_err(Box::new)?;
-            replay.follower
+            (replay.follower, true, None)
         }
-        false => {
-            let mut log = LogWriter::create_simulated(&folder, &header)?;
+        SimulatedLog::Begun { mut log, moved } => {
             let mut engine = Engine::new(kitchen.clone(), header.session, header.trial, cost);
             headless::run(&mut engine, |stamped: &Stamped| log.append(stamped))?;
             log.flush()?;
-            engine.into_follower()
+            (engine.into_follower(), false, moved)
         }
     };
     let figures = TrialSummary::from_follower(&follower);
-    Ok((SimulatedTrial { folder, condition, figures, found }, follower.cost))
+    *own = Some(follower.cost);
+    Ok(SimulatedTrial { folder, condition, figures, found, moved })
 }
 
 /// The summary as text.
@@ -238,6 +270,7 @@ pub fn describe(figures: &SimulationSummary) -> String {
         0 => String::new(),
         some => format!(", {some} of them before"),
     };
+    let moved = describe_moved(&figures.moved);
     let by_condition: String = match &figures.conditions[..] {
         [] => String::new(),
         [one] if one.condition == Condition::None => String::new(),
@@ -247,7 +280,7 @@ pub fn describe(figures: &SimulationSummary) -> String {
         format!("look at one: tomcom replay {first}, or in Rerun: tomcom review {first}\n")
     });
     format!(
-        "{} of simulated participants, {:.0} s simulated in {:.1} s{found}\n\
+        "{moved}{} of simulated participants, {:.0} s simulated in {:.1} s{found}\n\
          presses: {} of the human, {} of the robot\n\
          errors: {} ({:.1} % of the human's presses, {:.1} % of all)\n\
          {by_condition}\
@@ -267,6 +300,14 @@ pub fn describe(figures: &SimulationSummary) -> String {
         figures.orders_served,
         figures.recordings.iter().map(|path| format!("  {path}")).collect::<Vec<_>>().join("\n"),
     )
+}
+
+/// Which logs could not be used, a line each.
+pub(super) fn describe_moved(moved: &[String]) -> String {
+    let line = |log: &String| {
+        format!("a log that ended before the end of its header was moved to {log}; its trial was simulated again\n")
+    };
+    moved.iter().map(line).collect()
 }
 
 fn describe_condition(one: &ConditionSummary) -> String {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::error::RunError;
-use super::simulate::{Shard, SimulationRequest, each_trial};
+use super::simulate::{Shard, SimulationRequest, describe_moved, each_trial};
 use crate::analysis::kitchen_summary::plan_lengths;
 use crate::analysis::sweep_row::{SweepRow, TrialErrors};
 use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
@@ -126,6 +126,8 @@ pub struct SweepSummary {
     /// Rows; the first is without signals.
     pub rows: Vec<SweepRow>,
     pub table: PathBuf,
+    /// Where logs went that ended before the end of their header; their trials were simulated again.
+    pub moved: Vec<String>,
 }
 
 /// Total number of trials of a sweep.
@@ -155,6 +157,7 @@ pub fn sweep(
     unassisted.files.spec.trial.condition = Condition::None;
     unassisted.out = simulation.out.join("unassisted");
     let (before, figures) = of_cell(&unassisted, &done)?;
+    let mut moved = figures.moved.clone();
     let mut rows = vec![SweepRow::new(&Cell::new(), &figures, None)];
     for (cell, spec) in cells.iter().zip(specs) {
         let mut one = simulation.clone();
@@ -162,9 +165,10 @@ pub fn sweep(
         one.out = simulation.out.join(folder_of(cell));
         let (trials, figures) = of_cell(&one, &done)?;
         rows.push(SweepRow::new(cell, &figures, Some([&before, &trials])));
+        moved.extend(figures.moved);
     }
     write_table(&table, axes, &rows).map_err(unwritable)?;
-    Ok(SweepSummary { rows, table })
+    Ok(SweepSummary { rows, table, moved })
 }
 
 /// Each shard has its own table; the whole table is made from all recordings.
@@ -250,14 +254,15 @@ fn of_cell(
     simulation.files.spec.assistant.shadow = Shadow::Off;
     let kitchen = Arc::new(simulation.files.kitchen.kitchen.clone());
     let plan_lengths = plan_lengths(&kitchen, &mut CostToGo::new(kitchen.clone()));
-    let (mut trials, mut sums) = (Vec::new(), SimulationSums::default());
+    let (mut trials, mut sums, mut moved) = (Vec::new(), SimulationSums::default(), Vec::new());
     each_trial(&simulation, done, |trial| {
+        moved.extend(trial.moved.map(|log| log.display().to_string()));
         let TrialSummary { errors, human_actions, .. } = trial.figures;
         trials.push(TrialErrors { errors, human_actions });
         sums.add(trial.condition, &trial.figures, &plan_lengths);
         Ok(())
     })?;
-    Ok((trials, sums.figures()))
+    Ok((trials, SimulationSummary { moved, ..sums.figures() }))
 }
 
 /// A column of numbers of the table: its name, and its value in a row.
@@ -294,7 +299,8 @@ fn write_table(path: &Path, axes: &[SweepAxis], rows: &[SweepRow]) -> std::io::R
 /// The table as text.
 pub fn describe(figures: &SweepSummary, axes: &[SweepAxis]) -> String {
     let settings: String = axes.iter().map(|axis| format!("{:>10}", axis.name)).collect();
-    let mut text = format!(
+    let mut text = describe_moved(&figures.moved);
+    text += &format!(
         "{settings}{:>12}{:>12}{:>18}{:>10}{:>15}\n",
         "errors/100", "signals/100", "errors spared", "sequence", "presses/order"
     );

@@ -2,12 +2,15 @@
 //! run one after another.
 
 mod commands;
+mod damage;
 mod docs;
+mod escapes;
 mod forgetting;
 mod forgetting_damage;
 mod forgetting_others;
 mod overwriting;
 mod plan;
+mod stuck_terminal;
 mod survival;
 mod terminal;
 mod tmux;

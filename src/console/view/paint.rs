@@ -7,6 +7,7 @@ use ratatui::text::Span;
 
 use super::regions::below_title;
 use super::theme::{TextRole, Theme};
+use crate::base::printable::printable;
 
 /// Paints on a buffer in a theme.
 pub struct Painter<'a> {
@@ -16,12 +17,13 @@ pub struct Painter<'a> {
 
 /// Columns that a text takes.
 pub fn width(text: &str) -> u16 {
-    Span::raw(text).width() as u16
+    Span::raw(printable(text)).width() as u16
 }
 
 /// The text cut to `columns`, with an ellipsis if something is missing.
 pub fn fit(text: &str, columns: u16, ellipsis: &str) -> String {
-    if width(text) <= columns {
+    let text = printable(text);
+    if width(&text) <= columns {
         return text.to_string();
     }
     let mut cut = String::new();
@@ -58,7 +60,7 @@ impl Painter<'_> {
         self.theme.style(role)
     }
 
-    /// Writes at most `columns` of a text and returns the column after it.
+    /// Writes at most `columns` of a text and returns the column after it. Control characters in it are written out.
     pub fn text(&mut self, x: u16, y: u16, columns: u16, text: &str, style: Style) -> u16 {
         let area = *self.buffer.area();
         if y < area.y || y >= area.bottom() || x < area.x || x >= area.right() {

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use super::WriteError;
-use crate::edge::file_error::{FileError, FileResult};
+use crate::base::words::count;
+use crate::edge::file_error::{FileError, FileResult, open_regular};
 use crate::edge::overwrite;
 use crate::measures::coding::{CauseKind, Codable, Code, Codes};
 use crate::session::settings::is_code;
@@ -35,11 +36,13 @@ pub struct CodeRow {
 /// The file is there but cannot be read, or says something that cannot be of this recording.
 pub fn read(folder: &Path, rater: &str, codable: &Codable) -> FileResult<Codes> {
     let path = path(folder, rater);
-    let text = match fs::read_to_string(&path) {
-        Ok(text) => text,
+    let mut bytes = Vec::new();
+    match open_regular(&path).and_then(|mut file| file.read_to_end(&mut bytes)) {
+        Ok(_) => {}
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Codes::default()),
         Err(reason) => return Err(FileError::unreadable(&path, reason, "a readable text file (UTF-8)")),
     };
+    let text = text_of(&path, bytes)?;
     let mut codes = Codes::default();
     for (line, _, press, code) in rows(&path, &text, &COLUMNS)? {
         if let Some((found, remedy)) = codable.fault(press, &code) {
@@ -90,7 +93,10 @@ pub fn write(folder: &Path, rater: &str, codes: &Codes) -> Result<(), WriteError
 /// # Errors
 /// It cannot be read, or is none.
 pub fn read_export(path: &Path) -> FileResult<(String, Vec<CodeRow>)> {
-    let text = crate::edge::file_error::read_text(path)?;
+    let bytes = fs::read(path);
+    let bytes =
+        bytes.map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))?;
+    let text = text_of(path, bytes)?;
     let row = |(line, before, press, code): ParsedRow| {
         let [recording, rater] = [before[0].clone(), before[1].clone()];
         CodeRow { line, recording, rater, press, code }
@@ -119,6 +125,16 @@ pub fn write_export(path: &Path, rows: &[CodeRow]) -> Result<(), WriteError> {
     write().map_err(|error| failed(error.into()))
 }
 
+/// The text of a table, or in which line it is none.
+fn text_of(path: &Path, bytes: Vec<u8>) -> FileResult<String> {
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = 1 + error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count();
+        let text = String::from_utf8_lossy(error.as_bytes());
+        wrong_line(path, &text, line, "bytes that are no text in UTF-8".to_string(), "a table that is saved as UTF-8")
+    })
+}
+
 /// An error about a line of such a file.
 pub fn wrong_line(path: &Path, text: &str, line: usize, found: String, remedy: &str) -> FileError {
     let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
@@ -133,11 +149,24 @@ type ParsedRow = (usize, Vec<String>, u64, Code);
 /// recording.
 fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<ParsedRow>> {
     let mut table = csv::Reader::from_reader(text.as_bytes());
-    let broken = |error: csv::Error| {
-        let line = error.position().map_or(1, |position| position.line() as usize);
-        wrong_line(path, text, line, error.to_string(), REMEDY)
+    // The position of a row counts empty lines before it to it.
+    let (mut counted, mut number) = (0, 1);
+    let mut line_of = |position: Option<&csv::Position>| {
+        let start = position.map_or(0, |position| (position.byte() as usize).min(text.len()));
+        let empty = text.as_bytes()[start..].iter().take_while(|byte| matches!(byte, b'\n' | b'\r')).count();
+        let end = counted.max(start + empty);
+        number += text.as_bytes()[counted..end].iter().filter(|&&byte| byte == b'\n').count();
+        counted = end;
+        number
     };
-    let head: Vec<String> = table.headers().map_err(broken)?.iter().map(str::to_string).collect();
+    let broken = |error: csv::Error, line: usize| {
+        let found = match error.kind() {
+            csv::ErrorKind::UnequalLengths { len, .. } => format!("record with {}", count(*len, "field", "fields")),
+            _ => error.to_string(),
+        };
+        wrong_line(path, text, line, found, REMEDY)
+    };
+    let head: Vec<String> = table.headers().map_err(|error| broken(error, 1))?.iter().map(str::to_string).collect();
     if head != columns {
         let remedy = format!("the columns {}", columns.join(","));
         return Err(wrong_line(path, text, 1, format!("the columns {}", head.join(",")), &remedy));
@@ -145,8 +174,11 @@ fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<ParsedRow>>
     let mut rows: Vec<ParsedRow> = Vec::new();
     let mut lines = BTreeMap::new();
     for record in table.records() {
-        let record = record.map_err(broken)?;
-        let line = record.position().map_or(1, |position| position.line() as usize);
+        let record = record.map_err(|error| {
+            let line = line_of(error.position());
+            broken(error, line)
+        })?;
+        let line = line_of(record.position());
         let before: Vec<String> = record.iter().take(columns.len() - 3).map(str::to_string).collect();
         let field = |back: usize| record.get(columns.len() - back).unwrap_or_default();
         let wrong = |(found, remedy): (String, &str)| wrong_line(path, text, line, found, remedy);

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{LogReader, RecordingLock, WriteError, check_continued};
 use crate::edge::clock::WallTime;
-use crate::edge::file_error::{FileError, FileResult};
+use crate::edge::file_error::{FileError, FileResult, read_regular};
 
 /// The name of the file in the folder of a recording.
 pub const EXCLUSION_NAME: &str = "exclusion.toml";
@@ -64,7 +64,7 @@ pub fn ruling(folder: &Path) -> FileResult<Option<ExclusionRecord>> {
 
 fn rulings(folder: &Path) -> FileResult<Rulings> {
     let path = folder.join(EXCLUSION_NAME);
-    let text = match fs::read_to_string(&path) {
+    let text = match read_regular(&path) {
         Ok(text) => text,
         Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
             return Ok(Rulings::default());

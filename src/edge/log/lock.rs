@@ -5,6 +5,7 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use super::WriteError;
+use crate::edge::file_error::open_regular;
 
 /// The name of the lock in the folder of a recording that is being written, with the number of the process in it, and
 /// where viewers connect.
@@ -69,7 +70,7 @@ impl RecordingLock {
 
     /// Who writes the recording in this folder; none where nobody does.
     pub fn holder(folder: &Path) -> Option<LockHolder> {
-        let mut file = File::open(folder.join(LOCK_NAME)).ok()?;
+        let mut file = open_regular(&folder.join(LOCK_NAME)).ok()?;
         match file.try_lock_shared() {
             Err(TryLockError::WouldBlock) => Some(LockHolder::read(&mut file)),
             Ok(()) | Err(TryLockError::Error(_)) => None,

@@ -4,18 +4,22 @@
 
 pub mod codes;
 mod exclusion;
+mod guarded;
 mod lock;
 mod reader;
+mod simulated;
 mod writer;
 
+use std::fs;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::session::Stamped;
 pub use exclusion::{EXCLUSION_NAME, ExclusionError, ExclusionRecord, rule, ruling};
 pub use lock::{LOCK_NAME, LockHolder, RecordingLock};
 pub use reader::{LogEnding, LogLine, LogReader, at_line};
-pub use writer::{LogWriter, check_continued, check_simulated, is_whole, is_written_settings};
+pub use simulated::{SimulatedLog, check_simulated};
+pub use writer::{LogWriter, check_continued, is_written_settings};
 
 /// The name of the log in its folder.
 pub const LOG_NAME: &str = "events.jsonl";
@@ -34,6 +38,18 @@ pub enum WriteError {
         path: PathBuf,
         reason: io::Error,
         /// Where what was recorded was saved to, if it is no longer where it was.
+        saved: Option<PathBuf>,
+    },
+    /// Everything that was acknowledged is in the saved log, if there is one.
+    #[error("{}: the log {found}{}", path.display(), rescued(.saved))]
+    #[diagnostic(help(
+        "other programs may read the log of a running session, and change nothing; as they left it, it is kept beside the \
+         saved one as {LOG_NAME}.damaged"
+    ))]
+    Damaged {
+        path: PathBuf,
+        /// What was done to it.
+        found: String,
         saved: Option<PathBuf>,
     },
     #[error("{}: another program{} writes this recording", folder.display(), process(.pid))]
@@ -59,6 +75,18 @@ fn rescued(saved: &Option<PathBuf>) -> String {
 
 fn process(pid: &Option<u32>) -> String {
     pid.map_or(String::new(), |pid| format!(" (process {pid})"))
+}
+
+/// Gives a log that cannot be used a name beside it that is free: `events.jsonl.damaged`, `events.jsonl.damaged2`, …; its
+/// path now, if there was one.
+fn move_aside(log: &Path) -> io::Result<Option<PathBuf>> {
+    let named = |n: u32| {
+        let number = if n == 1 { String::new() } else { n.to_string() };
+        log.with_file_name(format!("{LOG_NAME}.damaged{number}"))
+    };
+    let aside = (1..).map(named).find(|path| fs::symlink_metadata(path).is_err());
+    let Some(aside) = aside.filter(|_| fs::symlink_metadata(log).is_ok()) else { return Ok(None) };
+    fs::rename(log, &aside).map(|()| Some(aside))
 }
 
 /// The line of the log for an event, without its end.

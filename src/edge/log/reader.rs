@@ -1,12 +1,12 @@
 //! Reads recordings, also those that are still being written, and over all their parts.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::{LOG_NAME, RecordingLock};
-use crate::edge::file_error::{FileError, FileResult};
+use crate::edge::file_error::{FileError, FileResult, open_regular};
 use crate::edge::files::compile_kitchen;
 use crate::kitchen::Kitchen;
 use crate::session::header::{Continues, FORMAT, VERSION};
@@ -66,11 +66,14 @@ impl LogReader {
     fn open_part(recording: &Path, parts: usize) -> FileResult<LogReader> {
         let path = if recording.is_dir() { recording.join(LOG_NAME) } else { recording.to_path_buf() };
         let remedy = "the folder of a recording, with its events.jsonl";
-        let file = File::open(&path).map_err(|reason| FileError::unreadable(&path, reason, remedy))?;
+        let file = open_regular(&path).map_err(|reason| FileError::unreadable(&path, reason, remedy))?;
         let mut input = BufReader::with_capacity(1 << 16, file);
-        let mut line = Vec::new();
-        let read = input.by_ref().take(MAX_LINE as u64).read_until(b'\n', &mut line);
-        read.map_err(|reason| FileError::unreadable(&path, reason, remedy))?;
+        let line = first_line(&mut input).map_err(|reason| FileError::unreadable(&path, reason, remedy))?;
+        if ends_in_header(&line) {
+            let found = "a log that ends before the end of its header, as a power failure leaves it".to_string();
+            let remedy = "a recording with a header; tomcom simulate makes a simulated one again".to_string();
+            return Err(at_line(&path, 1, &String::from_utf8_lossy(&line), line.len(), found, remedy));
+        }
         let text = String::from_utf8_lossy(&line).into_owned();
         let text = text.trim_end();
         let header = read_header(&path, text)?;
@@ -212,6 +215,19 @@ fn open_before(path: &Path, text: &str, header: &Header, before: &Continues, par
         true => Ok(first),
         false => Err(wrong(format!("another session than that of {name}"), "the session that it continues")),
     }
+}
+
+/// Whether the first line of a log is all that a power failure left of it: nothing, zeros, or the beginning of a header.
+pub(super) fn ends_in_header(line: &[u8]) -> bool {
+    let begins = format!("{{\"format\":\"{FORMAT}\"");
+    let is_begun = line.iter().zip(begins.as_bytes()).all(|(there, ours)| there == ours);
+    line.last() != Some(&b'\n') && (is_begun || line.iter().all(|&byte| byte == 0))
+}
+
+/// The first line of a log, with its end where it has one.
+pub(super) fn first_line(log: &mut impl BufRead) -> io::Result<Vec<u8>> {
+    let mut line = Vec::new();
+    log.take(MAX_LINE as u64).read_until(b'\n', &mut line).map(|_| line)
 }
 
 /// An error in one line of a long file: the excerpt keeps the number of the line.

@@ -1,14 +1,15 @@
 //! Writes recordings.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Seek, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use super::guarded::GuardedFile;
 use super::lock::{RecordingLock, is_same};
-use super::{LOG_NAME, LogReader, SETTINGS_NAME, WriteError};
+use super::{LOG_NAME, SETTINGS_NAME, WriteError, move_aside};
 use crate::base::time::SessionTime;
 use crate::edge::rescue::{RescueNote, rescue_folder};
-use crate::session::{Event, Header, SessionSpec, Stamped};
+use crate::session::{Header, SessionSpec, Stamped};
 
 /// Gaze samples wait at most so long, in session time, before they are handed to the operating system.
 const FLUSH_AFTER: SessionTime = SessionTime(50_000_000);
@@ -20,7 +21,7 @@ const PART: &str = "-part";
 pub struct LogWriter {
     folder: PathBuf,
     path: PathBuf,
-    out: BufWriter<File>,
+    out: BufWriter<GuardedFile>,
     /// Hand events to the operating system as they come, because somebody relies on them.
     prompt: bool,
     flushed_at: SessionTime,
@@ -39,7 +40,7 @@ impl LogWriter {
         loop {
             let folder = root.join(format!("{date}-{}-{n}", header.session.participant.code));
             match fs::create_dir(&folder) {
-                Ok(()) => return LogWriter::begin(folder, header, true),
+                Ok(()) => return LogWriter::begin(RecordingLock::take(&folder)?, folder, header, true),
                 Err(reason) if reason.kind() == io::ErrorKind::AlreadyExists => n += 1,
                 Err(reason) => return Err(WriteError::unwritable(folder, reason)),
             }
@@ -55,22 +56,16 @@ impl LogWriter {
         let part = next_part(folder);
         // A part that was killed before it had a log is there already, and continues nothing.
         fs::create_dir_all(&part).map_err(|reason| WriteError::unwritable(&part, reason))?;
-        LogWriter::begin(part, header, true)
-    }
-
-    /// Starts a simulated recording in this folder.
-    ///
-    /// # Errors
-    /// Those of [`check_simulated`], or the folder cannot be written to.
-    pub fn create_simulated(folder: &Path, header: &Header) -> Result<LogWriter, WriteError> {
-        check_simulated(folder, header)?;
-        fs::create_dir_all(folder).map_err(|reason| WriteError::unwritable(folder, reason))?;
-        LogWriter::begin(folder.to_path_buf(), header, false)
+        LogWriter::begin(RecordingLock::take(&part)?, part, header, true)
     }
 
     /// The log gets its name when its header is complete, so that no log is without one after a kill.
-    fn begin(folder: PathBuf, header: &Header, prompt: bool) -> Result<LogWriter, WriteError> {
-        let lock = RecordingLock::take(&folder)?;
+    pub(super) fn begin(
+        lock: RecordingLock,
+        folder: PathBuf,
+        header: &Header,
+        prompt: bool,
+    ) -> Result<LogWriter, WriteError> {
         let path = folder.join(LOG_NAME);
         let failed = |reason| WriteError::unwritable(&path, reason);
         let settings = toml::to_string(&header.session).map_err(|error| failed(io::Error::other(error)))?;
@@ -79,6 +74,7 @@ impl LogWriter {
         // It is read again if the folder vanishes.
         let file =
             OpenOptions::new().read(true).write(true).create(true).truncate(true).open(&begun).map_err(failed)?;
+        let file = if prompt { GuardedFile::guarded(file, &folder) } else { GuardedFile::unguarded(file) };
         let mut out = BufWriter::with_capacity(1 << 16, file);
         write_line(&mut out, header).and_then(|()| out.flush()).map_err(failed)?;
         fs::rename(&begun, &path).map_err(failed)?;
@@ -113,16 +109,20 @@ impl LogWriter {
         self.out.flush().map_err(|reason| WriteError::unwritable(&self.path, reason))
     }
 
-    /// Looks whether what is written still goes where it should: an open file takes every event, also after it was
-    /// deleted, moved away or made read-only. What vanished is saved from the open file, into a folder of the same name:
-    /// where it was, or else below the system's folder for temporary files.
+    /// Looks whether what is written still goes where it should, and is as it was written: an open file takes every event,
+    /// also after it was deleted, moved away, cut, overwritten or made read-only. What was recorded is saved into a folder of
+    /// the same name: where it was, or else below the system's folder for temporary files.
     ///
     /// # Errors
-    /// The log is gone, or it must not be written any more.
+    /// The log is gone or damaged, or it must not be written any more.
     pub fn check(&mut self) -> Result<(), WriteError> {
-        if !is_same(self.out.get_ref(), &self.path) {
-            let reason = io::Error::new(io::ErrorKind::NotFound, "its folder was removed");
-            return Err(WriteError::Unwritable { path: self.path.clone(), reason, saved: self.rescue() });
+        if !is_same(self.out.get_ref().file(), &self.path) {
+            let found = if self.path.exists() { "another file took its place" } else { "its folder was removed" };
+            let reason = io::Error::new(io::ErrorKind::NotFound, found);
+            return Err(WriteError::Unwritable { path: self.path.clone(), reason, saved: self.rescue(false) });
+        }
+        if let Some(found) = self.out.get_mut().damage() {
+            return Err(WriteError::Damaged { path: self.path.clone(), found, saved: self.rescue(true) });
         }
         let is_readonly = |path: &Path| fs::metadata(path).is_ok_and(|data| data.permissions().readonly());
         match is_readonly(&self.path) || is_readonly(&self.folder) {
@@ -134,34 +134,38 @@ impl LogWriter {
         }
     }
 
-    /// Copies what was recorded out of the open file; the folder where it is now.
-    fn rescue(&mut self) -> Option<PathBuf> {
+    /// Saves what was recorded; the folder where it is now.
+    fn rescue(&mut self, is_damaged: bool) -> Option<PathBuf> {
         // What cannot be handed over any more was not acknowledged for longer than gaze may wait.
         let _ = self.out.flush();
         let name = self.folder.file_name()?;
         let elsewhere = rescue_folder(&std::env::temp_dir()).join(name);
-        if self.copy_to(&self.folder.clone()).is_ok() {
+        if self.save_to(&self.folder.clone(), is_damaged).is_ok() {
             return Some(self.folder.clone());
         }
-        self.copy_to(&elsewhere).ok()?;
+        self.save_to(&elsewhere, is_damaged).ok()?;
         // The data is saved; the note only helps to find out later where it belongs.
         let _ = RescueNote { home: self.home.clone() }.write(&elsewhere);
         Some(elsewhere)
     }
 
-    fn copy_to(&mut self, folder: &Path) -> io::Result<()> {
+    fn save_to(&mut self, folder: &Path, is_damaged: bool) -> io::Result<()> {
         fs::create_dir_all(folder)?;
-        let mut copy = OpenOptions::new().write(true).create_new(true).open(folder.join(LOG_NAME))?;
-        let log = self.out.get_mut();
-        log.rewind()?;
-        io::copy(log, &mut copy)?;
-        // Settings that are there already stay: nothing follows from them that the log does not say.
+        let (log, begun) = (folder.join(LOG_NAME), folder.join(format!("{LOG_NAME}.new")));
+        let mut saved = File::create(&begun)?;
+        if let Err(reason) = self.out.get_mut().save(is_damaged, &mut saved) {
+            // A leftover temporary file is harmless.
+            let _ = fs::remove_file(&begun);
+            return Err(reason);
+        }
+        // Existing settings stay: the log contains all of them.
         match OpenOptions::new().write(true).create_new(true).open(folder.join(SETTINGS_NAME)) {
             Ok(mut file) => file.write_all(self.settings.as_bytes())?,
             Err(reason) if reason.kind() == io::ErrorKind::AlreadyExists => {}
             Err(reason) => return Err(reason),
         }
-        copy.sync_all()
+        move_aside(&log)?;
+        fs::rename(&begun, &log)
     }
 }
 
@@ -183,45 +187,6 @@ fn next_part(folder: &Path) -> PathBuf {
     let numbered = name.rsplit_once(PART).and_then(|(first, n)| Some((first, n.parse::<u64>().ok()?)));
     let (first, n) = numbered.unwrap_or((&name, 1));
     folder.with_file_name(format!("{first}{PART}{}", n.saturating_add(1)))
-}
-
-/// Whether a simulated recording may go into this folder: the same header gives the same recording, which may be
-/// replaced; any other one may not.
-///
-/// # Errors
-/// Another recording is there, or settings of somebody else.
-pub fn check_simulated(folder: &Path, header: &Header) -> Result<(), WriteError> {
-    if !folder.join(LOG_NAME).exists() {
-        // A kill before the log leaves settings behind.
-        let is_foreign = fs::read_to_string(folder.join(SETTINGS_NAME)).is_ok_and(|text| !is_written_settings(&text));
-        let what = "a session.toml that tomcom did not write";
-        return if is_foreign { Err(WriteError::Taken { folder: folder.to_path_buf(), what }) } else { Ok(()) };
-    }
-    let what = match LogReader::open(folder).map(|log| log.header) {
-        Ok(there) if there == *header => return Ok(()),
-        Ok(there) if there.started.is_some() => "a live recording",
-        Ok(_) => "the recording of another session",
-        Err(_) => "a recording that cannot be read",
-    };
-    Err(WriteError::Taken { folder: folder.to_path_buf(), what })
-}
-
-/// Whether the simulated recording of this header is in this folder, whole: with the end of its session.
-pub fn is_whole(folder: &Path, header: &Header) -> bool {
-    /// The last line is shorter, in bytes.
-    const LAST: u64 = 256;
-    let ends = || -> io::Result<bool> {
-        let mut log = File::open(folder.join(LOG_NAME))?;
-        let length = log.seek(io::SeekFrom::End(0))?;
-        log.seek(io::SeekFrom::Start(length.saturating_sub(LAST)))?;
-        let mut end = Vec::new();
-        io::Read::read_to_end(&mut log, &mut end)?;
-        let end = String::from_utf8_lossy(&end);
-        let last = end.strip_suffix('\n').and_then(|lines| lines.rsplit('\n').next());
-        let last = last.and_then(|line| serde_json::from_str::<Stamped>(line).ok());
-        Ok(last.is_some_and(|last| last.event == Event::SessionEnded))
-    };
-    ends().unwrap_or(false) && LogReader::open(folder).is_ok_and(|log| log.header == *header)
 }
 
 /// Whether this program wrote these settings into the folder of a recording: it writes all of them and nothing else.

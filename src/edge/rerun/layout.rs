@@ -13,14 +13,27 @@ use re_sdk::external::re_log_types::{BlueprintActivationCommand, LogMsg, TimeInt
 use re_sdk::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
 use re_sdk_types::blueprint::archetypes::{EyeControls3D, PlotLegend, ScalarAxis, TextLogColumns};
 
-use super::{APPLICATION, StreamLane, TRIAL_TIME};
 use crate::base::time::SessionTime;
+
+/// All recordings share one blueprint.
+pub(super) const APPLICATION: &str = "tomcom";
+/// The timeline that viewers open with: the trial's clock, as the console shows it.
+pub const TRIAL_TIME: &str = "trial_time";
 
 /// From where the arm is looked at, and what at, in metres from its base: the whole table, from the human's side.
 const EYE_M: [f32; 3] = [1.3, -1.0, 0.98];
 const LOOKED_AT_M: [f32; 3] = [0.3, 0.0, 0.2];
 /// The axis of probabilities, with room for curves at its ends.
 const PROBABILITY: [f64; 2] = [-0.03, 1.03];
+
+/// One of the recordings in a stream.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StreamLane {
+    /// Its entities are below this one; empty: at the top.
+    pub root: String,
+    /// What the viewer calls it among others.
+    pub title: String,
+}
 
 /// A property of a view: where it stands in the blueprint, and what it is.
 type Property = (String, Vec<SerializedComponentBatch>);

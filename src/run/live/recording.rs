@@ -97,6 +97,7 @@ impl Live {
     pub(super) fn fail(&mut self, error: WriteError) {
         let (reason, saved) = match &error {
             WriteError::Unwritable { reason, saved, .. } => (reason.to_string(), saved.clone()),
+            WriteError::Damaged { found, saved, .. } => (format!("the log {found}"), saved.clone()),
             error => (error.to_string(), None),
         };
         let saved = saved.map_or(String::new(), |saved| format!(", saved in {}", saved.display()));

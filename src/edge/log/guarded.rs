@@ -1,0 +1,202 @@
+//! The file of a log while it is written. What goes into a guarded file is kept a second time, where no other program can
+//! change it: so damage to the log is noticed, and what was recorded can be saved.
+
+use std::fs::File;
+use std::io::{self, Seek, Write};
+use std::path::Path;
+
+/// The end of the log that every check compares, in bytes: some seconds of gaze.
+const TAIL: u64 = 64 << 10;
+/// What every check compares of the rest beside that, in bytes, so that checks go round the whole log.
+const STRETCH: u64 = 1 << 20;
+/// Compared at once, in bytes.
+#[cfg(unix)]
+const PIECE: usize = 64 << 10;
+
+/// A log that is being written.
+#[derive(Debug)]
+pub(super) struct GuardedFile {
+    file: File,
+    /// The same bytes in a file without a name; none where it is not guarded, or the copy could not be written.
+    copy: Option<File>,
+    /// What was written to it, in bytes.
+    length: u64,
+    /// Where the next check goes on, in bytes.
+    next: u64,
+}
+
+impl Write for GuardedFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.length += written as u64;
+        // A copy that is not whole is none; the log goes on without it.
+        self.copy = self.copy.take().filter(|mut copy| copy.write_all(&bytes[..written]).is_ok());
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl GuardedFile {
+    /// A file that is as its writer left it, whatever others do to it: nobody looks.
+    pub(super) fn unguarded(file: File) -> GuardedFile {
+        GuardedFile { file, copy: None, length: 0, next: 0 }
+    }
+
+    /// A file with a copy below the system's folder for temporary files, or else in this folder.
+    pub(super) fn guarded(file: File, folder: &Path) -> GuardedFile {
+        let copy = nameless(&std::env::temp_dir()).or_else(|_| nameless(folder)).ok();
+        GuardedFile { copy, ..GuardedFile::unguarded(file) }
+    }
+
+    pub(super) fn file(&self) -> &File {
+        &self.file
+    }
+
+    /// What another program did to the file, if it is not as it was written: its length, its end, and by and by the rest.
+    pub(super) fn damage(&mut self) -> Option<String> {
+        let length = match self.file.metadata() {
+            Ok(data) => data.len(),
+            Err(reason) => return Some(format!("cannot be looked at: {reason}")),
+        };
+        if length != self.length {
+            let how = if length < self.length { "was cut" } else { "was written to" };
+            return Some(format!("{how} by another program: {length} bytes, {} were recorded", self.length));
+        }
+        let tail = self.length.saturating_sub(TAIL);
+        if self.next >= tail {
+            self.next = 0;
+        }
+        let stretch = self.next..(self.next + STRETCH).min(tail);
+        self.next = stretch.end;
+        let at = self.difference(tail, self.length).or_else(|| self.difference(stretch.start, stretch.end))?;
+        Some(format!("was overwritten by another program, at byte {at} of {}", self.length))
+    }
+
+    /// The first byte between these two that is not as it was written; none where there is no copy to tell.
+    #[cfg(unix)]
+    fn difference(&mut self, from: u64, until: u64) -> Option<u64> {
+        use std::os::unix::fs::FileExt;
+        let (mut copied, mut found) = ([0; PIECE], [0; PIECE]);
+        let mut at = from;
+        while at < until {
+            let size = PIECE.min((until - at) as usize);
+            let copy = self.copy.as_ref()?;
+            if copy.read_exact_at(&mut copied[..size], at).is_err() {
+                self.copy = None;
+                return None;
+            }
+            // What cannot be read back was taken away meanwhile, or the disk is broken.
+            if self.file.read_exact_at(&mut found[..size], at).is_err() {
+                return Some(at);
+            }
+            if copied[..size] != found[..size] {
+                let index = copied.iter().zip(&found).position(|(copied, found)| copied != found);
+                return index.map(|index| at + index as u64);
+            }
+            at += size as u64;
+        }
+        None
+    }
+
+    /// There are no copies on this system.
+    #[cfg(not(unix))]
+    fn difference(&mut self, _from: u64, _until: u64) -> Option<u64> {
+        None
+    }
+
+    /// Writes what was recorded to another file: from the copy, or from the file itself where that is undamaged.
+    ///
+    /// # Errors
+    /// There is nothing to take it from, or it cannot be written.
+    pub(super) fn save(&mut self, is_damaged: bool, to: &mut File) -> io::Result<()> {
+        let from = match (&mut self.copy, is_damaged) {
+            (Some(copy), _) => copy,
+            (None, false) => &mut self.file,
+            (None, true) => return Err(io::Error::from(io::ErrorKind::NotFound)),
+        };
+        from.rewind()?;
+        io::copy(from, to)?;
+        to.sync_all()
+    }
+}
+
+/// A file that only this process can reach, and that ends with it.
+#[cfg(unix)]
+fn nameless(folder: &Path) -> io::Result<File> {
+    use std::os::unix::fs::OpenOptionsExt;
+    /// Other programs may have taken a name.
+    const NAMES: u32 = 100;
+    let mut failed = io::Error::from(io::ErrorKind::AlreadyExists);
+    for n in 0..NAMES {
+        let path = folder.join(format!(".tomcom-{}-{n}", std::process::id()));
+        match File::options().read(true).write(true).create_new(true).mode(0o600).open(&path) {
+            Ok(file) => return std::fs::remove_file(&path).map(|()| file),
+            Err(reason) => failed = reason,
+        }
+    }
+    Err(failed)
+}
+
+/// A file that is open cannot lose its name on this system.
+#[cfg(not(unix))]
+fn nameless(_folder: &Path) -> io::Result<File> {
+    Err(io::Error::from(io::ErrorKind::Unsupported))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A guarded log of so many bytes that are all alike, in a folder of its own.
+    fn check(name: &str, bytes: usize, harm: impl FnOnce(&Path), found: Option<&str>) {
+        let folder = std::env::temp_dir().join(format!("tomcom-guarded-{}-{name}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("log");
+        let file = File::options().read(true).write(true).create_new(true).open(&path).unwrap();
+        let mut log = GuardedFile::guarded(file, &folder);
+        log.write_all(&vec![b'x'; bytes]).unwrap();
+        assert_eq!(log.damage(), None);
+        harm(&path);
+        // As a live session does before it looks again.
+        log.write_all(b"more\n").unwrap();
+        let rounds = bytes as u64 / STRETCH + 2;
+        let damage = (0..rounds).find_map(|_| log.damage());
+        assert_eq!(damage.is_some(), found.is_some(), "{name}: {damage:?}");
+        assert!(damage.iter().all(|damage| damage.contains(found.unwrap_or_default())), "{name}: {damage:?}");
+        let saved = folder.join("saved");
+        log.save(damage.is_some(), &mut File::create(&saved).unwrap()).unwrap();
+        assert_eq!(std::fs::read(saved).unwrap(), [&vec![b'x'; bytes][..], b"more\n"].concat(), "{name}");
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 2, "{name}: the copy has no name");
+        std::fs::remove_dir_all(folder).unwrap();
+    }
+
+    fn overwrite(path: &Path, at: u64, with: &[u8]) {
+        use std::os::unix::fs::FileExt;
+        File::options().write(true).open(path).unwrap().write_all_at(with, at).unwrap();
+    }
+
+    #[test]
+    fn what_another_program_does_to_a_log_is_noticed_and_what_was_recorded_is_saved() {
+        const LONG: usize = 5 << 20;
+        check("untouched", LONG, |_| (), None);
+        // Its own next write makes it as long as before, with zeros between.
+        check(
+            "cut",
+            LONG,
+            |path| File::create(path).map(drop).unwrap(),
+            Some("overwritten by another program, at byte"),
+        );
+        check(
+            "longer",
+            100,
+            |path| overwrite(path, 100, b"other longer line"),
+            Some("was written to by another program"),
+        );
+        check("end", LONG, |path| overwrite(path, LONG as u64 - 9, b"y"), Some(&format!("at byte {}", LONG - 9)));
+        check("beginning", LONG, |path| overwrite(path, 3, b"y"), Some("at byte 3 of"));
+        check("middle", LONG, |path| overwrite(path, 3 << 20, b"y"), Some(&format!("at byte {}", 3 << 20)));
+    }
+}

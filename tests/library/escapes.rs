@@ -1,0 +1,136 @@
+//! Text from outside reaches a terminal only as text: what could command it is written out.
+
+use std::borrow::Cow;
+use std::path::Path;
+use std::sync::Arc;
+
+use miette::{GraphicalReportHandler, GraphicalTheme};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use tomcom::analysis::event_lines;
+use tomcom::analysis::follower::Follower;
+use tomcom::base::printable::{printable, printable_lines};
+use tomcom::base::time::SessionTime;
+use tomcom::console::notice::NoticeLevel;
+use tomcom::console::view::theme::{TerminalBackground, Theme};
+use tomcom::console::{ConsoleModel, KeyBindings, KeyMap, view};
+use tomcom::edge::file_error::FileError;
+use tomcom::edge::files::read_kitchen;
+use tomcom::edge::parse::parse;
+use tomcom::kitchen::Kitchen;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::kitchen::layout::LayoutSpec;
+use tomcom::session::tracker::TrackerEvent;
+use tomcom::session::{Event, Session, SessionSpec, Stamped, apply};
+
+/// Clears the screen, sets the title of the window, reverses the direction of writing, and begins a sequence in one byte.
+const HOSTILE: &str = "a\x1b[2J\x1b]0;title\x07b\u{202e}c\u{9b}31md\r\ne";
+/// What is left of it on one line.
+const WRITTEN_OUT: &str = "a\\u001b[2J\\u001b]0;title\\u0007b\\u202ec\\u009b31md\\r\\ne";
+
+fn is_harmless(text: &str) -> bool {
+    !text.chars().any(|letter| letter.is_control() && letter != '\n') && !text.contains('\u{202e}')
+}
+
+fn kitchen() -> Arc<Kitchen> {
+    Arc::new(read_kitchen(Path::new("layouts/sushi.toml")).expect("the kitchen loads").kitchen)
+}
+
+fn session() -> Session {
+    let spec: SessionSpec = toml::from_str("layout = \"\"").expect("the settings have defaults");
+    Session::new(kitchen(), spec, 0)
+}
+
+#[test]
+fn control_characters_are_written_out_and_all_else_stays() {
+    assert_eq!(printable(HOSTILE), WRITTEN_OUT);
+    assert_eq!(printable_lines("a\tb\r\nc\rd\n\x1be"), "a\tb\r\nc\\rd\n\\u001be");
+    assert_eq!(printable("\u{7f}\u{85}\u{2028}\u{2066}\u{61c}"), "\\u007f\\u0085\\u2028\\u2066\\u061c");
+    for text in ["", "press \u{00e4} \u{4e2d}\u{6587} \u{1f363} e\u{301} \u{2026}", "\\u001b is written so"] {
+        assert!(matches!(printable(text), Cow::Borrowed(same) if same == text), "{text}");
+    }
+    let json = serde_json::to_string(&HOSTILE).expect("a string");
+    let read: String = serde_json::from_str(&printable_lines(&json)).expect("it is JSON still");
+    assert_eq!(read, HOSTILE, "in JSON no value changes");
+}
+
+#[test]
+fn the_console_shows_notes_devices_and_messages_written_out() {
+    let mut session = session();
+    let keys = KeyBindings::live(&session.kitchen, &session.spec, &KeyMap::default()).expect("the keys are free");
+    let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
+    let mut model = ConsoleModel::new(keys, theme, (200, 60));
+    let events = [
+        Event::TrialStarted,
+        Event::Tracker(TrackerEvent::Connected { device: HOSTILE.to_string() }),
+        Event::Marker { note: HOSTILE.to_string() },
+    ];
+    for (seq, event) in events.into_iter().enumerate() {
+        let stamped = Stamped { seq: seq as u64, time: SessionTime(seq as u64), event };
+        apply(&mut session, &stamped).expect("the event fits");
+    }
+    model.say(NoticeLevel::Alarm, format!("cannot write {HOSTILE}"));
+    let mut terminal = Terminal::new(TestBackend::new(200, 60)).expect("a terminal");
+    terminal.draw(|frame| view(&session, &model, frame)).expect("drawn");
+    let buffer = terminal.backend().buffer();
+    let rows: Vec<String> =
+        buffer.content.chunks(200).map(|row| row.iter().map(|cell| cell.symbol()).collect()).collect();
+    assert!(rows.iter().all(|row| is_harmless(row)), "{rows:#?}");
+    assert!(rows.iter().any(|row| row.contains(&format!("cannot write {WRITTEN_OUT}"))), "{rows:#?}");
+    assert!(rows.iter().any(|row| row.contains("a\\u001b[2J") && !row.contains("cannot write")), "the note: {rows:#?}");
+}
+
+#[test]
+fn a_recording_is_told_with_notes_and_devices_written_out() {
+    let session = session();
+    let cost = CostToGo::new(session.kitchen.clone());
+    let mut follower = Follower::new(session, cost);
+    let told = [
+        (Event::Marker { note: HOSTILE.to_string() }, "marker: "),
+        (Event::Tracker(TrackerEvent::Connected { device: HOSTILE.to_string() }), "eye tracker connected: "),
+        (Event::Tracker(TrackerEvent::Lost { reason: HOSTILE.to_string() }), "eye tracker lost: "),
+    ];
+    for (seq, (event, words)) in told.into_iter().enumerate() {
+        let stamped = Stamped { seq: seq as u64, time: SessionTime::ZERO, event };
+        follower.apply(&stamped).expect("the event fits");
+        let line = event_lines::line(&stamped, &follower).expect("a line");
+        assert!(line.ends_with(&format!("{words}{WRITTEN_OUT}")), "{line}");
+    }
+}
+
+/// How an error is shown, without colours.
+fn shown(error: &FileError) -> String {
+    let mut text = String::new();
+    GraphicalReportHandler::new_themed(GraphicalTheme::unicode_nocolor())
+        .render_report(&mut text, error)
+        .expect("text");
+    text
+}
+
+#[test]
+fn an_error_shows_the_place_in_the_file_written_out() {
+    let text = format!("name = \"{}\"\nwidth = x\x1b[31m # \u{e4}\n", HOSTILE.replace("\r\n", ""));
+    let error = FileError::at(
+        Path::new("lay\x1b[0mout.toml"),
+        &text,
+        text.find("x\x1b[31m").map(|at| at..at + 6),
+        format!("x\x1b{HOSTILE}"),
+        "a number".to_string(),
+    );
+    let text = shown(&error);
+    assert!(is_harmless(&text), "{text}");
+    assert!(text.contains("lay\\u001b[0mout.toml:2"), "{text}");
+    let lines: Vec<&str> = text.lines().collect();
+    let place = lines.iter().position(|line| line.contains("width = x\\u001b[31m")).expect("the line");
+    let column = |line: &str, of: char| line.chars().position(|letter| letter == of);
+    let marked = lines[place + 1];
+    assert_eq!(column(lines[place], 'x'), marked.chars().position(|letter| "─┬".contains(letter)), "{text}");
+    assert_eq!(marked.chars().filter(|letter| "─┬".contains(*letter)).count(), "x\\u001b[31m".len(), "{text}");
+}
+
+#[test]
+fn a_layout_with_control_characters_gives_an_error_that_can_be_shown() {
+    let text = "name = \"a\\u001b[2J\"\nfoo\x1b[31m = 1\n";
+    let error = parse::<LayoutSpec>(Path::new("layout.toml"), text).expect_err("it is no layout");
+    assert!(is_harmless(&shown(&error)), "{}", shown(&error));
+}

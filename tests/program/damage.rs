@@ -1,0 +1,342 @@
+//! Damage in place: logs that another program changes under the running session, logs that a power failure left without
+//! their header, pipes in place of logs, and several programs that fill one folder. Without tmux those at the console say that
+//! they were skipped.
+
+use std::fs::{self, File};
+use std::io::{Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use serial_test::serial;
+use tomcom::edge::log::{LOG_NAME, RecordingLock};
+
+use crate::tmux::{PATIENCE, TOMCOM, Terminal, tomcom};
+
+/// The name of a log that was moved aside.
+const ASIDE: &str = "events.jsonl.damaged";
+
+/// A folder of its own, empty.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("damage").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{output:?}"))
+}
+
+fn start(arguments: &[&str]) -> Child {
+    let mut command = Command::new(TOMCOM);
+    command.args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.spawn().expect("tomcom runs")
+}
+
+/// What a program said that has to end by itself.
+fn end(what: &str, mut child: Child) -> Output {
+    let began = Instant::now();
+    while child.try_wait().expect("a child").is_none() {
+        if began.elapsed() > PATIENCE {
+            child.kill().expect("killed");
+            panic!("{what} does not end: {:?}", child.wait_with_output());
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    child.wait_with_output().expect("its output")
+}
+
+/// Does something bad to the log of a running session: it is told, and everything that was acknowledged is in the log that
+/// stands in its place; what the other program made of it stands beside that.
+fn check_damage(name: &str, bad: impl FnOnce(&Path), says: &str) {
+    let Some(terminal) = Terminal::open(name) else { return };
+    let errors = terminal.folder.join("errors");
+    terminal.operate("default.toml", &format!("2> {}", errors.display()));
+    terminal.start();
+    terminal.wait("gaze", || terminal.count("\"kind\":\"gaze\"") > 50);
+    let (recording, before) = (terminal.recording(), terminal.log());
+    let began = Instant::now();
+    bad(&recording.join(LOG_NAME));
+    terminal.see("RECORDING LOST");
+    println!("{name}: alarm after {} ms", began.elapsed().as_millis());
+    terminal.see("ROBOT STOPPED");
+    terminal.see("CLOSED");
+    let after = terminal.log();
+    let complete = before.rfind('\n').map_or("", |end| &before[..=end]);
+    assert!(after.starts_with(complete), "{name}: what was acknowledged is lost");
+    let found = json(&tomcom(&["replay", &recording.display().to_string(), "--verify", "--format", "json"]));
+    assert_eq!((&found["verified"], &found["cut"]), (&true.into(), &true.into()), "{name}: {found}");
+    assert!(recording.join(ASIDE).exists(), "{name}: the damaged log is kept");
+    terminal.key("C-c");
+    terminal.is_whole("1");
+    let told = fs::read_to_string(errors).expect("errors");
+    assert!(told.contains(says) && told.contains("what was recorded until then is in"), "{name}: {told}");
+}
+
+fn opened(log: &Path) -> File {
+    File::options().write(true).open(log).expect("a log")
+}
+
+#[test]
+#[serial]
+fn a_log_that_another_program_cuts_is_told_at_once_and_saved() {
+    check_damage("cut-to-nothing", |log| opened(log).set_len(0).expect("cut"), "by another program");
+    check_damage("cut-in-half", |log| opened(log).set_len(20_000).expect("cut"), "by another program");
+}
+
+#[test]
+#[serial]
+fn a_log_that_another_program_overwrites_is_told_at_once_and_saved() {
+    let write = |log: &Path, at: SeekFrom| {
+        let mut log = opened(log);
+        log.seek(at).and_then(|_| log.write_all(b"x")).expect("written");
+    };
+    check_damage("overwritten-header", |log| write(log, SeekFrom::Start(30)), "overwritten by another program");
+    check_damage("overwritten-end", |log| write(log, SeekFrom::End(-300)), "overwritten by another program");
+    check_damage("appended", |log| write(log, SeekFrom::End(40_000)), "by another program");
+}
+
+#[test]
+#[serial]
+fn a_log_that_an_editor_saves_again_is_told_at_once_and_saved() {
+    let save = |log: &Path| {
+        let edited = log.with_extension("edited");
+        fs::copy(log, &edited).and_then(|_| fs::rename(edited, log)).expect("saved");
+    };
+    check_damage("saved-again", save, "another file took its place");
+}
+
+/// A session file of a few presses, and where its recordings go.
+fn short_session(home: &Path) -> [String; 2] {
+    let session = home.join("short.toml");
+    let root = env!("CARGO_MANIFEST_DIR");
+    let text =
+        format!("layout = \"{root}/layouts/sushi.toml\"\nseed = 3\n[trial]\npresses = 30\n[robot]\narm = \"timed\"\n");
+    fs::write(&session, text).expect("written");
+    [session, home.join("recordings")].map(|path| path.display().to_string())
+}
+
+/// The logs of a folder, by the names of their recordings.
+fn logs(folder: &str) -> Vec<(String, String)> {
+    let entries = fs::read_dir(folder).expect("a folder").flatten().filter(|entry| entry.path().is_dir());
+    let read = |path: PathBuf| {
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        (name, fs::read_to_string(path.join(LOG_NAME)).expect("a log"))
+    };
+    let mut logs: Vec<_> = entries.map(|entry| read(entry.path())).collect();
+    logs.sort();
+    logs
+}
+
+/// The figures that do not say when and by whom it was simulated.
+fn lasting(mut figures: Value) -> Value {
+    for key in ["wall_s", "found", "moved"] {
+        figures.as_object_mut().expect("figures").remove(key).unwrap_or_else(|| panic!("no {key}"));
+    }
+    figures
+}
+
+#[test]
+#[serial]
+fn two_programs_simulate_into_one_folder_and_print_the_same_figures() {
+    let home = folder("two-simulations");
+    let [session, out] = short_session(&home);
+    let arguments = ["simulate", &session, "--trials", "12", "--out", &out, "--format", "json"];
+    let both = [start(&arguments), start(&arguments)].map(|child| end("a simulation", child));
+    for output in &both {
+        assert!(output.status.success(), "{output:?}");
+    }
+    let [first, second] = both.map(|output| json(&output));
+    let (found, trials) = (first["found"].as_u64().zip(second["found"].as_u64()), first["trials"].as_u64());
+    assert!(found.is_some_and(|(first, second)| first + second <= 12), "{first} {second}");
+    assert_eq!(trials, Some(12));
+    assert_eq!(lasting(first), lasting(second.clone()));
+    let together = logs(&out);
+    fs::remove_dir_all(&out).expect("recordings");
+    let alone = json(&tomcom(&arguments));
+    assert_eq!(alone["found"], 0);
+    assert_eq!(lasting(alone), lasting(second));
+    assert!(together == logs(&out), "the recordings are those of one program");
+}
+
+#[test]
+#[serial]
+fn a_trial_that_another_program_simulates_is_waited_for_and_the_others_are_made_meanwhile() {
+    let home = folder("waits");
+    let [session, out] = short_session(&home);
+    let recording = |trial: u32| Path::new(&out).join(format!("seed3-S{trial:03}"));
+    fs::create_dir_all(recording(1)).expect("a folder");
+    let lock = RecordingLock::take(&recording(1)).expect("nobody has it");
+    let mut child = start(&["simulate", &session, "--trials", "3", "--out", &out]);
+    let is_made = |trial: u32| {
+        fs::read_to_string(recording(trial).join(LOG_NAME)).is_ok_and(|log| log.contains("\"session_ended\""))
+    };
+    let began = Instant::now();
+    while !(is_made(2) && is_made(3)) {
+        assert!(began.elapsed() < PATIENCE, "the others are not made");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    std::thread::sleep(Duration::from_millis(500));
+    assert!(child.try_wait().expect("a child").is_none(), "it does not wait");
+    assert!(!recording(1).join(LOG_NAME).exists(), "it writes what another program writes");
+    drop(lock);
+    let output = end("a simulation", child);
+    assert!(output.status.success() && is_made(1), "{output:?}");
+}
+
+#[test]
+#[serial]
+fn a_log_without_its_header_is_moved_aside_and_made_again() {
+    let home = folder("power-failure");
+    let [session, out] = short_session(&home);
+    let arguments = ["simulate", &session, "--trials", "5", "--out", &out];
+    let first = tomcom(&arguments);
+    assert!(first.status.success(), "{first:?}");
+    let whole = logs(&out);
+    let recording = |trial: u32| Path::new(&out).join(format!("seed3-S{trial:03}"));
+    let header = &whole[1].1.as_bytes()[..200];
+    let damaged: [&[u8]; 3] = [b"", header, &[0; 4096]];
+    for (trial, bytes) in (1..).zip(damaged) {
+        fs::write(recording(trial).join(LOG_NAME), bytes).expect("written");
+    }
+    let again = tomcom(&arguments);
+    let told = String::from_utf8_lossy(&again.stdout).into_owned();
+    assert!(again.status.success(), "{again:?}");
+    assert!(told.contains(", 2 of them before"), "{told}");
+    assert!(logs(&out) == whole, "the same recordings again");
+    for (trial, bytes) in (1..).zip(damaged) {
+        let aside = recording(trial).join(ASIDE);
+        let line =
+            format!("before the end of its header was moved to {}; its trial was simulated again", aside.display());
+        assert!(told.contains(&line), "{line}\n{told}");
+        assert_eq!(fs::read(&aside).expect("moved"), bytes, "trial {trial}");
+    }
+    // What is no log of a session is nobody's to move, and an earlier one that was moved stays.
+    fs::write(recording(4).join(LOG_NAME), "notes of mine").expect("written");
+    let refused = tomcom(&arguments);
+    let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(refused.status.code() == Some(1) && told.contains("a recording that cannot be read is there"), "{told}");
+    assert_eq!(fs::read_to_string(recording(4).join(LOG_NAME)).expect("left alone"), "notes of mine");
+    fs::remove_file(recording(4).join(LOG_NAME)).expect("removed");
+    fs::write(recording(1).join(LOG_NAME), "{").expect("written");
+    assert!(tomcom(&arguments).status.success());
+    assert_eq!(fs::read(recording(1).join(ASIDE)).expect("kept"), b"");
+    assert_eq!(fs::read_to_string(recording(1).join(format!("{ASIDE}2"))).expect("moved"), "{");
+    assert!(logs(&out) == whole, "the same recordings again");
+}
+
+#[test]
+#[serial]
+fn a_pipe_in_place_of_a_log_is_refused_by_every_reader() {
+    let home = folder("pipe");
+    let recording = home.join("recordings").join("2026-03-14-P01-1");
+    fs::create_dir_all(&recording).expect("a folder");
+    for name in [LOG_NAME, "lock", "exclusion.toml", "recording.rrd"] {
+        let made = Command::new("mkfifo").arg(recording.join(name)).status();
+        if !made.is_ok_and(|status| status.success()) {
+            eprintln!("skipped: pipes need mkfifo");
+            return;
+        }
+    }
+    let [folder, all, log] =
+        [&recording, &home.join("recordings"), &recording.join(LOG_NAME)].map(|path| path.display().to_string());
+    let refused: [&[&str]; 12] = [
+        &["replay", &folder],
+        &["replay", &log],
+        &["replay", &folder, "--verify"],
+        &["replay", &folder, "--follow"],
+        &["replay", &folder, "--timing"],
+        &["replay", &folder, "--accuracy"],
+        &["compare", &folder],
+        &["codes", &folder],
+        &["review", &folder, "--save"],
+        &["exclude", &folder, "--reason", "a pipe"],
+        &["operate", "--continue", &folder],
+        &["fit", &folder],
+    ];
+    for arguments in refused {
+        let output = end(&arguments.join(" "), start(arguments));
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
+        assert!(told.contains("it is no regular file"), "{arguments:?}: {told}");
+    }
+    // Who looks through a folder finds no recording in it.
+    let looked: [&[&str]; 3] =
+        [&["study", &all], &["plan", "sessions/study.toml", "--out", &all], &["forget", "P01", "--in", &all, "--yes"]];
+    for arguments in looked {
+        let output = end(&arguments.join(" "), start(arguments));
+        assert!(!String::from_utf8_lossy(&output.stdout).contains("2026-03-14-P01-1"), "{arguments:?}: {output:?}");
+    }
+}
+
+#[test]
+#[serial]
+fn the_stream_of_a_running_session_goes_where_it_is_told_and_nowhere_else() {
+    let home = folder("stream");
+    let [session, out] = short_session(&home);
+    let simulated = tomcom(&["simulate", &session, "--out", &out]);
+    assert!(simulated.status.success(), "{simulated:?}");
+    let recording = Path::new(&out).join("seed3-S001");
+    let temporary = home.join("temporary");
+    fs::create_dir_all(&temporary).expect("a folder");
+    let files = |folder: &Path| {
+        let mut names: Vec<_> =
+            fs::read_dir(folder).expect("a folder").flatten().map(|entry| entry.file_name()).collect();
+        names.sort();
+        names
+    };
+    let lock = RecordingLock::take(&recording).expect("nobody has it");
+    let before = files(&recording);
+    let review = |save: &str| {
+        let mut command = Command::new(TOMCOM);
+        command
+            .args(["review", &recording.display().to_string(), save])
+            .env("TMPDIR", &temporary)
+            .output()
+            .expect("runs")
+    };
+    let refused = review("--save");
+    let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(refused.status.code(), Some(1), "{told}");
+    assert!(told.contains("another program writes this recording") && told.contains("--save=FILE"), "{told}");
+    assert_eq!((files(&recording), files(&temporary).len()), (before.clone(), 0));
+    let file = home.join("up-to-now.rrd");
+    let saved = review(&format!("--save={}", file.display()));
+    assert!(saved.status.success() && file.exists(), "{saved:?}");
+    assert_eq!((files(&recording), files(&temporary).len()), (before, 0));
+    drop(lock);
+    let saved = review("--save");
+    assert!(saved.status.success() && recording.join("recording.rrd").exists(), "{saved:?}");
+    assert_eq!(files(&temporary).len(), 0);
+}
+
+#[test]
+#[serial]
+fn an_error_about_codes_names_the_row_that_is_wrong() {
+    let home = folder("codes");
+    let [session, out] = short_session(&home);
+    let simulated = tomcom(&["simulate", &session, "--out", &out]);
+    assert!(simulated.status.success(), "{simulated:?}");
+    let recording = Path::new(&out).join("seed3-S001").display().to_string();
+    let table = home.join("codes.csv");
+    let head = "recording,rater,press,cause,aspect\n";
+    let cases: [(&[u8], &str); 7] = [
+        (b"seed3-S001,R1,x,slip,\n", "codes.csv:2: found the press \"x\""),
+        (b"\n\nseed3-S001,R1,x,slip,\n", "codes.csv:4: found the press \"x\""),
+        (b"\r\n\r\nseed3-S001,R1,7,slop,\r\n", "codes.csv:4: found the cause \"slop\""),
+        (b"\nseed3-S001,R1,7,slip\n", "codes.csv:3: found record with 4 fields"),
+        (b"\nother,R1,7,slip,\n", "codes.csv:3: found the recording \"other\""),
+        (b"\nseed3-S001,M\xfcller,7,slip,\n", "codes.csv:3: found bytes that are no text in UTF-8"),
+        (b"seed3-S001,\"R\n1\",7,slip,\n", "codes.csv:2: found the rater"),
+    ];
+    for (rows, says) in cases {
+        fs::write(&table, [head.as_bytes(), rows].concat()).expect("written");
+        let output = tomcom(&["codes", &recording, "--import", &table.display().to_string()]);
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        assert!(told.contains(says), "{says:?} is not in\n{told}");
+    }
+    assert!(!Path::new(&recording).join("codes-R1.csv").exists(), "nothing is taken of a table that is wrong");
+}

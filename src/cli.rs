@@ -15,7 +15,7 @@ mod study;
 mod wizard;
 
 use std::io::{IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
@@ -28,13 +28,14 @@ use serde::Serialize;
 use self::args::*;
 use crate::analysis::watcher::CompareRequest;
 use crate::base::features::{Feature, NotBuilt};
+use crate::base::number_range::OutOfRange;
 use crate::communication::concept::ConceptName;
 use crate::console;
 use crate::edge::doctor;
 use crate::edge::file_error::FileError;
 use crate::edge::files;
 use crate::edge::key_file;
-use crate::edge::log::{self, ExclusionError, WriteError};
+use crate::edge::log::{self, ExclusionError, LogReader, WriteError};
 use crate::run::error::RunError;
 use crate::run::live::LiveError;
 use crate::run::options::{self, SessionStart, SettingOverrides, TrialSeries};
@@ -239,7 +240,21 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
     print(args.format, &figures, || plan::describe(&figures))
 }
 
+/// Warns of recordings with settings that no file may have today.
+fn warn_of(recordings: &[PathBuf]) -> Result<(), Failure> {
+    for recording in recordings {
+        if let Some(OutOfRange { found, remedy, .. }) = LogReader::open(recording)?.unusual() {
+            let name = recording.display();
+            eprintln!(
+                "{name}: recorded with {found}, where a settings file may have {remedy}; it counts as it was recorded"
+            );
+        }
+    }
+    Ok(())
+}
+
 fn replay(args: &ReplayArgs) -> Result<(), Failure> {
+    warn_of(&args.recordings)?;
     if args.check_beliefs {
         return estimates::check_beliefs(args);
     }

@@ -1,5 +1,9 @@
 //! A setting that cannot be, and what several settings are checked by.
 
+use std::borrow::Cow;
+
+use crate::base::number_range::OutOfRange;
+
 /// A setting that cannot be.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("found {found}, wanted {remedy}")]
@@ -9,20 +13,26 @@ pub struct SettingError {
     /// What was found.
     pub found: String,
     /// What would be right.
-    pub remedy: &'static str,
+    pub remedy: Cow<'static, str>,
     /// Which of the settings of that path it is; 0 is the first.
     pub nth: usize,
 }
 
 impl SettingError {
     /// An error about the first setting of that path.
-    pub fn new(path: impl Into<String>, found: String, remedy: &'static str) -> SettingError {
-        SettingError { path: path.into(), found, remedy, nth: 0 }
+    pub fn new(path: impl Into<String>, found: String, remedy: impl Into<Cow<'static, str>>) -> SettingError {
+        SettingError { path: path.into(), found, remedy: remedy.into(), nth: 0 }
     }
 
     /// The setting without the tables around it.
     pub fn key(&self) -> &str {
         self.path.rsplit('.').next().unwrap_or(&self.path)
+    }
+}
+
+impl From<OutOfRange> for SettingError {
+    fn from(error: OutOfRange) -> SettingError {
+        SettingError::new(error.path, error.found, error.remedy)
     }
 }
 

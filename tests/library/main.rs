@@ -13,6 +13,7 @@ mod measures;
 mod oracle;
 mod participant;
 mod plan;
+mod ranges;
 mod readers;
 mod replay;
 mod robot;

@@ -94,6 +94,11 @@ impl ChoiceModel {
         ChoiceModel { weights: (0..=draws).map(row).collect(), ..ChoiceModel::new(kitchen, parameters) }
     }
 
+    /// The number of tabulated weights.
+    pub fn tabulated(&self) -> usize {
+        self.weights.iter().map(Vec::len).sum()
+    }
+
     /// The number of the human's buttons.
     pub fn buttons(&self) -> usize {
         self.slips_to.len()

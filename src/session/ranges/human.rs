@@ -21,12 +21,17 @@ pub(super) const RANGES: [NumberRange; 27] = [
     NumberRange::real(
         "human.perception.reading_rate_hz",
         [0.01, 1_000.0],
-        "1/s",
+        "per second",
         "less reads nothing, more everything at once",
     )
     .recorded(ABOVE_0),
-    NumberRange::real("human.perception.radius_deg", [0.1, 40.0], "deg", "from the fovea to the whole field of view")
-        .recorded(BELOW_45),
+    NumberRange::real(
+        "human.perception.radius_deg",
+        [0.1, 40.0],
+        "degrees",
+        "from the fovea to the whole field of view",
+    )
+    .recorded(BELOW_45),
     NumberRange::real(
         "human.perception.viewing_distance_m",
         [0.2, 20.0],
@@ -56,8 +61,13 @@ pub(super) const RANGES: [NumberRange; 27] = [
     )
     .recorded(ABOVE_0),
     NumberRange::real("human.transition.foresight", [0.0, 1.0], "", "it is a share"),
-    NumberRange::real("human.decision.tau", [0.01, 100.0], "1/press", "less presses anything, more only what is best")
-        .recorded(ABOVE_0),
+    NumberRange::real(
+        "human.decision.tau",
+        [0.01, 100.0],
+        "per press",
+        "less presses anything, more only what is best",
+    )
+    .recorded(ABOVE_0),
     NumberRange::real(
         "human.decision.lapse",
         [0.0001, 0.99],

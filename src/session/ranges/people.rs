@@ -59,7 +59,7 @@ pub(super) const RANGES: [NumberRange; 42] = [
     NumberRange::real(
         "participant.population.loses_thread_per_min.median",
         [0.0001, 60.0],
-        "1/min",
+        "per minute",
         "from never to every second",
     )
     .recorded(ABOVE_0),

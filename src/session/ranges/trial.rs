@@ -49,10 +49,15 @@ pub(super) const RANGES: [NumberRange; 32] = [
     NumberRange::whole("assistant.rollout.states", [1.0, 128.0], "states", "beyond, nothing becomes more exact")
         .recorded([1.0, 256.0]),
     NumberRange::real("assistant.rollout.human_press_s", [0.05, 60.0], SECONDS, PRESS).recorded(ABOVE_0),
-    NumberRange::real("assistant.rollout.looks_hz", [0.0, 100.0], "1/s", "eyes look at a few places a second")
+    NumberRange::real("assistant.rollout.looks_hz", [0.0, 100.0], "per second", "eyes look at a few places a second")
         .recorded(NOT_NEGATIVE),
-    NumberRange::real("assistant.rollout.other_looks_hz", [0.0, 100.0], "1/s", "eyes look at a few places a second")
-        .recorded(NOT_NEGATIVE),
+    NumberRange::real(
+        "assistant.rollout.other_looks_hz",
+        [0.0, 100.0],
+        "per second",
+        "eyes look at a few places a second",
+    )
+    .recorded(NOT_NEGATIVE),
     NumberRange::real("assistant.rollout.capture", [0.0, 1.0], "", CHANCE),
     NumberRange::real(
         "assistant.rollout.enough_error",

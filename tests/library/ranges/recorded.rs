@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use tomcom::base::time::SessionTime;
 use tomcom::edge::log::{LOG_NAME, LogReader, LogWriter};
+use tomcom::mind::choice::ChoiceModel;
+use tomcom::mind::decision::DecisionModel;
 use tomcom::robot::moment::ArmSample;
 use tomcom::session::{Event, Stamped};
 
@@ -55,6 +57,16 @@ fn of_old_headers_only_what_no_version_took_is_refused() {
         assert!(told(&folder, wanted, text).is_err(), "{text} was taken");
     }
     fs::remove_dir_all(folder).expect("the folder can be removed");
+}
+
+/// A recording may have a tau that no file may have: what the planner tabulates is bounded all the same.
+#[test]
+fn the_weights_of_a_tau_near_0_take_no_more_memory_than_those_of_others() {
+    let kitchen = super::kitchen();
+    for tau in [1e-5, f64::MIN_POSITIVE] {
+        let model = ChoiceModel::up_to_draws(&kitchen, &DecisionModel { tau, ..DecisionModel::default() }, 32);
+        assert!(model.tabulated() <= 33 * 33 * 256, "{tau}: {} weights", model.tabulated());
+    }
 }
 
 #[test]

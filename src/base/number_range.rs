@@ -74,7 +74,12 @@ impl NumberRange {
     /// What is said of a number outside of the range.
     pub fn violation(&self, path: &str, value: f64) -> OutOfRange {
         let key = path.rsplit('.').next().unwrap_or(path);
-        OutOfRange { path: path.to_string(), found: format!("{key} = {value}"), remedy: self.to_string(), place: None }
+        OutOfRange {
+            path: path.to_string(),
+            found: format!("{key} = {}", written(value)),
+            remedy: self.to_string(),
+            place: None,
+        }
     }
 
     fn is_of(&self, path: &str) -> bool {
@@ -87,6 +92,12 @@ impl NumberRange {
             }
         }
     }
+}
+
+/// A number as people write it: with an exponent where it would have many zeros.
+fn written(value: f64) -> String {
+    let size = value.abs();
+    if size >= 1e16 || (size > 0.0 && size < 1e-6) { format!("{value:e}") } else { value.to_string() }
 }
 
 impl fmt::Display for NumberRange {

@@ -12,6 +12,7 @@ pub mod forget;
 pub mod gaze_file;
 pub mod gaze_input;
 pub mod gaze_json;
+mod host_name;
 pub mod key_file;
 pub mod language;
 pub mod log;

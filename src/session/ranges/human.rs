@@ -10,7 +10,7 @@ const CHANCE: &str = "it is a probability";
 /// Of what may be neither impossible nor certain.
 const UNSURE: &str = "certainty could not be corrected by any observation";
 const PRECISION: &str = "less is no belief, more a certain one";
-const DRAWS: &str = "more take minutes a press";
+const DRAWS: &str = "more take seconds to minutes a press";
 
 pub(super) const RANGES: [NumberRange; 27] = [
     NumberRange::real("human.prior.location_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),

@@ -83,7 +83,7 @@ pub(super) const RANGES: [NumberRange; 32] = [
         "plan.participants",
         [1.0, 9_999.0],
         "participants",
-        "codes of participants have up to four digits",
+        "their codes have up to four digits; or a list of their codes",
     ),
     NumberRange::whole("plan.block", [1.0, 9_999.0], "participants", "no block is larger than the study"),
     NumberRange::whole(

@@ -3,6 +3,7 @@
 pub mod bits;
 pub mod features;
 pub mod minimise;
+pub mod number_range;
 pub mod printable;
 pub mod rng;
 pub mod time;

@@ -94,29 +94,4 @@ impl AssistantSpec {
             ConceptName::TomCom | ConceptName::Dev | ConceptName::None => self.cost_of_communication,
         }
     }
-
-    /// The first invalid setting: its name, the value found, and the valid range; `None` if all are valid.
-    pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
-        let rollout = &self.rollout;
-        let not_below = |key, value: f64| (key, value, value.is_finite() && value >= 0.0, "a number not below 0");
-        let above = |key, value: f64| (key, value, value.is_finite() && value > 0.0, "a number above 0");
-        let count = |key, value: usize, most: usize, right| (key, value as f64, (1..=most).contains(&value), right);
-        let threshold = self.belief_threshold;
-        let checks = [
-            not_below("cost_of_communication", self.cost_of_communication),
-            ("belief_threshold", threshold, (0.0..1.0).contains(&threshold), "a number from 0 to below 1"),
-            count("proposed_presses", self.proposed_presses, 5, "a whole number from 1 to 5"),
-            count("horizon", rollout.horizon, 64, "a whole number from 1 to 64"),
-            count("rollouts", rollout.rollouts, 65_536, "a whole number from 1 to 65536"),
-            count("states", rollout.states, 256, "a whole number from 1 to 256"),
-            above("human_press_s", rollout.human_press_s),
-            not_below("looks_hz", rollout.looks_hz),
-            not_below("other_looks_hz", rollout.other_looks_hz),
-            ("capture", rollout.capture, (0.0..=1.0).contains(&rollout.capture), "a number from 0 to 1"),
-            not_below("enough_error", rollout.enough_error),
-            count("least_rollouts", rollout.least_rollouts, 65_536, "a whole number from 1 to 65536"),
-        ];
-        let wrong = checks.into_iter().find(|(_, _, is_right, _)| !is_right);
-        wrong.map(|(key, value, _, remedy)| (key, format!("{key} = {value}"), remedy))
-    }
 }

@@ -9,14 +9,16 @@ use super::overwrite;
 use super::parse::parse;
 use super::place::place_of;
 use crate::analysis::fitting::FITTED;
-use crate::kitchen::Kitchen;
+use crate::base::number_range::OutOfRange;
 use crate::kitchen::compile::{SpecError, SpecFile};
 use crate::kitchen::layout::LayoutSpec;
 use crate::kitchen::recipe::RecipesSpec;
+use crate::kitchen::{Kitchen, layout_ranges};
 use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
 use crate::session::header::FileText;
 use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study};
+use crate::session::ranges;
 use crate::session::settings::SettingError;
 
 /// A session file with its kitchen and its key file.
@@ -122,7 +124,7 @@ fn in_language(path: PathBuf, code: &str) -> PathBuf {
 
 /// The error of a setting in a file's text.
 fn wrong_setting(path: &Path, text: &str, error: SettingError) -> FileError {
-    FileError::at(path, text, place_of(text, &error.path, error.nth), error.found, error.remedy.to_string())
+    FileError::at(path, text, place_of(text, &error.path, error.nth), error.found, error.remedy.into_owned())
 }
 
 /// Reads a file with parameters of the human model; those that it does not name have their defaults.
@@ -132,9 +134,13 @@ fn wrong_setting(path: &Path, text: &str, error: SettingError) -> FileError {
 pub fn read_human_model(path: &Path) -> FileResult<HumanModel> {
     let text = read_text(path)?;
     let model: HumanModel = parse(path, &text)?;
-    match model.fault() {
-        Some((key, found, remedy)) => {
-            Err(FileError::at(path, &text, place_of(&text, key, 0), found, remedy.to_string()))
+    let rule = model.fault().map(|(path, found, remedy)| SettingError::new(path, found, remedy));
+    let wrong = ranges::check_human_model(&model).err().map(SettingError::from).or(rule);
+    match wrong {
+        Some(error) => {
+            let inside = error.path.strip_prefix(ranges::HUMAN).unwrap_or(&error.path).trim_start_matches('.');
+            let place = place_of(&text, inside, 0);
+            Err(FileError::at(path, &text, place, error.found, error.remedy.into_owned()))
         }
         None => Ok(model),
     }
@@ -196,12 +202,18 @@ fn read_kitchen_with(layout_path: &Path, keys: Option<&FileText>) -> FileResult<
         let remedy = "the path of a recipe file, relative to the layout file".to_string();
         FileError::at(layout_path, &layout_text, Some(layout.recipes.span()), found, remedy)
     })?;
+    layout_ranges::check(&layout_text).map_err(|error| wrong_layout(layout_path, &layout_text, error))?;
     let files = compile_kitchen((layout_path, layout_text), (&recipes_path, recipes_text))?;
     check_keys((layout_path, &files.layout.text), &layout, &files.kitchen, keys)?;
     Ok(files)
 }
 
-/// Compiles a kitchen from texts; the paths only serve error messages.
+/// The error of a layout that has a number outside of its range.
+fn wrong_layout(path: &Path, text: &str, error: OutOfRange) -> FileError {
+    FileError::at(path, text, error.place, error.found, error.remedy)
+}
+
+/// Compiles a kitchen from texts, whatever its numbers: it may be that of an old recording. The paths only serve error messages.
 pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> FileResult<KitchenFiles> {
     let layout_spec: LayoutSpec = parse(layout.0, &layout.1)?;
     let recipes_spec: RecipesSpec = parse(recipes.0, &recipes.1)?;

@@ -2,9 +2,11 @@
 //! connect to a server of the program, or both.
 //!
 //! The program never connects to a viewer: one that is slow or stopped would hold up the stream, and the file with it.
-//! Viewers connect to the program, and take what the server keeps for them.
+//! Viewers connect to the program (`rerun/viewer_server.rs`), and take what is kept for them.
 
+mod kept_messages;
 mod layout;
+mod viewer_server;
 
 use std::io;
 use std::net::SocketAddr;
@@ -12,17 +14,17 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use nalgebra::Isometry3;
-use re_sdk::grpc_server::GrpcServerSink;
 use re_sdk::log::ChunkBatcherConfig;
 use re_sdk::sink::FileSink;
 use re_sdk::web_viewer::WebViewerConfig;
-use re_sdk::{AsComponents, MemoryLimit, RecordingStream, RecordingStreamBuilder, ServerOptions};
+use re_sdk::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
 use re_sdk_types::archetypes;
 use re_sdk_types::components::{Color, FillMode, InterpolationMode, MarkerShape, TextLogLevel};
 use re_sdk_types::datatypes::Quaternion;
 
 use self::layout::{APPLICATION, ViewerLayout, ViewerStart};
 pub use self::layout::{StreamLane, TRIAL_TIME};
+use self::viewer_server::ViewerServer;
 use crate::arm::link::{CollisionSolid, LinkShape};
 use crate::base::printable::{printable, printable_lines};
 use crate::base::time::SessionTime;
@@ -35,12 +37,18 @@ pub const VERSION: &str = "0.36.3";
 const MS: u64 = 1_000_000;
 /// What viewers see is so old at most.
 const PIECE: Duration = Duration::from_millis(300);
-/// Every piece of every entity costs some 2 kB beside its rows: in a file they are longer.
-const PIECE_OF_FILE: Duration = Duration::from_secs(5);
-/// For viewers that connect later a server keeps so much, in bytes.
-const KEPT_BYTES: u64 = 256 << 20;
+/// Pieces of a file are so long, in session time. Every piece of every entity costs some 2 kB in the file beside its rows, and
+/// some 6 kB of memory until the file's index is written at its end.
+const PIECE_OF_FILE: SessionTime = SessionTime(60_000_000_000);
+/// Rows that wait for the end of their piece, in bytes of one entity and of all.
+const WAITING_BYTES: u64 = 1 << 20;
+const WAITING_IN_ALL: u64 = 16 << 20;
+/// For viewers that connect later so much is kept, in bytes.
+const KEPT_BYTES: usize = 64 << 20;
 /// Nothing of it is forgotten where a recording is only looked at.
-const ALL_BYTES: u64 = 4 << 30;
+const ALL_BYTES: usize = usize::MAX;
+/// Of the gaze, viewers of a running session get at most one sample in this time: eyes cannot follow more.
+const GAZE_EVERY: SessionTime = SessionTime(33_000_000);
 
 /// Radius of the mark where somebody looks, and half the width of the circle around it, in millimetres.
 const SIGHT_MM: f32 = 9.0;
@@ -67,7 +75,20 @@ pub struct StreamOutlets {
 
 /// A stream that is being written: to each of its outlets by itself, so that none holds up another.
 pub struct RerunWriter {
-    streams: Vec<RecordingStream>,
+    streams: Vec<OpenStream>,
+}
+
+/// One of the streams.
+struct OpenStream {
+    stream: RecordingStream,
+    /// Its pieces end at multiples of this; none: it hands rows on by the clock.
+    piece: Option<SessionTime>,
+    /// The number of the present piece.
+    nth: u64,
+    /// Gaze is thinned to one sample in this time.
+    gaze_every: SessionTime,
+    /// When gaze was shown last.
+    gaze_at: Option<SessionTime>,
 }
 
 impl RerunWriter {
@@ -78,65 +99,108 @@ impl RerunWriter {
     pub fn open(identity: &StreamIdentity, outlets: &StreamOutlets, lanes: &[StreamLane]) -> io::Result<RerunWriter> {
         let mut streams = Vec::new();
         if let Some(path) = &outlets.file {
-            let stream = stream(identity, PIECE_OF_FILE)?;
+            let stream = stream(identity, Duration::MAX)?;
             stream.set_sinks((FileSink::new(path).map_err(io::Error::other)?,));
             ViewerLayout::from_lanes(lanes, ViewerStart::Waiting).send(&stream)?;
-            streams.push(stream);
+            streams.push(OpenStream::new(stream, Some(PIECE_OF_FILE), SessionTime::ZERO));
         }
         if let Some((address, all)) = outlets.server {
             let stream = stream(identity, PIECE)?;
-            stream.set_sinks((server(address, all)?,));
+            let kept = if all { ALL_BYTES } else { KEPT_BYTES };
+            stream.set_sink(Box::new(ViewerServer::open(address, kept)?));
             let opens = match outlets.at {
                 Some(at) => ViewerStart::From(at),
                 None if all => ViewerStart::Waiting,
                 None => ViewerStart::Following,
             };
             ViewerLayout::from_lanes(lanes, opens).send(&stream)?;
-            streams.push(stream);
+            streams.push(OpenStream::new(stream, None, if all { SessionTime::ZERO } else { GAZE_EVERY }));
         }
         Ok(RerunWriter { streams })
     }
 
     /// Writes what stays as it is.
     pub fn fixed(&self, lane: &StreamLane, rows: &[EntityUpdate]) {
-        rows.iter().for_each(|row| self.row(lane, row, true));
+        for row in rows {
+            let (entity, components) = written(lane, row);
+            self.streams.iter().for_each(|one| one.log(&entity, true, &components));
+        }
     }
 
     /// Writes a moment; the number of its rows.
-    pub fn moment(&self, lane: &StreamLane, moment: &SceneUpdate) -> u64 {
-        let nanoseconds = |time: u64| re_sdk::TimeCell::from_duration_nanos(i64::try_from(time).unwrap_or(i64::MAX));
-        for stream in &self.streams {
-            // Whole milliseconds are read more easily, and nothing is shown that is closer together.
-            stream.set_time(TRIAL_TIME, nanoseconds(moment.trial.0 / MS * MS));
-            stream.set_time("session_time", nanoseconds(moment.time.0));
-            stream.set_time_sequence("step", i64::try_from(moment.step).unwrap_or(i64::MAX));
+    pub fn moment(&mut self, lane: &StreamLane, moment: &SceneUpdate) -> u64 {
+        self.streams.iter_mut().for_each(|one| one.go_to(moment));
+        for row in &moment.rows {
+            let (entity, components) = written(lane, row);
+            let is_gaze = matches!(row.shown, EntityData::Sight { .. });
+            for one in &mut self.streams {
+                if !is_gaze || one.shows_gaze(moment.time) {
+                    one.log(&entity, false, &components);
+                }
+            }
         }
-        moment.rows.iter().for_each(|row| self.row(lane, row, false));
         moment.rows.len() as u64
     }
 
     /// Ends the file, if there is one; viewers that are connected keep what they have.
     pub fn finish(&self) {
-        self.streams.iter().for_each(RecordingStream::finalize_deferred_sinks);
-    }
-
-    fn row(&self, lane: &StreamLane, row: &EntityUpdate, is_fixed: bool) {
-        let entity = match lane.root.as_str() {
-            "" => row.entity.clone(),
-            root => format!("{root}/{}", row.entity),
-        };
-        let parts = parts(&row.shown);
-        let components: Vec<_> = parts.iter().flat_map(|part| part.as_serialized_batches()).collect();
-        for stream in &self.streams {
-            // It fails where components cannot be written down, and these can.
-            let _ = stream.log_serialized_batches(entity.as_str(), is_fixed, components.iter().cloned());
-        }
+        self.streams.iter().for_each(|one| one.stream.finalize_deferred_sinks());
     }
 }
 
-/// A stream that goes nowhere yet, and is handed on in pieces of this length.
+impl OpenStream {
+    fn new(stream: RecordingStream, piece: Option<SessionTime>, gaze_every: SessionTime) -> OpenStream {
+        OpenStream { stream, piece, nth: 0, gaze_every, gaze_at: None }
+    }
+
+    /// What is written from now on is of this moment.
+    fn go_to(&mut self, moment: &SceneUpdate) {
+        let nth = self.piece.map_or(0, |piece| moment.time.0 / piece.0);
+        if nth != self.nth {
+            self.nth = nth;
+            // It fails where the file cannot be written, which its end tells.
+            let _ = self.stream.flush_async();
+        }
+        let nanoseconds = |time: u64| re_sdk::TimeCell::from_duration_nanos(i64::try_from(time).unwrap_or(i64::MAX));
+        // Whole milliseconds are read more easily, and nothing is shown that is closer together.
+        self.stream.set_time(TRIAL_TIME, nanoseconds(moment.trial.0 / MS * MS));
+        self.stream.set_time("session_time", nanoseconds(moment.time.0));
+        self.stream.set_time_sequence("step", i64::try_from(moment.step).unwrap_or(i64::MAX));
+    }
+
+    /// Whether a sample of gaze at this time is shown.
+    fn shows_gaze(&mut self, time: SessionTime) -> bool {
+        let shows = self.gaze_at.is_none_or(|last| time - last >= self.gaze_every);
+        if shows {
+            self.gaze_at = Some(time);
+        }
+        shows
+    }
+
+    fn log(&self, entity: &str, is_fixed: bool, components: &[SerializedComponentBatch]) {
+        // It fails where components cannot be written down, and these can.
+        let _ = self.stream.log_serialized_batches(entity, is_fixed, components.iter().cloned());
+    }
+}
+
+/// A row as Rerun writes it: its entity, and what that shows.
+fn written(lane: &StreamLane, row: &EntityUpdate) -> (String, Vec<SerializedComponentBatch>) {
+    let entity = match lane.root.as_str() {
+        "" => row.entity.clone(),
+        root => format!("{root}/{}", row.entity),
+    };
+    let parts = parts(&row.shown);
+    (entity, parts.iter().flat_map(|part| part.as_serialized_batches()).collect())
+}
+
+/// A stream that goes nowhere yet. Its rows are handed on in pieces of this length, by the clock.
 fn stream(identity: &StreamIdentity, piece: Duration) -> io::Result<RecordingStream> {
-    let config = ChunkBatcherConfig { flush_tick: piece, ..ChunkBatcherConfig::DEFAULT };
+    let config = ChunkBatcherConfig {
+        flush_tick: piece,
+        flush_num_bytes: WAITING_BYTES,
+        max_bytes_in_flight: WAITING_IN_ALL,
+        ..ChunkBatcherConfig::DEFAULT
+    };
     // The environment variable of Rerun's tools does not switch it off.
     let stream = RecordingStreamBuilder::new(APPLICATION)
         .recording_id(identity.id.as_str())
@@ -149,12 +213,6 @@ fn stream(identity: &StreamIdentity, piece: Duration) -> io::Result<RecordingStr
     stream.set_log_time_enabled(false);
     stream.set_log_tick_enabled(false);
     Ok(stream)
-}
-
-fn server(address: SocketAddr, all: bool) -> io::Result<GrpcServerSink> {
-    let bytes = if all { ALL_BYTES } else { KEPT_BYTES };
-    let options = ServerOptions { memory_limit: MemoryLimit::from_bytes(bytes), ..ServerOptions::default() };
-    GrpcServerSink::new(&address.ip().to_string(), address.port(), options).map_err(io::Error::other)
 }
 
 /// Where viewers connect to a server.

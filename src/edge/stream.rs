@@ -65,7 +65,7 @@ impl RerunStream {
             at: None,
         };
         let lane = StreamLane::default();
-        let writer = RerunWriter::open(identity, &outlets, std::slice::from_ref(&lane))?;
+        let mut writer = RerunWriter::open(identity, &outlets, std::slice::from_ref(&lane))?;
         let (news, told) = sync_channel::<Vec<SceneUpdate>>(WAITING);
         let (end, done) = channel();
         let counters = Arc::new(Counters::default());

@@ -21,6 +21,7 @@ pub mod content;
 pub mod cost_to_go;
 mod dish;
 pub mod layout;
+pub mod layout_ranges;
 mod location;
 pub mod look;
 mod process;

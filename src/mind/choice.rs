@@ -13,6 +13,9 @@ use crate::kitchen::{Agent, ButtonId, Kitchen, WeightedWorlds};
 /// The planner counts softmax weights below e^-20 as 0.
 const NEGLIGIBLE_EXPONENT: f64 = 20.0;
 
+/// A cost to go is a byte.
+const MOST_PRESSES: usize = u8::MAX as usize;
+
 /// A choice of the human: to press a button or to wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HumanChoice {
@@ -76,7 +79,7 @@ impl ChoiceModel {
     /// The model for beliefs represented by exactly `draws` drawn worlds. Weights are not truncated.
     pub fn for_draws(kitchen: &Kitchen, parameters: &DecisionModel, draws: usize) -> ChoiceModel {
         let mut model = ChoiceModel::new(kitchen, parameters);
-        let row = (0..=draws * usize::from(u8::MAX)).map(|more| parameters.weight(more, draws));
+        let row = (0..=draws * MOST_PRESSES).map(|more| parameters.weight(more, draws));
         model.weights.resize(draws, Vec::new());
         model.weights.push(row.take_while(|weight| *weight > 0.0).collect());
         model
@@ -85,10 +88,15 @@ impl ChoiceModel {
     /// The model for beliefs represented by at most `draws` drawn worlds. Weights below e^-20 are 0.
     pub fn up_to_draws(kitchen: &Kitchen, parameters: &DecisionModel, draws: usize) -> ChoiceModel {
         let row = |n: usize| {
-            let last = (NEGLIGIBLE_EXPONENT * n as f64 / parameters.tau) as usize;
+            let last = (NEGLIGIBLE_EXPONENT * n as f64 / parameters.tau).min((n * MOST_PRESSES) as f64) as usize;
             (0..=last).map(|more| parameters.weight(more, n.max(1))).collect()
         };
         ChoiceModel { weights: (0..=draws).map(row).collect(), ..ChoiceModel::new(kitchen, parameters) }
+    }
+
+    /// The number of tabulated weights.
+    pub fn tabulated(&self) -> usize {
+        self.weights.iter().map(Vec::len).sum()
     }
 
     /// The number of the human's buttons.

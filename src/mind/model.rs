@@ -170,67 +170,12 @@ impl Default for InferenceModel {
 }
 
 impl HumanModel {
-    /// The first invalid parameter: its name, the value found, and the valid range; `None` if all are valid.
+    /// The first parameters that exclude each other: the path of one of them in a session file, what was found, and what would
+    /// be right. The ranges of single parameters are in [`crate::session::ranges`].
     pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
-        const SHARE: &str = "a number from 0 to 1";
-        const ABOVE: &str = "a number above 0";
-        const COUNT: &str = "a whole number from 1 to 65536";
-        let (prior, sight, think) = (&self.prior, &self.perception, &self.decision);
-        let inside = |key, value: f64| (key, value, value > 0.0 && value < 1.0, "a number between 0 and 1");
-        let share = |key, value: f64| (key, value, (0.0..=1.0).contains(&value), SHARE);
-        let above = |key, value: f64| (key, value, value.is_finite() && value > 0.0, ABOVE);
-        let count = |key, value: usize| (key, value as f64, (1..=65_536).contains(&value), COUNT);
-        let not_below = |key, value: f64| (key, value, value.is_finite() && value >= 0.0, "a number not below 0");
-        let checks = [
-            inside("location_truth", prior.location_truth),
-            above("location_precision", prior.location_precision),
-            inside("recipe_truth", prior.recipe_truth),
-            share("recipe_look_alike", prior.recipe_look_alike),
-            above("recipe_precision", prior.recipe_precision),
-            above("reading_rate_hz", sight.reading_rate_hz),
-            (
-                "radius_deg",
-                sight.radius_deg,
-                sight.radius_deg > 0.0 && sight.radius_deg < 45.0,
-                "degrees above 0, below 45",
-            ),
-            above("viewing_distance_m", sight.viewing_distance_m),
-            share("look_alike", sight.look_alike),
-            (
-                "anything",
-                sight.anything,
-                sight.anything >= 0.0 && sight.anything + sight.look_alike < 1.0,
-                "a number from 0; with look_alike below 1",
-            ),
-            share("min_confidence", sight.min_confidence),
-            above("history_s", sight.history_s),
-            above("max_sample_s", sight.max_sample_s),
-            above("look_ends_s", sight.look_ends_s),
-            above("recipe_half_life_s", self.transition.recipe_half_life_s),
-            share("foresight", self.transition.foresight),
-            above("tau", think.tau),
-            inside("lapse", think.lapse),
-            (
-                "lapse_anywhere",
-                think.lapse_anywhere,
-                think.lapse_anywhere > 0.0 && think.lapse_anywhere <= 1.0,
-                "a number above 0, at most 1",
-            ),
-            not_below("wait_cost", think.wait_cost),
-            count("cases", think.cases),
-            share("noticed", self.signal.noticed),
-            count("beliefs", self.inference.beliefs),
-            (
-                "states",
-                self.inference.states as f64,
-                (1..=256).contains(&self.inference.states),
-                "a whole number from 1 to 256",
-            ),
-            above("min_effective", self.inference.min_effective),
-            count("max_beliefs", self.inference.max_beliefs),
-            count("predictions", self.inference.predictions),
-        ];
-        let wrong = checks.into_iter().find(|(_, _, is_right, _)| !is_right);
-        wrong.map(|(key, value, _, remedy)| (key, format!("{key} = {value}"), remedy))
+        let PerceptionModel { look_alike, anything, .. } = self.perception;
+        let found = || format!("anything = {anything}, look_alike = {look_alike}");
+        (look_alike + anything >= 1.0)
+            .then(|| ("human.perception.anything", found(), "two numbers that are together below 1"))
     }
 }

@@ -189,81 +189,16 @@ pub struct Individual {
     pub notices_signal: f64,
 }
 
-/// Valid range of a trait, for error messages: of a probability, and of a positive quantity.
-const CHANCE_SPREAD: &str = "{ median = …, sigma = … }: a median between 0 and 1, a spread from 0 to 2";
-const AMOUNT_SPREAD: &str = "{ median = …, sigma = … }: a median above 0, a spread from 0 to 2";
-/// Largest spread of a trait; larger spreads give implausible individuals.
-const MOST_SIGMA: f64 = 2.0;
-
 /// Upper bound of the probability of noticing a signal (study, "Simulated participants").
 const MOST_SIGNALS_NOTICED: f64 = 0.85;
 
 impl Population {
-    /// The first invalid parameter: its name in a session file, its value, and its valid range.
+    /// The first parameters that exclude each other: the path of one of them in a session file, the value found, and a valid value.
+    /// The ranges of single parameters are in `session::ranges`.
     pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
-        let chances = [
-            ("slip", self.slip),
-            ("look_alike_slip", self.look_alike_slip),
-            ("thoughtless", self.thoughtless),
-            ("checks", self.checks),
-            ("makes_sure", self.makes_sure),
-            ("capture", self.capture),
-            ("order_capture", self.order_capture),
-            ("wanders", self.wanders),
-            ("misreads", self.misreads),
-            ("doubts_robot_hand", self.doubts_robot_hand),
-            ("doubts_places", self.doubts_places),
-            ("learned", self.learned),
-            ("half_forgotten", self.half_forgotten),
-            ("takes_hints", self.takes_hints),
-            ("notices_signal", self.notices_signal),
-        ];
-        let amounts = [
-            ("press_s", self.press_s),
-            ("watches_robot", self.watches_robot),
-            ("fixation_s", self.fixation_s),
-            ("half_life_s", self.half_life_s),
-            ("loses_thread_per_min", self.loses_thread_per_min),
-            ("patience_s", self.patience_s),
-            ("commitment_s", self.commitment_s),
-        ];
-        let is_chance = |median: f64| median > 0.0 && median < 1.0;
-        let is_amount = |median: f64| median.is_finite() && median > 0.0;
-        let spreads = chances.map(|(key, spread)| (key, spread, is_chance(spread.median), CHANCE_SPREAD));
-        let spreads = spreads
-            .into_iter()
-            .chain(amounts.map(|(key, spread)| (key, spread, is_amount(spread.median), AMOUNT_SPREAD)));
-        let wrong = |spread: &TraitSpread, is_median: bool| !is_median || !(0.0..=MOST_SIGMA).contains(&spread.sigma);
-        for (key, spread, is_median, remedy) in spreads {
-            if wrong(&spread, is_median) {
-                return Some((key, format!("median = {}, sigma = {}", spread.median, spread.sigma), remedy));
-            }
-        }
-        self.fault_of_number()
-    }
-
-    /// The first invalid parameter among those that are equal for all participants.
-    fn fault_of_number(&self) -> Option<(&'static str, String, &'static str)> {
-        let share = |key, value: f64| (key, value, (0.0..=1.0).contains(&value), "a number from 0 to 1");
-        let above = |key, value: f64| (key, value, value.is_finite() && value > 0.0, "a number above 0");
-        let small = |key, value: f64, right| (key, value, (0.0..=2.0).contains(&value), right);
         let [least, most] = self.signal_after_s;
-        let is_in_order = least >= 0.0 && most >= least && most.is_finite();
-        let checks = [
-            small("press_jitter", self.press_jitter, "a number from 0 to 2"),
-            share("notices_slip", self.notices_slip),
-            ("insists", self.insists, (0.0..1.0).contains(&self.insists), "a number from 0 to below 1"),
-            share("misreads_signal", self.misreads_signal),
-            share("practice_kept", self.practice_kept),
-            small("novice_slowdown", self.novice_slowdown, "a number from 0 to 2"),
-            above("practice_presses", self.practice_presses),
-            above("confuses_look_alikes", self.confuses_look_alikes),
-            above("recipes_gained", self.recipes_gained),
-            small("tracker_offset_m", self.tracker_offset_m, "metres, from 0 to 2"),
-            ("signal_after_s", least, is_in_order, "[least, most], in seconds"),
-        ];
-        let wrong = checks.into_iter().find(|(_, _, is_right, _)| !is_right);
-        wrong.map(|(key, value, _, remedy)| (key, format!("{key} = {value}"), remedy))
+        let found = || format!("signal_after_s = [{least}, {most}]");
+        (most < least).then(|| ("participant.population.signal_after_s", found(), "[least, most], in seconds"))
     }
 
     /// Draws one individual.

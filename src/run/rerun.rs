@@ -298,12 +298,12 @@ fn write(
     let names: Vec<String> = recordings.iter().map(|recording| name(recording)).collect();
     let began: Vec<String> = playing.iter().map(Playing::began).collect();
     let id = format!("{} {} {}", names.join(" "), began.join(" "), rrd::mark());
-    let writer = match RerunWriter::open(&StreamIdentity { id, name: names.join(" | ") }, outlets, &lanes) {
+    let mut writer = match RerunWriter::open(&StreamIdentity { id, name: names.join(" | ") }, outlets, &lanes) {
         Ok(writer) => writer,
         Err(error) => return Ok(Err(error)),
     };
     for one in playing {
-        one.write(&writer)?;
+        one.write(&mut writer)?;
     }
     writer.finish();
     Ok(Ok(writer))
@@ -330,7 +330,7 @@ impl Playing {
     }
 
     /// Writes the whole recording; returns the number of rows.
-    fn write(mut self, writer: &RerunWriter) -> FileResult<u64> {
+    fn write(mut self, writer: &mut RerunWriter) -> FileResult<u64> {
         writer.fixed(&self.lane, &self.scene.fixed());
         let mut rows = writer.moment(&self.lane, &self.scene.opening());
         let mut held: Option<(Stamped, Option<DirichletBelief>)> = None;

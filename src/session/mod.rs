@@ -36,6 +36,7 @@ mod preflight_check;
 pub mod protocol;
 mod protocol_event;
 mod protocol_state;
+pub mod ranges;
 mod reading;
 mod requirements;
 mod robot;

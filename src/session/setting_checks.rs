@@ -1,5 +1,9 @@
 //! Errors of invalid settings, and checks that several settings share.
 
+use std::borrow::Cow;
+
+use crate::base::number_range::OutOfRange;
+
 /// An invalid setting.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("found {found}, wanted {remedy}")]
@@ -9,20 +13,26 @@ pub struct SettingError {
     /// The value found.
     pub found: String,
     /// Description of a valid value.
-    pub remedy: &'static str,
+    pub remedy: Cow<'static, str>,
     /// Index among several settings with the same path.
     pub nth: usize,
 }
 
 impl SettingError {
     /// An error about the first setting with this path.
-    pub fn new(path: impl Into<String>, found: String, remedy: &'static str) -> SettingError {
-        SettingError { path: path.into(), found, remedy, nth: 0 }
+    pub fn new(path: impl Into<String>, found: String, remedy: impl Into<Cow<'static, str>>) -> SettingError {
+        SettingError { path: path.into(), found, remedy: remedy.into(), nth: 0 }
     }
 
     /// Name of the setting without its tables.
     pub fn key(&self) -> &str {
         self.path.rsplit('.').next().unwrap_or(&self.path)
+    }
+}
+
+impl From<OutOfRange> for SettingError {
+    fn from(error: OutOfRange) -> SettingError {
+        SettingError::new(error.path, error.found, error.remedy)
     }
 }
 

@@ -7,6 +7,7 @@ pub use super::console_settings::{ConsoleSpec, MAX_NOTES, ThemeChoice, Visibilit
 use super::display::DisplaySpec;
 pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
 use super::plan::{PlanSpec, StepSpec};
+use super::ranges;
 pub use super::robot_settings::{ArmKind, RobotSpec};
 pub use super::setting_checks::{SettingError, is_code};
 use super::stream::RerunSpec;
@@ -64,41 +65,27 @@ fn default_seed() -> u64 {
     1
 }
 
-/// Longest trial, in seconds.
-const MAX_TRIAL_S: f64 = 86_400.0;
-
 impl SessionSpec {
     /// Checks ranges, the participant's code, and settings that exclude each other.
     ///
     /// # Errors
     /// The first invalid setting.
     pub fn check(&self) -> Result<(), SettingError> {
-        let above_0 = |table: &str, key: &str, value: f64| match value.is_finite() && value > 0.0 {
-            true => Ok(()),
-            false => Err(SettingError::new(format!("{table}.{key}"), format!("{key} = {value}"), "a number above 0")),
-        };
-        if self.trial.presses == 0 {
-            return Err(SettingError::new(
-                "trial.presses".to_string(),
-                "presses = 0".to_string(),
-                "a whole number above 0",
-            ));
-        }
-        above_0("trial", "seconds", self.trial.seconds)?;
-        if self.trial.seconds > MAX_TRIAL_S {
-            let found = format!("seconds = {}", self.trial.seconds);
-            return Err(SettingError::new("trial.seconds", found, "at most 86400, a day"));
-        }
-        above_0("robot", "press_s", self.robot.press_s)?;
-        above_0("signals", "shown_s", self.signals.shown_s)?;
-        if !(0.0..=2.0).contains(&self.robot.press_spread) {
-            let found = format!("press_spread = {}", self.robot.press_spread);
-            return Err(SettingError::new("robot.press_spread", found, "a number from 0 to 2"));
-        }
-        if self.trial.orders == Some(0) {
-            let found = "orders = 0".to_string();
-            return Err(SettingError::new("trial.orders", found, "a number above 0"));
-        }
+        ranges::check_session(self)?;
+        self.check_rules()
+    }
+
+    /// The same of the settings in the header of a recording, whose numbers earlier versions may have taken.
+    ///
+    /// # Errors
+    /// The first setting that cannot be.
+    pub fn check_recorded(&self) -> Result<(), SettingError> {
+        ranges::check_recorded(self)?;
+        self.check_rules()
+    }
+
+    /// Checks all but the ranges of numbers.
+    fn check_rules(&self) -> Result<(), SettingError> {
         if let Some(plan) = &self.plan {
             plan.check()?;
         }
@@ -113,26 +100,13 @@ impl SessionSpec {
             let remedy = "gaze = \"mouse\", \"pupil\", \"file\", \"json\" or \"none\"";
             return Err(SettingError::new("participant.gaze", found, remedy));
         }
-        if !(0.0..=60.0).contains(&self.signals.cool_down_s) {
-            let found = format!("cool_down_s = {}", self.signals.cool_down_s);
-            return Err(SettingError::new("signals.cool_down_s", found, "seconds from 0 (none) to 60"));
-        }
         self.tracker.check(self.participant.gaze)?;
         self.console.check()?;
         self.display.check()?;
         self.rerun.check()?;
-        let of = |table: &str, (key, found, remedy): (&str, String, &'static str)| {
-            Err(SettingError::new(format!("{table}.{key}"), found, remedy))
-        };
         let population = self.participant.population.as_ref().and_then(Population::fault);
-        let parts = [
-            ("human", self.human.fault()),
-            ("assistant", self.assistant.fault()),
-            ("wizard", self.wizard.fault()),
-            ("population", population),
-        ];
-        match parts.into_iter().find_map(|(table, fault)| Some((table, fault?))) {
-            Some((table, fault)) => of(table, fault),
+        match self.human.fault().or(population) {
+            Some((path, found, remedy)) => Err(SettingError::new(path, found, remedy)),
             None => Ok(()),
         }
     }

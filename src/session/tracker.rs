@@ -60,10 +60,6 @@ impl TrackerSpec {
             let remedy = "four corners in fractions of the display: top left, top right, bottom right, bottom left";
             return Err(SettingError::new("tracker.corners", format!("corners = {corners:?}"), remedy));
         }
-        if !(0.2..=20.0).contains(&self.distance_m) {
-            let found = format!("distance_m = {}", self.distance_m);
-            return Err(SettingError::new("tracker.distance_m", found, "metres from 0.2 to 20"));
-        }
         if gaze == GazeSource::File && self.file.is_none() {
             let remedy = "file = \"gaze.csv\" in [tracker], or --gaze-file PATH";
             return Err(SettingError::new("participant.gaze", "gaze = \"file\", and no file".to_string(), remedy));

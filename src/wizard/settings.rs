@@ -55,23 +55,4 @@ impl WizardSpec {
     pub fn is_default(&self) -> bool {
         *self == WizardSpec::default()
     }
-
-    /// The first invalid setting: its name, its value, and its valid range.
-    pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
-        let chance = |key, value: f64| (key, value, (0.0..=1.0).contains(&value), "a number from 0 to 1");
-        let seconds = |key, value: f64| (key, value, (0.0..=60.0).contains(&value), "seconds from 0 to 60");
-        let spread = self.reaction_spread;
-        let checks = [
-            seconds("reaction_s", self.reaction_s),
-            ("reaction_spread", spread, (0.0..=2.0).contains(&spread), "a number from 0 to 2"),
-            chance("sees_errors", self.sees_errors),
-            chance("sees_overlooked", self.sees_overlooked),
-            seconds("overlooked_after_s", self.overlooked_after_s),
-            seconds("look_s", self.look_s),
-            chance("guesses_wrong", self.guesses_wrong),
-            seconds("rest_s", self.rest_s),
-        ];
-        let wrong = checks.into_iter().find(|(_, _, is_right, _)| !is_right);
-        wrong.map(|(key, value, _, remedy)| (key, format!("{key} = {value}"), remedy))
-    }
 }

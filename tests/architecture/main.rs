@@ -58,12 +58,16 @@ const BANNED_BELOW_EDGE: [&str; 20] = [
 ];
 
 /// Crates that only some rooms may name; a file name stands for that file alone.
-const ONLY_IN: [(&str, &[&str]); 10] = [
+const ONLY_IN: [(&str, &[&str]); 14] = [
     ("ratatui", &["src/console", "src/edge"]),
     ("crossterm", &["src/console", "src/edge"]),
     ("tokio", &["src/edge", "src/run", "src/main.rs", "src/cli.rs"]),
     ("re_sdk", &["src/edge/rerun.rs", "src/edge/rerun"]),
     ("re_sdk_types", &["src/edge/rerun.rs", "src/edge/rerun"]),
+    ("re_protos", &["src/edge/rerun"]),
+    ("tonic", &["src/edge/rerun"]),
+    ("tonic_web", &["src/edge/rerun"]),
+    ("tower_layer", &["src/edge/rerun"]),
     ("zeromq", &["src/edge"]),
     ("nalgebra", &["src/arm", "src/scene", "src/edge/rerun.rs"]),
     ("urdf_rs", &["src/arm"]),

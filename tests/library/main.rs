@@ -18,6 +18,7 @@ mod oracle;
 mod participant;
 mod participant_codes;
 mod plan;
+mod ranges;
 mod readers;
 mod replay;
 mod robot;

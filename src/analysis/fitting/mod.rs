@@ -15,6 +15,7 @@ use self::ascent::{BoundReached, FittedVariable, Maximum, ascend};
 use crate::base::words::count;
 use crate::mind::fitting::{Likelihood, Parameter};
 use crate::mind::model::HumanModel;
+use crate::session::ranges;
 
 /// Half width of a 95 % interval, in standard errors.
 const HALF_WIDTH: f64 = 1.96;
@@ -137,7 +138,8 @@ pub fn fit(
     let loss = |at: &[f64]| {
         let model = with(at);
         // Invalid models get an infinite loss.
-        let loss = if model.fault().is_some() { f64::INFINITY } else { -likelihood(&model).log_p };
+        let is_possible = ranges::check_human_model(&model).is_ok() && model.fault().is_none();
+        let loss = if is_possible { -likelihood(&model).log_p } else { f64::INFINITY };
         tried();
         loss
     };

@@ -6,10 +6,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::{LOG_NAME, RecordingLock};
+use crate::base::number_range::OutOfRange;
 use crate::edge::file_error::{FileError, FileResult, open_regular};
 use crate::edge::files::compile_kitchen;
-use crate::kitchen::Kitchen;
+use crate::kitchen::{Kitchen, layout_ranges};
 use crate::session::header::{Continues, FORMAT, VERSION};
+use crate::session::ranges;
 use crate::session::{Event, Header, Session, Stamped};
 
 /// No line of a log is longer, in bytes: what is longer is no log.
@@ -86,6 +88,12 @@ impl LogReader {
         let recipes = (Path::new(&header.recipes.path), header.recipes.text.clone());
         let kitchen = Arc::new(compile_kitchen(layout, recipes)?.kitchen);
         Ok(LogReader { header, kitchen, path, before, input, number: 1, next_seq, partial: Vec::new(), ended: false })
+    }
+
+    /// The first number in the header that no settings file may have today; an earlier version of the program took it.
+    pub fn unusual(&self) -> Option<OutOfRange> {
+        let layout = || layout_ranges::check(&self.header.layout.text).err();
+        ranges::check_session(&self.header.session).err().or_else(layout)
     }
 
     /// The session before its first event.
@@ -268,8 +276,8 @@ fn read_header(path: &Path, text: &str) -> FileResult<Header> {
     }
     let header: Header = serde_json::from_str(text)
         .map_err(|error| wrong(error.column().saturating_sub(1), json_message(&error), is_log.clone()))?;
-    match header.session.check() {
+    match header.session.check_recorded() {
         Ok(()) => Ok(header),
-        Err(error) => Err(wrong(text.find(error.key()).unwrap_or(0), error.found, error.remedy.to_string())),
+        Err(error) => Err(wrong(text.find(error.key()).unwrap_or(0), error.found, error.remedy.into_owned())),
     }
 }

@@ -4,6 +4,9 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+use serde_json::ser::Formatter;
+
 use super::guarded::GuardedFile;
 use super::lock::{RecordingLock, is_same};
 use super::{LOG_NAME, SETTINGS_NAME, WriteError, move_aside};
@@ -195,7 +198,19 @@ pub fn is_written_settings(text: &str) -> bool {
     spec.and_then(|spec| toml::to_string(&spec).ok()).is_some_and(|written| written == text)
 }
 
-fn write_line(out: &mut impl Write, value: &impl serde::Serialize) -> io::Result<()> {
-    serde_json::to_writer(&mut *out, value)?;
-    out.write_all(b"\n")
+/// Writes a line of the log, or nothing of it.
+fn write_line(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
+    let mut line = Vec::with_capacity(256);
+    value.serialize(&mut serde_json::Serializer::with_formatter(&mut line, FiniteNumbers))?;
+    line.push(b'\n');
+    out.write_all(&line)
+}
+
+/// JSON without `null`. Nothing in a log is written so but numbers that are not finite, and no log with one can be read.
+struct FiniteNumbers;
+
+impl Formatter for FiniteNumbers {
+    fn write_null<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
+        Err(io::Error::new(io::ErrorKind::InvalidData, "a number in it is not finite"))
+    }
 }

@@ -23,6 +23,7 @@ use super::content::{Content, ContentId};
 use super::cost_to_go::MAX_BUTTONS;
 use super::dish::{Dish, DishId};
 use super::layout::LayoutSpec;
+use super::layout_ranges;
 use super::location::{Location, LocationId, LocationKind};
 use super::process::Process;
 use super::recipe::RecipesSpec;
@@ -48,7 +49,14 @@ impl Kitchen {
                 remedy: "a file like those in layouts and recipes".to_string(),
             }
         };
+        let ranges = layout_ranges::check(layout).map_err(|error| SpecError {
+            file: SpecFile::Layout,
+            span: error.place,
+            found: error.found,
+            remedy: error.remedy,
+        });
         let layout: LayoutSpec = toml::from_str(layout).map_err(unreadable(SpecFile::Layout))?;
+        ranges?;
         let recipes: RecipesSpec = toml::from_str(recipes).map_err(unreadable(SpecFile::Recipes))?;
         Kitchen::compile(&layout, &recipes)
     }
@@ -67,6 +75,10 @@ impl Kitchen {
         let aspects = aspects(&contents, &locations, &dishes, &tables);
         for (value, name) in [(&layout.display.width_m, "width_m"), (&layout.display.height_m, "height_m")] {
             positive(value, name)?;
+        }
+        if !layout.table.height_m.is_finite() {
+            let found = format!("height_m = {}", layout.table.height_m);
+            return Err(wrong_file(SpecFile::Layout, found, "the table's height in metres"));
         }
         positive(&layout.table.served_shown_s, "served_shown_s")?;
         positive(&layout.table.new_order_after_s, "new_order_after_s")?;

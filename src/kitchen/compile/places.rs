@@ -132,6 +132,16 @@ pub(super) fn check_signal_keys(layout: &LayoutSpec) -> Result<()> {
 
 pub(super) fn storages(layout: &LayoutSpec, spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Storage>> {
     let one = |storage: &StorageSpec| {
+        let DisplayArea { x, y, w, h } = *storage.display.get_ref();
+        if ![x, y, w, h].iter().all(|fraction| fraction.is_finite()) {
+            let found = format!("a storage of \"{}\" at no place", storage.ingredient.get_ref());
+            return Err(wrong(
+                SpecFile::Layout,
+                storage.display.span(),
+                found,
+                "x, y, w and h as fractions within 0 to 1",
+            ));
+        }
         Ok(Storage {
             agent: storage.agent,
             item: stored(&storage.ingredient, spec, items)?,

@@ -8,8 +8,6 @@ use crate::session::setting_checks::{SettingError, is_code};
 
 /// Largest number of conditions: more would have more orders than a study has participants.
 const MAX_CONDITIONS: usize = 4;
-/// Largest number of participants.
-const MAX_PARTICIPANTS: u32 = 9999;
 
 /// The `[plan]` of a session file: participants, conditions, and the phases around the trials.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -120,15 +118,9 @@ impl PlanSpec {
             return wrong("plan.conditions", found, "different conditions: each participant has one trial in each");
         }
         let orders = groups(self.conditions.len()).len() as u32;
-        if let Some(block) = self.block.filter(|&block| block > MAX_PARTICIPANTS) {
-            return wrong("plan.block", format!("block = {block}"), "at most 9999 participants in a block");
-        }
         if let Some(block) = self.block.filter(|&block| block == 0 || block % orders != 0) {
             let found = format!("block = {block}, with {orders} orders of the conditions");
             return wrong("plan.block", found, "a multiple of the number of orders, so that each comes equally often");
-        }
-        if let Some(familiarisation) = &self.familiarisation {
-            familiarisation.check()?;
         }
         for asked in self.questionnaire.iter().flat_map(|questionnaire| questionnaire.after.iter().flatten()) {
             if *asked == 0 || *asked as usize > self.conditions.len() {
@@ -142,9 +134,6 @@ impl PlanSpec {
     fn check_participants(&self) -> Result<(), SettingError> {
         let wrong = |found: String, remedy| Err(SettingError::new("plan.participants", found, remedy));
         match &self.participants {
-            Participants::Count(count) if *count == 0 || *count > MAX_PARTICIPANTS => {
-                wrong(format!("participants = {count}"), "1 to 9999 participants, or a list of their codes")
-            }
             Participants::Count(_) => Ok(()),
             Participants::Codes(codes) if codes.is_empty() => {
                 wrong("no participants".to_string(), "how many there are, or a list of their codes")
@@ -167,24 +156,4 @@ impl PlanSpec {
 fn numbered(number: u32, count: u32) -> String {
     let digits = count.to_string().len().max(2);
     format!("P{number:0digits$}")
-}
-
-impl FamiliarisationSpec {
-    fn check(&self) -> Result<(), SettingError> {
-        let wrong = |key, found, remedy| Err(SettingError::new(key, found, remedy));
-        let above_0 = "a number above 0";
-        if self.orders == 0 {
-            return wrong("familiarisation.orders", "orders = 0".to_string(), above_0);
-        }
-        if self.presses == 0 {
-            return wrong("familiarisation.presses", "presses = 0".to_string(), above_0);
-        }
-        if !(self.seconds.is_finite() && self.seconds > 0.0) {
-            return wrong("familiarisation.seconds", format!("seconds = {}", self.seconds), above_0);
-        }
-        match self.error_rate.filter(|rate| !(0.0..=1.0).contains(rate)) {
-            Some(rate) => wrong("familiarisation.error_rate", format!("error_rate = {rate}"), "a share of 0 to 1"),
-            None => Ok(()),
-        }
-    }
 }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::session::condition::Condition;
+use crate::session::ranges;
 use crate::session::setting_checks::{SettingError, is_code};
 
 /// A questionnaire file.
@@ -70,10 +71,7 @@ impl Questionnaire {
             let remedy = "a short name of letters, digits, - and _, such as \"acceptance\"";
             return wrong("name", format!("name = \"{}\"", self.name), remedy);
         }
-        if !(2..=9).contains(&self.scale.points) {
-            let found = format!("points = {}", self.scale.points);
-            return wrong("scale.points", found, "2 to 9 points: each is a key");
-        }
+        ranges::check_questionnaire(self)?;
         if self.items.is_empty() {
             return wrong("item", "a questionnaire without items".to_string(), "at least one [[item]]");
         }

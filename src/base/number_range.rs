@@ -1,0 +1,176 @@
+//! Ranges of the numbers in settings files, and the check of a file's numbers against a table of them.
+
+use std::fmt;
+use std::ops::Range;
+
+use serde::Serialize;
+
+/// Any number above 0, and any that is not below 0.
+pub const ABOVE_0: [f64; 2] = [f64::MIN_POSITIVE, f64::MAX];
+pub const NOT_NEGATIVE: [f64; 2] = [0.0, f64::MAX];
+/// Any number between 0 and 1, without them.
+pub const INSIDE_0_AND_1: [f64; 2] = [f64::MIN_POSITIVE, 1.0 - f64::EPSILON / 2.0];
+/// Any number.
+pub const ANY: [f64; 2] = [f64::MIN, f64::MAX];
+
+/// The range of one number of a settings file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NumberRange {
+    /// The setting with the tables around it, from outside: `human.decision.tau`. A `*` stands for any one name.
+    pub path: &'static str,
+    /// The least and the most that a file may have.
+    pub least: f64,
+    pub most: f64,
+    pub is_whole: bool,
+    /// What it is counted or measured in; empty: it has no unit.
+    pub unit: &'static str,
+    /// Why not less and not more.
+    pub reason: &'static str,
+    /// The least and the most that the header of a recording may have: what the program took when files had other ranges.
+    pub recorded: [f64; 2],
+}
+
+/// A number outside of its range.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("found {found}, wanted {remedy}")]
+pub struct OutOfRange {
+    /// The setting with the tables around it.
+    pub path: String,
+    /// What was found: `tau = -3`.
+    pub found: String,
+    /// What would be right.
+    pub remedy: String,
+    /// Where in the file's text, in bytes, if a text was looked at.
+    pub place: Option<Range<usize>>,
+}
+
+impl NumberRange {
+    /// The range of a number with decimals, from the least to the most; recordings have the same.
+    pub const fn real(path: &'static str, range: [f64; 2], unit: &'static str, reason: &'static str) -> NumberRange {
+        NumberRange { path, least: range[0], most: range[1], is_whole: false, unit, reason, recorded: range }
+    }
+
+    /// The same of a whole number.
+    pub const fn whole(path: &'static str, range: [f64; 2], unit: &'static str, reason: &'static str) -> NumberRange {
+        NumberRange { path, least: range[0], most: range[1], is_whole: true, unit, reason, recorded: range }
+    }
+
+    /// The same for files; recordings may have these.
+    pub const fn recorded(self, recorded: [f64; 2]) -> NumberRange {
+        NumberRange { recorded, ..self }
+    }
+
+    /// Whether a file may have this number.
+    pub fn holds(&self, value: f64) -> bool {
+        (self.least..=self.most).contains(&value)
+    }
+
+    /// Whether the header of a recording may have it.
+    pub fn may_be_recorded(&self, value: f64) -> bool {
+        let [least, most] = self.recorded;
+        (least..=most).contains(&value)
+    }
+
+    /// What is said of a number outside of the range.
+    pub fn violation(&self, path: &str, value: f64) -> OutOfRange {
+        let key = path.rsplit('.').next().unwrap_or(path);
+        OutOfRange {
+            path: path.to_string(),
+            found: format!("{key} = {}", written(value)),
+            remedy: self.to_string(),
+            place: None,
+        }
+    }
+
+    fn is_of(&self, path: &str) -> bool {
+        let (mut wanted, mut names) = (self.path.split('.'), path.split('.'));
+        loop {
+            match (wanted.next(), names.next()) {
+                (None, None) => return true,
+                (Some(wanted), Some(name)) if wanted == "*" || wanted == name => {}
+                _ => return false,
+            }
+        }
+    }
+}
+
+/// A number as people write it: with an exponent where it would have many zeros.
+fn written(value: f64) -> String {
+    let size = value.abs();
+    if size >= 1e16 || (size > 0.0 && size < 1e-6) { format!("{value:e}") } else { value.to_string() }
+}
+
+impl fmt::Display for NumberRange {
+    /// In words: "a number from 0.01 to 100 per press: …".
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let number = if self.is_whole { "a whole number" } else { "a number" };
+        write!(out, "{number} from {} to {}", self.least, self.most)?;
+        if !self.unit.is_empty() {
+            write!(out, " {}", self.unit)?;
+        }
+        write!(out, ": {}", self.reason)
+    }
+}
+
+/// The range of the number with this path.
+pub fn range_of<'a>(ranges: &'a [NumberRange], path: &str) -> Option<&'a NumberRange> {
+    ranges.iter().find(|range| range.is_of(path))
+}
+
+/// All numbers in settings with their paths, in the order of the settings; the numbers of a list have the path of the list.
+/// `around` are the tables around the settings: "human", or none.
+///
+/// # Errors
+/// A whole number that no TOML file can hold.
+pub fn numbers(settings: &impl Serialize, around: &str) -> Result<Vec<(String, f64)>, OutOfRange> {
+    let value = toml::Value::try_from(settings).map_err(|error| OutOfRange {
+        path: around.to_string(),
+        found: error.to_string(),
+        remedy: format!("numbers up to {}", i64::MAX),
+        place: None,
+    })?;
+    let mut found = Vec::new();
+    collect(&value, around, &mut found);
+    Ok(found)
+}
+
+fn collect(value: &toml::Value, path: &str, found: &mut Vec<(String, f64)>) {
+    match value {
+        toml::Value::Integer(number) => found.push((path.to_string(), *number as f64)),
+        toml::Value::Float(number) => found.push((path.to_string(), *number)),
+        toml::Value::Array(values) => values.iter().for_each(|value| collect(value, path, found)),
+        toml::Value::Table(table) => {
+            for (name, value) in table {
+                let inner = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+                collect(value, &inner, found);
+            }
+        }
+        toml::Value::String(_) | toml::Value::Boolean(_) | toml::Value::Datetime(_) => {}
+    }
+}
+
+/// Whether a file may have all these numbers.
+///
+/// # Errors
+/// The first one that it may not have.
+pub fn check_file(ranges: &[NumberRange], numbers: &[(String, f64)]) -> Result<(), OutOfRange> {
+    check(ranges, numbers, NumberRange::holds)
+}
+
+/// Whether the header of a recording may have all these numbers.
+///
+/// # Errors
+/// The first one that it may not have.
+pub fn check_recorded(ranges: &[NumberRange], numbers: &[(String, f64)]) -> Result<(), OutOfRange> {
+    check(ranges, numbers, NumberRange::may_be_recorded)
+}
+
+fn check(
+    ranges: &[NumberRange],
+    numbers: &[(String, f64)],
+    is_right: fn(&NumberRange, f64) -> bool,
+) -> Result<(), OutOfRange> {
+    let ranged = numbers.iter().filter_map(|(path, value)| Some((range_of(ranges, path)?, path, *value)));
+    let mut wrong = ranged.filter(|(range, _, value)| !is_right(range, *value));
+    wrong.next().map_or(Ok(()), |(range, path, value)| Err(range.violation(path, value)))
+}

@@ -1,0 +1,186 @@
+//! Messages of a stream, kept for viewers that connect later: up to a number of bytes, and each read from its own place.
+//!
+//! Pieces of an entity arrive several times a second, and each has an overhead of some kilobytes. A number of them is merged into
+//! one, which needs a fraction of the memory. When there are too many bytes the oldest pieces go, but never the newest piece of
+//! an entity: a viewer that connects late still sees how everything is.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// So many pieces of an entity are merged into one.
+const MERGED: usize = 64;
+
+/// Merges pieces of one entity; the piece with its size in bytes. None: they cannot be merged.
+pub(super) type Merge<M> = fn(&[M]) -> Option<(M, usize)>;
+
+/// A piece of the stream.
+#[derive(Debug)]
+struct KeptPiece<M> {
+    message: M,
+    bytes: usize,
+    /// Of what it tells; none of what stays for ever.
+    entity: Option<String>,
+}
+
+/// What is kept of an entity.
+#[derive(Debug, Default)]
+struct KeptEntity {
+    newest: u64,
+    /// The numbers of pieces that were not merged yet, oldest first.
+    unmerged: Vec<u64>,
+}
+
+/// The messages of a stream.
+#[derive(Debug)]
+pub(super) struct KeptMessages<M> {
+    most_bytes: usize,
+    merge: Merge<M>,
+    bytes: usize,
+    /// By number, in the order of arrival.
+    pieces: BTreeMap<u64, KeptPiece<M>>,
+    /// Those that may go: a newer piece tells of their entity.
+    outdated: BTreeSet<u64>,
+    entities: HashMap<String, KeptEntity>,
+    next: u64,
+}
+
+impl<M: Clone> KeptMessages<M> {
+    /// No messages; at most so many bytes of those that may go are kept.
+    pub fn new(most_bytes: usize, merge: Merge<M>) -> KeptMessages<M> {
+        let (pieces, outdated, entities) = (BTreeMap::new(), BTreeSet::new(), HashMap::new());
+        KeptMessages { most_bytes, merge, bytes: 0, pieces, outdated, entities, next: 0 }
+    }
+
+    /// Adds a message of this size in bytes. One of no entity stays for ever.
+    pub fn add(&mut self, message: M, bytes: usize, entity: Option<&str>) {
+        let number = self.next;
+        self.next += 1;
+        self.bytes += bytes;
+        self.pieces.insert(number, KeptPiece { message, bytes, entity: entity.map(str::to_string) });
+        let Some(name) = entity else { return };
+        let kept =
+            self.entities.entry(name.to_string()).or_insert_with(|| KeptEntity { newest: number, unmerged: vec![] });
+        if kept.newest != number {
+            self.outdated.insert(kept.newest);
+            kept.newest = number;
+        }
+        kept.unmerged.push(number);
+        if kept.unmerged.len() >= MERGED {
+            let numbers = std::mem::take(&mut kept.unmerged);
+            self.merge(&numbers, name);
+        }
+        self.forget();
+    }
+
+    /// The first message from this number on, with its number.
+    pub fn next(&self, from: u64) -> Option<(u64, M)> {
+        self.pieces.range(from..).next().map(|(number, piece)| (*number, piece.message.clone()))
+    }
+
+    /// How many bytes are kept.
+    #[cfg(test)]
+    fn bytes(&self) -> usize {
+        self.bytes
+    }
+
+    /// Puts one piece in the place of these. It has the number of the last one: who has read that has read all of it.
+    fn merge(&mut self, numbers: &[u64], entity: &str) {
+        let there: Vec<M> =
+            numbers.iter().filter_map(|number| self.pieces.get(number)).map(|p| p.message.clone()).collect();
+        let (Some((message, bytes)), Some(&last)) = ((self.merge)(&there), numbers.last()) else { return };
+        numbers.iter().for_each(|number| self.remove(*number));
+        self.bytes += bytes;
+        self.pieces.insert(last, KeptPiece { message, bytes, entity: Some(entity.to_string()) });
+    }
+
+    fn remove(&mut self, number: u64) {
+        self.outdated.remove(&number);
+        if let Some(piece) = self.pieces.remove(&number) {
+            self.bytes -= piece.bytes;
+        }
+    }
+
+    /// Lets the oldest pieces go.
+    fn forget(&mut self) {
+        while self.bytes > self.most_bytes {
+            let Some(oldest) = self.outdated.first().copied() else { return };
+            let entity = self.pieces.get(&oldest).and_then(|piece| piece.entity.clone());
+            if let Some(kept) = entity.and_then(|entity| self.entities.get_mut(&entity)) {
+                kept.unmerged.retain(|number| *number != oldest);
+            }
+            self.remove(oldest);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn join(pieces: &[String]) -> Option<(String, usize)> {
+        Some((pieces.join("+"), 10))
+    }
+
+    fn all(kept: &KeptMessages<String>) -> Vec<(u64, String)> {
+        let (mut from, mut found) = (0, Vec::new());
+        while let Some((number, message)) = kept.next(from) {
+            from = number + 1;
+            found.push((number, message));
+        }
+        found
+    }
+
+    #[test]
+    fn what_stays_and_the_newest_of_each_entity_are_kept_whatever_comes() {
+        let mut kept = KeptMessages::new(100, |_: &[String]| None);
+        kept.add("layout".to_string(), 500, None);
+        kept.add("seldom".to_string(), 10, Some("kitchen/plate"));
+        for step in 0..1000 {
+            kept.add(format!("gaze {step}"), 10, Some("human/gaze"));
+        }
+        let found: Vec<String> = all(&kept).into_iter().map(|(_, message)| message).collect();
+        assert_eq!(found, ["layout", "seldom", "gaze 999"], "only what may go has gone");
+        kept.add("later".to_string(), 10, Some("kitchen/plate"));
+        assert!(!all(&kept).iter().any(|(_, message)| message == "seldom"), "a newer one took its place");
+    }
+
+    #[test]
+    fn the_oldest_go_first_and_memory_is_bounded() {
+        let mut kept = KeptMessages::new(100, |_: &[String]| None);
+        for step in 0..1000 {
+            kept.add(format!("gaze {step}"), 7, Some("human/gaze"));
+            assert!(kept.bytes() <= 100);
+        }
+        let found = all(&kept);
+        let numbers: Vec<u64> = found.iter().map(|(number, _)| *number).collect();
+        assert_eq!(numbers, (1000 - 14..1000).collect::<Vec<u64>>());
+        // Who reads slowly goes on with the oldest that is there.
+        assert_eq!(kept.next(3).map(|(number, _)| number), Some(1000 - 14));
+        assert_eq!(kept.next(1000), None);
+    }
+
+    #[test]
+    fn pieces_are_merged_and_nobody_misses_one() {
+        let mut kept = KeptMessages::new(1 << 20, join);
+        for step in 0..MERGED as u64 {
+            kept.add(format!("{step}"), 100, Some("human/gaze"));
+        }
+        let merged = (0..MERGED).map(|step| step.to_string()).collect::<Vec<_>>().join("+");
+        assert_eq!(all(&kept), [(MERGED as u64 - 1, merged.clone())]);
+        assert_eq!(kept.bytes(), 10);
+        // Who has read some of them gets the rest, with those again; who has read all gets nothing.
+        assert_eq!(kept.next(10).map(|(_, message)| message), Some(merged));
+        assert_eq!(kept.next(MERGED as u64), None);
+        kept.add("next".to_string(), 100, Some("human/gaze"));
+        assert_eq!(kept.next(MERGED as u64), Some((MERGED as u64, "next".to_string())));
+    }
+
+    #[test]
+    fn merged_pieces_go_like_others() {
+        let mut kept = KeptMessages::new(50, join);
+        for step in 0..100_000 {
+            kept.add(format!("{step}"), 1, Some(["a", "b", "c"][step % 3]));
+        }
+        assert!(kept.bytes() <= 50, "{}", kept.bytes());
+        assert!(kept.pieces.len() <= 50 && kept.entities.values().all(|entity| entity.unmerged.len() < MERGED));
+    }
+}

@@ -1,0 +1,269 @@
+//! The server that Rerun's viewers connect to. It speaks Rerun's protocol (gRPC, and gRPC-Web for viewers in a browser), but only
+//! hands out: whoever writes is refused.
+//!
+//! The server of Rerun's SDK would not do. It takes messages from everybody who reaches its port and shows them to all viewers;
+//! while a viewer is stopped it holds up the stream, and what the viewer has not read stays in memory beside the history.
+//! Here each viewer reads from its own place in the messages that are kept (`kept_messages.rs`): one that is slow or stopped
+//! holds up nobody, takes no memory of its own, and misses what was let go meanwhile.
+
+use std::io;
+use std::net::SocketAddr;
+use std::pin::{Pin, pin};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use futures::stream::{self, Stream};
+use hyper_util::rt::{TokioExecutor, TokioIo, TokioTimer};
+use hyper_util::server::conn::auto;
+use hyper_util::service::TowerToHyperService;
+use re_protos::log_msg::v1alpha1 as messages;
+use re_protos::sdk_comms::v1alpha1::message_proxy_service_server::{MessageProxyService, MessageProxyServiceServer};
+use re_protos::sdk_comms::v1alpha1::{
+    ReadMessagesRequest, ReadMessagesResponse, ReadTablesRequest, ReadTablesResponse, WriteMessagesRequest,
+    WriteMessagesResponse, WriteTableRequest, WriteTableResponse,
+};
+use re_sdk::SizeBytes;
+use re_sdk::external::re_grpc_server::cors_layer;
+use re_sdk::external::re_log_encoding::ToTransport;
+use re_sdk::external::re_log_encoding::rrd::Compression;
+use re_sdk::log::{Chunk, LogMsg};
+use re_sdk::sink::{LogSink, SinkFlushError};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::{Semaphore, watch};
+use tonic::{Request, Response, Status};
+use tonic_web::GrpcWebLayer;
+use tower_layer::Layer;
+
+use super::kept_messages::KeptMessages;
+use crate::edge::host_name::is_local;
+
+/// Connections at a time; those beyond are closed at once.
+const MOST_CONNECTIONS: usize = 32;
+/// A connection asks for something within this time, or it is closed.
+const ASKS: Duration = Duration::from_secs(5);
+/// Viewers are asked so often whether they are still there, and answer within this time: one that is stopped does not.
+const PING: Duration = Duration::from_secs(10);
+const PONG: Duration = Duration::from_secs(20);
+/// When the stream is over, viewers have so long to take the rest of it.
+const LAST: Duration = Duration::from_secs(1);
+/// When no connection can be taken, as without free descriptors, the next is waited for after this time.
+const AGAIN: Duration = Duration::from_millis(100);
+/// What a message takes in memory beside its data, in bytes.
+const OVERHEAD: usize = 512;
+
+/// A message, as it came or as it is sent.
+#[derive(Clone)]
+enum StreamMessage {
+    Told(Arc<LogMsg>),
+    Encoded(messages::log_msg::Msg),
+}
+
+impl StreamMessage {
+    /// As viewers read it; none of a message that cannot be encoded.
+    fn encoded(&self) -> Option<messages::log_msg::Msg> {
+        match self {
+            StreamMessage::Told(message) => message.to_transport(Compression::LZ4).ok(),
+            StreamMessage::Encoded(message) => Some(message.clone()),
+        }
+    }
+}
+
+/// What the stream and all viewers share.
+struct SharedStream {
+    kept: Mutex<KeptMessages<StreamMessage>>,
+    /// Counts the messages; gone when the stream is over.
+    told: watch::Receiver<u64>,
+}
+
+/// Hands a stream out to viewers, until it is dropped.
+pub(super) struct ViewerServer {
+    shared: Arc<SharedStream>,
+    tell: watch::Sender<u64>,
+}
+
+impl ViewerServer {
+    /// Listens at this address; at most so many bytes are kept for viewers that connect later.
+    ///
+    /// # Errors
+    /// Nothing can listen there.
+    pub fn open(address: SocketAddr, most_bytes: usize) -> io::Result<ViewerServer> {
+        let listener = std::net::TcpListener::bind(address)?;
+        listener.set_nonblocking(true)?;
+        let (tell, told) = watch::channel(0);
+        let shared = Arc::new(SharedStream { kept: Mutex::new(KeptMessages::new(most_bytes, merged)), told });
+        let service = ViewerService(shared.clone());
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+        std::thread::Builder::new().name("viewers".to_string()).spawn(move || {
+            runtime.block_on(async {
+                let over = over(service.0.told.clone());
+                tokio::select! {
+                    _ = serve(listener, address.ip().is_loopback(), service) => {}
+                    () = over => tokio::time::sleep(LAST).await,
+                }
+            });
+        })?;
+        Ok(ViewerServer { shared, tell })
+    }
+}
+
+/// Waits for the end of the stream.
+async fn over(mut told: watch::Receiver<u64>) {
+    while told.changed().await.is_ok() {}
+}
+
+impl LogSink for ViewerServer {
+    fn send(&self, message: LogMsg) {
+        let bytes = OVERHEAD + message.total_size_bytes() as usize;
+        // What is told once stays: the recording's name, the layout of the viewer, and data without a time.
+        let entity = match &message {
+            LogMsg::ArrowMsg(store, data) if store.is_recording() => Chunk::from_arrow_msg(data).ok(),
+            _ => None,
+        };
+        let entity = entity.filter(|chunk| !chunk.is_static()).map(|chunk| chunk.entity_path().to_string());
+        self.shared.lock().add(StreamMessage::Told(Arc::new(message)), bytes, entity.as_deref());
+        self.tell.send_modify(|told| *told += 1);
+    }
+
+    fn flush_blocking(&self, _: Duration) -> Result<(), SinkFlushError> {
+        Ok(())
+    }
+}
+
+/// Pieces of one entity as one piece.
+fn merged(pieces: &[StreamMessage]) -> Option<(StreamMessage, usize)> {
+    let mut chunks = Vec::new();
+    let mut recording = None;
+    for piece in pieces {
+        let StreamMessage::Told(message) = piece else { return None };
+        let LogMsg::ArrowMsg(store, data) = message.as_ref() else { return None };
+        recording = Some(store.clone());
+        chunks.push(Chunk::from_arrow_msg(data).ok()?);
+    }
+    while chunks.len() > 1 {
+        let pairs = chunks.chunks(2).map(|pair| match pair {
+            [left, right] => Chunk::concat_and_sort(left, right).ok(),
+            single => single.first().cloned(),
+        });
+        chunks = pairs.collect::<Option<Vec<Chunk>>>()?;
+    }
+    let message = LogMsg::ArrowMsg(recording?, chunks.first()?.to_arrow_msg().ok()?);
+    let encoded = message.to_transport(Compression::LZ4).ok()?;
+    let bytes = OVERHEAD + encoded.total_size_bytes() as usize;
+    Some((StreamMessage::Encoded(encoded), bytes))
+}
+
+impl SharedStream {
+    fn lock(&self) -> MutexGuard<'_, KeptMessages<StreamMessage>> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The first message from this number on, with its number; waits for one. None: the stream is over.
+    async fn next(&self, from: u64) -> Option<(u64, StreamMessage)> {
+        let mut told = self.told.clone();
+        loop {
+            told.mark_unchanged();
+            let next = self.lock().next(from);
+            if next.is_some() {
+                return next;
+            }
+            told.changed().await.ok()?;
+        }
+    }
+}
+
+/// Rerun's service of messages, for reading only.
+#[derive(Clone)]
+struct ViewerService(Arc<SharedStream>);
+
+/// An answer that goes on.
+type Answers<T> = Pin<Box<dyn Stream<Item = Result<T, Status>> + Send>>;
+
+fn read_only<T>() -> Result<Response<T>, Status> {
+    Err(Status::permission_denied("this stream is for reading only: tomcom takes no messages from others"))
+}
+
+#[tonic::async_trait]
+impl MessageProxyService for ViewerService {
+    type ReadMessagesStream = Answers<ReadMessagesResponse>;
+    type ReadTablesStream = Answers<ReadTablesResponse>;
+
+    async fn read_messages(
+        &self,
+        _: Request<ReadMessagesRequest>,
+    ) -> Result<Response<Self::ReadMessagesStream>, Status> {
+        let shared = self.0.clone();
+        let answers = stream::unfold(0, move |from| {
+            let shared = shared.clone();
+            async move {
+                let (number, message) = shared.next(from).await?;
+                let log_msg = Some(messages::LogMsg { msg: message.encoded() });
+                Some((Ok(ReadMessagesResponse { log_msg }), number + 1))
+            }
+        });
+        Ok(Response::new(Box::pin(answers)))
+    }
+
+    async fn read_tables(&self, _: Request<ReadTablesRequest>) -> Result<Response<Self::ReadTablesStream>, Status> {
+        Ok(Response::new(Box::pin(stream::pending())))
+    }
+
+    async fn write_messages(
+        &self,
+        _: Request<tonic::Streaming<WriteMessagesRequest>>,
+    ) -> Result<Response<WriteMessagesResponse>, Status> {
+        read_only()
+    }
+
+    async fn write_table(&self, _: Request<WriteTableRequest>) -> Result<Response<WriteTableResponse>, Status> {
+        read_only()
+    }
+}
+
+/// Takes connections for ever.
+async fn serve(listener: std::net::TcpListener, is_loopback: bool, service: ViewerService) -> io::Result<()> {
+    let listener = TcpListener::from_std(listener)?;
+    let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    loop {
+        let Ok((connection, _)) = listener.accept().await else {
+            tokio::time::sleep(AGAIN).await;
+            continue;
+        };
+        let Ok(place) = places.clone().try_acquire_owned() else { continue };
+        let service = service.clone();
+        tokio::spawn(async move {
+            answer(connection, is_loopback, service).await;
+            drop(place);
+        });
+    }
+}
+
+/// Answers the requests of a connection until it ends. Whatever becomes of it: the stream goes on.
+async fn answer(connection: TcpStream, is_loopback: bool, service: ViewerService) {
+    let _ = connection.set_nodelay(true);
+    let (asks, mut asked) = watch::channel(false);
+    let asks = Arc::new(asks);
+    let checked = MessageProxyServiceServer::with_interceptor(service, move |request: Request<()>| {
+        asks.send_replace(true);
+        if is_loopback { with_local_host(request) } else { Ok(request) }
+    });
+    let routes = tonic::service::Routes::new(checked).prepare();
+    let answers = TowerToHyperService::new(cors_layer(&[]).layer(GrpcWebLayer::new().layer(routes)));
+    let mut http = auto::Builder::new(TokioExecutor::new());
+    http.http1().timer(TokioTimer::new()).header_read_timeout(ASKS);
+    http.http2().timer(TokioTimer::new()).keep_alive_interval(PING).keep_alive_timeout(PONG);
+    let mut served = pin!(http.serve_connection(TokioIo::new(connection), answers));
+    tokio::select! {
+        _ = served.as_mut() => return,
+        asked = tokio::time::timeout(ASKS, asked.wait_for(|asked| *asked)) => if asked.is_err() { return },
+    }
+    let _ = served.await;
+}
+
+/// A request that a browser sends to this machine by another name comes from a foreign page (DNS rebinding).
+fn with_local_host(request: Request<()>) -> Result<Request<()>, Status> {
+    let host = request.metadata().get("host").map(|host| host.to_str().unwrap_or_default());
+    match host.is_none_or(is_local) {
+        true => Ok(request),
+        false => Err(Status::permission_denied("this stream is for this machine only")),
+    }
+}

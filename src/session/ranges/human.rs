@@ -1,0 +1,100 @@
+//! Ranges of the parameters of the human model.
+
+use crate::base::number_range::{ABOVE_0, INSIDE_0_AND_1, NOT_NEGATIVE, NumberRange};
+
+/// What earlier versions took of a number of draws.
+const TO_65536: [f64; 2] = [1.0, 65_536.0];
+/// The angle whose tangent is the radius was below 45 degrees.
+const BELOW_45: [f64; 2] = [ABOVE_0[0], 44.999_999];
+const CHANCE: &str = "it is a probability";
+/// Of what may be neither impossible nor certain.
+const UNSURE: &str = "certainty could not be corrected by any observation";
+const PRECISION: &str = "less is no belief, more a certain one";
+const DRAWS: &str = "more take seconds to minutes a press";
+
+pub(super) const RANGES: [NumberRange; 27] = [
+    NumberRange::real("human.prior.location_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
+    NumberRange::real("human.prior.location_precision", [0.01, 10_000.0], "", PRECISION).recorded(ABOVE_0),
+    NumberRange::real("human.prior.recipe_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
+    NumberRange::real("human.prior.recipe_look_alike", [0.0, 1.0], "", "it is a share"),
+    NumberRange::real("human.prior.recipe_precision", [0.01, 10_000.0], "", PRECISION).recorded(ABOVE_0),
+    NumberRange::real(
+        "human.perception.reading_rate_hz",
+        [0.01, 1_000.0],
+        "per second",
+        "less reads nothing, more everything at once",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real(
+        "human.perception.radius_deg",
+        [0.1, 40.0],
+        "degrees",
+        "from the fovea to the whole field of view",
+    )
+    .recorded(BELOW_45),
+    NumberRange::real(
+        "human.perception.viewing_distance_m",
+        [0.2, 20.0],
+        "m",
+        "eyes see a display from these distances",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real("human.perception.look_alike", [0.0, 1.0], "", CHANCE),
+    NumberRange::real("human.perception.anything", [0.0, 1.0], "", CHANCE),
+    NumberRange::real("human.perception.min_confidence", [0.0, 1.0], "", "confidence is from 0 to 1"),
+    NumberRange::real("human.perception.history_s", [0.01, 60.0], "s", "gaze that comes later tells nothing of now")
+        .recorded(ABOVE_0),
+    NumberRange::real("human.perception.max_sample_s", [0.001, 10.0], "s", "trackers send 1 to 1000 samples a second")
+        .recorded(ABOVE_0),
+    NumberRange::real(
+        "human.perception.look_ends_s",
+        [0.001, 60.0],
+        "s",
+        "a look takes a tenth of a second to some seconds",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real(
+        "human.transition.recipe_half_life_s",
+        [1.0, 1_000_000.0],
+        "s",
+        "from forgotten at once to never",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real("human.transition.foresight", [0.0, 1.0], "", "it is a share"),
+    NumberRange::real(
+        "human.decision.tau",
+        [0.01, 100.0],
+        "per press",
+        "less presses anything, more only what is best",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real(
+        "human.decision.lapse",
+        [0.0001, 0.99],
+        "",
+        "a person who never slips would make any slip impossible",
+    )
+    .recorded(INSIDE_0_AND_1),
+    NumberRange::real(
+        "human.decision.lapse_anywhere",
+        [0.001, 1.0],
+        "",
+        "a share; without any, some presses would be impossible",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real("human.decision.wait_cost", [0.0, 1_000.0], "presses", "with the most, nobody ever waits")
+        .recorded(NOT_NEGATIVE),
+    NumberRange::whole("human.decision.cases", [1.0, 4_096.0], "worlds", DRAWS).recorded(TO_65536),
+    NumberRange::real("human.signal.noticed", [0.0, 1.0], "", CHANCE),
+    NumberRange::whole("human.inference.beliefs", [1.0, 2_048.0], "samples", DRAWS).recorded(TO_65536),
+    NumberRange::whole("human.inference.states", [1.0, 128.0], "states", DRAWS).recorded([1.0, 256.0]),
+    NumberRange::real(
+        "human.inference.min_effective",
+        [0.01, 2_048.0],
+        "samples",
+        "no more than the samples that there are",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::whole("human.inference.max_beliefs", [1.0, 2_048.0], "samples", DRAWS).recorded(TO_65536),
+    NumberRange::whole("human.inference.predictions", [1.0, 4_096.0], "states", DRAWS).recorded(TO_65536),
+];

@@ -1,0 +1,140 @@
+//! Ranges of simulated people: the population of participants, and the scripted wizard.
+
+use crate::base::number_range::{ABOVE_0, INSIDE_0_AND_1, NOT_NEGATIVE, NumberRange};
+
+const SECONDS: &str = "s";
+const CHANCE: &str = "it is a probability";
+const LATE: &str = "a wizard who takes longer cannot help";
+
+/// A probability that differs from person to person: its odds are drawn, and have to be neither 0 nor infinite.
+const fn chance(path: &'static str) -> NumberRange {
+    let reason = "a probability; its odds are drawn, so neither 0 nor 1";
+    NumberRange::real(path, [0.000_001, 0.999_999], "", reason).recorded(INSIDE_0_AND_1)
+}
+
+pub(super) const RANGES: [NumberRange; 42] = [
+    chance("participant.population.slip.median"),
+    chance("participant.population.look_alike_slip.median"),
+    chance("participant.population.thoughtless.median"),
+    chance("participant.population.checks.median"),
+    chance("participant.population.makes_sure.median"),
+    chance("participant.population.capture.median"),
+    chance("participant.population.order_capture.median"),
+    chance("participant.population.wanders.median"),
+    chance("participant.population.misreads.median"),
+    chance("participant.population.doubts_robot_hand.median"),
+    chance("participant.population.doubts_places.median"),
+    chance("participant.population.learned.median"),
+    chance("participant.population.half_forgotten.median"),
+    chance("participant.population.takes_hints.median"),
+    chance("participant.population.notices_signal.median"),
+    NumberRange::real(
+        "participant.population.press_s.median",
+        [0.05, 60.0],
+        SECONDS,
+        "nobody presses more quickly, nobody cooperates more slowly",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real(
+        "participant.population.watches_robot.median",
+        [0.001, 1_000.0],
+        "times a place of the next press",
+        "from not at all to nothing else",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real(
+        "participant.population.fixation_s.median",
+        [0.02, 10.0],
+        SECONDS,
+        "eyes cannot be quicker, and do not rest longer",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real(
+        "participant.population.half_life_s.median",
+        [1.0, 1_000_000.0],
+        SECONDS,
+        "from forgotten at once to never",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real(
+        "participant.population.loses_thread_per_min.median",
+        [0.0001, 60.0],
+        "per minute",
+        "from never to every second",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real("participant.population.patience_s.median", [0.1, 3_600.0], SECONDS, "from none to endless")
+        .recorded(ABOVE_0),
+    NumberRange::real("participant.population.commitment_s.median", [0.1, 3_600.0], SECONDS, "from none to endless")
+        .recorded(ABOVE_0),
+    NumberRange::real(
+        "participant.population.*.sigma",
+        [0.0, 2.0],
+        "",
+        "beyond, hardly anybody would be like anybody else",
+    ),
+    NumberRange::real(
+        "participant.population.press_jitter",
+        [0.0, 2.0],
+        "",
+        "beyond, presses take anything from no time to minutes",
+    ),
+    NumberRange::real(
+        "participant.population.novice_slowdown",
+        [0.0, 2.0],
+        "",
+        "with the most, first presses take three times as long",
+    ),
+    NumberRange::real(
+        "participant.population.practice_presses",
+        [0.01, 100_000.0],
+        "presses",
+        "from practised at once to never",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real("participant.population.notices_slip", [0.0, 1.0], "", CHANCE),
+    NumberRange::real(
+        "participant.population.insists",
+        [0.0, 0.99],
+        "",
+        "it is a probability, and with 1 nobody would ever stop",
+    )
+    .recorded([0.0, INSIDE_0_AND_1[1]]),
+    NumberRange::real(
+        "participant.population.confuses_look_alikes",
+        [0.001, 1_000.0],
+        "times another topping",
+        "from never to always",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real(
+        "participant.population.signal_after_s",
+        [0.0, 60.0],
+        SECONDS,
+        "a signal that is read later is no help",
+    )
+    .recorded(NOT_NEGATIVE),
+    NumberRange::real("participant.population.misreads_signal", [0.0, 1.0], "", CHANCE),
+    NumberRange::real("participant.population.recipes_gained", [0.01, 100.0], "", "odds grow by it with every trial")
+        .recorded(ABOVE_0),
+    NumberRange::real("participant.population.practice_kept", [0.0, 1.0], "", "it is a share"),
+    NumberRange::real(
+        "participant.population.tracker_offset_m",
+        [0.0, 2.0],
+        "m",
+        "with more, gaze is not on the display",
+    ),
+    NumberRange::real("wizard.reaction_s", [0.0, 60.0], SECONDS, LATE),
+    NumberRange::real(
+        "wizard.reaction_spread",
+        [0.0, 2.0],
+        "",
+        "beyond, a reaction takes anything from no time to minutes",
+    ),
+    NumberRange::real("wizard.sees_errors", [0.0, 1.0], "", CHANCE),
+    NumberRange::real("wizard.sees_overlooked", [0.0, 1.0], "", CHANCE),
+    NumberRange::real("wizard.overlooked_after_s", [0.0, 60.0], SECONDS, LATE),
+    NumberRange::real("wizard.look_s", [0.0, 60.0], SECONDS, LATE),
+    NumberRange::real("wizard.guesses_wrong", [0.0, 1.0], "", CHANCE),
+    NumberRange::real("wizard.rest_s", [0.0, 60.0], SECONDS, LATE),
+];

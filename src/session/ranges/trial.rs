@@ -1,0 +1,101 @@
+//! Ranges around the trial: trial, robot, signals, assistant, devices and plan.
+
+use crate::base::number_range::{ABOVE_0, ANY, INSIDE_0_AND_1, NOT_NEGATIVE, NumberRange};
+
+/// What earlier versions took of a number of rollouts.
+const TO_65536: [f64; 2] = [1.0, 65_536.0];
+/// A probability that is not 1.
+const BELOW_1: [f64; 2] = [0.0, INSIDE_0_AND_1[1]];
+const SECONDS: &str = "s";
+const CHANCE: &str = "it is a probability";
+const PORT: &str = "ports of TCP and UDP have these numbers";
+/// Of the timed arm and of people at a button.
+const PRESS: &str = "less is no movement, more no cooperation";
+/// No trial is longer: a day.
+const DAY_S: f64 = 86_400.0;
+const LONGEST: &str = "no trial is longer than a day";
+/// What 32 bits hold: as much as no limit at all.
+const COUNT: f64 = 4_294_967_295.0;
+
+pub(super) const RANGES: [NumberRange; 32] = [
+    NumberRange::whole("seed", [0.0, 9_007_199_254_740_991.0], "", "every reader of JSON has these numbers exactly")
+        .recorded(ANY),
+    NumberRange::whole("trial.presses", [1.0, COUNT], "presses", "the largest numbers are as good as no limit"),
+    NumberRange::real("trial.seconds", [0.1, DAY_S], SECONDS, LONGEST).recorded(ABOVE_0),
+    NumberRange::whole("trial.orders", [1.0, COUNT], "orders", "the largest numbers are as good as no limit"),
+    NumberRange::real("robot.press_s", [0.05, 60.0], SECONDS, PRESS).recorded(ABOVE_0),
+    NumberRange::real("robot.press_spread", [0.0, 2.0], "", "with more, presses take anything from no time to minutes"),
+    NumberRange::real("signals.shown_s", [0.1, 3_600.0], SECONDS, "less cannot be read, more is a picture on the wall")
+        .recorded(ABOVE_0),
+    NumberRange::real("signals.cool_down_s", [0.0, 60.0], SECONDS, "a wizard who has to wait longer cannot help"),
+    NumberRange::real(
+        "assistant.cost_of_communication",
+        [0.0, 1_000.0],
+        "presses",
+        "no signal saves as many as the most",
+    )
+    .recorded(NOT_NEGATIVE),
+    NumberRange::real("assistant.belief_threshold", [0.0, 0.99], "", "it is a probability, and 1 is never exceeded")
+        .recorded(BELOW_1),
+    NumberRange::whole("assistant.proposed_presses", [1.0, 5.0], "presses", "more are a recipe, not a hint"),
+    NumberRange::whole("assistant.rollout.horizon", [1.0, 64.0], "decisions", "an order takes some twenty presses"),
+    NumberRange::whole(
+        "assistant.rollout.rollouts",
+        [1.0, 16_384.0],
+        "rollouts",
+        "64 times the default: more take minutes a press",
+    )
+    .recorded(TO_65536),
+    NumberRange::whole("assistant.rollout.states", [1.0, 128.0], "states", "beyond, nothing becomes more exact")
+        .recorded([1.0, 256.0]),
+    NumberRange::real("assistant.rollout.human_press_s", [0.05, 60.0], SECONDS, PRESS).recorded(ABOVE_0),
+    NumberRange::real("assistant.rollout.looks_hz", [0.0, 100.0], "per second", "eyes look at a few places a second")
+        .recorded(NOT_NEGATIVE),
+    NumberRange::real(
+        "assistant.rollout.other_looks_hz",
+        [0.0, 100.0],
+        "per second",
+        "eyes look at a few places a second",
+    )
+    .recorded(NOT_NEGATIVE),
+    NumberRange::real("assistant.rollout.capture", [0.0, 1.0], "", CHANCE),
+    NumberRange::real(
+        "assistant.rollout.enough_error",
+        [0.0, 100.0],
+        "presses",
+        "with more, the least number of rollouts is always enough",
+    )
+    .recorded(NOT_NEGATIVE),
+    NumberRange::whole("assistant.rollout.least_rollouts", [1.0, 16_384.0], "rollouts", "no more than rollouts can be")
+        .recorded(TO_65536),
+    NumberRange::whole("participant.gaze_port", [1.0, 65_535.0], "", PORT).recorded(ANY),
+    NumberRange::whole("tracker.port", [1.0, 65_535.0], "", PORT).recorded(ANY),
+    NumberRange::real(
+        "tracker.corners",
+        [-10.0, 10.0],
+        "fractions of the display",
+        "a surface much larger than the display has no gaze on it",
+    )
+    .recorded(ANY),
+    NumberRange::real("tracker.distance_m", [0.2, 20.0], "m", "eyes see a display from these distances"),
+    NumberRange::whole("display.port", [1.0, 65_535.0], "", PORT).recorded(ANY),
+    NumberRange::whole(
+        "plan.participants",
+        [1.0, 9_999.0],
+        "participants",
+        "their codes have up to four digits; or a list of their codes",
+    ),
+    NumberRange::whole("plan.block", [1.0, 9_999.0], "participants", "no block is larger than the study"),
+    NumberRange::whole(
+        "plan.familiarisation.presses",
+        [1.0, COUNT],
+        "presses",
+        "the largest numbers are as good as no limit",
+    ),
+    NumberRange::real("plan.familiarisation.seconds", [0.1, DAY_S], SECONDS, LONGEST).recorded(ABOVE_0),
+    NumberRange::whole("plan.familiarisation.orders", [1.0, COUNT], "orders", "0 would be no criterion"),
+    NumberRange::real("plan.familiarisation.error_rate", [0.0, 1.0], "", "it is a share of presses"),
+    NumberRange::whole("plan.questionnaire.after", [1.0, 4.0], "", "participants have one to four trials"),
+];
+
+pub(super) const POINTS: NumberRange = NumberRange::whole("scale.points", [2.0, 9.0], "points", "each point is a key");

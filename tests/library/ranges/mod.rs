@@ -1,0 +1,210 @@
+//! Numbers in settings files: each has a range, extremes beyond it are refused where the file is read, and with those within
+//! it a session runs and writes a log that its own reader accepts.
+
+mod files;
+mod recorded;
+mod simulated;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use tomcom::base::number_range::{NumberRange, numbers};
+use tomcom::edge::files::read_kitchen;
+use tomcom::kitchen::{Kitchen, layout_ranges};
+use tomcom::session::ranges;
+
+/// A session file with every setting that is a number.
+fn every_setting() -> toml::Table {
+    let text = r#"
+        layout = "../layouts/sushi.toml"
+        [trial]
+        orders = 3
+        [tracker]
+        corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+        [participant.population]
+        [plan]
+        name = "all"
+        participants = 2
+        conditions = ["none", "wizard"]
+        block = 2
+        [plan.familiarisation]
+        presses = 10
+        seconds = 60.0
+        orders = 1
+        error_rate = 0.3
+        [[plan.questionnaire]]
+        file = "questionnaires/acceptance.toml"
+        after = [1]
+    "#;
+    let given: tomcom::session::SessionSpec = toml::from_str(text).expect("a session");
+    let mut all = toml::Table::try_from(given).expect("settings are TOML");
+    let wizard = tomcom::wizard::settings::WizardSpec::default();
+    all.insert("wizard".to_string(), toml::Value::try_from(wizard).expect("settings are TOML"));
+    let plan = all["plan"].as_table_mut().expect("a plan");
+    // Those are written to recordings; a file may leave them out.
+    plan.retain(|_, value| value.as_array().is_none_or(|texts| !texts.is_empty()));
+    all
+}
+
+/// The default kitchen.
+fn kitchen() -> Kitchen {
+    read_kitchen(Path::new("layouts/sushi.toml")).expect("the default kitchen").kitchen
+}
+
+/// The questionnaire that comes with the program.
+fn questionnaire() -> toml::Table {
+    let text = fs::read_to_string("sessions/questionnaires/acceptance.toml").expect("a questionnaire");
+    text.parse().expect("a questionnaire is TOML")
+}
+
+/// A folder for the files of a test, empty.
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("tomcom-ranges-{name}-{}", std::process::id()));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(folder.join("sessions")).expect("a folder");
+    for copied in ["layouts", "recipes", "sessions/questionnaires"] {
+        fs::create_dir_all(folder.join(copied)).expect("a folder");
+        for file in fs::read_dir(copied).expect("a folder of the program") {
+            let file = file.expect("a file").path();
+            fs::copy(&file, folder.join(&file)).expect("a file can be copied");
+        }
+    }
+    folder
+}
+
+/// Whether there is a number of this path.
+fn has(table: &toml::Table, path: &str) -> bool {
+    numbers(table, "").expect("numbers").iter().any(|(known, _)| known == path)
+}
+
+/// Sets the number of this path: of a list of tables in the first that has it, of all numbers of a list the first. `*` is
+/// the first table.
+fn set(table: &mut toml::Table, path: &str, value: toml::Value) {
+    let (name, rest) = path.split_once('.').map_or((path, None), |(name, rest)| (name, Some(rest)));
+    let name = match name {
+        "*" => table.iter().find(|(_, inner)| inner.is_table()).expect("a table").0.clone(),
+        name => name.to_string(),
+    };
+    let place = table.get_mut(&name).unwrap_or_else(|| panic!("no {name} of {path}"));
+    match (place, rest) {
+        (toml::Value::Table(inner), Some(rest)) => set(inner, rest, value),
+        (toml::Value::Array(tables), Some(rest)) => {
+            let has_it = |inner: &&mut toml::Table| has(inner, rest) || inner.contains_key(rest);
+            let mut tables = tables.iter_mut().filter_map(toml::Value::as_table_mut);
+            set(tables.find(has_it).unwrap_or_else(|| panic!("no table with {rest}")), rest, value);
+        }
+        (toml::Value::Array(numbers), None) => set_first(numbers, value),
+        (place, None) => *place = value,
+        (place, Some(_)) => panic!("{path}: {place} is no table"),
+    }
+}
+
+fn set_first(numbers: &mut [toml::Value], value: toml::Value) {
+    match &mut numbers[0] {
+        toml::Value::Array(inner) => set_first(inner, value),
+        first => *first = value,
+    }
+}
+
+/// Extremes of a number: 0, below 0, tiny, huge, no number, and just inside and outside of its range.
+fn extremes(range: &NumberRange) -> Vec<toml::Value> {
+    if range.is_whole {
+        let (least, most) = (range.least as i64, range.most as i64);
+        let all = [0, -1, i64::MIN, i64::MAX, least - 1, least, least + 1, most - 1, most, most + 1];
+        return all.map(toml::Value::Integer).to_vec();
+    }
+    let (least, most) = (range.least, range.most);
+    let beyond = |end: f64, step: f64| end + step * end.abs().max(1e-9) * 1e-6;
+    let all = [
+        0.0,
+        -0.0,
+        -1.0,
+        f64::MIN_POSITIVE,
+        5e-324,
+        -5e-324,
+        1e-5,
+        1e308,
+        -1e308,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NAN,
+        beyond(least, -1.0),
+        least,
+        beyond(least, 1.0).min(most),
+        beyond(most, -1.0).max(least),
+        most,
+        beyond(most, 1.0),
+    ];
+    all.map(toml::Value::Float).to_vec()
+}
+
+fn as_number(value: &toml::Value) -> f64 {
+    match value {
+        toml::Value::Integer(number) => *number as f64,
+        toml::Value::Float(number) => *number,
+        other => panic!("{other} is no number"),
+    }
+}
+
+/// Every number of a file has a range, and every range a number.
+fn check_complete(name: &str, table: &toml::Table, ranges: &[NumberRange]) {
+    let numbers = numbers(table, "").expect("numbers");
+    assert!(!numbers.is_empty(), "{name} has no numbers");
+    for (path, value) in &numbers {
+        let range = tomcom::base::number_range::range_of(ranges, path);
+        let range = range.unwrap_or_else(|| panic!("{name}: no range for {path} = {value}"));
+        assert!(range.holds(*value), "{name}: {path} = {value}, out of {range}");
+    }
+    for range in ranges {
+        let own = std::slice::from_ref(range);
+        let is_met = numbers.iter().any(|(path, _)| tomcom::base::number_range::range_of(own, path).is_some());
+        assert!(is_met, "{name}: no number has the path {}", range.path);
+    }
+}
+
+#[test]
+fn every_number_of_every_settings_file_has_a_range() {
+    check_complete("a session file", &every_setting(), &ranges::of_sessions());
+    check_complete("a questionnaire", &questionnaire(), &ranges::OF_QUESTIONNAIRES);
+    for layout in ["sushi", "burger"] {
+        let text = fs::read_to_string(format!("layouts/{layout}.toml")).expect("a layout");
+        check_complete(layout, &text.parse().expect("a layout is TOML"), &layout_ranges::RANGES);
+        let recipes: toml::Table =
+            fs::read_to_string(format!("recipes/{layout}.toml")).expect("recipes").parse().expect("recipes are TOML");
+        assert!(numbers(&recipes, "").expect("numbers").is_empty(), "recipe files have no numbers");
+    }
+}
+
+#[test]
+fn ranges_of_files_lie_within_those_of_recordings_and_have_words() {
+    for range in ranges::of_sessions().iter().chain(&ranges::OF_QUESTIONNAIRES).chain(&layout_ranges::RANGES) {
+        assert!(range.least.is_finite() && range.most.is_finite() && range.least < range.most, "{range:?}");
+        assert!(range.may_be_recorded(range.least) && range.may_be_recorded(range.most), "{range:?}");
+        assert!(!range.may_be_recorded(f64::NAN) && !range.may_be_recorded(f64::INFINITY), "{range:?}");
+        assert!(!range.reason.is_empty(), "{range:?}");
+    }
+}
+
+/// `docs/settings.md` has the table; where it does not, the test prints it.
+#[test]
+fn the_documentation_has_every_range() {
+    let page = fs::read_to_string("docs/settings.md").expect("docs/settings.md");
+    let mut missing = Vec::new();
+    for (title, ranges) in [
+        ("Session files", ranges::of_sessions()),
+        ("Questionnaires", ranges::OF_QUESTIONNAIRES.to_vec()),
+        ("Layouts", layout_ranges::RANGES.to_vec()),
+    ] {
+        let mut table = "| setting | from | to | unit | why |\n|---|---|---|---|---|\n".to_string();
+        for NumberRange { path, least, most, is_whole, unit, reason, .. } in &ranges {
+            let whole = if *is_whole { "whole number" } else { "" };
+            let unit: Vec<&str> = [whole, *unit].into_iter().filter(|word| !word.is_empty()).collect();
+            table += &format!("| `{path}` | {least} | {most} | {} | {reason} |\n", unit.join(", "));
+        }
+        let section = page.split("\n## ").find(|section| section.starts_with(title)).unwrap_or_default();
+        if !section.contains(&table) {
+            missing.push(format!("## {title}\n\n{table}"));
+        }
+    }
+    assert!(missing.is_empty(), "docs/settings.md should have\n\n{}", missing.join("\n"));
+}

@@ -1,0 +1,79 @@
+"""Resident memory of a live session that is streamed to Rerun's viewers: gaze at 120 Hz, one viewer that reads and one that is
+stopped (SIGSTOP).
+
+    tests/outside/memory.py TOMCOM FOLDER [--minutes 20] [--hz 120] [--most 200] [--viewers 1]
+"""
+
+import argparse
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from console import Console, percentile, session_file
+from latency import SENDER
+from stream import RERUN, run
+
+PORT = 20400
+ADDRESS = "127.0.0.1:20312"
+# A viewer keeps what it was sent: this is its own limit, and has nothing to do with the session.
+VIEWER = [RERUN, f"rerun+http://{ADDRESS}/proxy", "--headless", "--memory-limit", "500MB"]
+
+
+def viewer():
+    return subprocess.Popen(VIEWER, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def measure(arguments, folder):
+    session = session_file(folder, gaze="json", gaze_port=PORT)
+    console = Console(arguments.tomcom, [session, "--out", folder / "recordings", "--rerun-listen", ADDRESS])
+    viewers, resident = [], []
+    with console:
+        console.wait_for("READY")
+        (recording,) = (folder / "recordings").iterdir()
+        sender = subprocess.Popen([sys.executable, "-c", SENDER, str(PORT), str(arguments.hz)])
+        try:
+            console.wait_for(r"conf\w* 0.9")
+            console.start()
+            if arguments.viewers:
+                viewers = [viewer(), viewer()]
+                time.sleep(10)
+                assert all(one.poll() is None for one in viewers), "a viewer ended by itself"
+                viewers[1].send_signal(signal.SIGSTOP)
+            began = time.monotonic()
+            while time.monotonic() < began + 60 * arguments.minutes:
+                time.sleep(min(15, 60 * arguments.minutes / 8))
+                resident.append(console.rss_bytes() / 1e6)
+                file = (recording / "recording.rrd").stat().st_size / 1e6
+                print(f"  {(time.monotonic() - began) / 60:5.1f} min: {resident[-1]:6.1f} MB resident, stream {file:.1f} MB", flush=True)
+                assert sender.poll() is None, "the tracker was cut off"
+        finally:
+            for one in [sender, *viewers]:
+                one.kill()
+                one.wait()
+        console.quit()
+    return recording, resident
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tomcom")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--minutes", type=float, default=20)
+    parser.add_argument("--hz", type=int, default=120, help="gaze samples a second")
+    parser.add_argument("--most", type=float, default=200, help="MB that may be resident")
+    parser.add_argument("--viewers", type=int, default=1, help="0: nobody looks on")
+    arguments = parser.parse_args()
+    run(RERUN, "analytics", "disable")
+    recording, resident = measure(arguments, arguments.folder / f"memory-{os.getpid()}")
+    half = len(resident) // 2
+    print(f"gaze at {arguments.hz} Hz, {arguments.minutes} minutes: at most {max(resident):.0f} MB resident; "
+          f"the median of the first half {percentile(resident[:half], 0.5):.0f} MB, of the second {percentile(resident[half:], 0.5):.0f} MB")
+    assert max(resident) <= arguments.most, f"more than {arguments.most} MB"
+    run(RERUN, "rrd", "verify", recording / "recording.rrd")
+
+
+if __name__ == "__main__":
+    main()

@@ -6,8 +6,8 @@
 //! raters' codes where both coded every error, else from the estimate; the summary names the source (`beliefs_from`).
 //!
 //! - [`trial`] keeps a few numbers of each trial; [`figures`] sums them up, with [`effect`], [`roc`] and [`statistics`].
-//! - [`tables`] declares the tables: of each what a row is made from, and each [`column`] with name, unit, meaning and value.
-//!   First lines, rows and [`dictionary`] follow from the declarations. A statistic that is compared between assisted and
+//! - [`tables`] declares the tables: of each what a row is made from, and each [column](mod@column) with name, unit, meaning
+//!   and value. First lines, rows and [`dictionary`] follow from the declarations. A statistic that is compared between assisted and
 //!   unassisted trials is a column of the table of trials that says so ([`tables::trials`]); its two columns of the table of
 //!   participants and its line in the report follow.
 //! - [`report`] makes the page, with [`charts`].

@@ -1,4 +1,4 @@
-//! The figures of a study in words, for the terminal.
+//! Text summary of a study for the terminal.
 
 use crate::base::words::count;
 use crate::session::event::EndReason;
@@ -7,7 +7,7 @@ use crate::study::figures::StudySummary;
 use crate::study::roc::EQUAL_SIGNALS;
 use crate::study::trial::BeliefBasis;
 
-/// The figures for people, in lines.
+/// Summary of a study as lines of text.
 pub fn describe(figures: &StudySummary) -> String {
     let totals = &figures.totals;
     let percent = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{:.1} %", 100.0 * value));

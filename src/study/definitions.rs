@@ -1,6 +1,6 @@
-//! How everything is defined that the report tells.
+//! Definitions of the terms that the report uses.
 
-/// Terms with their definitions.
+/// Terms of the report with their definitions.
 pub const DEFINITIONS: &[(&str, &str)] = &[
     (
         "Regret, error",

@@ -1,4 +1,4 @@
-//! The effect of assistance.
+//! Report section on the effect of assistance.
 
 use maud::{Markup, Render, html};
 
@@ -12,7 +12,7 @@ use crate::study::figures::{StudyConditionSummary, StudySummary};
 use crate::study::statistics::FTest;
 use crate::study::trial::Trial;
 
-/// Whether assistance helps: charts, means by condition, and tests.
+/// Section on the effect of assistance: charts, means by condition, and tests.
 pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
     let key = keys(&[("first", "assisted first"), ("second", "unassisted first")]);
     let of_conditions = keys(&[("unassisted", "unassisted"), ("assisted", "assisted")]);
@@ -64,7 +64,7 @@ fn conditions(captions: &mut Captions, figures: &StudySummary) -> Markup {
     captions.table_of_columns(caption, &columns, figures.conditions.iter())
 }
 
-/// What the first effect says, in a sentence.
+/// The effect of assistance on the first measure, as a sentence.
 fn in_words(effect: &AssistanceEffect) -> Markup {
     let (Some(reduction), Some(test)) = (effect.reduction, effect.assistance()) else { return nothing() };
     let [estimate, low, high] = [reduction.estimate, reduction.low, reduction.high].map(|value| 100.0 * value);
@@ -83,7 +83,7 @@ fn in_words(effect: &AssistanceEffect) -> Markup {
     }
 }
 
-/// A line for each statistic that is compared.
+/// Table of tests, one line per compared measure.
 fn tests(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let columns: [PageColumn<AssistanceEffect>; 10] = [
         ("less of it with assistance?", |effect| effect.measure.title.render()),
@@ -109,7 +109,7 @@ fn tests(captions: &mut Captions, figures: &StudySummary) -> Markup {
     captions.table_of_columns(caption, &columns, figures.effects.iter())
 }
 
-/// The whole analysis of variance, in both codings.
+/// Table of the mixed analysis of variance, in both codings.
 fn anova(captions: &mut Captions, effect: &AssistanceEffect) -> Markup {
     let row = |what: &dyn Render, test: Option<FTest>| {
         cells([

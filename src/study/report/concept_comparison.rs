@@ -1,4 +1,4 @@
-//! The comparison of communication concepts.
+//! Report section that compares communication concepts.
 
 use maud::{Markup, Render, html};
 
@@ -7,7 +7,7 @@ use crate::study::charts;
 use crate::study::figures::StudySummary;
 use crate::study::roc::EQUAL_SIGNALS;
 
-/// Which concept prevents more.
+/// Section that compares the concepts by the errors they prevent.
 pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let key = keys(&[("tom-com", "ToM-Com"), ("tom", "ToM"), ("dev", "DEV")]);
     let pictures = html! {

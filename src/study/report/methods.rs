@@ -1,4 +1,4 @@
-//! How it was done, from what the recordings say.
+//! Report section on methods, from settings and circumstances in the recordings.
 
 use maud::{Markup, html};
 
@@ -10,7 +10,7 @@ use crate::study::facts::Facts;
 use crate::study::figures::StudySummary;
 use crate::study::trial::BeliefBasis;
 
-/// How the trials were run, and how they were analysed.
+/// Section on methods: conduct and analysis of the trials.
 pub(super) fn methods(figures: &StudySummary, facts: &Facts) -> Markup {
     let content = html! {
         p { (conduct(figures, facts)) (wizard(facts)) (versions(facts)) } "\n"
@@ -19,7 +19,7 @@ pub(super) fn methods(figures: &StudySummary, facts: &Facts) -> Markup {
     section("Methods", content)
 }
 
-/// What is known of a kind.
+/// All values of a fact as text.
 fn all(facts: &Facts, key: &str) -> String {
     facts.all(key).unwrap_or_else(|| "unknown".to_string())
 }
@@ -50,7 +50,7 @@ fn conduct(figures: &StudySummary, facts: &Facts) -> String {
     )
 }
 
-/// What the wizard was, and saw.
+/// Sentence about the wizard and the information shown to the wizard.
 fn wizard(facts: &Facts) -> Markup {
     html! {
         @if facts.has("scripted wizard") {
@@ -78,7 +78,7 @@ fn versions(facts: &Facts) -> String {
 }
 
 fn analysis(figures: &StudySummary) -> String {
-    // Where nothing was asked of the concepts, nothing is known of what they would have said.
+    // Hypothetical signals are mentioned only if concepts were analysed.
     let computed = match figures.similarity.is_some() || figures.roc.iter().any(|roc| !roc.points.is_empty()) {
         true => ", the estimate of beliefs and what each concept would have said",
         false => " and the estimate of beliefs",
@@ -97,7 +97,7 @@ fn analysis(figures: &StudySummary) -> String {
     )
 }
 
-/// How many trials ended how, in a sentence.
+/// Sentence with the numbers of trials by the reason of their end.
 fn endings(figures: &StudySummary) -> String {
     let one = |(reason, &count): (&EndReason, &u64)| {
         let how = match reason {
@@ -120,7 +120,7 @@ fn endings(figures: &StudySummary) -> String {
     }
 }
 
-/// With which arms, in a sentence.
+/// Sentence about the kinds of robot arm.
 fn arms(figures: &StudySummary) -> String {
     let trials = |group: &ArmGroup| format!("{} in {}", arm(group.kind), words::count(group.trials, "trial", "trials"));
     match &figures.robot[..] {

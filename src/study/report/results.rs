@@ -1,4 +1,4 @@
-//! Results with what the paper found.
+//! Report section with the results beside those of the paper.
 
 use maud::{Markup, html};
 
@@ -7,7 +7,7 @@ use crate::measures::matching::MatchShares;
 use crate::measures::wizard::WizardMeasures;
 use crate::study::figures::StudySummary;
 
-/// What the paper found, beside what was found here.
+/// Table with this study's results beside the paper's.
 pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let totals = &figures.totals;
     let row = |what: &str, here: String, paper: &str| cells([&what, &here, &paper]);
@@ -37,7 +37,7 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
     section("Beside the paper", captions.table(caption, &["", "here", "paper"], &rows))
 }
 
-/// Wizard and assistant.
+/// Section on the similarity of wizard and assistant.
 pub(super) fn similarity(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let content = html! {
         (matches(captions, figures))
@@ -49,7 +49,7 @@ pub(super) fn similarity(captions: &mut Captions, figures: &StudySummary) -> Mar
     section("Wizard and assistant", content)
 }
 
-/// How far wizard and assistant match, where there is something to be matched.
+/// Table of the similarity of wizard and assistant; empty without signals.
 fn matches(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let Some(found) = &figures.similarity else { return nothing() };
     let share = |what: &str, level: &MatchShares, chance: Option<f64>| {
@@ -76,7 +76,7 @@ fn matches(captions: &mut Captions, figures: &StudySummary) -> Markup {
     }
 }
 
-/// What keeps the wizard's signals from having a match; of participants who tell what they believed.
+/// Note on wizard signals that have no match in principle; only for participants with recorded beliefs.
 fn limits(figures: &StudySummary, wizard: &WizardMeasures) -> Markup {
     let (Some(late), Some(wrong), Some(needless)) = (wizard.late, wizard.wrong_targets, wizard.needless) else {
         return nothing();
@@ -113,7 +113,7 @@ fn wizard_rows(wizard: &WizardMeasures) -> [Vec<Markup>; 11] {
     ]
 }
 
-/// What participants said.
+/// Section on the participants' answers to questionnaires.
 pub(super) fn people(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let content = html! {
         @if let Some(found) = &figures.acceptance {

@@ -1,4 +1,4 @@
-//! What the robot did beside its presses, and what the wizard did with it.
+//! Report section on robot events besides presses, and on the wizard's interventions in the robot.
 
 use maud::{Markup, Render, html};
 
@@ -9,7 +9,7 @@ use crate::study::arm_group::ArmGroup;
 use crate::study::figures::StudySummary;
 use crate::study::robot_tally::ArmSummary;
 
-/// A table with a column for each kind of arm.
+/// Table of robot statistics with one column per kind of arm.
 pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let groups = &figures.robot;
     if groups.is_empty() {

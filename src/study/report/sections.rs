@@ -1,4 +1,4 @@
-//! What is around the results: summary, trials, definitions, files.
+//! Report sections around the results: summary, trials, definitions, files.
 
 use maud::{Markup, Render, html};
 
@@ -11,7 +11,7 @@ use crate::study::definitions::DEFINITIONS;
 use crate::study::figures::StudySummary;
 use crate::study::trial::{BeliefBasis, Trial};
 
-/// What it is about, and the main figures.
+/// Section with the study's title and main results.
 pub(super) fn summary(figures: &StudySummary) -> Markup {
     let totals = &figures.totals;
     let effect = match (figures.pearson, &figures.similarity) {
@@ -54,7 +54,7 @@ pub(super) fn summary(figures: &StudySummary) -> Markup {
     }
 }
 
-/// How far two raters agree, in words.
+/// Paragraph on the agreement of two raters.
 fn raters(found: &Agreement) -> Markup {
     html! {
         p {
@@ -71,10 +71,10 @@ fn card(value: &str, what: &str) -> Markup {
     html! { div class="card" { b { (value) } span { (what) } } "\n" }
 }
 
-/// No longer list of trials is printed.
+/// Largest number of trials in the printed list.
 const MOST_TRIALS: usize = 60;
 
-/// Every trial, and those that are left out with the reasons.
+/// Section with all trials, and with the reasons for excluded ones.
 pub(super) fn trials(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
     let content = html! {
         div class="scroll long" { (counting(captions, trials)) } "\n"
@@ -128,7 +128,7 @@ fn left_out(captions: &mut Captions, figures: &StudySummary) -> Markup {
     captions.table_of_text("Trials that do not count.", &["recording", "participant", "why"], &rows)
 }
 
-/// What every term means.
+/// Section with the definitions of all terms.
 pub(super) fn definitions() -> Markup {
     let content = html! {
         dl { @for (term, text) in DEFINITIONS { "\n" dt { (term) } "\n" dd { (text) } } } "\n"
@@ -136,7 +136,7 @@ pub(super) fn definitions() -> Markup {
     section("Definitions", content)
 }
 
-/// The files beside the report that have something in them.
+/// Section that lists the non-empty tables beside the report.
 pub(super) fn files(tables: &[Table]) -> Markup {
     let content = html! {
         p {

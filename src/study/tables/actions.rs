@@ -1,4 +1,4 @@
-//! The table of presses of both agents.
+//! Table of the presses of both agents.
 
 use crate::kitchen::{Agent, Kitchen, Press};
 use crate::measures::JudgedPress;
@@ -7,41 +7,41 @@ use crate::measures::coding::{CauseKind, Code};
 use crate::mind::witness::rounded;
 use crate::study::column::{Column, Table, TableCell, TableRow};
 
-/// A press, as it was made.
+/// A recorded press.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordedPress {
-    /// The number of its event in the log.
+    /// Log number of the press event.
     pub seq: u64,
-    /// On the trial's clock.
+    /// Time on the trial clock, in seconds.
     pub time_s: f64,
     pub press: Press,
-    /// Its number among those of its agent, from 1.
+    /// Number of the press among those of its agent, from 1.
     pub number: u32,
-    /// Since this agent's press before, pauses left out.
+    /// Seconds since this agent's previous press, without pauses.
     pub since_s: Option<f64>,
-    /// Of a press of the human: ln p under the estimated belief.
+    /// Log probability of a human press under the estimated belief, in nats.
     pub log_p: Option<f64>,
 }
 
-/// What is known of a press of the human when its trial is over.
+/// Analysis of a human press.
 #[derive(Clone, Copy, Debug)]
 pub struct PressAnalysis<'a> {
     pub judged: &'a JudgedPress,
-    /// The number of its error sequence in the trial, from 1.
+    /// Number of the press's error sequence in the trial, from 1.
     pub sequence: Option<usize>,
-    /// Of people: the cause by the assistant's estimate.
+    /// Cause of a person's error by the assistant's estimate.
     pub by_estimate: Option<Cause>,
-    /// What the first two raters say.
+    /// Codes of the first two raters.
     pub codes: [Option<&'a Code>; 2],
 }
 
-/// A press, with what is known of it.
+/// A press with its analysis.
 #[derive(Clone, Copy, Debug)]
 pub struct ActionRow<'a> {
     pub recording: &'a str,
     pub kitchen: &'a Kitchen,
     pub recorded: &'a RecordedPress,
-    /// None of the robot's presses.
+    /// Analysis of a human press; `None` for presses of the robot.
     pub analysis: Option<PressAnalysis<'a>>,
 }
 
@@ -50,7 +50,7 @@ impl ActionRow<'_> {
         Some(self.analysis?.judged)
     }
 
-    /// What a false belief behind the press is about: the first target, and where it takes two, the second.
+    /// Targets of the false belief behind the press; the second only if the cause needs two false beliefs.
     fn targets(&self) -> [Option<String>; 2] {
         let label = |target: Target| target.label(self.kitchen);
         match self.judged().and_then(|press| press.cause) {
@@ -59,7 +59,7 @@ impl ActionRow<'_> {
         }
     }
 
-    /// By how much the belief makes the press likelier; raters say nothing of that.
+    /// Log probability ratio of the press under belief and truth; `None` for causes from raters.
     fn gain_nats(&self) -> Option<f64> {
         match self.judged()?.cause? {
             Cause::Belief { gain_nats, .. } => Some(rounded(gain_nats)).filter(|gain| gain.is_finite()),

@@ -1,19 +1,19 @@
-//! The table of what was believed of each aspect before each press of the human.
+//! Table of the beliefs about each aspect before each human press.
 
 use crate::mind::AspectBelief;
 use crate::mind::witness::AspectEstimate;
 use crate::study::column::{Column, Table, TableRow};
 
-/// What was believed of an aspect before a press of the human.
+/// Estimated and recorded belief about an aspect before a human press.
 #[derive(Clone, Copy, Debug)]
 pub struct BeliefRow<'a> {
     pub recording: &'a str,
-    /// The number of the press's event in the log.
+    /// Log number of the press event.
     pub seq: u64,
-    /// The aspect's true value.
+    /// True value of the aspect.
     pub truth: &'a str,
     pub estimate: &'a AspectEstimate,
-    /// What a simulated participant tells of its belief.
+    /// Recorded belief of a simulated participant.
     pub believed: Option<&'a AspectBelief>,
 }
 

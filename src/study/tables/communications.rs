@@ -1,19 +1,19 @@
-//! The table of communications that were sent, or would have been.
+//! Table of sent and hypothetical communications.
 
 use crate::kitchen::Kitchen;
 use crate::measures::matching::{CommunicationEvent, CommunicationKind};
 use crate::mind::witness::rounded;
 use crate::study::column::{Column, Table, TableRow};
 
-/// A communication.
+/// A sent or hypothetical communication.
 #[derive(Clone, Copy, Debug)]
 pub struct CommunicationRow<'a> {
     pub recording: &'a str,
     pub kitchen: &'a Kitchen,
-    /// Who sent it, or what would have.
+    /// Sender: wizard, assistant, or the concept of a hypothetical communication.
     pub lane: &'a str,
     pub sent: &'a CommunicationEvent,
-    /// Whether the other lane has the same within the window; none where there is no other.
+    /// Whether the other lane has a matching communication within the window; `None` without another lane.
     pub matched: Option<bool>,
 }
 

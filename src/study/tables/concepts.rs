@@ -1,18 +1,18 @@
-//! The table of what communication concepts would have done.
+//! Table of the prevention counts of communication concepts.
 
 use crate::study::column::{Column, Table, TableCell, TableRow};
 use crate::study::prevention::PreventionCounts;
 use crate::study::roc::SweptTrial;
 use crate::study::trial::Trial;
 
-/// A concept with one value of its parameter in a participant's unassisted trial.
+/// A concept with one parameter value in an unassisted trial.
 #[derive(Clone, Copy, Debug)]
 pub struct ConceptRow<'a> {
     trial: &'a Trial,
     swept: &'a SweptTrial,
 }
 
-/// The concepts that were tried on a trial.
+/// Rows for all concepts that were evaluated on a trial.
 pub fn concepts(trial: &Trial) -> impl Iterator<Item = ConceptRow<'_>> {
     trial.swept.iter().map(move |swept| ConceptRow { trial, swept })
 }

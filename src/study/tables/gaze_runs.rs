@@ -1,4 +1,4 @@
-//! The table of the gaze: runs of samples on the same location.
+//! Table of gaze runs: successive gaze samples on the same location.
 
 use crate::base::time::SessionTime;
 use crate::kitchen::{Kitchen, LocationId};
@@ -9,27 +9,27 @@ use crate::study::column::{Column, Table, TableRow};
 #[derive(Clone, Copy, Debug)]
 pub struct GazeRun {
     pub location: Option<LocationId>,
-    /// When its first sample was taken, and its last.
+    /// Times of the first and last sample.
     pub began: SessionTime,
     pub last: SessionTime,
-    /// Of x, y and confidence over the samples.
+    /// Sums of x, y and confidence over the samples.
     pub sums: [f64; 3],
     pub samples: u64,
 }
 
 impl GazeRun {
-    /// The mean of x (0), y (1) or confidence (2).
+    /// Mean of x (0), y (1) or confidence (2).
     fn mean(&self, of: usize) -> f64 {
         rounded(self.sums[of] / self.samples as f64)
     }
 }
 
-/// A run of a recording.
+/// A gaze run with its recording.
 #[derive(Clone, Copy, Debug)]
 pub struct GazeRow<'a> {
     pub recording: &'a str,
     pub kitchen: &'a Kitchen,
-    /// When the run began, on the trial's clock.
+    /// Start of the run on the trial clock, in seconds.
     pub time_s: f64,
     pub run: GazeRun,
 }

@@ -1,21 +1,21 @@
-//! The table of participants, with what is compared between their trials.
+//! Table of participants, with the measures that are compared between their trials.
 
 use crate::study::column::{Column, Table, TableRow};
 use crate::study::effect::{StudyMeasure, TrialPair, pairs};
 use crate::study::tables::trials::{HEADLINE, measures};
 use crate::study::trial::Trial;
 
-/// A participant: its trials, at least one.
+/// A participant with its trials, at least one.
 #[derive(Clone, Copy, Debug)]
 pub struct ParticipantRow<'a>(&'a [Trial]);
 
-/// The participants of trials in the order of participants.
+/// Participants of these trials, which must be ordered by participant.
 pub fn participants(trials: &[Trial]) -> impl Iterator<Item = ParticipantRow<'_>> {
     trials.chunk_by(|a, b| a.participant == b.participant).map(ParticipantRow)
 }
 
 impl ParticipantRow<'_> {
-    /// The two trials that are compared, if there are two that count and have this measure.
+    /// The compared pair of trials for a measure; `None` unless two trials count and have the measure.
     fn pair(&self, measure: StudyMeasure) -> Option<TrialPair> {
         pairs(self.0, measure).pop()
     }

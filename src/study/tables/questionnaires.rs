@@ -1,16 +1,16 @@
-//! The table of answers to questionnaires.
+//! Table of answers to questionnaires.
 
 use crate::study::column::{Column, Table, TableRow};
 use crate::study::trial::{QuestionnaireAnswer, Trial};
 
-/// An answer, with the trial after which it was given.
+/// An answer with the trial after which it was given.
 #[derive(Clone, Copy, Debug)]
 pub struct AnswerRow<'a> {
     trial: &'a Trial,
     answer: &'a QuestionnaireAnswer,
 }
 
-/// The answers after a trial.
+/// Answers after a trial.
 pub fn answers(trial: &Trial) -> impl Iterator<Item = AnswerRow<'_>> {
     trial.answers.iter().map(move |answer| AnswerRow { trial, answer })
 }

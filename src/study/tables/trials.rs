@@ -1,4 +1,4 @@
-//! The table of trials, and the statistics among its columns that are compared.
+//! Table of trials, and the measures among its columns that are compared between conditions.
 
 use crate::robot::AbortReason;
 use crate::session::event::EndReason;
@@ -7,7 +7,7 @@ use crate::study::effect::StudyMeasure;
 use crate::study::robot_tally::ArmSummary;
 use crate::study::trial::{BeliefErrors, Trial, mean_length};
 
-/// What the headline is about.
+/// Main measure of the report.
 pub const HEADLINE: StudyMeasure = StudyMeasure {
     name: "error_rate_human",
     unit: "errors per press of the human",
@@ -18,16 +18,16 @@ pub const HEADLINE: StudyMeasure = StudyMeasure {
     value: Trial::error_rate_human,
 };
 
-/// A column of the table of trials.
+/// Declaration of a column in the table of trials.
 enum TrialColumn {
     Plain(Column<Trial>),
-    /// A statistic that is compared between assisted and unassisted trials.
+    /// A measure that is compared between assisted and unassisted trials.
     Compared(StudyMeasure),
 }
 
 use TrialColumn::Compared;
 
-/// The statistics that are compared, in the order of the columns; the first is [`HEADLINE`].
+/// The compared measures, in column order; the first is [`HEADLINE`].
 pub fn measures() -> Vec<StudyMeasure> {
     let measure = |column: TrialColumn| match column {
         Compared(measure) => Some(measure),
@@ -50,7 +50,7 @@ impl TableRow for Trial {
     }
 }
 
-/// All columns in their order. A new one goes to the end.
+/// All columns in file order; new columns are appended.
 fn declared() -> impl Iterator<Item = TrialColumn> {
     kind_of_trial().into_iter().chain(errors()).chain(pace()).chain(robot()).chain(presses_given_up()).chain(by_hand())
 }
@@ -212,7 +212,7 @@ fn robot() -> Vec<TrialColumn> {
     ]
 }
 
-/// One column for each reason.
+/// One column per reason for aborting a press.
 fn presses_given_up() -> Vec<TrialColumn> {
     let why = |reason: AbortReason| match reason {
         AbortReason::NoLongerUseful => ("no_longer_useful", "pressing was no longer useful when the arm was there"),

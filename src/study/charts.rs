@@ -85,7 +85,7 @@ pub fn press_durations(trials: &[Trial]) -> Option<Markup> {
     let names: Vec<String> = cells.iter().map(name).collect();
     let all = found.iter().flatten().map(|(_, seconds)| *seconds);
     let mut chart =
-        SvgChart::new(420.0, 320.0, PlotAxis::named(&names), PlotAxis::over("seconds from press to press", all));
+        SvgChart::new(420.0, 320.0, PlotAxis::named(&names), PlotAxis::over("seconds between presses", all));
     for (x, (cell, found)) in cells.iter().zip(&found).enumerate() {
         let class = if cell.1 { "assisted" } else { "unassisted" };
         for (index, (participant, seconds)) in found.iter().enumerate() {
@@ -95,7 +95,7 @@ pub fn press_durations(trials: &[Trial]) -> Option<Markup> {
             chart.line("mean", &[(x as f64 - 0.3, mean), (x as f64 + 0.3, mean)]);
         }
     }
-    Some(chart.finish("Seconds from press to press by trial and condition"))
+    Some(chart.finish("Seconds between presses by trial and condition"))
 }
 
 /// Length of the longest error sequences with a bar of their own; longer ones share the last bar.
@@ -123,8 +123,8 @@ pub fn sequence_lengths(conditions: &[StudyConditionSummary]) -> Option<Markup> 
     let names: Vec<String> = (1..=LONGEST_BAR)
         .map(|length| if length == LONGEST_BAR { format!("{length}+") } else { length.to_string() })
         .collect();
-    let x = PlotAxis { label: "errors in a sequence", ..PlotAxis::named(&names) };
-    let mut chart = SvgChart::new(420.0, 320.0, x, PlotAxis::over("sequences a trial", all()));
+    let x = PlotAxis { label: "errors per sequence", ..PlotAxis::named(&names) };
+    let mut chart = SvgChart::new(420.0, 320.0, x, PlotAxis::over("sequences per trial", all()));
     for (side, (class, counts)) in sets.iter().enumerate() {
         for (index, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0.0) {
             let from = index as f64 - 0.38 + 0.38 * side as f64;
@@ -163,7 +163,7 @@ pub fn equal_signals(figures: &StudySummary) -> Option<Markup> {
     for roc in &figures.roc {
         curve(&mut chart, roc, MOST_SIGNALS, |point| (point.signals_per_100_actions, point.tpr));
     }
-    Some(chart.finish("Errors prevented at so many signals"))
+    Some(chart.finish("Errors prevented by number of signals"))
 }
 
 /// Draws the points of a concept up to `to` on the x axis, and the line through them.

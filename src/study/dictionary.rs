@@ -26,7 +26,7 @@ impl TableRow for DictionaryRow {
 
     fn columns() -> Vec<Column<Self>> {
         vec![
-            Self::column("table", "", "the file is this with .csv", |row| row.table.name().into()),
+            Self::column("table", "", "name of the table's file without .csv", |row| row.table.name().into()),
             Self::column("column", "", "", |row| row.column.as_ref().into()),
             Self::column("unit", "", "empty: none", |row| row.unit.into()),
             Self::column("meaning", "", "", |row| row.meaning.as_ref().into()),

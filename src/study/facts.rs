@@ -86,8 +86,8 @@ fn presses_of(robot: &RobotSpec) -> String {
 
 fn script(wizard: &WizardSpec) -> String {
     format!(
-        "it takes {} s in the median from seeing to the key, sees {:.0} % of the errors and {:.0} % of the overlooked changes, and \
-         takes something else for the cause in {:.0} %",
+        "median reaction time {} s; it notices {:.0} % of the errors and {:.0} % of the overlooked changes, and assumes another \
+         cause in {:.0} %",
         wizard.reaction_s,
         100.0 * wizard.sees_errors,
         100.0 * wizard.sees_overlooked,
@@ -98,7 +98,7 @@ fn script(wizard: &WizardSpec) -> String {
 fn gaze_source(source: GazeSource) -> &'static str {
     match source {
         GazeSource::Simulated => "simulated eyes",
-        GazeSource::Mouse => "the mouse pointer, standing for the gaze",
+        GazeSource::Mouse => "the mouse pointer in place of gaze",
         GazeSource::Pupil => "Pupil Core",
         GazeSource::File => "recorded gaze",
         GazeSource::Json => "an eye tracker that sends JSON lines",

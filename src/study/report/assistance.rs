@@ -18,16 +18,16 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
     let of_conditions = keys(&[("unassisted", "unassisted"), ("assisted", "assisted")]);
     let pictures = html! {
         (captions.figure(charts::errors_by_condition(trials), html! {
-            "Errors by condition; a line is a participant with both trials, black the mean of their rates, in which each \
-             counts the same. The table\u{2019}s share is that of all presses together." (key)
+            "Errors by condition. A line joins the two trials of a participant; black is the mean of the participants\u{2019} rates. \
+             The table states the share of all presses pooled." (key)
         }))
-        (captions.figure(charts::improvements(trials), "By how much the second trial has fewer errors in 100 presses. \
-            Practice moves both groups, assistance moves them apart."))
+        (captions.figure(charts::improvements(trials), "Reduction of errors per 100 presses from the first to the second \
+            trial. Practice changes both groups alike; a difference between the groups is the effect of assistance."))
         (captions.figure(charts::press_durations(trials), html! {
-            "Median seconds from press to press, a sign of experience." (of_conditions)
+            "Median seconds between presses, which indicate experience." (of_conditions)
         }))
         (captions.figure(charts::sequence_lengths(&figures.conditions), html! {
-            "How many error sequences of each length a trial has, in the mean." (of_conditions)
+            "Mean number of error sequences per trial, by length." (of_conditions)
         }))
     };
     if pictures.0.is_empty() {
@@ -49,14 +49,14 @@ fn conditions(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let columns: [PageColumn<StudyConditionSummary>; 11] = [
         ("condition", |one| condition(one.condition).render()),
         ("trials", |one| one.trials.render()),
-        ("errors a trial", |one| number(one.mean_errors, 1).render()),
+        ("errors per trial", |one| number(one.mean_errors, 1).render()),
         ("per press of the human", |one| percent(one.totals.error_rate_human).render()),
         ("per press of both", |one| percent(one.totals.error_rate).render()),
         ("belief related", |one| percent(one.totals.belief_related_share).render()),
-        ("errors in a sequence", |one| number(one.totals.mean_sequence_length, 2).render()),
+        ("errors per sequence", |one| number(one.totals.mean_sequence_length, 2).render()),
         ("s to recover", |one| number(one.totals.mean_recovery_s, 1).render()),
-        ("s for an order", |one| number(one.mean_order_s, 1).render()),
-        ("s a press", |one| number(one.mean_press_s, 2).render()),
+        ("s per order", |one| number(one.mean_order_s, 1).render()),
+        ("s per press", |one| number(one.mean_press_s, 2).render()),
         ("signals", |one| one.totals.signals.render()),
     ];
     let caption = "By condition. Shares are of all presses, or errors, of a condition together, so that long trials weigh more; \
@@ -70,12 +70,12 @@ fn in_words(effect: &AssistanceEffect) -> Markup {
     let [estimate, low, high] = [reduction.estimate, reduction.low, reduction.high].map(|value| 100.0 * value);
     let interval = match low.is_finite() && high.is_finite() {
         true => format!(", interval of {:.1} %: {}", 100.0 * reduction.level, range([low, high], 1)),
-        false => ", with too few participants for an interval".to_string(),
+        false => "; too few participants for an interval".to_string(),
     };
     let degrees = format!("{:.0},\u{a0}{:.0}", test.df[0], test.df[1]);
     html! {
         p {
-            "Assistance takes " (number(Some(estimate), 1)) " errors away from 100 presses of the human (Hodges-Lehmann"
+            "Assistance reduces errors by " (number(Some(estimate), 1)) " per 100 presses of the human (Hodges-Lehmann"
             (interval) "). Interaction of period and starting group: F(" (degrees) ")\u{a0}=\u{a0}"
             (number(Some(test.f), 2)) ", " (p_sentence(Some(test.p))) "."
         }
@@ -86,7 +86,7 @@ fn in_words(effect: &AssistanceEffect) -> Markup {
 /// Table of tests, one line per compared measure.
 fn tests(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let columns: [PageColumn<AssistanceEffect>; 10] = [
-        ("less of it with assistance?", |effect| effect.measure.title.render()),
+        ("measure (lower is better)", |effect| effect.measure.title.render()),
         ("participants", |effect| format!("{} + {}", effect.groups[0], effect.groups[1]).render()),
         ("F (interaction)", |effect| number(effect.assistance().map(|test| test.f), 2).render()),
         ("p", |effect| p_value(effect.assistance().map(|test| test.p)).render()),

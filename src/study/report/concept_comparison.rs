@@ -15,9 +15,9 @@ pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Marku
             "Receiver operating characteristics over unassisted trials, bands of 95 %." (key)
         }))
         (captions.figure(charts::equal_signals(figures), html! {
-            "The same, over how often the concepts interrupt. A curve may fall: each point is the concept with another value of \
-             its parameter, and one that speaks earlier may tell something before it is believed wrong, which prevents nothing \
-             and is not said again for a while." (key)
+            "Errors prevented against number of signals. Each point is one parameter value. A curve may fall, because a value that \
+             sends signals earlier may send one before the false belief begins; it prevents nothing and is not repeated for some \
+             time." (key)
         }))
     };
     if pictures.0.is_empty() {

@@ -142,7 +142,7 @@ pub(super) fn p_sentence(p: Option<f64>) -> String {
 /// "low to high"; a text if a bound is infinite.
 pub(super) fn range([low, high]: [f64; 2], digits: usize) -> String {
     if low.is_infinite() && high.is_infinite() {
-        return "no interval: too few".to_string();
+        return "no interval: too few values".to_string();
     }
     let end = |value: f64| match value {
         f64::INFINITY => "\u{221e}".to_string(),
@@ -169,6 +169,6 @@ pub(super) fn condition(condition: Condition) -> &'static str {
 pub(super) fn arm(kind: ArmKind) -> &'static str {
     match kind {
         ArmKind::Timed => "timed",
-        ArmKind::Physics => "simulated in the physics",
+        ArmKind::Physics => "simulated with contact forces",
     }
 }

@@ -21,25 +21,31 @@ impl TableRow for BeliefRow<'_> {
     const TABLE: Table = Table::Beliefs;
 
     fn columns() -> Vec<Column<Self>> {
-        let seq = "of the human's press that it is from before, as in actions";
-        let believed = "of simulated participants: that of the truth for it";
+        let seq = "log number of the human press that follows, as in actions";
+        let believed = "probability of the true value in a simulated participant's belief";
         vec![
             Self::column("recording", "", "as in trials", |row| row.recording.into()),
             Self::column("seq", "", seq, |row| row.seq.into()),
             Self::column("aspect", "", "state aspect: a location's content, or a dish's recipe", |row| {
                 (&row.estimate.aspect).into()
             }),
-            Self::column("truth", "", "its true value", |row| row.truth.into()),
-            Self::column("estimate", "", "the value that is expected to be believed most", |row| {
+            Self::column("truth", "", "true value of the aspect", |row| row.truth.into()),
+            Self::column("estimate", "", "most probable value in the estimated belief", |row| {
                 (&row.estimate.believes).into()
             }),
-            Self::column("estimate_p_truth", "probability", "expected, of the truth", |row| {
-                row.estimate.p_truth.into()
-            }),
-            Self::column("estimate_precision", "", "sum of the Dirichlet's alphas", |row| {
-                row.estimate.precision.into()
-            }),
-            Self::column("believed", "", "of simulated participants: the likeliest value for it", |row| {
+            Self::column(
+                "estimate_p_truth",
+                "probability",
+                "probability of the true value in the estimated belief",
+                |row| row.estimate.p_truth.into(),
+            ),
+            Self::column(
+                "estimate_precision",
+                "",
+                "precision of the estimate: sum of the Dirichlet parameters",
+                |row| row.estimate.precision.into(),
+            ),
+            Self::column("believed", "", "most probable value in a simulated participant's belief", |row| {
                 row.believed.map(|own| &own.believes).into()
             }),
             Self::column("believed_p_truth", "probability", believed, |row| row.believed.map(|own| own.p_truth).into()),

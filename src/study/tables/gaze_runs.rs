@@ -38,20 +38,26 @@ impl TableRow for GazeRow<'_> {
     const TABLE: Table = Table::Gaze;
 
     fn columns() -> Vec<Column<Self>> {
-        let time = "of the first sample of a run on the same location, on the trial's clock";
+        let time = "time of the run's first sample on the trial's clock";
         vec![
             Self::column("recording", "", "as in trials", |row| row.recording.into()),
             Self::column("time_s", "s", time, |row| rounded(row.time_s).into()),
-            Self::column("duration_s", "s", "to the last sample of the run", |row| {
+            Self::column("duration_s", "s", "time from the first to the last sample of the run", |row| {
                 rounded(row.run.last.secs_since(row.run.began)).into()
             }),
-            Self::column("location", "", "where the gaze was; empty: on none, or not usable", |row| {
+            Self::column("location", "", "location at the gaze point; empty: none, or unusable samples", |row| {
                 row.run.location.map(|location| &row.kitchen.location(location).name).into()
             }),
-            Self::column("x", "width of the display", "mean, from the left", |row| row.run.mean(0).into()),
-            Self::column("y", "height of the display", "mean, from the top", |row| row.run.mean(1).into()),
-            Self::column("confidence", "0 to 1", "mean, as the tracker says", |row| row.run.mean(2).into()),
-            Self::column("samples", "samples", "in the run; every single one stands in events.jsonl", |row| {
+            Self::column("x", "width of the display", "mean horizontal gaze position, from the left", |row| {
+                row.run.mean(0).into()
+            }),
+            Self::column("y", "height of the display", "mean vertical gaze position, from the top", |row| {
+                row.run.mean(1).into()
+            }),
+            Self::column("confidence", "0 to 1", "mean confidence that the eye tracker reported", |row| {
+                row.run.mean(2).into()
+            }),
+            Self::column("samples", "samples", "number of samples in the run; events.jsonl has every sample", |row| {
                 row.run.samples.into()
             }),
         ]

@@ -4,8 +4,8 @@
 pub const DEFINITIONS: &[(&str, &str)] = &[
     (
         "Regret, error",
-        "Regret of a press: r(a) = 1 + C(s') - C(s), with the true state and recipes; C is the least number of presses of \
-         both agents until all orders are served. Error: r(a) exceeds the least regret among the human's presses by 1 or more, \
+        "Regret of a press: r(a) = 1 + C(s') - C(s), with the true state and recipes; C is the least number of presses of both \
+         agents until all orders are served. Error: r(a) exceeds the least regret among the human's presses by 1 or more, \
          unless the cost of an active order fell and the excess is at most 2. In about 2 % of presses no press of the human \
          helps (least regret 1); the excess is counted from there. An ineffective press is judged like any other.",
     ),
@@ -19,9 +19,9 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
     ),
     (
         "Error sequence",
-        "Belief related errors at most 3 correct presses apart, whatever the aspect; its aspect is the most frequent. By single \
-         aspect they fragment; the report also states the length by single aspect. Length: number of errors. Recovery time: from the first \
-         error to the first correct press after the last.",
+        "Belief related errors at most 3 correct presses apart, whatever the aspect; its aspect is the most frequent. By \
+         single aspect they fragment; the report also states the length by single aspect. Length: number of errors. Recovery \
+         time: from the first error to the first correct press after the last.",
     ),
     (
         "False belief episode",
@@ -29,12 +29,12 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
     ),
     (
         "Similarity of wizard and assistant",
-        "One-to-one matching in time within 3 human presses; strict: same signal and target, lenient: same kind of signal. \
-         The assistant's hypothetical signals follow from its counterfactual estimate, which leaves the wizard's signal out for \
-         as many presses. The assistant does not repeat a hypothetical signal within the window, but may repeat it later. Recall is \
-         of the wizard's signals, precision of the assistant's; kappa is per human press over {none, each signal and target}; \
-         the chance level is the mean recall after circular shifts. More frequent signals of an assistant raise recall, so \
-         precision is stated too.",
+        "One-to-one matching in time within 3 human presses; strict: same signal and target, lenient: same kind of signal. The \
+         assistant's hypothetical signals follow from its counterfactual estimate, which leaves the wizard's signal out for as \
+         many presses. The assistant does not repeat a hypothetical signal within the window, but may repeat it later. Recall \
+         is of the wizard's signals, precision of the assistant's; kappa is per human press over {none, each signal and \
+         target}; the chance level is the mean recall after circular shifts. More frequent signals of an assistant raise \
+         recall, so precision is stated too.",
     ),
     (
         "Errors prevented, false positives",
@@ -42,23 +42,24 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
          signal that targets the aspect of an episode prevents the rest of its sequence, and replayed signals do not change b. \
          False positive: a signal about a correctly believed aspect; the rate is the share of presses outside of episodes with \
          at least one false positive before them. A signal about a false but harmless belief is counted separately. For DEV, a \
-         proposal of k presses counts as k signals and prevents the errors of the next k presses. Swept: cost 0.5 to 2.4, threshold 0.4 to \
-         0.99, k 1 to 5; cost and threshold also beyond that, so that all concepts reach the compared numbers of signals. Compared at equal \
-         signals per 100 presses of the human (linear interpolation between swept points and no signals), and as partial area over the false positive rates that all concepts reach, divided by that range; \
-         intervals of 95 % by bootstrap over participants, the area over the common range of each resample.",
+         proposal of k presses counts as k signals and prevents the errors of the next k presses. Swept: cost 0.5 to 2.4, \
+         threshold 0.4 to 0.99, k 1 to 5; cost and threshold also beyond that, so that all concepts reach the compared numbers \
+         of signals. Compared at equal signals per 100 presses of the human (linear interpolation between swept points and no \
+         signals), and as partial area over the false positive rates that all concepts reach, divided by that range; intervals \
+         of 95 % by bootstrap over participants, the area over the common range of each resample.",
     ),
     (
         "Assistance effect",
         "Two periods, two starting groups: mixed ANOVA with period within and starting group between; the assistance effect is \
          the interaction, F = t\u{b2} of the group difference of the period differences, also for unequal groups. The paper's \
-         coding, condition within, is also given. Pearson r of group (1: assisted in the second trial) and improvement; \
-         r > 0: assistance helps. Exact permutation test of the improvements; Hodges-Lehmann estimate of half their shift, with \
-         the interval of the Mann-Whitney test; Hedges' g of the shift. Errors are compared as rates per human press, since \
-         trials differ in length.",
+         coding, condition within, is also given. Pearson r of group (1: assisted in the second trial) and improvement; r > 0: \
+         assistance helps. Exact permutation test of the improvements; Hodges-Lehmann estimate of half their shift, with the \
+         interval of the Mann-Whitney test; Hedges' g of the shift. Errors are compared as rates per human press, since trials \
+         differ in length.",
     ),
     (
         "Acceptance",
-        "The participant's mean answer to the items about acceptance after assisted trials, reversed where agreement \
-         means rejection, from 0 to 1: high above 2/3, medium above 7/12, undecided within 1/12 of the middle, low below.",
+        "The participant's mean answer to the items about acceptance after assisted trials, reversed where agreement means \
+         rejection, from 0 to 1: high above 2/3, medium above 7/12, undecided within 1/12 of the middle, low below.",
     ),
 ];

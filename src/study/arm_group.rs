@@ -1,4 +1,4 @@
-//! What the robot did in the trials of a study, by kind of arm.
+//! Robot statistics of a study's trials, grouped by kind of robot arm.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use super::robot_tally::RobotSummary;
 use super::trial::Trial;
 use crate::session::settings::ArmKind;
 
-/// The figures of the trials with one kind of arm together.
+/// Sums of robot statistics over the trials with one kind of arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmGroup {
     pub kind: ArmKind,
@@ -15,7 +15,7 @@ pub struct ArmGroup {
     pub robot: RobotSummary,
 }
 
-/// By kind of arm, those that occur.
+/// Groups trials by kind of robot arm; kinds without trials are left out.
 pub fn by_arm(trials: &[&Trial]) -> Vec<ArmGroup> {
     let of = |kind: ArmKind| {
         let mut group = ArmGroup { kind, trials: 0, robot: RobotSummary::default() };

@@ -1,4 +1,4 @@
-//! The figures of the report, after those of the paper.
+//! Charts of the report, modelled on the figures of the paper.
 
 use maud::Markup;
 
@@ -11,8 +11,7 @@ use super::trial::{Trial, mean};
 use crate::communication::concept::ConceptName;
 use crate::session::settings::Condition;
 
-/// Errors by condition and participant (the paper's top left): the two trials of a participant are joined by a line, means
-/// are black.
+/// Chart of errors by condition and participant (paper's figure, top left); lines join a participant's two trials, means are black.
 pub fn errors_by_condition(trials: &[Trial]) -> Option<Markup> {
     let pairs = pairs(trials, HEADLINE);
     let values = || pairs.iter().flat_map(|pair| pair.values).map(percent);
@@ -41,8 +40,8 @@ pub fn errors_by_condition(trials: &[Trial]) -> Option<Markup> {
     Some(chart.finish("Errors by condition and participant"))
 }
 
-/// Improvements from the first trial to the second by starting group (the paper's top right); the difference of the means is
-/// twice the effect of assistance.
+/// Chart of improvements from the first to the second trial by starting group (paper's figure, top right); the difference of the
+/// means is twice the effect of assistance.
 pub fn improvements(trials: &[Trial]) -> Option<Markup> {
     let pairs = pairs(trials, HEADLINE);
     if pairs.is_empty() {
@@ -60,7 +59,7 @@ pub fn improvements(trials: &[Trial]) -> Option<Markup> {
         }
         if let Some(mean) = mean(of_group.iter().map(|pair| percent(pair.improvement()))) {
             chart.line("mean", &[(x - 0.25, mean), (x + 0.25, mean)]);
-            // No sign before what rounds to nothing.
+            // A mean that rounds to 0.0 is written without a sign.
             let words = if mean.abs() < 0.05 { "0.0".to_string() } else { minus(&format!("{mean:+.1}")) };
             chart.words("strong", x + 0.25, mean, true, &words);
         }
@@ -68,7 +67,7 @@ pub fn improvements(trials: &[Trial]) -> Option<Markup> {
     Some(chart.finish("Difference between the first and the second trial by starting group"))
 }
 
-/// Seconds from press to press by trial and condition (the paper's bottom): a sign of experience.
+/// Chart of seconds between human presses by trial and condition (paper's figure, bottom); they indicate experience.
 pub fn press_durations(trials: &[Trial]) -> Option<Markup> {
     let cells: Vec<(u32, bool)> = vec![(1, false), (1, true), (2, false), (2, true)];
     let of = |&(period, assisted): &(u32, bool)| -> Vec<(&str, f64)> {
@@ -86,7 +85,7 @@ pub fn press_durations(trials: &[Trial]) -> Option<Markup> {
     let names: Vec<String> = cells.iter().map(name).collect();
     let all = found.iter().flatten().map(|(_, seconds)| *seconds);
     let mut chart =
-        SvgChart::new(420.0, 320.0, PlotAxis::named(&names), PlotAxis::over("seconds from press to press", all));
+        SvgChart::new(420.0, 320.0, PlotAxis::named(&names), PlotAxis::over("seconds between presses", all));
     for (x, (cell, found)) in cells.iter().zip(&found).enumerate() {
         let class = if cell.1 { "assisted" } else { "unassisted" };
         for (index, (participant, seconds)) in found.iter().enumerate() {
@@ -96,22 +95,22 @@ pub fn press_durations(trials: &[Trial]) -> Option<Markup> {
             chart.line("mean", &[(x as f64 - 0.3, mean), (x as f64 + 0.3, mean)]);
         }
     }
-    Some(chart.finish("Seconds from press to press by trial and condition"))
+    Some(chart.finish("Seconds between presses by trial and condition"))
 }
 
-/// No longer sequence has a bar of its own.
-const LONGEST: usize = 12;
+/// Length of the longest error sequences with a bar of their own; longer ones share the last bar.
+const LONGEST_BAR: usize = 12;
 
-/// How many sequences have how many errors, by condition, a trial.
+/// Chart of the number of error sequences per trial by length and condition.
 pub fn sequence_lengths(conditions: &[StudyConditionSummary]) -> Option<Markup> {
     let assisted = |one: &&StudyConditionSummary| one.condition != Condition::None;
     let per_trial = |is: &dyn Fn(&&StudyConditionSummary) -> bool| -> Vec<f64> {
         let found: Vec<&StudyConditionSummary> = conditions.iter().filter(is).collect();
         let trials: u64 = found.iter().map(|one| one.trials).sum();
-        let mut counts = vec![0.0; LONGEST];
+        let mut counts = vec![0.0; LONGEST_BAR];
         for one in found {
             for (index, &count) in one.sequence_lengths.iter().enumerate() {
-                counts[index.min(LONGEST - 1)] += count as f64 / trials.max(1) as f64;
+                counts[index.min(LONGEST_BAR - 1)] += count as f64 / trials.max(1) as f64;
             }
         }
         counts
@@ -121,10 +120,11 @@ pub fn sequence_lengths(conditions: &[StudyConditionSummary]) -> Option<Markup> 
     if all().all(|count| count == 0.0) {
         return None;
     }
-    let names: Vec<String> =
-        (1..=LONGEST).map(|length| if length == LONGEST { format!("{length}+") } else { length.to_string() }).collect();
-    let x = PlotAxis { label: "errors in a sequence", ..PlotAxis::named(&names) };
-    let mut chart = SvgChart::new(420.0, 320.0, x, PlotAxis::over("sequences a trial", all()));
+    let names: Vec<String> = (1..=LONGEST_BAR)
+        .map(|length| if length == LONGEST_BAR { format!("{length}+") } else { length.to_string() })
+        .collect();
+    let x = PlotAxis { label: "errors per sequence", ..PlotAxis::named(&names) };
+    let mut chart = SvgChart::new(420.0, 320.0, x, PlotAxis::over("sequences per trial", all()));
     for (side, (class, counts)) in sets.iter().enumerate() {
         for (index, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0.0) {
             let from = index as f64 - 0.38 + 0.38 * side as f64;
@@ -134,7 +134,7 @@ pub fn sequence_lengths(conditions: &[StudyConditionSummary]) -> Option<Markup> 
     Some(chart.finish("Lengths of error sequences by condition"))
 }
 
-/// Receiver operating characteristics of the concepts, with bands.
+/// Chart of the receiver operating characteristics of the concepts, with confidence bands.
 pub fn roc(figures: &StudySummary) -> Option<Markup> {
     let points = || figures.roc.iter().flat_map(|roc| &roc.points);
     points().next()?;
@@ -151,10 +151,10 @@ pub fn roc(figures: &StudySummary) -> Option<Markup> {
     Some(chart.finish("Receiver operating characteristics of communication concepts"))
 }
 
-/// More signals per 100 presses of the human than these are drawn nowhere.
+/// Upper end of the axis for signals per 100 human presses; points beyond it are not drawn.
 const MOST_SIGNALS: f64 = 25.0;
 
-/// The same against interruptions.
+/// Chart of prevented errors against signals per 100 human presses.
 pub fn equal_signals(figures: &StudySummary) -> Option<Markup> {
     figures.roc.iter().flat_map(|roc| &roc.points).next()?;
     let x = PlotAxis::between("signals per 100 presses of the human", 0.0, MOST_SIGNALS);
@@ -163,10 +163,10 @@ pub fn equal_signals(figures: &StudySummary) -> Option<Markup> {
     for roc in &figures.roc {
         curve(&mut chart, roc, MOST_SIGNALS, |point| (point.signals_per_100_actions, point.tpr));
     }
-    Some(chart.finish("Errors prevented at so many signals"))
+    Some(chart.finish("Errors prevented by number of signals"))
 }
 
-/// The points of a concept, up to a place on the x axis, and the line through them.
+/// Draws the points of a concept up to `to` on the x axis, and the line through them.
 fn curve(chart: &mut SvgChart, roc: &Roc, to: f64, of: fn(&RocPoint) -> (f64, f64)) {
     let class = class_of(roc.concept);
     let is_drawn = |point: &&RocPoint| of(point).0 <= to;
@@ -180,7 +180,7 @@ fn curve(chart: &mut SvgChart, roc: &Roc, to: f64, of: fn(&RocPoint) -> (f64, f6
     }
 }
 
-/// The class of a concept's colour.
+/// CSS class with the concept's colour.
 pub fn class_of(concept: ConceptName) -> &'static str {
     match concept {
         ConceptName::TomCom => "tom-com",
@@ -198,7 +198,7 @@ fn percent(rate: f64) -> f64 {
     100.0 * rate
 }
 
-/// Points that could lie above each other stand a little aside, in turn.
+/// Horizontal offset by index, so that points of equal height do not cover each other.
 fn aside(index: usize) -> f64 {
     [0.0, -0.06, 0.06, -0.12, 0.12, -0.18, 0.18][index % 7]
 }

@@ -1,12 +1,11 @@
-//! What the tables are made of, which other programs read: one row an observation, one column a variable (Wickham 2014, "Tidy
-//! Data"). A column is declared once, with name, unit, meaning and value; the first line of its table, the rows and the
-//! dictionary follow from the declaration.
+//! Tables for other programs: one row per observation, one column per variable (Wickham 2014, "Tidy Data"). Each column is declared
+//! once, with name, unit, meaning and value; the header line, the rows and the dictionary are generated from the declaration.
 
 use std::borrow::Cow;
 
 use serde::Serialize;
 
-/// A table.
+/// Tables that the analysis of a study writes as CSV files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Table {
     Participants,
@@ -32,10 +31,10 @@ impl Table {
         Table::Gaze,
         Table::Dictionary,
     ];
-    /// Those that grow with what happens in a trial.
+    /// Tables whose rows are events of a trial.
     pub const OF_EVENTS: [Table; 4] = [Table::Actions, Table::Communications, Table::Beliefs, Table::Gaze];
 
-    /// The name of its file is this with `.csv`.
+    /// File name of the table without `.csv`.
     pub fn name(self) -> &'static str {
         match self {
             Table::Participants => "participants",
@@ -51,15 +50,15 @@ impl Table {
     }
 }
 
-/// What a row of a table is made from.
+/// Source of one row of a table.
 pub trait TableRow: Sized {
     /// The table that the row belongs to.
     const TABLE: Table;
 
-    /// The columns of the table, in their order.
+    /// Columns of the table, in file order.
     fn columns() -> Vec<Column<Self>>;
 
-    /// A column: its name, its unit (empty: none), what it means, and what stands in it.
+    /// Declares a column: name, unit (empty: none), meaning, and value for a row.
     fn column(
         name: impl Into<Cow<'static, str>>,
         unit: &'static str,
@@ -69,33 +68,33 @@ pub trait TableRow: Sized {
         Column { name: name.into(), unit, meaning: meaning.into(), value: Box::new(value) }
     }
 
-    /// The cells of this row, one per column.
+    /// Cells of this row, one per column.
     fn cells(&self) -> Vec<TableCell<'_>> {
         Self::columns().iter().map(|column| column.cell(self)).collect()
     }
 }
 
-/// A column of a table whose rows are made from `Row`.
+/// Declaration of a column; `Row` is the source of a row.
 pub struct Column<Row> {
     pub name: Cow<'static, str>,
-    /// Empty: none.
+    /// Unit; empty for columns without a unit.
     pub unit: &'static str,
     pub meaning: Cow<'static, str>,
     value: Box<dyn Fn(&Row) -> TableCell<'_>>,
 }
 
 impl<Row> Column<Row> {
-    /// What stands in this column of a row.
+    /// Value of this column in a row.
     pub fn cell<'a>(&self, row: &'a Row) -> TableCell<'a> {
         (self.value)(row)
     }
 }
 
-/// What stands in one column of one row.
+/// Value of one column in one row.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum TableCell<'a> {
-    /// Nobody knows, or there is none: an empty field.
+    /// Unknown or missing value: an empty field.
     Unknown,
     Flag(bool),
     Count(u64),
@@ -104,7 +103,7 @@ pub enum TableCell<'a> {
     Text(Cow<'a, str>),
 }
 
-/// Numbers and truth values become cells of their kind.
+/// Conversions of numbers and truth values into cells.
 macro_rules! cell_from {
     ($($from:ty => $kind:ident),*) => {
         $(impl From<$from> for TableCell<'_> {

@@ -1,11 +1,11 @@
-//! How everything is defined that the report tells.
+//! Definitions of the terms that the report uses.
 
-/// Terms with their definitions.
+/// Terms of the report with their definitions.
 pub const DEFINITIONS: &[(&str, &str)] = &[
     (
         "Regret, error",
-        "Regret of a press: r(a) = 1 + C(s') - C(s), with the true state and recipes; C is the least number of presses of \
-         both agents until all orders are served. Error: r(a) exceeds the least regret among the human's presses by 1 or more, \
+        "Regret of a press: r(a) = 1 + C(s') - C(s), with the true state and recipes; C is the least number of presses of both \
+         agents until all orders are served. Error: r(a) exceeds the least regret among the human's presses by 1 or more, \
          unless the cost of an active order fell and the excess is at most 2. In about 2 % of presses no press of the human \
          helps (least regret 1); the excess is counted from there. An ineffective press is judged like any other.",
     ),
@@ -15,50 +15,51 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
         "log p(a | b) - log p(a | truth) >= ln 3, with b, the human's belief, from before the press. Its aspect: the one whose \
          replacement by the truth lowers p(a | b) most; an order and its dish's recipe count as one target; where no single \
          aspect explains it, the best pair. Every other error is a slip. For simulated participants b is what they really \
-         believed. For people b is only the assistant's estimate, so that a headline figure needs two raters' codes.",
+         believed. For people b is only the assistant's estimate, so a headline result needs two raters' codes.",
     ),
     (
         "Error sequence",
-        "Belief related errors at most 3 correct presses apart, whatever the aspect; its aspect is the most frequent. By single \
-         aspect they fragment; that figure is printed as a second one. Length: number of errors. Recovery time: from the first \
-         error to the first correct press after the last.",
+        "Belief related errors at most 3 correct presses apart, whatever the aspect; its aspect is the most frequent. By \
+         single aspect they fragment; the report also states the length by single aspect. Length: number of errors. Recovery \
+         time: from the first error to the first correct press after the last.",
     ),
     (
         "False belief episode",
-        "From the moment an aspect became false (P(truth) < 0.5) to its correction, if it caused at least one error.",
+        "From the time at which the belief about an aspect became false (P(truth) < 0.5) to its correction, if it caused an error.",
     ),
     (
         "Similarity of wizard and assistant",
-        "One-to-one matching in time within 3 human presses; strict: same signal and target, lenient: same kind of signal. \
-         Against the assistant's counterfactual estimate that leaves the wizard's signal out for as many presses. What the \
-         assistant would have said it does not say again within that window; later it may, for nobody has shown it. Recall is \
-         of the wizard's signals, precision of the assistant's; kappa is per human press over {none, each signal and target}; \
-         the chance level is the recall that circular shifts leave. An assistant that communicates more often is flattered by \
-         recall alone.",
+        "One-to-one matching in time within 3 human presses; strict: same signal and target, lenient: same kind of signal. The \
+         assistant's hypothetical signals follow from its counterfactual estimate, which leaves the wizard's signal out for as \
+         many presses. The assistant does not repeat a hypothetical signal within the window, but may repeat it later. Recall \
+         is of the wizard's signals, precision of the assistant's; kappa is per human press over {none, each signal and \
+         target}; the chance level is the mean recall after circular shifts. More frequent signals of an assistant raise \
+         recall, so precision is stated too.",
     ),
     (
         "Errors prevented, false positives",
         "Over unassisted trials; the unit is the human press. True positive rate: belief related errors prevented, of all; one \
          signal that targets the aspect of an episode prevents the rest of its sequence, and replayed signals do not change b. \
-         False positive: a signal on an aspect that was believed right; the rate is that of the presses outside of episodes \
-         with at least one before them. A signal on a wrong but harmless belief is counted by itself. For DEV a proposal of k \
-         presses counts as k signals and spares the errors of the next k presses. Swept: cost 0.5 to 2.4, threshold 0.4 to \
-         0.99, k 1 to 5; cost and threshold also beyond that, so that all concepts can be compared where they say equally much. Compared at equal signals per 100 presses of the human (straight lines between swept points and \
-         silence), and as partial area over the false positive rates that all concepts reach, divided by that range; \
-         intervals of 95 % by bootstrap over participants, the area with the range that those who are drawn reach.",
+         False positive: a signal about a correctly believed aspect; the rate is the share of presses outside of episodes with \
+         at least one false positive before them. A signal about a false but harmless belief is counted separately. For DEV, a \
+         proposal of k presses counts as k signals and prevents the errors of the next k presses. Swept: cost 0.5 to 2.4, \
+         threshold 0.4 to 0.99, k 1 to 5; cost and threshold also beyond that, so that all concepts reach the compared numbers \
+         of signals. Compared at equal signals per 100 presses of the human (linear interpolation between swept points and no \
+         signals), and as partial area over the false positive rates that all concepts reach, divided by that range; intervals \
+         of 95 % by bootstrap over participants, the area over the common range of each resample.",
     ),
     (
         "Assistance effect",
         "Two periods, two starting groups: mixed ANOVA with period within and starting group between; the assistance effect is \
          the interaction, F = t\u{b2} of the group difference of the period differences, also for unequal groups. The paper's \
-         coding, condition within, is printed too. Pearson r of group (1: assisted in the second trial) and improvement; \
-         r > 0: assistance helps. Exact permutation test of the improvements; Hodges-Lehmann estimate of half their shift, with \
-         the interval of the Mann-Whitney test; Hedges' g of the shift. Errors are compared as rates per human press, since \
-         trials differ in length.",
+         coding, condition within, is also given. Pearson r of group (1: assisted in the second trial) and improvement; r > 0: \
+         assistance helps. Exact permutation test of the improvements; Hodges-Lehmann estimate of half their shift, with the \
+         interval of the Mann-Whitney test; Hedges' g of the shift. Errors are compared as rates per human press, since trials \
+         differ in length.",
     ),
     (
         "Acceptance",
-        "The participant's mean answer to the items about acceptance after assisted trials, turned round where agreement \
-         speaks against it, from 0 to 1: high above 2/3, medium above 7/12, undecided within 1/12 of the middle, low below.",
+        "The participant's mean answer to the items about acceptance after assisted trials, reversed where agreement means \
+         rejection, from 0 to 1: high above 2/3, medium above 7/12, undecided within 1/12 of the middle, low below.",
     ),
 ];

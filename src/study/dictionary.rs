@@ -1,4 +1,4 @@
-//! The dictionary: what every column of every table means, from the declarations of the columns.
+//! Dictionary of all table columns, generated from their declarations.
 
 use std::borrow::Cow;
 
@@ -12,7 +12,7 @@ use super::tables::participants::ParticipantRow;
 use super::tables::questionnaires::AnswerRow;
 use super::trial::Trial;
 
-/// A column of a table.
+/// Dictionary entry of one table column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DictionaryRow {
     pub table: Table,
@@ -26,7 +26,7 @@ impl TableRow for DictionaryRow {
 
     fn columns() -> Vec<Column<Self>> {
         vec![
-            Self::column("table", "", "the file is this with .csv", |row| row.table.name().into()),
+            Self::column("table", "", "name of the table's file without .csv", |row| row.table.name().into()),
             Self::column("column", "", "", |row| row.column.as_ref().into()),
             Self::column("unit", "", "empty: none", |row| row.unit.into()),
             Self::column("meaning", "", "", |row| row.meaning.as_ref().into()),
@@ -34,7 +34,7 @@ impl TableRow for DictionaryRow {
     }
 }
 
-/// The columns of a table, in their order.
+/// Dictionary entries of a table, in the order of its columns.
 pub fn columns(table: Table) -> Vec<DictionaryRow> {
     match table {
         Table::Participants => declared::<ParticipantRow>(),
@@ -59,7 +59,7 @@ fn declared<Row: TableRow>() -> Vec<DictionaryRow> {
     Row::columns().into_iter().map(row).collect()
 }
 
-/// The dictionary, table by table, column by column.
+/// Dictionary entries of all tables, by table and column.
 pub fn dictionary() -> impl Iterator<Item = DictionaryRow> {
     Table::ALL.into_iter().flat_map(columns)
 }

@@ -1,8 +1,8 @@
-//! The effect of assistance in a cross-over of two trials: one assisted, one not, in either order.
+//! Effect of assistance in a cross-over design: each participant has one assisted and one unassisted trial, in either order.
 //!
-//! Trials differ in practice as well as in assistance: the second goes better anyway. So the two starting groups are compared
-//! in what they improve from the first trial to the second: what is more of it in the group whose second trial is the assisted
-//! one is the effect of assistance (the interaction of period and starting group; Senn 2002, Cross-over Trials, chapter 3).
+//! The second trial also profits from practice. The analysis therefore compares the improvement from the first to the second trial
+//! between the two starting groups. The additional improvement of the group whose second trial is assisted is the effect of
+//! assistance (the interaction of period and starting group; Senn 2002, Cross-over Trials, chapter 3).
 
 use serde::{Serialize, Serializer};
 
@@ -11,53 +11,52 @@ use super::statistics::{
 };
 use super::trial::Trial;
 
-/// The level of intervals.
+/// Confidence level of intervals.
 pub const LEVEL: f64 = 0.95;
 
-/// A participant with both trials.
+/// A participant's two trials, one assisted and one unassisted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrialPair {
     pub participant: String,
-    /// The second trial was the assisted one.
+    /// Whether the second trial is the assisted one.
     pub assisted_second: bool,
-    /// The measure in the first trial and in the second; the less, the better.
+    /// Value of the measure in the first and in the second trial; lower is better.
     pub values: [f64; 2],
 }
 
 impl TrialPair {
-    /// By how much less the second trial has.
+    /// First value minus second value.
     pub fn improvement(&self) -> f64 {
         self.values[0] - self.values[1]
     }
 
-    /// The values without assistance and with it.
+    /// Values of the unassisted and of the assisted trial.
     pub fn by_condition(&self) -> [f64; 2] {
         if self.assisted_second { self.values } else { [self.values[1], self.values[0]] }
     }
 }
 
-/// A statistic of a trial that is compared between assisted and unassisted trials; of each, less is better. It is a column of
-/// the table of trials, two of the table of participants, and a line of the report's tests.
+/// A statistic of a trial that is compared between assisted and unassisted trials; lower is better. It is a column of the table of
+/// trials, two columns of the table of participants, and a line of the report's tests.
 #[derive(Clone, Copy, Debug)]
 pub struct StudyMeasure {
-    /// Its column in the table of trials, and its name in the figures. The table of participants has it twice, with `_1` and
-    /// `_2`.
+    /// Column name in the table of trials, and key in the summary; the table of participants adds the suffixes `_1` and `_2`.
     pub name: &'static str,
-    /// The unit of these columns.
+    /// Unit of the columns.
     pub unit: &'static str,
-    /// Its definition, for the dictionary; empty where the unit says it.
+    /// Definition for the dictionary; empty if the unit suffices.
     pub meaning: &'static str,
-    /// The same of one of a participant's trials: `{}` stands for "first" and for "second".
+    /// Definition for one of a participant's trials; `{}` stands for "first" or "second".
     pub meaning_in: &'static str,
-    /// In words, for the report.
+    /// Title in the report.
     pub title: &'static str,
-    /// So many digits behind the point say as much as is known.
+    /// Number of decimals in the report.
     pub digits: usize,
-    /// That of a trial, if it has one.
+    /// Value for a trial; `None` if the trial does not have it.
     pub value: fn(&Trial) -> Option<f64>,
 }
 
-/// Names are unique: they are columns of one table.
+/// Measures are compared by name; names are unique, as columns of one table.
 impl PartialEq for StudyMeasure {
     fn eq(&self, other: &StudyMeasure) -> bool {
         self.name == other.name
@@ -70,37 +69,37 @@ impl Serialize for StudyMeasure {
     }
 }
 
-/// What assistance changes.
+/// Estimates and tests of the effect of assistance on one measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AssistanceEffect {
     pub measure: StudyMeasure,
-    /// Participants whose second trial was the assisted one, and whose first was.
+    /// Number of participants whose second trial was assisted, and whose first was.
     pub groups: [usize; 2],
-    /// Mean improvements of these groups from the first trial to the second.
+    /// Mean improvement of each starting group from the first to the second trial.
     pub improvements: [Option<f64>; 2],
     /// Mixed analysis of variance: period within, starting group between; assistance is the interaction.
     pub by_period: MixedAnova,
-    /// The paper's coding: condition within, starting group between; assistance is the factor within.
+    /// Mixed analysis of variance in the paper's coding: condition within, starting group between; assistance is the within factor.
     pub by_condition: MixedAnova,
-    /// Of the starting group (1: assisted second) and the improvement; above 0, assistance helps.
+    /// Correlation of starting group (1: assisted second) and improvement; positive if assistance helps.
     pub pearson: Option<Correlation>,
-    /// Two-sided, of the improvements of the groups.
+    /// Two-sided p of the permutation test on the groups' improvements.
     pub permutation_p: Option<f64>,
-    /// What assistance takes away: half the shift between the groups' improvements.
+    /// Reduction by assistance: half the Hodges-Lehmann shift between the groups' improvements.
     pub reduction: Option<Interval>,
-    /// The shift in pooled standard deviations.
+    /// Hedges' g: the difference of the groups' mean improvements in pooled standard deviations.
     pub hedges_g: Option<f64>,
 }
 
 impl AssistanceEffect {
-    /// The assistance effect, tested as the definition says.
+    /// F test of the assistance effect as the report defines it: the interaction of period and starting group.
     pub fn assistance(&self) -> Option<FTest> {
         self.by_period.interaction
     }
 }
 
-/// The participants with one assisted and one unassisted trial that count and have this measure, in the order of their codes.
-/// Of several trials of a participant in a period the last one counts: it was done again.
+/// Pairs of one assisted and one unassisted trial that count and have this measure, in the order of participant codes. If a
+/// participant repeated a period, its last trial counts.
 pub fn pairs(trials: &[Trial], measure: StudyMeasure) -> Vec<TrialPair> {
     let mut codes: Vec<&str> = trials.iter().map(|trial| trial.participant.as_str()).collect();
     codes.sort_unstable();
@@ -121,7 +120,7 @@ fn pair(code: &str, trials: &[Trial], measure: StudyMeasure) -> Option<TrialPair
     Some(TrialPair { participant: code.to_string(), assisted_second: second.is_assisted(), values })
 }
 
-/// The effect of assistance on a measure of these pairs; `seed` is that of sampled permutations.
+/// Computes the effect of assistance on a measure; `seed` seeds sampled permutations.
 pub fn effect(measure: StudyMeasure, pairs: &[TrialPair], seed: u64) -> AssistanceEffect {
     let group = |pair: &TrialPair| usize::from(pair.assisted_second);
     let improvements = |assisted_second: bool| -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! What recordings say of how they were made, for the paragraph on methods.
+//! Settings and circumstances of recordings, for the report's methods paragraph.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,14 +6,14 @@ use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, 
 use crate::session::{Header, Session};
 use crate::wizard::settings::{WizardKind, WizardSpec};
 
-/// What is known of a kind, from one recording or several: every value that occurred.
+/// Facts by key, from one or several recordings; every value that occurred is kept.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Facts {
     found: BTreeMap<&'static str, BTreeSet<String>>,
 }
 
 impl Facts {
-    /// Those of a recording that was followed to its end.
+    /// Facts of a replayed recording.
     pub fn from_session(header: &Header, session: &Session) -> Facts {
         let spec = &header.session;
         let mut facts = Facts::default();
@@ -53,14 +53,14 @@ impl Facts {
         facts
     }
 
-    /// Adds those of another recording.
+    /// Adds the facts of another recording.
     pub fn add(&mut self, other: Facts) {
         for (key, values) in other.found {
             self.found.entry(key).or_default().extend(values);
         }
     }
 
-    /// Every value of a kind, in words; nothing where there is none.
+    /// All values of a fact as text; `None` if it has none.
     pub fn all(&self, key: &str) -> Option<String> {
         let values: Vec<&str> = self.found.get(key)?.iter().map(String::as_str).collect();
         let (last, others) = values.split_last()?;
@@ -70,13 +70,13 @@ impl Facts {
         })
     }
 
-    /// Whether there is something of a kind.
+    /// Whether a fact has a value.
     pub fn has(&self, key: &str) -> bool {
         self.found.contains_key(key)
     }
 }
 
-/// How long the robot's presses take.
+/// Duration of the robot's presses as text.
 fn presses_of(robot: &RobotSpec) -> String {
     match robot.arm {
         ArmKind::Timed => format!("{} s in the median (spread {})", robot.press_s, robot.press_spread),
@@ -86,8 +86,8 @@ fn presses_of(robot: &RobotSpec) -> String {
 
 fn script(wizard: &WizardSpec) -> String {
     format!(
-        "it takes {} s in the median from seeing to the key, sees {:.0} % of the errors and {:.0} % of the overlooked changes, and \
-         takes something else for the cause in {:.0} %",
+        "median reaction time {} s; it notices {:.0} % of the errors and {:.0} % of the overlooked changes, and assumes another \
+         cause in {:.0} %",
         wizard.reaction_s,
         100.0 * wizard.sees_errors,
         100.0 * wizard.sees_overlooked,
@@ -98,7 +98,7 @@ fn script(wizard: &WizardSpec) -> String {
 fn gaze_source(source: GazeSource) -> &'static str {
     match source {
         GazeSource::Simulated => "simulated eyes",
-        GazeSource::Mouse => "the mouse pointer, standing for the gaze",
+        GazeSource::Mouse => "the mouse pointer in place of gaze",
         GazeSource::Pupil => "Pupil Core",
         GazeSource::File => "recorded gaze",
         GazeSource::Json => "an eye tracker that sends JSON lines",

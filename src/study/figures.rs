@@ -1,4 +1,4 @@
-//! The figures of a study: what `tomcom study` prints, and what the report tells.
+//! Summary of a study: the statistics that `tomcom study` prints and the report shows.
 
 use std::collections::BTreeMap;
 
@@ -17,64 +17,63 @@ use crate::measures::wizard::WizardMeasures;
 use crate::session::event::EndReason;
 use crate::session::settings::{Condition, ParticipantKind};
 
-/// The seed of what is drawn: permutations where they are too many, and the bootstrap. The same recordings give the same
-/// figures.
+/// Seed of sampled permutations and bootstrap resamples; fixed, so that the same recordings give the same statistics.
 const SEED: u64 = 1;
 
-/// All figures. What cannot be told is null.
+/// Summary of a study. Unknown values are null.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudySummary {
     pub title: String,
-    /// Of people alone it is false.
+    /// Whether any participant was simulated.
     pub simulated_participants: bool,
-    /// Trials that count, and participants with at least one.
+    /// Number of trials that count, and number of participants with at least one such trial.
     pub trials: u64,
     pub participants: u64,
     #[serde(flatten)]
     pub totals: TrialTotals,
-    /// How many trials ended how.
+    /// Number of trials by the reason of their end.
     pub ended: BTreeMap<EndReason, u64>,
-    /// The robot, by kind of arm.
+    /// Robot statistics by kind of arm.
     pub robot: Vec<ArmGroup>,
     pub conditions: Vec<StudyConditionSummary>,
-    /// The effect of assistance on errors per press of the human: the interaction of period and starting group.
+    /// Effect of assistance on errors per human press: the interaction of period and starting group.
     pub anova: Option<FTest>,
     pub pearson: Option<Correlation>,
     pub permutation_p: Option<f64>,
-    /// The same in full, and of other measures.
+    /// Effects of assistance on all compared measures, the first of them in full.
     pub effects: Vec<AssistanceEffect>,
     pub roc: Vec<Roc>,
-    /// What the comparison of concepts rests on.
+    /// Number of participants and unassisted trials in the comparison of concepts.
     pub roc_participants: u64,
     pub roc_trials: u64,
     pub roc_common_fpr: Option<f64>,
-    /// Of the wizard's signals (the first lane) and the assistant's; null where no wizard sent any.
+    /// Similarity of the wizard's signals (first lane) and the assistant's hypothetical ones; null without wizard signals.
     pub similarity: Option<Similarity>,
-    /// The same trial by trial: recording and recall.
+    /// Similarity of wizard and assistant in each trial.
     pub similarity_by_trial: Vec<TrialSimilarity>,
     pub wizard: Option<WizardMeasures>,
     pub acceptance: Option<Acceptance>,
     pub questionnaires: Vec<ItemSummary>,
-    /// How far raters agree, where errors are known from them.
+    /// Agreement of two raters, where causes of errors are known from their codes.
     pub raters: Option<Agreement>,
     pub left_out: Vec<ExcludedTrial>,
-    /// Recordings of practice, which are no trials.
+    /// Number of practice recordings, which are not analysed as trials.
     pub practice: u64,
 }
 
 /// Sums over trials.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TrialTotals {
-    /// Presses of both agents.
+    /// Number of presses of both agents.
     pub actions: u64,
     pub human_actions: u64,
     pub robot_actions: u64,
     pub errors: u64,
     pub races: u64,
-    /// Per press of both agents.
+    /// Errors per press of both agents, and per human press.
     pub error_rate: Option<f64>,
     pub error_rate_human: Option<f64>,
-    /// How it is known what was believed; null: it is not, or not of all.
+    /// Source of the participants' beliefs; null if beliefs are unknown in some trial.
     pub beliefs_from: Option<BeliefBasis>,
     pub belief_related_errors: Option<u64>,
     pub belief_related_share: Option<f64>,
@@ -88,22 +87,22 @@ pub struct TrialTotals {
     pub orders_served: u64,
 }
 
-/// Those of the trials in a condition.
+/// Summary of the trials in one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyConditionSummary {
     pub condition: Condition,
     pub trials: u64,
     #[serde(flatten)]
     pub totals: TrialTotals,
-    /// Means over trials.
+    /// Mean errors per trial.
     pub mean_errors: Option<f64>,
     pub mean_order_s: Option<f64>,
     pub mean_press_s: Option<f64>,
-    /// How many sequences have 1, 2, 3, … errors.
+    /// Number of error sequences with 1, 2, 3, … errors.
     pub sequence_lengths: Vec<u64>,
 }
 
-/// How alike wizard and assistant are in one trial.
+/// Similarity of wizard and assistant in one trial.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrialSimilarity {
     pub recording: String,
@@ -113,24 +112,24 @@ pub struct TrialSimilarity {
     pub recall: Option<f64>,
 }
 
-/// How participants take the assistance: the mean of their answers to items about acceptance after assisted trials, turned
-/// round where agreement speaks against it, from 0 (none) to 1.
+/// Acceptance of the assistance: each participant's mean answer to the items about acceptance after assisted trials, from 0 (none)
+/// to 1 (full). Answers to items in which agreement means rejection are reversed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Acceptance {
-    /// Participants above 2/3.
+    /// Number of participants above 2/3.
     pub high: u64,
-    /// From there down to 7/12.
+    /// Number of participants above 7/12, up to 2/3.
     pub medium: u64,
-    /// Within 1/12 of the middle: a point of a scale of seven.
+    /// Number of participants within 1/12 of the middle (one point of a seven-point scale).
     pub undecided: u64,
-    /// Below.
+    /// Number of participants below 5/12.
     pub low: u64,
     pub not_reported: u64,
-    /// Over participants.
+    /// Mean acceptance over participants.
     pub mean: Option<f64>,
 }
 
-/// Answers to an item in a condition.
+/// Answers to one questionnaire item in one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ItemSummary {
     pub questionnaire: String,
@@ -140,13 +139,13 @@ pub struct ItemSummary {
     pub reversed: bool,
     pub condition: Condition,
     pub points: u8,
-    /// How often each point was given, from 1.
+    /// Number of answers at each scale point, from 1.
     pub counts: Vec<u64>,
     pub left_out: u64,
     pub mean: Option<f64>,
 }
 
-/// A trial that is left out.
+/// A trial that is excluded from the analysis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExcludedTrial {
     pub recording: String,
@@ -155,7 +154,7 @@ pub struct ExcludedTrial {
 }
 
 impl StudySummary {
-    /// Of trials in the order of participants.
+    /// Summarizes trials, which must be ordered by participant.
     pub fn from_trials(trials: &[Trial], facts: &Facts, practice: u64) -> StudySummary {
         let counting: Vec<&Trial> = trials.iter().filter(|trial| trial.counts()).collect();
         let simulated_participants = trials.iter().any(|trial| trial.kind == ParticipantKind::Simulated);
@@ -237,7 +236,7 @@ impl TrialTotals {
         let by_aspect: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths_by_aspect.iter().copied()).collect();
         let interval = share_interval(related, errors, super::effect::LEVEL);
         TrialTotals {
-            // Of several the one that is worth least.
+            // The least reliable source among the trials.
             beliefs_from: beliefs.iter().map(|one| one.basis).max(),
             belief_related_errors: Some(related),
             belief_related_share: interval.map(|interval| interval.estimate),
@@ -271,7 +270,7 @@ fn conditions(trials: &[&Trial]) -> Vec<StudyConditionSummary> {
     [Condition::None, Condition::Wizard, Condition::Assistant].into_iter().filter_map(of).collect()
 }
 
-/// The comparison of concepts over the trials in which they were tried; a participant's trials together.
+/// Compares concepts over the trials in which they were evaluated; trials are grouped by participant.
 fn concepts(trials: &[&Trial]) -> ConceptComparison {
     let tried: Vec<&Trial> = trials.iter().copied().filter(|trial| !trial.swept.is_empty()).collect();
     let of_participant = |of_one: &[&Trial]| {
@@ -309,7 +308,7 @@ fn similarity(trials: &[&Trial]) -> (Option<Similarity>, Vec<TrialSimilarity>) {
     ((!by_trial.is_empty()).then(|| all.similarity()), by_trial)
 }
 
-/// How far the raters of all trials agree.
+/// Agreement of the raters over all trials.
 fn agreement(trials: &[&Trial]) -> Option<Agreement> {
     let mut table = AgreementTable::default();
     let coded: Vec<&[Codes; 2]> = trials.iter().filter_map(|trial| trial.raters.as_ref()).collect();
@@ -317,7 +316,7 @@ fn agreement(trials: &[&Trial]) -> Option<Agreement> {
     (!coded.is_empty()).then(|| table.agreement())
 }
 
-/// The items of all questionnaires by condition, in the order in which they occur.
+/// Items of all questionnaires by condition, in order of occurrence.
 fn items(trials: &[&Trial]) -> Vec<ItemSummary> {
     let mut items: Vec<ItemSummary> = Vec::new();
     for trial in trials {
@@ -358,7 +357,7 @@ fn items(trials: &[&Trial]) -> Vec<ItemSummary> {
     items
 }
 
-/// From answers to items about acceptance in assisted trials; none where nobody was asked.
+/// Acceptance from the answers in assisted trials; `None` without any answer.
 fn acceptance(trials: &[&Trial]) -> Option<Acceptance> {
     let mut by_participant: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     for trial in trials.iter().filter(|trial| trial.is_assisted()) {
@@ -373,7 +372,7 @@ fn acceptance(trials: &[&Trial]) -> Option<Acceptance> {
         return None;
     }
     let means: Vec<Option<f64>> = by_participant.into_values().map(|shares| mean(shares.into_iter())).collect();
-    // Twelfths, so that means of whole points fall on one side.
+    // Acceptance in twelfths, rounded so that means of whole scale points fall on the correct side of a limit.
     let twelfths: Vec<f64> = means.iter().flatten().map(|mean| (12.0 * mean * 1e6).round() / 1e6).collect();
     let count = |is: fn(f64) -> bool| twelfths.iter().filter(|&&twelfths| is(twelfths)).count() as u64;
     Some(Acceptance {

@@ -1,16 +1,17 @@
-//! The study: from what single trials show to what a whole study says. Pure; recordings are read elsewhere.
+//! Analysis of a study: from single trials to summary, tables and report. Without input or output; recordings are read elsewhere.
 //!
-//! The room is pure: a `Trial` holds the counts, medians, sequences and answers of one recording, and everything else is computed from
-//! trials. Offline, concepts are evaluated on unassisted trials: ToM-Com plans once and all costs of communication are applied to the same
-//! benefits; ToM's thresholds are applied to the same estimate. Beliefs come from simulated participants' records, for people from two
-//! raters' codes where both coded every error, else from the estimate; the summary names the source (`beliefs_from`).
+//! A `Trial` holds the counts, medians, sequences and answers of one recording; everything else is computed from trials.
+//! Communication concepts are evaluated offline on unassisted trials: ToM-Com plans once and all costs of communication are applied
+//! to the same benefits; ToM's thresholds are applied to the same estimate. Causes of errors come from the recorded beliefs of
+//! simulated participants; for people from two raters' codes if both coded every error, else from the estimate. The summary names
+//! the source (`beliefs_from`).
 //!
-//! - [`trial`] keeps a few numbers of each trial; [`figures`] sums them up, with [`effect`], [`roc`] and [`statistics`].
-//! - [`tables`] declares the tables: of each what a row is made from, and each [column](mod@column) with name, unit, meaning
-//!   and value. First lines, rows and [`dictionary`] follow from the declarations. A statistic that is compared between assisted and
-//!   unassisted trials is a column of the table of trials that says so ([`tables::trials`]); its two columns of the table of
-//!   participants and its line in the report follow.
-//! - [`report`] makes the page, with [`charts`].
+//! - [`trial`] keeps the statistics of each trial; [`figures`] summarizes them with [`effect`], [`roc`] and [`statistics`].
+//! - [`tables`] declares the tables: the source of a row, and each [column](mod@column) with name, unit, meaning and value. Header lines,
+//!   rows and [`dictionary`] are generated. A measure that is compared between assisted and unassisted trials is declared as such
+//!   in the table of trials ([`tables::trials`]); its columns in the table of participants and its line in the report are
+//!   generated.
+//! - [`report`] builds the page, with [`charts`].
 
 pub mod arm_group;
 pub mod charts;

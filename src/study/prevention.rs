@@ -1,16 +1,16 @@
-//! What signals and proposals would have prevented in an unassisted trial.
+//! Errors that signals and proposals would have prevented in an unassisted trial.
 //!
-//! One signal that targets the aspect of a false belief episode prevents the rest of its sequence; what is replayed does not
-//! change the belief. A signal on an aspect that was believed right is a false positive, one on a wrong but harmless belief is
-//! counted by itself. A proposal of k presses counts as k signals and spares the errors of the next k presses; those of them
-//! outside of episodes are its false positives.
+//! One signal that targets the aspect of a false belief episode prevents the rest of its error sequence; replayed signals do not
+//! change the belief. A signal about a correctly believed aspect is a false positive; a signal about a false but harmless belief is
+//! counted separately. A proposal of k presses counts as k signals and prevents the errors of the next k presses; those of the k
+//! presses that are outside of episodes are false positives.
 
 use serde::Serialize;
 
 use crate::base::time::SessionTime;
 use crate::kitchen::AspectId;
 
-/// What was true in a trial.
+/// True errors, false beliefs and error sequences of a trial.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialTruth {
     pub presses: Vec<PressTruth>,
@@ -18,31 +18,31 @@ pub struct TrialTruth {
     pub sequences: Vec<SequenceTruth>,
 }
 
-/// A press of the human.
+/// Truth about one human press.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressTruth {
     pub time: SessionTime,
     pub error: bool,
-    /// It was one because of a false belief.
+    /// Whether the press is a belief related error.
     pub related: bool,
 }
 
-/// A time in which an aspect was believed wrong.
+/// Period in which the participant held a false belief about one aspect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FalseBeliefTruth {
     pub aspect: AspectId,
     pub began: SessionTime,
     pub ended: Option<SessionTime>,
-    /// It led to an error: an episode.
+    /// Whether the false belief led to an error, which makes it an episode.
     pub harmful: bool,
 }
 
-/// Belief related errors that belong together.
+/// Sequence of belief related errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SequenceTruth {
-    /// What it is about.
+    /// Aspects of the false belief behind the sequence.
     pub aspects: Vec<AspectId>,
-    /// When its errors were.
+    /// Time of each error.
     pub errors: Vec<SessionTime>,
 }
 
@@ -50,35 +50,35 @@ pub struct SequenceTruth {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConceptSignal {
     pub time: SessionTime,
-    /// Presses of the human before it.
+    /// Number of human presses before the signal.
     pub press: usize,
-    /// What it tells.
+    /// Aspects that the signal communicates.
     pub aspects: Vec<AspectId>,
 }
 
-/// What a concept would have done in a trial, or in several.
+/// Counts of prevented errors and false positives of a concept, in one or several trials.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct PreventionCounts {
-    /// Presses of the human.
+    /// Number of human presses.
     pub presses: u64,
-    /// Signals, or presses proposed.
+    /// Number of signals, or of proposed presses.
     pub signals: u64,
-    /// Belief related errors.
+    /// Number of belief related errors.
     pub related: u64,
-    /// Of those, prevented.
+    /// Number of belief related errors that were prevented.
     pub prevented: u64,
-    /// Presses of the human outside of episodes.
+    /// Number of human presses outside of false belief episodes.
     pub outside: u64,
-    /// Of those, with a false signal before them.
+    /// Number of human presses outside of episodes with a false positive signal before them.
     pub false_presses: u64,
-    /// Signals on an aspect that was believed right while another one had an episode.
+    /// Number of signals about a correctly believed aspect during an episode of another aspect.
     pub false_inside: u64,
-    /// Signals on a wrong but harmless belief.
+    /// Number of signals about a false but harmless belief.
     pub harmless: u64,
 }
 
 impl PreventionCounts {
-    /// The same of both together.
+    /// Sum of two counts.
     pub fn plus(self, other: &PreventionCounts) -> PreventionCounts {
         PreventionCounts {
             presses: self.presses + other.presses,
@@ -92,7 +92,7 @@ impl PreventionCounts {
         }
     }
 
-    /// False positive rate, true positive rate, signals per 100 presses of the human; none without what they are rates of.
+    /// False positive rate, true positive rate, and signals per 100 human presses; `None` if a denominator is 0.
     pub fn point(&self) -> Option<[f64; 3]> {
         if self.outside == 0 || self.related == 0 {
             return None;
@@ -105,11 +105,13 @@ impl PreventionCounts {
 
 impl TrialTruth {
     fn open_at(&self, time: SessionTime) -> impl Iterator<Item = &FalseBeliefTruth> {
-        self.spells.iter().filter(move |spell| spell.began <= time && spell.ended.is_none_or(|end| time < end))
+        self.spells
+            .iter()
+            .filter(move |false_belief| false_belief.began <= time && false_belief.ended.is_none_or(|end| time < end))
     }
 
     fn is_in_episode(&self, time: SessionTime) -> bool {
-        self.open_at(time).any(|spell| spell.harmful)
+        self.open_at(time).any(|false_belief| false_belief.harmful)
     }
 
     fn empty_count(&self, signals: u64) -> PreventionCounts {
@@ -122,28 +124,31 @@ impl TrialTruth {
         }
     }
 
-    /// What these signals would have done.
+    /// Counts of a concept that sends these signals.
     pub fn count_signals(&self, sent: &[ConceptSignal]) -> PreventionCounts {
         let mut count = self.empty_count(sent.len() as u64);
         let mut prevented: Vec<Vec<bool>> =
             self.sequences.iter().map(|sequence| vec![false; sequence.errors.len()]).collect();
         let mut is_false = vec![false; self.presses.len()];
         for signal in sent {
-            let mut wrong = self.open_at(signal.time).filter(|spell| signal.aspects.contains(&spell.aspect)).peekable();
+            let mut wrong = self
+                .open_at(signal.time)
+                .filter(|false_belief| signal.aspects.contains(&false_belief.aspect))
+                .peekable();
             if wrong.peek().is_none() {
                 match self.presses.get(signal.press) {
                     Some(press) if self.is_in_episode(press.time) => count.false_inside += 1,
                     Some(_) => is_false[signal.press] = true,
-                    // Nothing comes after it.
+                    // A signal after the last press precedes no press.
                     None => {}
                 }
                 continue;
             }
             let mut is_harmful = false;
-            for spell in wrong.filter(|spell| spell.harmful) {
+            for false_belief in wrong.filter(|false_belief| false_belief.harmful) {
                 is_harmful = true;
                 for (sequence, prevented) in self.sequences.iter().zip(&mut prevented) {
-                    sequence.prevent(spell, signal.time, prevented);
+                    sequence.prevent(false_belief, signal.time, prevented);
                 }
             }
             count.harmless += u64::from(!is_harmful);
@@ -153,7 +158,7 @@ impl TrialTruth {
         count
     }
 
-    /// What proposals of `k` presses after every error that is not itself spared would have done.
+    /// Counts of a concept that proposes `k` presses after every error that no proposal prevents.
     pub fn count_proposals(&self, k: usize) -> PreventionCounts {
         let mut count = self.empty_count(0);
         let mut spared = 0;
@@ -172,12 +177,12 @@ impl TrialTruth {
 }
 
 impl SequenceTruth {
-    /// Marks the errors that a signal about this spell's aspect prevents: those after it, if the sequence is about the aspect
-    /// and the spell lasts into it.
-    fn prevent(&self, spell: &FalseBeliefTruth, sent: SessionTime, prevented: &mut [bool]) {
+    /// Marks the errors that a signal about a false belief's aspect prevents: errors after the signal, if their sequence is about
+    /// the aspect and the false belief lasts into the sequence.
+    fn prevent(&self, false_belief: &FalseBeliefTruth, sent: SessionTime, prevented: &mut [bool]) {
         let (Some(&first), Some(&last)) = (self.errors.first(), self.errors.last()) else { return };
-        let lasts = spell.began <= last && spell.ended.is_none_or(|end| end > first);
-        if !lasts || !self.aspects.contains(&spell.aspect) {
+        let lasts = false_belief.began <= last && false_belief.ended.is_none_or(|end| end > first);
+        if !lasts || !self.aspects.contains(&false_belief.aspect) {
             return;
         }
         for (&error, prevented) in self.errors.iter().zip(prevented) {

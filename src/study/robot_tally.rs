@@ -1,4 +1,4 @@
-//! What the robot did in a trial beside its presses, and what the wizard did with it by hand.
+//! Counts robot events besides presses, and the wizard's interventions in the robot, during the replay of a trial.
 
 use std::collections::BTreeMap;
 
@@ -12,51 +12,51 @@ use crate::session::Event;
 use crate::session::event::EndReason;
 use crate::session::settings::ArmKind;
 
-/// What is counted of the robot while a trial is on, pauses included.
+/// Robot statistics of a trial from start to end, pauses included.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RobotSummary {
-    /// Of an arm in the physics; a timed one has nothing to feel with.
+    /// Contact statistics of a simulated physical arm; `None` for a timed arm, which has no contacts.
     pub arm: Option<ArmSummary>,
-    /// The wizard stopped it.
+    /// Number of emergency stops by the wizard.
     pub emergency_stops: u64,
-    /// Presses that it gave up, by reason; what is not there did not occur.
+    /// Number of aborted robot presses by reason; reasons that did not occur are absent.
     pub given_up: BTreeMap<AbortReason, u64>,
-    /// What the wizard did by hand: held it, skipped a press, chose one, put right what is in the kitchen.
+    /// Numbers of the wizard's interventions: robot held, press skipped, press chosen, location corrected.
     pub held: u64,
     pub skipped: u64,
     pub driven: u64,
     pub corrected: u64,
 }
 
-/// What an arm in the physics felt.
+/// Safety and contact statistics of a simulated physical arm.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ArmSummary {
-    /// Times that it stopped because it felt somebody, and because a joint did not follow.
+    /// Number of protective stops after a contact, and number of stops because a joint did not follow.
     pub protective_stops: u64,
     pub faults: u64,
-    /// Times that somebody touched it, and the largest force of these in newtons; none without any.
+    /// Number of contacts with a person, and largest contact force in newtons (`None` without contact).
     pub contacts: u64,
     pub peak_force_n: Option<f64>,
-    /// Seconds on the trial's clock that it was slowed by a hand near it, and that it waited for one.
+    /// Seconds at reduced speed because of a hand nearby, and seconds of waiting for a hand, on the trial clock.
     pub reduced_s: f64,
     pub safeguard_s: f64,
 }
 
 impl ArmSummary {
-    /// Somebody was felt with this force in newtons, if it was told.
+    /// Records a contact with this force in newtons, if the log has it.
     fn felt(&mut self, force_n: Option<f64>) {
         self.peak_force_n = self.peak_force_n.into_iter().chain(force_n).reduce(f64::max);
     }
 }
 
 impl RobotSummary {
-    /// Presses given up for a reason; none where this arm cannot have it.
+    /// Number of presses aborted for a reason; `None` if the reason cannot occur with this kind of arm.
     pub fn given_up(&self, reason: AbortReason) -> Option<u64> {
         let count = self.given_up.get(&reason).copied();
         (self.arm.is_some() || !reason.is_of_physics()).then(|| count.unwrap_or(0))
     }
 
-    /// Adds what was counted in another trial.
+    /// Adds the statistics of another trial.
     pub fn add(&mut self, other: &RobotSummary) {
         self.emergency_stops += other.emergency_stops;
         for (&reason, count) in &other.given_up {
@@ -78,14 +78,14 @@ impl RobotSummary {
     }
 }
 
-/// Counts along a recording.
+/// Counts robot events during the replay of a recording.
 #[derive(Clone, Debug)]
 pub struct RobotTally {
     figures: RobotSummary,
-    /// Why the trial ended, once it did.
+    /// Reason of the trial's end; `None` before.
     pub ended: Option<EndReason>,
     mode: SafetyMode,
-    /// Until when the seconds are counted.
+    /// Trial clock up to which the seconds of the safety modes are counted.
     clock: SessionTime,
 }
 
@@ -96,7 +96,7 @@ impl RobotTally {
         RobotTally { figures, ended: None, mode: SafetyMode::Normal, clock: SessionTime::ZERO }
     }
 
-    /// Takes note of an event at this time of the trial's clock; `was_on`: the trial had begun before it, and was not over.
+    /// Records an event at this time of the trial clock; `was_on`: the trial had started and not ended before the event.
     pub fn note(&mut self, event: &Event, clock: SessionTime, was_on: bool) {
         self.pass_time(clock);
         if let Event::RobotSafety { mode, .. } = event {
@@ -107,7 +107,7 @@ impl RobotTally {
         }
     }
 
-    /// Seconds pass in the mode that held until now.
+    /// Adds the time since the last event to the current safety mode.
     fn pass_time(&mut self, clock: SessionTime) {
         let seconds = clock.secs_since(self.clock);
         self.clock = clock;

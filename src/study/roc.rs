@@ -1,9 +1,9 @@
-//! How much communication concepts would have prevented in unassisted trials, and at what price: receiver operating
-//! characteristics and comparison at equal interruptions (paper, "Concept comparisons").
+//! Receiver operating characteristics of communication concepts in unassisted trials, and their comparison at equal numbers of
+//! signals (paper, "Concept comparisons").
 //!
-//! The unit is the press of the human. True positive rate: belief related errors prevented, of all. False positive rate: that of
-//! the presses outside of episodes with at least one false signal before them. What is prevented and what is false says
-//! [`super::prevention`].
+//! The unit is the human press. True positive rate: share of belief related errors that are prevented. False positive rate: share
+//! of presses outside of episodes with at least one false positive signal before them. [`super::prevention`] defines prevented
+//! errors and false positive signals.
 
 use rand::RngExt;
 use serde::Serialize;
@@ -12,20 +12,20 @@ use super::prevention::PreventionCounts;
 use crate::base::rng::stream;
 use crate::communication::concept::ConceptName;
 
-/// The least cost of communication of the paper. Benefits below are estimated less carefully.
+/// Smallest cost of communication in the paper, in presses. The planner is less accurate for smaller benefits.
 pub const LEAST_COST: f64 = 0.5;
 
-/// Signals per 100 presses of the human at which concepts are compared.
+/// Signals per 100 human presses at which concepts are compared.
 pub const EQUAL_SIGNALS: [f64; 4] = [2.0, 4.0, 6.0, 8.0];
-/// How often participants are drawn anew for a band.
+/// Number of bootstrap resamples over participants.
 const RESAMPLES: u32 = 1000;
-/// A band is told at so many places of the common range.
+/// Number of points of a confidence band over the common range.
 const BAND_STEPS: usize = 40;
-/// The share that a band covers.
+/// Confidence level of bootstrap intervals and bands.
 const COVERED: f64 = 0.95;
 
-/// The parameter of a concept that is swept: cost of communication, threshold, presses proposed. Beyond the paper's 0.5 to 2.4
-/// and 0.4 to 0.99 there are some more values, so that the concepts can be compared where they say equally much.
+/// Swept values of a concept's parameter: cost of communication, threshold, or number of proposed presses. They extend beyond the
+/// paper's 0.5 to 2.4 and 0.4 to 0.99, so that all concepts cover the compared numbers of signals.
 pub fn parameters(concept: ConceptName) -> Vec<f64> {
     match concept {
         ConceptName::TomCom => {
@@ -44,7 +44,7 @@ pub fn parameters(concept: ConceptName) -> Vec<f64> {
 /// The concepts that are compared.
 pub const CONCEPTS: [ConceptName; 3] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev];
 
-/// What a concept with one value of its parameter would have done in a trial.
+/// Prevention counts of a concept with one parameter value in a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweptTrial {
     pub concept: ConceptName,
@@ -63,7 +63,7 @@ pub struct RocPoint {
     pub count: PreventionCounts,
 }
 
-/// A value with the interval that the bootstrap over participants gives.
+/// A value with its bootstrap interval over participants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct BootstrapInterval {
     pub value: Option<f64>,
@@ -75,23 +75,23 @@ pub struct BootstrapInterval {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Roc {
     pub concept: ConceptName,
-    /// The mean true positive rate over the false positive rates that all concepts reach: partial area by width of the range.
+    /// Mean true positive rate over the false positive rates that all concepts reach: partial area divided by the range's width.
     pub auc: Option<f64>,
     pub auc_low: Option<f64>,
     pub auc_high: Option<f64>,
     pub points: Vec<RocPoint>,
-    /// False positive rate, and the band of the true positive rate there.
+    /// Confidence band: false positive rate, lower and upper true positive rate.
     pub band: Vec<[f64; 3]>,
     /// True positive rates at [`EQUAL_SIGNALS`].
     pub at_equal_signals: Vec<BootstrapInterval>,
-    /// By how much that of the first concept is higher.
+    /// Advantage of the first concept's true positive rate at [`EQUAL_SIGNALS`] over this concept's.
     pub behind_first: Vec<BootstrapInterval>,
 }
 
-/// The comparison of concepts.
+/// Comparison of the concepts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ConceptComparison {
-    /// Participants, and their unassisted trials.
+    /// Number of participants, and number of their unassisted trials.
     pub participants: u64,
     pub trials: u64,
     /// The largest false positive rate that all concepts reach.
@@ -99,13 +99,13 @@ pub struct ConceptComparison {
     pub concepts: Vec<Roc>,
 }
 
-/// One way of putting participants together: curves of each concept.
+/// Curves of all concepts for one sample of participants.
 struct Curves {
-    /// False positive rate against true positive rate, signals against true positive rate.
+    /// For each concept: true positive rate against false positive rate, and against signals per 100 human presses.
     of: Vec<[Vec<(f64, f64)>; 2]>,
 }
 
-/// The sum over participants of what each concept did, each counted so often.
+/// Sum of each concept's counts over participants; each participant is weighted by its number of draws in `times`.
 fn summed(participants: &[Vec<SweptTrial>], times: &[u32]) -> Vec<SweptTrial> {
     let Some(first) = participants.first() else { return Vec::new() };
     let mut sum: Vec<SweptTrial> =
@@ -124,7 +124,7 @@ impl Curves {
     fn from_counts(sum: &[SweptTrial]) -> Curves {
         let curve = |concept: ConceptName, x: usize| {
             let points = sum.iter().filter(|one| one.concept == concept).filter_map(|one| one.count.point());
-            // Saying nothing is always possible.
+            // A concept that sends no signal has the point (0, 0).
             let mut curve: Vec<(f64, f64)> = points.map(|point| (point[x], point[1])).chain([(0.0, 0.0)]).collect();
             curve.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
             curve
@@ -132,7 +132,7 @@ impl Curves {
         Curves { of: CONCEPTS.iter().map(|&concept| [curve(concept, 0), curve(concept, 2)]).collect() }
     }
 
-    /// The largest false positive rate that all reach; none if one of them was never tried.
+    /// The largest false positive rate that all concepts reach; `None` if a concept has no points.
     fn common(&self) -> Option<f64> {
         let reach = |curve: &Vec<(f64, f64)>| curve.last().map(|last| last.0).filter(|_| curve.len() > 1);
         let reached: Option<Vec<f64>> = self.of.iter().map(|[curve, _]| reach(curve)).collect();
@@ -144,19 +144,19 @@ impl Curves {
     }
 }
 
-/// The height of a curve at `x`, by straight lines between its points; none outside of them.
+/// Height of a curve at `x` by linear interpolation; `None` outside of its range.
 fn height(curve: &[(f64, f64)], x: f64) -> Option<f64> {
     let after = curve.iter().position(|point| point.0 >= x)?;
     let (x1, y1) = curve[after];
     if x1 == x {
-        // Of several points above each other the highest.
+        // Of several points with the same x, the highest counts.
         return curve[after..].iter().take_while(|point| point.0 == x).last().map(|point| point.1);
     }
     let (x0, y0) = *curve.get(after.checked_sub(1)?)?;
     Some(y0 + (y1 - y0) * (x - x0) / (x1 - x0))
 }
 
-/// The mean height of a curve from 0 to `to`.
+/// Mean height of a curve from 0 to `to`.
 fn area(curve: &[(f64, f64)], to: f64) -> Option<f64> {
     let end = height(curve, to)?;
     let mut points: Vec<(f64, f64)> = curve.iter().copied().filter(|point| point.0 < to).collect();
@@ -165,8 +165,8 @@ fn area(curve: &[(f64, f64)], to: f64) -> Option<f64> {
     (to > 0.0).then(|| area / to)
 }
 
-/// Compares the concepts; of each participant what every concept with every value of its parameter did in its trials, in the
-/// same order for all. The bootstrap (Efron 1979; percentiles) draws participants, and follows from `seed`.
+/// Compares the concepts. Each participant has the sums of its trials for every concept and parameter value, in the same order. The
+/// percentile bootstrap (Efron 1979) resamples participants; its random stream is seeded by `seed`.
 pub fn compare(participants: &[Vec<SweptTrial>], trials: u64, seed: u64) -> ConceptComparison {
     let once = vec![1; participants.len()];
     let sum = summed(participants, &once);
@@ -183,7 +183,7 @@ pub fn compare(participants: &[Vec<SweptTrial>], trials: u64, seed: u64) -> Conc
             let [fpr, tpr, signals_per_100_actions] = one.count.point()?;
             Some(RocPoint { parameter: one.parameter, fpr, tpr, signals_per_100_actions, count: one.count })
         };
-        // Of those who are drawn over the range that they reach: none of theirs is as wide as that of all, in half of the draws.
+        // Each resample is integrated over its own common range, because many do not reach the full sample's range.
         let area = banded(&curves, &resampled, |curves| curves.area(index, curves.common()?));
         let at = |signals: f64| move |curves: &Curves| height(&curves.of[index][1], signals);
         let behind = |signals: f64| {
@@ -208,7 +208,7 @@ pub fn compare(participants: &[Vec<SweptTrial>], trials: u64, seed: u64) -> Conc
     }
 }
 
-/// How often each participant is drawn, again and again; never, of less than two.
+/// Number of draws of each participant in each bootstrap resample; no resamples of fewer than two participants.
 fn resamples(participants: usize, seed: u64) -> impl Iterator<Item = Vec<u32>> {
     let mut random = stream(seed, "bootstrap", 0);
     let number = if participants < 2 { 0 } else { RESAMPLES };
@@ -221,11 +221,11 @@ fn resamples(participants: usize, seed: u64) -> impl Iterator<Item = Vec<u32>> {
     })
 }
 
-/// A value of the curves, with the middle of what it is on those that were drawn.
+/// A statistic of the curves with its percentile interval over the resamples.
 fn banded(curves: &Curves, resampled: &[Curves], of: impl Fn(&Curves) -> Option<f64>) -> BootstrapInterval {
     let value = of(curves);
     let mut drawn: Vec<f64> = resampled.iter().filter_map(&of).collect();
-    // Where many of them do not reach, the others say nothing about the rest.
+    // Without a value in half of the resamples, the rest would give a biased interval.
     if value.is_none() || drawn.len() * 2 < resampled.len() || drawn.is_empty() {
         return BootstrapInterval { value, low: None, high: None };
     }

@@ -1,7 +1,7 @@
-//! Statistics of small samples, as textbooks have them: what a study of some tens of participants is evaluated with.
+//! Textbook statistics for small samples: a study with some tens of participants.
 //!
-//! Distributions are those of `statrs`; all else is short enough to be read. `tests/outside/study.py` holds every
-//! figure against SciPy, pingouin and scikit-learn.
+//! Distributions come from the crate `statrs`. `tests/outside/study.py` compares every result with SciPy, pingouin and
+//! scikit-learn.
 
 use rand::seq::SliceRandom;
 use serde::Serialize;
@@ -9,7 +9,7 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 use crate::base::rng::stream;
 
-/// An F test.
+/// Result of an F test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FTest {
     pub f: f64,
@@ -20,7 +20,7 @@ pub struct FTest {
 }
 
 impl FTest {
-    /// Of sums of squares; none without degrees of freedom or without any variance.
+    /// F test from sums of squares; `None` without degrees of freedom or without variance.
     fn from_sums_of_squares(effect: f64, df_effect: f64, residual: f64, df_residual: f64) -> Option<FTest> {
         if df_effect <= 0.0 || df_residual <= 0.0 || residual <= 0.0 {
             return None;
@@ -31,7 +31,7 @@ impl FTest {
     }
 }
 
-/// A mixed analysis of variance with two measurements a person (within) and any number of groups (between).
+/// Mixed analysis of variance with two measurements per person (within) and any number of groups (between).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MixedAnova {
     pub within: Option<FTest>,
@@ -39,8 +39,8 @@ pub struct MixedAnova {
     pub interaction: Option<FTest>,
 }
 
-/// The mixed analysis of variance of `rows`: the group of each person, and its two measurements. The sums of squares of the
-/// factor within are those over all persons, as in pingouin's `mixed_anova`.
+/// Mixed analysis of variance; each row holds a person's group and its two measurements. The within factor's sums of squares are
+/// those over all persons, as in pingouin's `mixed_anova`.
 pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
     let groups = rows.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
     let in_group = |group: usize| rows.iter().filter(move |(other, _)| *other == group).map(|(_, values)| *values);
@@ -67,7 +67,7 @@ pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
     }
 }
 
-/// A correlation with its two-sided p.
+/// A correlation coefficient with its two-sided p value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Correlation {
     pub r: f64,
@@ -75,7 +75,7 @@ pub struct Correlation {
     pub n: usize,
 }
 
-/// Pearson's correlation; none of fewer than three pairs, or without variance.
+/// Pearson's correlation; `None` with fewer than three pairs, or without variance.
 pub fn pearson(x: &[f64], y: &[f64]) -> Option<Correlation> {
     let n = x.len().min(y.len());
     if n < 3 {
@@ -94,16 +94,16 @@ pub fn pearson(x: &[f64], y: &[f64]) -> Option<Correlation> {
     Some(Correlation { r, p, n })
 }
 
-/// More ways to deal persons out to two groups than this are sampled.
-const MOST_WAYS: f64 = 200_000.0;
-/// So many, then.
-const SAMPLED_WAYS: u32 = 100_000;
-/// Differences within this share of their size count as equal.
-const EQUAL: f64 = 1e-12;
+/// Largest number of permutations that are enumerated; beyond it they are sampled.
+const MAX_ENUMERATED: f64 = 200_000.0;
+/// Number of sampled permutations.
+const SAMPLED_PERMUTATIONS: u32 = 100_000;
+/// Relative tolerance within which differences count as equal.
+const EQUALITY_TOLERANCE: f64 = 1e-12;
 
-/// The two-sided permutation test of the difference of means of two groups (Fisher 1935): the share of all ways to deal the
-/// values out that differ at least as much. Exact up to 200,000 ways, else by 100,000 random ones (with the one that
-/// happened), which follow from `seed`. None of an empty group.
+/// Two-sided permutation test of the difference between two groups' means (Fisher 1935): the share of assignments to groups with
+/// at least the observed difference. Exact up to 200,000 assignments, else from 100,000 random ones and the observed one, with a
+/// random stream seeded by `seed`. `None` with an empty group.
 pub fn permutation_p(a: &[f64], b: &[f64], seed: u64) -> Option<f64> {
     if a.is_empty() || b.is_empty() {
         return None;
@@ -113,8 +113,9 @@ pub fn permutation_p(a: &[f64], b: &[f64], seed: u64) -> Option<f64> {
     let (m, n) = (a.len(), all.len());
     let difference = |sum: f64| sum / m as f64 - (total - sum) / (n - m) as f64;
     let observed = difference(a.iter().sum()).abs();
-    let is_extreme = |sum: f64| difference(sum).abs() >= observed - EQUAL * observed.max(f64::MIN_POSITIVE);
-    if ways(n, m) <= MOST_WAYS {
+    let is_extreme =
+        |sum: f64| difference(sum).abs() >= observed - EQUALITY_TOLERANCE * observed.max(f64::MIN_POSITIVE);
+    if binomial(n, m) <= MAX_ENUMERATED {
         let (mut extreme, mut count) = (0u64, 0u64);
         for_each_choice(n, m, |chosen| {
             count += 1;
@@ -124,19 +125,19 @@ pub fn permutation_p(a: &[f64], b: &[f64], seed: u64) -> Option<f64> {
     }
     let mut random = stream(seed, "permutation", 0);
     let mut extreme = 1u32;
-    for _ in 0..SAMPLED_WAYS {
+    for _ in 0..SAMPLED_PERMUTATIONS {
         all.shuffle(&mut random);
         extreme += u32::from(is_extreme(all[..m].iter().sum()));
     }
-    Some(f64::from(extreme) / f64::from(SAMPLED_WAYS + 1))
+    Some(f64::from(extreme) / f64::from(SAMPLED_PERMUTATIONS + 1))
 }
 
-/// n choose m.
-fn ways(n: usize, m: usize) -> f64 {
+/// Binomial coefficient: n choose m.
+fn binomial(n: usize, m: usize) -> f64 {
     (0..m).map(|index| (n - index) as f64 / (index + 1) as f64).product()
 }
 
-/// Calls `visit` with every choice of `m` of `n` indices, in lexical order.
+/// Calls `visit` with every subset of `m` of `n` indices, in lexical order.
 fn for_each_choice(n: usize, m: usize, mut visit: impl FnMut(&[usize])) {
     let mut chosen: Vec<usize> = (0..m).collect();
     loop {
@@ -155,18 +156,18 @@ pub struct Interval {
     pub estimate: f64,
     pub low: f64,
     pub high: f64,
-    /// What the interval really covers, where the values allow only some levels.
+    /// Actual coverage of the interval; it differs from the requested level where only some levels are possible.
     pub level: f64,
 }
 
-/// The Hodges-Lehmann estimate of the shift from `b` to `a`, the median of all differences, with the interval that belongs
-/// to the Mann-Whitney test (exact distribution of U without ties; Hollander and Wolfe 1999, section 4.2). None of an empty group.
+/// Hodges-Lehmann estimate of the shift from `b` to `a` (median of all differences) with the Mann-Whitney test's confidence
+/// interval (exact distribution of U without ties; Hollander and Wolfe 1999, section 4.2). `None` with an empty group.
 pub fn hodges_lehmann(a: &[f64], b: &[f64], level: f64) -> Option<Interval> {
     let mut differences: Vec<f64> = a.iter().flat_map(|a| b.iter().map(move |b| a - b)).collect();
     differences.sort_by(f64::total_cmp);
     let estimate = crate::measures::median(differences.clone())?;
     let below = mann_whitney_cdf(a.len(), b.len());
-    // The largest number of differences that may be left out on each side.
+    // Number of differences to omit on each side of the interval.
     let left_out = below.iter().take_while(|p| **p <= (1.0 - level) / 2.0).count();
     let covered = if left_out == 0 { 1.0 } else { 1.0 - 2.0 * below[left_out - 1] };
     let last = differences.len() - 1;
@@ -177,7 +178,7 @@ pub fn hodges_lehmann(a: &[f64], b: &[f64], level: f64) -> Option<Interval> {
 
 /// P(U <= u) for u = 0, 1, …, m n: U of two samples of these sizes from the same distribution, without ties.
 fn mann_whitney_cdf(m: usize, n: usize) -> Vec<f64> {
-    // counts[k][u]: the ways in which k values of the first sample among those placed so far come to U = u.
+    // counts[k][u]: number of ways in which k values of the first sample among those placed so far give U = u.
     let top = m * n;
     let mut counts = vec![vec![0.0; top + 1]; m + 1];
     counts[0][0] = 1.0;
@@ -209,7 +210,7 @@ fn mann_whitney_cdf(m: usize, n: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Hedges' g of two groups: the difference of means in pooled standard deviations, corrected for small samples.
+/// Hedges' g of two groups: difference of the means in pooled standard deviations, with the small-sample correction.
 pub fn hedges_g(a: &[f64], b: &[f64]) -> Option<f64> {
     let df = (a.len() + b.len()) as f64 - 2.0;
     if a.is_empty() || b.is_empty() || df <= 0.0 {
@@ -221,7 +222,7 @@ pub fn hedges_g(a: &[f64], b: &[f64]) -> Option<f64> {
     (pooled > 0.0).then(|| (ma - mb) / pooled * (1.0 - 3.0 / (4.0 * (df + 2.0) - 9.0)))
 }
 
-/// The mean with its interval by Student's t.
+/// Mean with its confidence interval by Student's t.
 pub fn mean_interval(values: &[f64], level: f64) -> Option<Interval> {
     let n = values.len() as f64;
     if values.len() < 2 {
@@ -233,7 +234,7 @@ pub fn mean_interval(values: &[f64], level: f64) -> Option<Interval> {
     Some(Interval { estimate, low: estimate - reach, high: estimate + reach, level })
 }
 
-/// A share with its Wilson score interval (Wilson 1927). None of nothing.
+/// Proportion with its Wilson score interval (Wilson 1927); `None` if `whole` is 0.
 pub fn share_interval(part: u64, whole: u64, level: f64) -> Option<Interval> {
     if whole == 0 {
         return None;
@@ -245,7 +246,7 @@ pub fn share_interval(part: u64, whole: u64, level: f64) -> Option<Interval> {
     Some(Interval { estimate: p, low: (centre - reach) / scale, high: (centre + reach) / scale, level })
 }
 
-/// The mean; 0 of nothing.
+/// Mean of the values; 0 without values.
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
     if count == 0 { 0.0 } else { sum / f64::from(count) }

@@ -1,25 +1,25 @@
-//! Charts as SVG: axes with round ticks, points, lines, bands, bars. Colours are classes, which the page's style sheet fills,
-//! so that they follow dark and light, screen and paper.
+//! SVG charts: axes with round ticks, points, lines, bands, bars. CSS classes in the page's style sheet set the colours for light
+//! and dark screens and for print.
 
 use std::fmt::Write;
 
 use maud::{Markup, PreEscaped, html};
 
-/// Room beside the plot, in pixels: left, right, top, bottom.
+/// Margins around the plot area, in pixels: left, right, top, bottom.
 const MARGIN: [f64; 4] = [54.0, 14.0, 14.0, 44.0];
 
-/// An axis.
+/// Axis of a chart.
 #[derive(Clone, Debug)]
 pub struct PlotAxis {
     pub label: &'static str,
     pub from: f64,
     pub to: f64,
-    /// Where there are marks, and what stands beside them.
+    /// Ticks: position and label.
     pub ticks: Vec<(f64, String)>,
 }
 
 impl PlotAxis {
-    /// An axis over these values with round ticks, from 0 if they are not far from it.
+    /// Axis over these values and 0, with round ticks.
     pub fn over(label: &'static str, values: impl Iterator<Item = f64>) -> PlotAxis {
         let (low, high) = values
             .filter(|value| value.is_finite())
@@ -28,7 +28,7 @@ impl PlotAxis {
         PlotAxis::between(label, low, if high > low { high } else { low + 1.0 })
     }
 
-    /// An axis that covers this range, widened to round ticks.
+    /// Axis over this range, extended to round ticks.
     pub fn between(label: &'static str, low: f64, high: f64) -> PlotAxis {
         let step = round_step((high - low) / 5.0);
         let (first, last) = ((low / step).floor() as i64, (high / step - 1e-9).ceil() as i64);
@@ -37,21 +37,21 @@ impl PlotAxis {
         PlotAxis { label, from: first as f64 * step, to: last as f64 * step, ticks: (first..=last).map(tick).collect() }
     }
 
-    /// An axis with a place for each of these names; the first is at 0.
+    /// Categorical axis; the first category is at 0, the next at 1.
     pub fn named(names: &[String]) -> PlotAxis {
         let ticks = names.iter().enumerate().map(|(index, name)| (index as f64, name.clone())).collect();
         PlotAxis { label: "", from: -0.5, to: names.len() as f64 - 0.5, ticks }
     }
 }
 
-/// The smallest of 1, 2, 2.5 and 5 times a power of ten that is not below this.
+/// The smallest of 1, 2, 2.5 and 5 times a power of ten that is at least `step`.
 fn round_step(step: f64) -> f64 {
     let power = 10f64.powf(step.log10().floor());
     let factor = [1.0, 2.0, 2.5, 5.0].into_iter().find(|factor| factor * power >= step * (1.0 - 1e-9));
     factor.unwrap_or(10.0) * power
 }
 
-/// A chart in the making.
+/// Builder of a chart.
 #[derive(Clone, Debug)]
 pub struct SvgChart {
     width: f64,
@@ -62,7 +62,7 @@ pub struct SvgChart {
 }
 
 impl SvgChart {
-    /// A chart of this size in pixels, with axes and grid.
+    /// Creates a chart of this size in pixels, with axes and grid.
     pub fn new(width: f64, height: f64, x: PlotAxis, y: PlotAxis) -> SvgChart {
         let mut chart = SvgChart { width, height, x, y, body: String::new() };
         chart.frame();
@@ -111,19 +111,19 @@ impl SvgChart {
         self.add(html! { text class="label middle" transform=(turned) { (self.y.label) } });
     }
 
-    /// A point with what it stands for.
+    /// Adds a point with a tooltip.
     pub fn point(&mut self, class: &str, x: f64, y: f64, title: &str) {
         let (x, y) = (tenths(self.px(x)), tenths(self.py(y)));
         self.add(html! { circle class=(class) cx=(x) cy=(y) r="4" { title { (title) } } });
     }
 
-    /// A line through points.
+    /// Adds a line through points.
     pub fn line(&mut self, class: &str, points: &[(f64, f64)]) {
         let path = self.path(points);
         self.add(html! { path class={ "line " (class) } d=(path) {} });
     }
 
-    /// The area between two heights at each x.
+    /// Adds a band: each element holds x, lower height and upper height.
     pub fn band(&mut self, class: &str, band: &[[f64; 3]]) {
         if band.is_empty() {
             return;
@@ -134,14 +134,14 @@ impl SvgChart {
         self.add(html! { path class={ "band " (class) } d={ (path) "Z" } {} });
     }
 
-    /// A bar from 0 to y, between two places on the x axis.
+    /// Adds a bar from 0 to y, between two positions on the x axis.
     pub fn bar(&mut self, class: &str, [from, to]: [f64; 2], y: f64, title: &str) {
         let (x, right, base, top) = (self.px(from), self.px(to), self.py(0.0), self.py(y));
         let [x, y, width, height] = [x, top, right - x, base - top].map(tenths);
         self.add(html! { rect class=(class) x=(x) y=(y) width=(width) height=(height) { title { (title) } } });
     }
 
-    /// Words beside a point, `right` of it or left.
+    /// Adds a label right (`right`) or left of a point.
     pub fn words(&mut self, class: &str, x: f64, y: f64, right: bool, text: &str) {
         let (x, y) = (self.px(x) + if right { 9.0 } else { -9.0 }, self.py(y) + 4.0);
         let side = if right { "start" } else { "end" };
@@ -156,19 +156,19 @@ impl SvgChart {
         path
     }
 
-    /// The picture; `title` is for those who do not see it.
+    /// The finished chart; `title` is its description for screen readers.
     pub fn finish(self, title: &str) -> Markup {
         let size = format!("0 0 {:.0} {:.0}", self.width, self.height);
         html! { svg viewBox=(size) role="img" aria-label=(title) { "\n" (PreEscaped(self.body)) } "\n" }
     }
 }
 
-/// A place in the picture, in pixels.
+/// A pixel coordinate with one decimal.
 fn tenths(pixels: f64) -> String {
     format!("{pixels:.1}")
 }
 
-/// Numbers with a real minus sign.
+/// Replaces hyphens in numbers by minus signs.
 pub fn minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }

@@ -1,4 +1,4 @@
-//! What the analysis keeps of a trial: a few numbers, so that memory grows by some lines a trial and not by recordings.
+//! Statistics of one trial for the analysis; recordings themselves are not kept in memory.
 
 use serde::Serialize;
 
@@ -10,73 +10,73 @@ use crate::measures::wizard::WizardMeasures;
 use crate::session::event::EndReason;
 use crate::session::settings::{ArmKind, Condition, ParticipantKind};
 
-/// One trial as the analysis sees it.
+/// Statistics of one trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
-    /// The folder's path below the folder that was named.
+    /// Path of the recording's folder, relative to the folder given by the user.
     pub recording: String,
-    /// The participant's code; where several seeds have simulated participants of the same codes, with the seed.
+    /// Participant code; prefixed by the seed if several seeds have simulated participants with the same codes.
     pub participant: String,
     pub seed: u64,
     pub kind: ParticipantKind,
-    /// When it began, by the wall clock; none of simulated ones.
+    /// Start by the wall clock; `None` for simulated trials.
     pub started: Option<String>,
-    /// The starting group of a plan, and the number of the trial in it, 1 the first.
+    /// Starting group in the study plan, and number of the trial in the plan, from 1.
     pub group: Option<String>,
     pub period: Option<u32>,
-    /// It has a place in a plan, which says its period.
+    /// Whether the trial belongs to a study plan, which then defines its period.
     pub is_planned: bool,
     pub condition: Condition,
-    /// Why it is left out, if it is.
+    /// Reason for excluding the trial; `None` if it counts.
     pub left_out: Option<String>,
-    /// How it ended; none of one that was cut.
+    /// Reason of the trial's end; `None` if the recording is incomplete.
     pub ended: Option<EndReason>,
     pub arm: ArmKind,
     pub robot: RobotSummary,
     pub human_presses: u64,
     pub robot_presses: u64,
-    /// Errors of the human, races left out.
+    /// Number of human errors, without races.
     pub errors: u64,
-    /// Presses that the robot may have overtaken.
+    /// Number of human presses that the robot may have overtaken (races).
     pub races: u64,
-    /// None where nobody can say what the human believed.
+    /// Statistics of false beliefs; `None` if the human's beliefs are unknown.
     pub beliefs: Option<BeliefErrors>,
-    /// Orders served, and the median of the seconds from one to the next, the first from the trial's start.
+    /// Number of served orders, and median seconds from one served order to the next, the first from the trial's start.
     pub orders: u64,
     pub order_s: Option<f64>,
-    /// The median of the presses of both agents for an order.
+    /// Median presses of both agents per order.
     pub presses_per_order: Option<f64>,
-    /// The median of the seconds from one press of the human to the next.
+    /// Median seconds between successive human presses.
     pub press_s: Option<f64>,
-    /// Signals that were shown.
+    /// Number of signals shown.
     pub signals: u64,
-    /// The trial's length by its own clock.
+    /// Length of the trial without pauses, in seconds.
     pub seconds: f64,
     pub answers: Vec<QuestionnaireAnswer>,
-    /// Of a wizard.
+    /// Measures of the wizard; `None` in other conditions.
     pub wizard: Option<WizardMeasures>,
-    /// What was sent, and what the assistant would have said, where a wizard sends signals.
+    /// In wizard trials: sent communications, and hypothetical ones of the assistant.
     pub lanes: Option<[Vec<CommunicationEvent>; 2]>,
-    /// What concepts would have done, where nobody sends signals.
+    /// In unassisted trials: prevention counts of the concepts.
     pub swept: Vec<SweptTrial>,
-    /// What two raters say about its errors, where that is what is gone by.
+    /// Codes of two raters, if they define the causes of errors.
     pub raters: Option<[Codes; 2]>,
 }
 
-/// How it is known what the human believed when it erred.
+/// Source of the causes of errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BeliefBasis {
-    /// A simulated participant tells what it really believed.
+    /// Recorded beliefs of a simulated participant.
     Recorded,
-    /// Two people coded every error; what both put down to a belief is belief related.
+    /// Codes of two raters for every error; an error is belief related if both coded a false belief.
     Raters,
-    /// The assistant's estimate: no headline figure.
+    /// The assistant's estimate; insufficient for headline results.
     Estimate,
 }
 
 impl BeliefBasis {
-    /// As it stands in tables.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             BeliefBasis::Recorded => "recorded",
@@ -86,25 +86,25 @@ impl BeliefBasis {
     }
 }
 
-/// What false beliefs did in a trial.
+/// Errors that false beliefs caused in a trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeliefErrors {
     pub basis: BeliefBasis,
-    /// Belief related errors.
+    /// Number of belief related errors.
     pub errors: u64,
-    /// Of those, the ones that it takes two false beliefs to explain.
+    /// Number of belief related errors that need two false beliefs as explanation.
     pub of_two: u64,
-    /// The number of errors of each sequence.
+    /// Number of errors of each error sequence.
     pub lengths: Vec<u32>,
-    /// The same by single aspects.
+    /// Number of errors of each sequence of errors about a single aspect.
     pub lengths_by_aspect: Vec<u32>,
-    /// Seconds from the first error of a sequence to the first correct press after its last, where there is one.
+    /// Seconds from the first error of each sequence to the first correct press after its last error, where there is one.
     pub recovery_s: Vec<f64>,
-    /// False belief episodes that caused at least one error; none where they are not known.
+    /// Number of false belief episodes with at least one error; `None` if beliefs were not recorded.
     pub episodes: Option<u64>,
 }
 
-/// An answer to an item of a questionnaire.
+/// An answer to a questionnaire item.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct QuestionnaireAnswer {
     pub questionnaire: String,
@@ -112,18 +112,18 @@ pub struct QuestionnaireAnswer {
     pub text: String,
     pub about: Option<String>,
     pub reversed: bool,
-    /// None: it was left out.
+    /// Scale point; `None` if the participant skipped the item.
     pub answer: Option<u8>,
     pub points: u8,
 }
 
 impl Trial {
-    /// Whether it counts.
+    /// Whether the trial counts in the analysis.
     pub fn counts(&self) -> bool {
         self.left_out.is_none()
     }
 
-    /// The kind of participant as it stands in tables.
+    /// Name of the participant's kind in tables.
     pub fn kind_name(&self) -> &'static str {
         match self.kind {
             ParticipantKind::Simulated => "simulated",
@@ -132,51 +132,50 @@ impl Trial {
         }
     }
 
-    /// Presses of both agents.
+    /// Number of presses of both agents.
     pub fn presses(&self) -> u64 {
         self.human_presses + self.robot_presses
     }
 
-    /// Errors per press of the human; none without presses.
+    /// Errors per human press; `None` without presses.
     pub fn error_rate_human(&self) -> Option<f64> {
         (self.human_presses > 0).then(|| self.errors as f64 / self.human_presses as f64)
     }
 
-    /// Errors per press of both agents; none without presses.
+    /// Errors per press of both agents; `None` without presses.
     pub fn error_rate(&self) -> Option<f64> {
         (self.presses() > 0).then(|| self.errors as f64 / self.presses() as f64)
     }
 
-    /// Errors in a sequence, in the mean.
+    /// Mean number of errors per sequence.
     pub fn sequence_length(&self) -> Option<f64> {
         mean_length(&self.beliefs.as_ref()?.lengths)
     }
 
-    /// Seconds to recover from a sequence, in the mean.
+    /// Mean seconds to recover from an error sequence.
     pub fn recovery_s(&self) -> Option<f64> {
         mean(self.beliefs.as_ref()?.recovery_s.iter().copied())
     }
 
-    /// Whether somebody sends signals in it.
+    /// Whether signals are sent in the trial.
     pub fn is_assisted(&self) -> bool {
         self.condition != Condition::None
     }
 }
 
-/// The mean of lengths; none of nothing.
+/// Mean of lengths; `None` without values.
 pub fn mean_length(lengths: &[u32]) -> Option<f64> {
     mean(lengths.iter().map(|&length| f64::from(length)))
 }
 
-/// The mean; none of nothing.
+/// Mean of the values; `None` without values.
 pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// Gives the trials their participants and, where no plan says them, their periods, and puts them into the order of
-/// participants and periods. Without a plan a live trial is the participant's first or second by the wall clock, if there are
-/// two of them that count.
+/// Sets participant names, and periods where no study plan defines them, and sorts the trials by participant and period. Without a
+/// plan, a live trial is the participant's first or second by wall clock, if exactly two of its trials count.
 pub fn arrange(trials: &mut [Trial]) {
     let mut seeds: Vec<u64> = simulated(trials).map(|trial| trial.seed).collect();
     seeds.sort_unstable();
@@ -198,7 +197,7 @@ pub fn arrange(trials: &mut [Trial]) {
     }
 }
 
-/// Those that were simulated as a whole, of which codes are given anew with every seed.
+/// Fully simulated trials, in which every seed reuses the same participant codes.
 fn simulated(trials: &[Trial]) -> impl Iterator<Item = &Trial> {
     trials.iter().filter(|trial| trial.started.is_none())
 }

@@ -1,4 +1,4 @@
-//! `tomcom study`: replays the recordings of a study on all processors, and makes tables, figures and report of them.
+//! `tomcom study`: replays the recordings of a study on all processors and writes tables, charts and the report.
 
 pub mod reading;
 mod rows;
@@ -26,7 +26,7 @@ use crate::study::tables::participants::{ParticipantRow, participants};
 use crate::study::tables::questionnaires::{AnswerRow, answers};
 use crate::study::trial::{Trial, arrange};
 
-/// Why a study could not be analysed.
+/// Reasons why a study could not be analysed.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum StudyError {
     #[error(transparent)]
@@ -43,26 +43,26 @@ impl From<FileError> for StudyError {
     }
 }
 
-/// What is analysed, and where the results go.
+/// Inputs and outputs of the analysis of a study.
 #[derive(Clone, Debug)]
 pub struct AnalysisRequest {
-    /// Recordings, or folders with recordings in them.
+    /// Recordings, or folders that contain recordings.
     pub paths: Vec<PathBuf>,
     pub out: PathBuf,
     pub extent: AnalysisScope,
 }
 
-/// The recordings of an analysis, each with its name in tables.
+/// Recordings of an analysis, each with the name that identifies it in tables.
 #[derive(Clone, Debug)]
 pub struct NamedRecordings {
     found: Vec<(PathBuf, String)>,
 }
 
 impl NamedRecordings {
-    /// Those that are meant by paths, each once.
+    /// Finds the recordings at these paths, each once.
     ///
     /// # Errors
-    /// A path is none of a recording or of a folder with recordings.
+    /// A path is neither a recording nor a folder with recordings.
     pub fn find(paths: &[PathBuf]) -> Result<NamedRecordings, StudyError> {
         let mut found: Vec<(PathBuf, String)> = Vec::new();
         for path in paths {
@@ -73,7 +73,7 @@ impl NamedRecordings {
                 }
             }
         }
-        // Of several folders: with the folder, where names occur twice.
+        // Recordings from several folders with the same name are named by their full paths.
         let names: Vec<String> = found.iter().map(|(_, name)| name.clone()).collect();
         for (path, name) in &mut found {
             if names.iter().filter(|other| *other == name).count() > 1 {
@@ -88,23 +88,23 @@ impl NamedRecordings {
     }
 }
 
-/// The name of a recording's folder.
+/// Name of a recording's folder.
 fn name(recording: &Path) -> String {
     let typed = recording.file_name().map(|name| name.to_string_lossy().into_owned());
     typed.unwrap_or_else(|| recording.display().to_string())
 }
 
-/// Analyses recordings of one kitchen. `done` is called after each of them. Returns the figures and where the report is.
+/// Analyses recordings of one kitchen and calls `done` after each. Returns the summary and the report's path.
 ///
 /// # Errors
-/// A recording cannot be read or applied, or is of another kitchen than the first; results cannot be written.
+/// A recording cannot be read or replayed, or belongs to another kitchen than the first; or the results cannot be written.
 pub fn study(
     analysis: &AnalysisRequest,
     recordings: &NamedRecordings,
     done: impl Fn() + Sync,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
     let export = ExportFolder::create(&analysis.out)?;
-    let Some((first, _)) = recordings.found.first() else { return Err(nothing(analysis)) };
+    let Some((first, _)) = recordings.found.first() else { return Err(no_recording(analysis)) };
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
     let work = |&(index, (path, name)): &(usize, &(PathBuf, String))| -> Result<Option<(Trial, Facts)>, StudyError> {
@@ -148,8 +148,8 @@ fn same_kitchen(first: (&Path, &Arc<Kitchen>), other: (&Path, &Arc<Kitchen>)) ->
     one.admit(other.0, other.1)
 }
 
-fn nothing(analysis: &AnalysisRequest) -> StudyError {
+fn no_recording(analysis: &AnalysisRequest) -> StudyError {
     let path = analysis.paths.first().map_or(Path::new("."), PathBuf::as_path);
-    let remedy = "at least one recording".to_string();
+    let remedy = "a folder with at least one recording".to_string();
     StudyError::from(FileError::from_finding(path, "no recording".to_string(), remedy))
 }

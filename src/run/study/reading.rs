@@ -1,4 +1,4 @@
-//! One recording of a study: replayed once, and boiled down to the few numbers that the analysis keeps.
+//! Replays one recording of a study once and reduces it to the statistics that the analysis keeps.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -33,30 +33,30 @@ use crate::study::facts::Facts;
 use crate::study::robot_tally::{RobotSummary, RobotTally};
 use crate::study::trial::{BeliefBasis, BeliefErrors, QuestionnaireAnswer, Trial};
 
-/// What a recording gives.
+/// Result of analysing one recording.
 #[derive(Debug)]
 pub struct RecordingAnalysis {
     pub trial: Trial,
     pub facts: Facts,
-    /// Rows of the tables of events.
+    /// CSV rows of the four tables of events.
     pub rows: [Vec<u8>; 4],
 }
 
-/// What is looked for.
+/// Optional parts of the analysis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AnalysisScope {
-    /// What concepts would have said.
+    /// Whether the signals of communication concepts are computed.
     pub concepts: bool,
-    /// The tables of events.
+    /// Whether the tables of events are written.
     pub events: bool,
 }
 
-/// How a recording is followed: with as much beside it as is wanted of it.
+/// Replay of a recording, with the analyses that its condition and the requested scope need.
 enum Pass {
     Plain(Box<Follower>),
-    /// With the assistant beside the wizard.
+    /// Replay with the assistant's hypothetical signals in a wizard trial.
     Beside(Box<ComparisonFollower>),
-    /// With the concepts that are compared.
+    /// Replay with hypothetical signals of all compared concepts in an unassisted trial.
     Swept(Box<ConceptSweep>),
 }
 
@@ -71,7 +71,7 @@ impl Pass {
                 session.spec.assistant.concept = ConceptName::TomCom;
                 Pass::Beside(Box::new(ComparisonFollower::new(session, &request)))
             }
-            // What would have been prevented is known only where it is known what was believed.
+            // Prevented errors can be counted only where the participant's beliefs were recorded.
             Condition::None if extent.concepts && is_simulated => {
                 Pass::Swept(Box::new(ConceptSweep::new(session, cost)))
             }
@@ -96,7 +96,7 @@ impl Pass {
     }
 }
 
-/// Errors of people put down to what was estimated of their beliefs.
+/// Attribution of people's errors to causes by the estimated beliefs.
 struct ByEstimate {
     attributor: Attributor,
     cost: CostToGo,
@@ -104,7 +104,7 @@ struct ByEstimate {
 }
 
 impl ByEstimate {
-    /// Takes note of an event that was just applied.
+    /// Attributes the press of an event that was just applied.
     fn note(&mut self, stamped: &Stamped, change: &Change, follower: &Follower) {
         let Some(press) = change.human_press() else { return };
         let (kitchen, judged) = (&follower.session.kitchen, follower.judged.last());
@@ -119,7 +119,7 @@ impl ByEstimate {
     }
 }
 
-/// The belief that is expected by an estimate.
+/// Belief state with the expected probabilities of an estimate.
 fn expected(kitchen: &Kitchen, state: crate::kitchen::State, estimate: &DirichletBelief) -> Belief {
     let mut belief = Belief::of_truth(kitchen, state);
     for index in 0..kitchen.aspects.len() {
@@ -129,10 +129,10 @@ fn expected(kitchen: &Kitchen, state: crate::kitchen::State, estimate: &Dirichle
     belief
 }
 
-/// Reads a recording, which is called `name`; nothing of one that is only practice.
+/// Analyses the recording with this name in tables; `None` for a practice recording.
 ///
 /// # Errors
-/// It cannot be read or applied.
+/// The recording cannot be read or replayed.
 pub fn read(
     recording: &Path,
     name: &str,
@@ -207,7 +207,7 @@ pub fn read(
     Ok(Some((kitchen, RecordingAnalysis { trial, facts: Facts::from_session(&header, &follower.session), rows })))
 }
 
-/// What was sent, and in a wizard's trial beside it what the assistant would have said.
+/// Communications that were sent, and for a wizard trial also the assistant's hypothetical ones, each list with its sender's name.
 fn lanes(pass: &mut Pass) -> Vec<(String, Vec<CommunicationEvent>)> {
     if let Pass::Beside(watcher) = pass {
         watcher.finish();
@@ -219,33 +219,33 @@ fn lanes(pass: &mut Pass) -> Vec<(String, Vec<CommunicationEvent>)> {
     vec![(name.to_string(), sent(session))]
 }
 
-/// The signals that were shown.
+/// Signals that were shown to the participant.
 fn sent(session: &Session) -> Vec<CommunicationEvent> {
     let mut press = 0;
-    let mut said = Vec::new();
+    let mut sent = Vec::new();
     for entry in &session.timeline {
         match &entry.what {
             TimelineEvent::Press { agent: Agent::Human, .. } => press += 1,
             TimelineEvent::Signal { signal, .. } => {
                 let content = CommunicationContent::Signal(signal.clone()).content(&session.kitchen);
-                said.push(CommunicationEvent { press, clock: clock_at(session, entry.time), content });
+                sent.push(CommunicationEvent { press, clock: clock_at(session, entry.time), content });
             }
             _ => {}
         }
     }
-    said
+    sent
 }
 
-/// What the first two raters by name say about a recording; nothing where there are not two.
+/// Codes of the first two raters (in the order of names) for a recording; `None` with fewer than two raters.
 fn raters(log: &LogReader, follower: &Follower) -> FileResult<Option<[Codes; 2]>> {
     let codable = Codable::from_presses(&follower.session.kitchen, &follower.judged);
     let mut all = codes::read_all(log.folder(), &codable)?.into_values();
     Ok(all.next().zip(all.next()).map(|(one, other)| [one, other]))
 }
 
-/// The presses of the human with their causes, and how these are known: what simulated participants tell, or else what two
-/// raters say who have both coded every error, or else the estimate. Nothing of the latter where a simulated participant does
-/// not tell.
+/// Human presses with the causes of errors, and the source of the causes: recorded beliefs for simulated participants; for people
+/// the codes of two raters who both coded every error, else the estimate. The source is `None` for a simulated participant without
+/// recorded beliefs.
 fn judged(
     follower: &Follower,
     by_estimate: Option<&[(u64, Cause)]>,
@@ -267,14 +267,14 @@ fn judged(
     (judged, Some(if raters.is_some() { BeliefBasis::Raters } else { BeliefBasis::Estimate }))
 }
 
-/// The cause that two raters agree on. Where both put an error down to a belief, it is about what the first of them says;
-/// where they differ, it is no belief related error.
+/// The cause of an error by two raters. If both coded a false belief, the target is the first rater's; otherwise the error counts
+/// as not belief related.
 fn agreed(session: &Session, press: u64, [one, other]: &[Codes; 2]) -> Option<Cause> {
     let (a, b) = (one.0.get(&press)?, other.0.get(&press)?);
     if a.kind() != CauseKind::Belief || b.kind() != CauseKind::Belief {
         return Some(Cause::Slip);
     }
-    // In which state the press was met makes no difference to the place that it is about.
+    // The target's location does not depend on the state before the press.
     let target = a.target(&session.kitchen, session.kitchen.empty_state())?;
     Some(Cause::Belief { gain_nats: f64::NAN, target, with: None })
 }
@@ -295,7 +295,7 @@ fn beliefs(follower: &Follower, judged: &[JudgedPress], basis: BeliefBasis) -> B
     }
 }
 
-/// The answers that were just confirmed.
+/// Answers to the questionnaire that was just confirmed.
 fn confirmed(session: &Session) -> Vec<QuestionnaireAnswer> {
     let Some((step, protocol)) = session.step() else { return Vec::new() };
     let phase = protocol.number.checked_sub(1).and_then(|index| step.phases.get(index));
@@ -364,7 +364,7 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
     }
 }
 
-/// Seconds from one time of a session to another, without pauses.
+/// Seconds between two times of a session, without pauses.
 fn since(session: &Session, from: SessionTime, to: SessionTime) -> f64 {
     clock_at(session, to).secs_since(clock_at(session, from))
 }

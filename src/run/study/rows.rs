@@ -1,5 +1,4 @@
-//! The rows of the tables that grow with what happens in a trial, gathered event by event. What stands in their columns say the
-//! declarations in [`crate::study::tables`].
+//! Collects the rows of the tables of events during the replay of a recording. [`crate::study::tables`] declares their columns.
 
 use crate::analysis::follower::Follower;
 use crate::analysis::wizard_log::clock_at;
@@ -20,20 +19,20 @@ use crate::study::tables::aspect_beliefs::BeliefRow;
 use crate::study::tables::communications::CommunicationRow;
 use crate::study::tables::gaze_runs::{GazeRow, GazeRun};
 
-/// Gathers rows.
+/// Collects the rows of the tables of events of one recording.
 #[derive(Debug)]
 pub struct RowCollector {
     recording: String,
     rows: EventRows,
-    /// When each agent pressed last.
+    /// Time of each agent's last press.
     pressed_at: [Option<SessionTime>; 2],
-    /// Presses, of which those of the human are judged later.
+    /// Presses of both agents; those of the human are judged after the replay.
     presses: Vec<RecordedPress>,
     witness: Option<BeliefWitness>,
     look: Option<GazeRun>,
 }
 
-/// The rows so far, in the order of [`Table::OF_EVENTS`].
+/// Rows of each table of events, in the order of [`Table::OF_EVENTS`].
 #[derive(Debug)]
 struct EventRows([TableRows; 4]);
 
@@ -45,19 +44,19 @@ impl EventRows {
     }
 }
 
-/// What is known of the presses of the human when all is over.
+/// Analysis of the human's presses, available after the replay.
 #[derive(Clone, Copy, Debug)]
 pub struct PressFacts<'a> {
     pub judged: &'a [JudgedPress],
-    /// Sequences of belief related errors, as indices of presses.
+    /// Error sequences, each as indices of the human's presses.
     pub sequences: &'a [Vec<usize>],
-    /// Of people, by the numbers of presses.
+    /// Causes of people's errors by the estimated beliefs, with the log number of the press.
     pub by_estimate: Option<&'a [(u64, Cause)]>,
     pub raters: Option<&'a [Codes; 2]>,
 }
 
 impl<'a> PressFacts<'a> {
-    /// What is known of the press with this number in the log; none of the robot's.
+    /// Analysis of the press with this log number; `None` for presses of the robot.
     fn analysis(&self, seq: u64) -> Option<PressAnalysis<'a>> {
         let index = self.judged.binary_search_by_key(&seq, |press| press.seq).ok()?;
         let sequence = self.sequences.iter().position(|errors| errors.contains(&index));
@@ -83,7 +82,7 @@ impl RowCollector {
         }
     }
 
-    /// Takes note of an event that was just applied; `was_running`: the trial ran when it came.
+    /// Records an event that was just applied; `was_running`: the trial was running before the event.
     pub fn note(&mut self, stamped: &Stamped, change: &Change, follower: &Follower, was_running: bool) {
         let session = &follower.session;
         if let Change::Press { press, presses } = change {
@@ -109,7 +108,7 @@ impl RowCollector {
         }
     }
 
-    /// Adds a press to the actions; `number`: its number among those of its agent.
+    /// Records a press; `number` counts the presses of its agent from 1.
     fn pressed(&mut self, stamped: &Stamped, press: &Press, number: u32, follower: &Follower) {
         let session = &follower.session;
         let before = self.pressed_at[press.agent.index()].replace(stamped.time);
@@ -169,7 +168,7 @@ impl RowCollector {
         self.rows.add(&GazeRow { recording: &self.recording, kitchen: &session.kitchen, time_s, run });
     }
 
-    /// The rows, in the order of [`Table::OF_EVENTS`]. `lanes`: what was sent, and what the assistant would have said.
+    /// The CSV rows, in the order of [`Table::OF_EVENTS`]. `lanes`: sent communications, and hypothetical ones of the assistant.
     pub fn finish(
         mut self,
         session: &Session,

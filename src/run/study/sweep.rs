@@ -1,5 +1,5 @@
-//! What communication concepts would have done in an unassisted trial, for every value of their parameters at once: the
-//! dear part, the planning, is done once a moment, and all costs are swept over the same benefits.
+//! Hypothetical signals of communication concepts in an unassisted trial, for all values of their parameters in one replay. The
+//! planner runs once per decision; all costs of communication are then applied to the same benefits.
 
 use crate::analysis::advisor::AdviceRequest;
 use crate::analysis::advisor::changes_task;
@@ -21,80 +21,80 @@ use crate::session::{Applied, Event, Session, Stamped};
 use crate::study::prevention::{ConceptSignal, FalseBeliefTruth, PressTruth, SequenceTruth, TrialTruth};
 use crate::study::roc::{CONCEPTS, LEAST_COST, SweptTrial, parameters};
 
-/// A concept with one value of its parameter.
+/// A concept with one parameter value, and its hypothetical signals.
 #[derive(Debug)]
-struct Voice {
+struct SweptConcept {
     concept: ConceptName,
     parameter: f64,
-    /// What it has said.
+    /// Signals that must not be repeated yet.
     repeats: Repeats,
     sent: Vec<ConceptSignal>,
 }
 
-/// Follows a session, and asks after every press and order change, as the engine does.
+/// Replays a session and evaluates all concepts after every press and order change, as the assistant does live.
 #[derive(Debug)]
 pub struct ConceptSweep {
     pub follower: Follower,
     planner: Planner,
     tom: TomConcept,
     cost: CostToGo,
-    voices: Vec<Voice>,
-    /// The newest event after which is asked, when all that follows at once has happened.
-    to_ask: Option<(u64, SessionTime)>,
+    swept_concepts: Vec<SweptConcept>,
+    /// Log number and time of the event after which the concepts are evaluated, once simultaneous events have been applied.
+    pending: Option<(u64, SessionTime)>,
 }
 
 impl ConceptSweep {
-    /// A sweeper of a session from before its first event on.
+    /// Creates the replay of a session that has no events yet.
     pub fn new(session: Session, cost: CostToGo) -> ConceptSweep {
         let (kitchen, spec) = (session.kitchen.clone(), &session.spec);
-        // Planned as carefully as the least cost asks for.
+        // The planner's accuracy is that for the smallest swept cost.
         let assistant = AssistantSpec { cost_of_communication: LEAST_COST, ..spec.assistant.clone() };
-        let voice = |concept: ConceptName, parameter: f64| Voice {
+        let swept = |concept: ConceptName, parameter: f64| SweptConcept {
             concept,
             parameter,
             repeats: Repeats::default(),
             sent: Vec::new(),
         };
-        let of_concept = |concept: ConceptName| parameters(concept).into_iter().map(move |one| voice(concept, one));
-        let speaking = CONCEPTS.into_iter().filter(|concept| *concept != ConceptName::Dev);
+        let of_concept = |concept: ConceptName| parameters(concept).into_iter().map(move |one| swept(concept, one));
+        let signalling = CONCEPTS.into_iter().filter(|concept| *concept != ConceptName::Dev);
         ConceptSweep {
             planner: Planner::new(kitchen.clone(), &spec.human, assistant, session.seed()),
             tom: TomConcept::new(kitchen, 0.0),
             follower: Follower::new(session, cost.clone()),
             cost,
-            voices: speaking.flat_map(of_concept).collect(),
-            to_ask: None,
+            swept_concepts: signalling.flat_map(of_concept).collect(),
+            pending: None,
         }
     }
 
-    /// Moves on by one event.
+    /// Applies one event.
     ///
     /// # Errors
-    /// Those of [`Follower::apply`].
+    /// Errors of [`Follower::apply`].
     pub fn apply(&mut self, stamped: &Stamped) -> Result<Change, ApplyError> {
-        if self.to_ask.is_some_and(|(_, time)| !follows_at_once(stamped, time)) {
-            self.ask();
+        if self.pending.is_some_and(|(_, time)| !follows_at_once(stamped, time)) {
+            self.evaluate();
         }
         let Applied { change, .. } = self.follower.apply(stamped)?;
         if stamped.event.is_sample() {
             return Ok(change);
         }
         let session = &self.follower.session;
-        for voice in &mut self.voices {
+        for swept in &mut self.swept_concepts {
             if matches!(stamped.event, Event::TrialStarted) {
-                voice.repeats = Repeats::default();
+                swept.repeats = Repeats::default();
             }
-            voice.repeats.update(&session.kitchen, session.state, self.follower.filter.belief());
+            swept.repeats.update(&session.kitchen, session.state, self.follower.filter.belief());
         }
         if session.is_running() && changes_task(&stamped.event) {
-            self.to_ask = Some((stamped.seq, stamped.time));
+            self.pending = Some((stamped.seq, stamped.time));
         }
         Ok(change)
     }
 
-    /// What every concept would say now.
-    fn ask(&mut self) {
-        let Some((seq, time)) = self.to_ask.take().filter(|_| self.follower.session.is_running()) else { return };
+    /// Evaluates every concept in the present state.
+    fn evaluate(&mut self) {
+        let Some((seq, time)) = self.pending.take().filter(|_| self.follower.session.is_running()) else { return };
         let session = &self.follower.session;
         let (kitchen, state) = (&session.kitchen, session.state);
         let own_hand = session.spec.signals.own_hand;
@@ -103,38 +103,38 @@ impl ConceptSweep {
         let benefits = self.planner.advise(&mut self.cost, &moment).options;
         let deviations = self.tom.advise(&mut self.cost, &moment).options;
         let press = session.presses[Agent::Human.index()] as usize;
-        for voice in &mut self.voices {
-            let options: &[SignalOption] = match voice.concept {
+        for swept in &mut self.swept_concepts {
+            let options: &[SignalOption] = match swept.concept {
                 ConceptName::TomCom => &benefits,
                 _ => &deviations,
             };
-            let allowed = voice.repeats.allowed(kitchen, own_hand);
+            let allowed = swept.repeats.allowed(kitchen, own_hand);
             let best = options.iter().find(|option| allowed.contains(&option.signal));
-            if let Some(option) = best.filter(|option| option.benefit > voice.parameter) {
-                voice.repeats.shown(kitchen, state, &option.signal);
-                voice.sent.push(ConceptSignal { time, press, aspects: aspects_told(kitchen, state, &option.signal) });
+            if let Some(option) = best.filter(|option| option.benefit > swept.parameter) {
+                swept.repeats.shown(kitchen, state, &option.signal);
+                swept.sent.push(ConceptSignal { time, press, aspects: aspects_told(kitchen, state, &option.signal) });
             }
         }
     }
 
-    /// What they would have done; call it after the last event.
+    /// Prevention counts of every concept and parameter value; to be called after the last event.
     pub fn swept(&self) -> Vec<SweptTrial> {
         let truth = truth(&self.follower);
-        let spoken = self.voices.iter().map(|voice| SweptTrial {
-            concept: voice.concept,
-            parameter: voice.parameter,
-            count: truth.count_signals(&voice.sent),
+        let signalled = self.swept_concepts.iter().map(|swept| SweptTrial {
+            concept: swept.concept,
+            parameter: swept.parameter,
+            count: truth.count_signals(&swept.sent),
         });
         let proposed = parameters(ConceptName::Dev).into_iter().map(|parameter| SweptTrial {
             concept: ConceptName::Dev,
             parameter,
             count: truth.count_proposals(parameter as usize),
         });
-        spoken.chain(proposed).collect()
+        signalled.chain(proposed).collect()
     }
 }
 
-/// What was true in a session that was followed to its end, where it is known what the human believed.
+/// True errors, false beliefs and error sequences of a replayed session with recorded beliefs.
 fn truth(follower: &Follower) -> TrialTruth {
     let kitchen = &follower.session.kitchen;
     let press = |press: &crate::measures::JudgedPress| PressTruth {
@@ -142,7 +142,7 @@ fn truth(follower: &Follower) -> TrialTruth {
         error: press.verdict.error,
         related: matches!(press.cause, Some(Cause::Belief { .. })),
     };
-    let spell = |episode: &Episode| FalseBeliefTruth {
+    let false_belief = |episode: &Episode| FalseBeliefTruth {
         aspect: episode.aspect,
         began: episode.began,
         ended: episode.corrected,
@@ -154,7 +154,7 @@ fn truth(follower: &Follower) -> TrialTruth {
     };
     TrialTruth {
         presses: follower.judged.iter().map(press).collect(),
-        spells: follower.episodes.all().map(spell).collect(),
+        spells: follower.episodes.all().map(false_belief).collect(),
         sequences: sequence_errors(&follower.judged).into_iter().map(sequence).collect(),
     }
 }

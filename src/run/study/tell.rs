@@ -1,4 +1,4 @@
-//! The figures of a study in words, for the terminal.
+//! Text summary of a study for the terminal.
 
 use crate::base::words::count;
 use crate::session::event::EndReason;
@@ -7,7 +7,7 @@ use crate::study::figures::StudySummary;
 use crate::study::roc::EQUAL_SIGNALS;
 use crate::study::trial::BeliefBasis;
 
-/// The figures for people, in lines.
+/// Summary of a study as lines of text.
 pub fn describe(figures: &StudySummary) -> String {
     let totals = &figures.totals;
     let percent = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{:.1} %", 100.0 * value));
@@ -27,8 +27,8 @@ pub fn describe(figures: &StudySummary) -> String {
     );
     text += &match (totals.belief_related_errors, totals.sequences) {
         (Some(related), Some(sequences)) => format!(
-            "belief related: {related} ({}), in {} of {} errors each (by single aspect {}), over after \
-             {} s{}\n",
+            "belief related: {related} ({}), in {} of {} errors each (by single aspect {}), recovery \
+             after {} s{}\n",
             percent(totals.belief_related_share),
             count(sequences, "sequence", "sequences"),
             number(totals.mean_sequence_length),
@@ -40,7 +40,7 @@ pub fn describe(figures: &StudySummary) -> String {
     };
     if let Some(found) = &figures.raters {
         text += &format!(
-            "two raters: the same cause of {} of {} errors (kappa {}), the same belief of {} of {} (kappa {})\n",
+            "two raters: same cause for {} of {} errors (kappa {}), same false belief for {} of {} (kappa {})\n",
             found.same_cause,
             found.errors,
             number(found.kappa_cause),
@@ -60,7 +60,7 @@ pub fn describe(figures: &StudySummary) -> String {
     }
     for one in &figures.conditions {
         text += &format!(
-            "  {:<10}{:>4} trials, errors {} of the human's presses, {} a sequence, an order in {} s\n",
+            "  {:<10}{:>4} trials, errors {} of the human's presses, {} per sequence, {} s per order\n",
             one.condition.name(),
             one.trials,
             percent(one.totals.error_rate_human),
@@ -72,7 +72,7 @@ pub fn describe(figures: &StudySummary) -> String {
     if figures.roc.iter().any(|roc| !roc.points.is_empty()) {
         let heads: Vec<String> = EQUAL_SIGNALS.iter().map(|signals| format!("{signals:>6}")).collect();
         text += &format!(
-            "concepts, {}: belief related errors prevented at so many signals per 100 presses of the human\n{:<12}{}{:>8}\n",
+            "concepts, {}: belief related errors prevented, by signals per 100 presses of the human\n{:<12}{}{:>8}\n",
             count(figures.roc_trials, "unassisted trial", "unassisted trials"),
             "",
             heads.join(""),
@@ -104,13 +104,13 @@ pub fn describe(figures: &StudySummary) -> String {
 fn of_effect(effect: &AssistanceEffect) -> String {
     let (Some(test), Some(pearson)) = (effect.assistance(), effect.pearson) else {
         let [with, without] = effect.groups;
-        return format!("effect of assistance: not to be told from {} pairs of trials\n", with + without);
+        return format!("effect of assistance: cannot be computed from {} pairs of trials\n", with + without);
     };
     let p = effect.permutation_p.map_or("-".to_string(), |p| format!("{p:.4}"));
     let bounded = effect.reduction.filter(|found| found.low.is_finite() && found.high.is_finite());
     let reduction = bounded.map_or(String::new(), |found| {
         format!(
-            ", {:.1} errors fewer in 100 presses of the human ({:.1} to {:.1})",
+            ", {:.1} fewer errors per 100 presses of the human ({:.1} to {:.1})",
             100.0 * found.estimate,
             100.0 * found.low,
             100.0 * found.high

@@ -1,4 +1,4 @@
-//! The effect of assistance.
+//! Report section on the effect of assistance.
 
 use maud::{Markup, Render, html};
 
@@ -12,22 +12,22 @@ use crate::study::figures::{StudyConditionSummary, StudySummary};
 use crate::study::statistics::FTest;
 use crate::study::trial::Trial;
 
-/// Whether assistance helps: charts, means by condition, and tests.
+/// Section on the effect of assistance: charts, means by condition, and tests.
 pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
     let key = keys(&[("first", "assisted first"), ("second", "unassisted first")]);
     let of_conditions = keys(&[("unassisted", "unassisted"), ("assisted", "assisted")]);
     let pictures = html! {
         (captions.figure(charts::errors_by_condition(trials), html! {
-            "Errors by condition; a line is a participant with both trials, black the mean of their rates, in which each \
-             counts the same. The table\u{2019}s share is that of all presses together." (key)
+            "Errors by condition. A line joins the two trials of a participant; black is the mean of the participants\u{2019} rates. \
+             The table states the share of all presses pooled." (key)
         }))
-        (captions.figure(charts::improvements(trials), "By how much the second trial has fewer errors in 100 presses. \
-            Practice moves both groups, assistance moves them apart."))
+        (captions.figure(charts::improvements(trials), "Reduction of errors per 100 presses from the first to the second \
+            trial. Practice changes both groups alike; a difference between the groups is the effect of assistance."))
         (captions.figure(charts::press_durations(trials), html! {
-            "Median seconds from press to press, a sign of experience." (of_conditions)
+            "Median seconds between presses, which indicate experience." (of_conditions)
         }))
         (captions.figure(charts::sequence_lengths(&figures.conditions), html! {
-            "How many error sequences of each length a trial has, in the mean." (of_conditions)
+            "Mean number of error sequences per trial, by length." (of_conditions)
         }))
     };
     if pictures.0.is_empty() {
@@ -49,14 +49,14 @@ fn conditions(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let columns: [PageColumn<StudyConditionSummary>; 11] = [
         ("condition", |one| condition(one.condition).render()),
         ("trials", |one| one.trials.render()),
-        ("errors a trial", |one| number(one.mean_errors, 1).render()),
+        ("errors per trial", |one| number(one.mean_errors, 1).render()),
         ("per press of the human", |one| percent(one.totals.error_rate_human).render()),
         ("per press of both", |one| percent(one.totals.error_rate).render()),
         ("belief related", |one| percent(one.totals.belief_related_share).render()),
-        ("errors in a sequence", |one| number(one.totals.mean_sequence_length, 2).render()),
+        ("errors per sequence", |one| number(one.totals.mean_sequence_length, 2).render()),
         ("s to recover", |one| number(one.totals.mean_recovery_s, 1).render()),
-        ("s for an order", |one| number(one.mean_order_s, 1).render()),
-        ("s a press", |one| number(one.mean_press_s, 2).render()),
+        ("s per order", |one| number(one.mean_order_s, 1).render()),
+        ("s per press", |one| number(one.mean_press_s, 2).render()),
         ("signals", |one| one.totals.signals.render()),
     ];
     let caption = "By condition. Shares are of all presses, or errors, of a condition together, so that long trials weigh more; \
@@ -64,18 +64,18 @@ fn conditions(captions: &mut Captions, figures: &StudySummary) -> Markup {
     captions.table_of_columns(caption, &columns, figures.conditions.iter())
 }
 
-/// What the first effect says, in a sentence.
+/// The effect of assistance on the first measure, as a sentence.
 fn in_words(effect: &AssistanceEffect) -> Markup {
     let (Some(reduction), Some(test)) = (effect.reduction, effect.assistance()) else { return nothing() };
     let [estimate, low, high] = [reduction.estimate, reduction.low, reduction.high].map(|value| 100.0 * value);
     let interval = match low.is_finite() && high.is_finite() {
         true => format!(", interval of {:.1} %: {}", 100.0 * reduction.level, range([low, high], 1)),
-        false => ", with too few participants for an interval".to_string(),
+        false => "; too few participants for an interval".to_string(),
     };
     let degrees = format!("{:.0},\u{a0}{:.0}", test.df[0], test.df[1]);
     html! {
         p {
-            "Assistance takes " (number(Some(estimate), 1)) " errors away from 100 presses of the human (Hodges-Lehmann"
+            "Assistance reduces errors by " (number(Some(estimate), 1)) " per 100 presses of the human (Hodges-Lehmann"
             (interval) "). Interaction of period and starting group: F(" (degrees) ")\u{a0}=\u{a0}"
             (number(Some(test.f), 2)) ", " (p_sentence(Some(test.p))) "."
         }
@@ -83,10 +83,10 @@ fn in_words(effect: &AssistanceEffect) -> Markup {
     }
 }
 
-/// A line for each statistic that is compared.
+/// Table of tests, one line per compared measure.
 fn tests(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let columns: [PageColumn<AssistanceEffect>; 10] = [
-        ("less of it with assistance?", |effect| effect.measure.title.render()),
+        ("measure (lower is better)", |effect| effect.measure.title.render()),
         ("participants", |effect| format!("{} + {}", effect.groups[0], effect.groups[1]).render()),
         ("F (interaction)", |effect| number(effect.assistance().map(|test| test.f), 2).render()),
         ("p", |effect| p_value(effect.assistance().map(|test| test.p)).render()),
@@ -109,7 +109,7 @@ fn tests(captions: &mut Captions, figures: &StudySummary) -> Markup {
     captions.table_of_columns(caption, &columns, figures.effects.iter())
 }
 
-/// The whole analysis of variance, in both codings.
+/// Table of the mixed analysis of variance, in both codings.
 fn anova(captions: &mut Captions, effect: &AssistanceEffect) -> Markup {
     let row = |what: &dyn Render, test: Option<FTest>| {
         cells([

@@ -1,4 +1,4 @@
-//! The comparison of communication concepts.
+//! Report section that compares communication concepts.
 
 use maud::{Markup, Render, html};
 
@@ -7,7 +7,7 @@ use crate::study::charts;
 use crate::study::figures::StudySummary;
 use crate::study::roc::EQUAL_SIGNALS;
 
-/// Which concept prevents more.
+/// Section that compares the concepts by the errors they prevent.
 pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let key = keys(&[("tom-com", "ToM-Com"), ("tom", "ToM"), ("dev", "DEV")]);
     let pictures = html! {
@@ -15,9 +15,9 @@ pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Marku
             "Receiver operating characteristics over unassisted trials, bands of 95 %." (key)
         }))
         (captions.figure(charts::equal_signals(figures), html! {
-            "The same, over how often the concepts interrupt. A curve may fall: each point is the concept with another value of \
-             its parameter, and one that speaks earlier may tell something before it is believed wrong, which prevents nothing \
-             and is not said again for a while." (key)
+            "Errors prevented against number of signals. Each point is one parameter value. A curve may fall, because a value that \
+             sends signals earlier may send one before the false belief begins; it prevents nothing and is not repeated for some \
+             time." (key)
         }))
     };
     if pictures.0.is_empty() {

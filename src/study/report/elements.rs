@@ -1,14 +1,14 @@
-//! What the page is put together from: sections, figures, tables, and numbers as they are written.
+//! Elements of the report page: sections, charts, tables, and formatted numbers.
 
 use maud::{Markup, PreEscaped, Render, html};
 
 use crate::session::settings::{ArmKind, Condition};
 use crate::study::svg::minus;
 
-/// What stands where nothing is known.
+/// Text in place of an unknown value: a dash.
 pub(super) const UNKNOWN: &str = "\u{2013}";
 
-/// Counts figures and tables, which are numbered in the order of the page.
+/// Numbers charts and tables in page order.
 #[derive(Debug, Default)]
 pub(super) struct Captions {
     figures: u32,
@@ -16,7 +16,7 @@ pub(super) struct Captions {
 }
 
 impl Captions {
-    /// A picture with what it shows; nothing where there is none.
+    /// A numbered chart with its caption; empty without a chart.
     pub(super) fn figure(&mut self, picture: Option<Markup>, caption: impl Render) -> Markup {
         let Some(picture) = picture else { return nothing() };
         self.figures += 1;
@@ -26,13 +26,13 @@ impl Captions {
         }
     }
 
-    /// A table with what it shows; the first column is text, all others are figures. What is to be said of it stands in its
-    /// caption, which no page parts from it.
+    /// A numbered table with its caption; the first column is text, all others are numbers. Notes belong in the caption, because
+    /// page breaks never separate it from its table.
     pub(super) fn table(&mut self, caption: impl Render, heads: &[impl Render], rows: &[Vec<Markup>]) -> Markup {
         self.table_of_class(None, caption, heads, rows)
     }
 
-    /// The same with a row for each of `rows`; every column has its head and what stands in it.
+    /// A table with one row per element of `rows`; each column has a head and a function for its cells.
     pub(super) fn table_of_columns<'r, Row: 'r>(
         &mut self,
         caption: impl Render,
@@ -44,7 +44,7 @@ impl Captions {
         self.table(caption, &heads, &rows)
     }
 
-    /// A table of which all columns are text.
+    /// A table in which all columns are text.
     pub(super) fn table_of_text(
         &mut self,
         caption: impl Render,
@@ -75,20 +75,20 @@ impl Captions {
     }
 }
 
-/// A column of a table on the page: its head, and what stands in it.
+/// Column of a table on the page: its head, and a function for its cells.
 pub(super) type PageColumn<Row> = (&'static str, fn(&Row) -> Markup);
 
-/// No element.
+/// Empty markup.
 pub(super) fn nothing() -> Markup {
     PreEscaped(String::new())
 }
 
-/// The cells of a row.
+/// Cells of a table row.
 pub(super) fn cells<const N: usize>(cells: [&dyn Render; N]) -> Vec<Markup> {
     cells.into_iter().map(Render::render).collect()
 }
 
-/// A section with a heading; nothing without content.
+/// A section with a heading; empty without content.
 pub(super) fn section(heading: &str, content: Markup) -> Markup {
     if content.0.is_empty() {
         return nothing();
@@ -96,24 +96,24 @@ pub(super) fn section(heading: &str, content: Markup) -> Markup {
     html! { section { h2 { (heading) } "\n" (content) } "\n" }
 }
 
-/// What can be scrolled sideways where it is too wide.
+/// Content that scrolls sideways if it is too wide.
 pub(super) fn scroll(content: Markup) -> Markup {
     html! { div class="scroll" { (content) } "\n" }
 }
 
-/// What colours mean: classes with words.
+/// Legend of a chart: pairs of CSS class and label.
 pub(super) fn keys(keys: &[(&str, &str)]) -> Markup {
     html! {
         @for (class, word) in keys { " " span class="of" { i class={ "key " (class) } {} (word) } }
     }
 }
 
-/// A number with so many digits behind the point; a dash for nothing.
+/// A number with this many decimals; a dash for `None`.
 pub(super) fn number(value: Option<f64>, digits: usize) -> String {
     value.filter(|value| value.is_finite()).map_or(UNKNOWN.to_string(), |value| minus(&format!("{value:.digits$}")))
 }
 
-/// A number with its interval below it, where there is one.
+/// A number with its interval below it, if it has one.
 pub(super) fn with_interval(value: Option<f64>, interval: Option<[f64; 2]>, digits: usize) -> Markup {
     html! { (number(value, digits)) @if let Some(ends) = interval { small { (range(ends, digits)) } } }
 }
@@ -122,7 +122,7 @@ pub(super) fn percent(value: Option<f64>) -> String {
     value.map_or(UNKNOWN.to_string(), |value| format!("{:.1} %", 100.0 * value))
 }
 
-/// A probability of a test, as journals want it.
+/// The p value of a test in journal format.
 pub(super) fn p_value(p: Option<f64>) -> String {
     match p {
         None => UNKNOWN.to_string(),
@@ -131,7 +131,7 @@ pub(super) fn p_value(p: Option<f64>) -> String {
     }
 }
 
-/// The same in a sentence, with its sign; no line breaks in it.
+/// The p value of a test with its relational sign, for sentences; without line breaks.
 pub(super) fn p_sentence(p: Option<f64>) -> String {
     match p {
         Some(p) if p < 0.001 => "p\u{a0}<\u{a0}0.001".to_string(),
@@ -139,10 +139,10 @@ pub(super) fn p_sentence(p: Option<f64>) -> String {
     }
 }
 
-/// From … to …; words where that is not bounded.
+/// "low to high"; a text if a bound is infinite.
 pub(super) fn range([low, high]: [f64; 2], digits: usize) -> String {
     if low.is_infinite() && high.is_infinite() {
-        return "no interval: too few".to_string();
+        return "no interval: too few values".to_string();
     }
     let end = |value: f64| match value {
         f64::INFINITY => "\u{221e}".to_string(),
@@ -156,7 +156,7 @@ pub(super) fn count(value: Option<u64>) -> String {
     value.map_or(UNKNOWN.to_string(), |value| value.to_string())
 }
 
-/// A condition in words.
+/// Name of a condition in the report.
 pub(super) fn condition(condition: Condition) -> &'static str {
     match condition {
         Condition::None => "unassisted",
@@ -165,10 +165,10 @@ pub(super) fn condition(condition: Condition) -> &'static str {
     }
 }
 
-/// An arm in words.
+/// Name of a kind of robot arm in the report.
 pub(super) fn arm(kind: ArmKind) -> &'static str {
     match kind {
         ArmKind::Timed => "timed",
-        ArmKind::Physics => "simulated in the physics",
+        ArmKind::Physics => "simulated with contact forces",
     }
 }

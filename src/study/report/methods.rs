@@ -1,4 +1,4 @@
-//! How it was done, from what the recordings say.
+//! Report section on methods, from settings and circumstances in the recordings.
 
 use maud::{Markup, html};
 
@@ -10,7 +10,7 @@ use crate::study::facts::Facts;
 use crate::study::figures::StudySummary;
 use crate::study::trial::BeliefBasis;
 
-/// How the trials were run, and how they were analysed.
+/// Section on methods: conduct and analysis of the trials.
 pub(super) fn methods(figures: &StudySummary, facts: &Facts) -> Markup {
     let content = html! {
         p { (conduct(figures, facts)) (wizard(facts)) (versions(facts)) } "\n"
@@ -19,21 +19,21 @@ pub(super) fn methods(figures: &StudySummary, facts: &Facts) -> Markup {
     section("Methods", content)
 }
 
-/// What is known of a kind.
+/// All values of a fact as text.
 fn all(facts: &Facts, key: &str) -> String {
     facts.all(key).unwrap_or_else(|| "unknown".to_string())
 }
 
 fn conduct(figures: &StudySummary, facts: &Facts) -> String {
     let planned = facts.all("plan").map_or(" without a plan".to_string(), |plan| {
-        format!(" after the plan {plan} (name and digest; groups and orders of conditions follow from its seed)")
+        format!(" after the plan {plan} (name and digest; its seed determines groups and orders of conditions)")
     });
     let orders = facts.all("orders").map_or(String::new(), |orders| format!(" or {orders} served orders"));
     let accuracy = facts.all("accuracy").map_or(String::new(), |deg| format!(" (accuracy in checks: {deg}\u{b0})"));
     let all = |key| all(facts, key);
     format!(
         "{} took part{planned}; {} recorded, {} left out of the analysis. Participants: {}. The task was that of the kitchen \
-         \u{201c}{}\u{201d}. A trial was to end after {} presses of both agents or {} s{orders}, whatever came first.{}{} A press \
+         \u{201c}{}\u{201d}. A trial was to end after {} presses of both agents or {} s{orders}, whichever came first.{}{} A press \
          of the robot took {}. Gaze came from {}{accuracy}. A signal was shown for {}.",
         words::count(figures.participants, "participant", "participants"),
         words::count(figures.trials + figures.left_out.len() as u64, "trial was", "trials were"),
@@ -50,15 +50,15 @@ fn conduct(figures: &StudySummary, facts: &Facts) -> String {
     )
 }
 
-/// What the wizard was, and saw.
+/// Sentence about the wizard and the information shown to the wizard.
 fn wizard(facts: &Facts) -> Markup {
     html! {
         @if facts.has("scripted wizard") {
-            " The wizard was a script that sees kitchen, presses and gaze, and no estimate: " (all(facts, "scripted wizard")) "."
+            " The wizard was a script that observes kitchen, presses and gaze, but no estimate: " (all(facts, "scripted wizard")) "."
         }
         @if facts.has("wizard saw") {
             " The wizard saw " (all(facts, "wizard saw"))
-            @if facts.has("unblinded") { ", and in some trials what assistants would say." } @else { "." }
+            @if facts.has("unblinded") { ", and in some trials the hypothetical signals of assistants." } @else { "." }
         }
     }
 }
@@ -78,33 +78,33 @@ fn versions(facts: &Facts) -> String {
 }
 
 fn analysis(figures: &StudySummary) -> String {
-    // Where nothing was asked of the concepts, nothing is known of what they would have said.
+    // Hypothetical signals are mentioned only if concepts were analysed.
     let computed = match figures.similarity.is_some() || figures.roc.iter().any(|roc| !roc.points.is_empty()) {
-        true => ", the estimate of beliefs and what each concept would have said",
+        true => ", the estimate of beliefs and the hypothetical signals of each concept",
         false => " and the estimate of beliefs",
     };
     let causes = match figures.totals.beliefs_from {
         Some(BeliefBasis::Recorded) => {
-            "Why presses were errors was judged by what the simulated participants recorded of their beliefs."
+            "Causes of errors were attributed by the recorded beliefs of the simulated participants."
         }
-        Some(BeliefBasis::Raters) => "Why presses were errors was coded by two raters.",
-        Some(BeliefBasis::Estimate) => "Why presses were errors was judged by the assistant's estimate of the beliefs.",
-        None => "Why presses were errors is not known for all trials.",
+        Some(BeliefBasis::Raters) => "Causes of errors were coded by two raters.",
+        Some(BeliefBasis::Estimate) => "Causes of errors were attributed by the assistant's estimate of the beliefs.",
+        None => "Causes of errors are not known for all trials.",
     };
     format!(
-        "Every recording was replayed event by event; errors, their causes{computed} were computed anew from the recorded events. \
+        "Every recording was replayed event by event; errors, their causes{computed} were recomputed from the recorded events. \
          {causes}"
     )
 }
 
-/// How many trials ended how, in a sentence.
+/// Sentence with the numbers of trials by the reason of their end.
 fn endings(figures: &StudySummary) -> String {
     let one = |(reason, &count): (&EndReason, &u64)| {
         let how = match reason {
-            EndReason::Presses => "with the presses",
-            EndReason::Time => "as the time was over",
-            EndReason::Orders => "as the orders were served",
-            EndReason::Wizard => "as the wizard ended it before",
+            EndReason::Presses => "after the set number of presses",
+            EndReason::Time => "after the set time",
+            EndReason::Orders => "after the set number of orders",
+            EndReason::Wizard => "early by the wizard",
             EndReason::Aborted => "aborted",
         };
         format!("{count} {how}")
@@ -112,15 +112,15 @@ fn endings(figures: &StudySummary) -> String {
     let ended: Vec<String> = figures.ended.iter().map(one).collect();
     let shorter = match figures.ended.keys().all(|reason| *reason == EndReason::Presses) {
         true => "",
-        false => " Each counts as one trial, however long it was.",
+        false => " Each counts as one trial, regardless of its length.",
     };
     match ended.is_empty() {
         true => String::new(),
-        false => format!(" Of the trials that count ended {}.{shorter}", ended.join(", ")),
+        false => format!(" Ends of the trials that count: {}.{shorter}", ended.join(", ")),
     }
 }
 
-/// With which arms, in a sentence.
+/// Sentence about the kinds of robot arm.
 fn arms(figures: &StudySummary) -> String {
     let trials = |group: &ArmGroup| format!("{} in {}", arm(group.kind), words::count(group.trials, "trial", "trials"));
     match &figures.robot[..] {
@@ -128,7 +128,7 @@ fn arms(figures: &StudySummary) -> String {
         [one] => format!(" The robot\u{2019}s arm was {}.", arm(one.kind)),
         both => {
             let both: Vec<String> = both.iter().map(trials).collect();
-            format!(" The robot\u{2019}s arm was {}; the figures pool them.", both.join(" and "))
+            format!(" The robot\u{2019}s arm was {}; the statistics pool them.", both.join(" and "))
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The report: one page that needs nothing beside it, for screen and paper.
+//! The report: one self-contained HTML page for screen and print.
 
 mod assistance;
 mod concept_comparison;
@@ -17,10 +17,10 @@ use super::facts::Facts;
 use super::figures::StudySummary;
 use super::trial::Trial;
 
-/// How the page looks.
+/// Style sheet of the page.
 const STYLE: &str = include_str!("style.css");
 
-/// The page, as HTML. Beside it are files of these tables.
+/// The report as an HTML page; it refers to the files of these tables.
 pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[Table]) -> String {
     let captions = &mut Captions::default();
     let sections = [
@@ -49,7 +49,7 @@ pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[T
     page.into_string()
 }
 
-/// The head of the page.
+/// The HTML head of the page.
 fn head(figures: &StudySummary, trials: &[Trial]) -> Markup {
     html! {
         head {
@@ -62,7 +62,7 @@ fn head(figures: &StudySummary, trials: &[Trial]) -> Markup {
     }
 }
 
-/// The metadata of the page, by name.
+/// Metadata of the page as (name, content).
 fn metadata(trials: &[Trial]) -> [(&'static str, String); 3] {
     let [generator, participants] = page_head::about(trials.iter().map(|trial| trial.participant.as_str()));
     [generator, participants, ("viewport", "width=device-width, initial-scale=1".to_string())]

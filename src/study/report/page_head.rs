@@ -1,5 +1,4 @@
-//! Metadata in the head of a report: the program that wrote it, and the participants that it is about. `tomcom forget` finds reports
-//! by it.
+//! Metadata in the head of a report: the program version and the participants' codes. `tomcom forget` finds reports by them.
 
 use std::collections::BTreeSet;
 
@@ -10,14 +9,13 @@ const PARTICIPANTS: &str = "participants";
 /// Program name before its version.
 const PROGRAM: &str = "tomcom ";
 
-/// Metadata of a report about these participants, as (name, content). Participants have the names that tables give them: letters,
-/// digits, - and _.
+/// Metadata of a report about these participants, as (name, content). Names consist of letters, digits, - and _, as in tables.
 pub(super) fn about<'a>(participants: impl Iterator<Item = &'a str>) -> [(&'static str, String); 2] {
     let participants: Vec<&str> = participants.collect::<BTreeSet<&str>>().into_iter().collect();
     [(GENERATOR, format!("{PROGRAM}{}", env!("CARGO_PKG_VERSION"))), (PARTICIPANTS, participants.join(" "))]
 }
 
-/// The participants of a report of this program; `None` for any other page.
+/// Participants of a report that this program wrote; `None` for any other page.
 pub fn participants(page: &str) -> Option<Vec<&str>> {
     let (head, _) = page.split_once("</head>")?;
     head.contains(&tag(GENERATOR, PROGRAM)).then_some(())?;
@@ -26,7 +24,7 @@ pub fn participants(page: &str) -> Option<Vec<&str>> {
     Some(content.split_whitespace().collect())
 }
 
-/// The beginning of a metadata tag, up to the beginning of its content.
+/// Start of a metadata tag up to and including the first characters of its content.
 fn tag(name: &str, begins: &str) -> String {
     format!("<meta name=\"{name}\" content=\"{begins}")
 }

@@ -1,4 +1,4 @@
-//! Results with what the paper found.
+//! Report section with the results beside those of the paper.
 
 use maud::{Markup, html};
 
@@ -7,7 +7,7 @@ use crate::measures::matching::MatchShares;
 use crate::measures::wizard::WizardMeasures;
 use crate::study::figures::StudySummary;
 
-/// What the paper found, beside what was found here.
+/// Table with this study's results beside the paper's.
 pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let totals = &figures.totals;
     let row = |what: &str, here: String, paper: &str| cells([&what, &here, &paper]);
@@ -17,39 +17,39 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
         row("participants", figures.participants.to_string(), "14"),
         row("trials", figures.trials.to_string(), "28"),
         row("presses of both agents", totals.actions.to_string(), "8515"),
-        row("presses a trial", number(per_trial, 0), "304"),
+        row("presses per trial", number(per_trial, 0), "304"),
         row("errors of the human", totals.errors.to_string(), "587"),
         row("errors per press of both", percent(totals.error_rate), "6.9 %"),
         row("errors per press of the human", percent(totals.error_rate_human), "about 11 to 13 %"),
         row("belief related errors", count(totals.belief_related_errors), "481"),
         row("share of the errors that are belief related", percent(totals.belief_related_share), "82 %"),
         row("error sequences", count(totals.sequences), "153"),
-        row("errors in a sequence, in the mean", number(totals.mean_sequence_length, 2), "3.1"),
-        row("the same by single aspect", number(totals.mean_sequence_length_by_aspect, 2), UNKNOWN),
-        row("seconds to recover, in the mean", number(totals.mean_recovery_s, 1), UNKNOWN),
+        row("mean errors per sequence", number(totals.mean_sequence_length, 2), "3.1"),
+        row("mean errors per sequence, by single aspect", number(totals.mean_sequence_length_by_aspect, 2), UNKNOWN),
+        row("mean seconds to recover from a sequence", number(totals.mean_recovery_s, 1), UNKNOWN),
         row("assistance: p of the mixed ANOVA", p_value(figures.anova.map(|test| test.p)), "0.014"),
         row("assistance: Pearson r", number(figures.pearson.map(|found| found.r), 2), "0.64"),
         row("assistance: p of r", p_value(figures.pearson.map(|found| found.p)), "0.014"),
-        row("signals of the wizard with a match of ToM-Com", percent(matched), "74 %"),
+        row("wizard signals matched by ToM-Com", percent(matched), "74 %"),
     ];
     let caption =
         "All trials together. Paper: Buehler, Adamy and Weisswange (2021); its 6.9 % is per press of both agents.";
     section("Beside the paper", captions.table(caption, &["", "here", "paper"], &rows))
 }
 
-/// Wizard and assistant.
+/// Section on the similarity of wizard and assistant.
 pub(super) fn similarity(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let content = html! {
         (matches(captions, figures))
         @if let Some(wizard) = &figures.wizard {
             h3 { "The wizard" } "\n"
-            (captions.table("What the wizard did.", &["", "over all trials"], &wizard_rows(wizard)))
+            (captions.table("Performance of the wizard.", &["", "over all trials"], &wizard_rows(wizard)))
         }
     };
     section("Wizard and assistant", content)
 }
 
-/// How far wizard and assistant match, where there is something to be matched.
+/// Table of the similarity of wizard and assistant; empty without signals.
 fn matches(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let Some(found) = &figures.similarity else { return nothing() };
     let share = |what: &str, level: &MatchShares, chance: Option<f64>| {
@@ -59,9 +59,9 @@ fn matches(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let rows = [
         share("same signal and target", &found.strict, found.chance_recall),
         share("same kind of signal", &found.lenient, None),
-        share("anything, at about the same time", &found.timing, None),
+        share("any signal at about the same time", &found.timing, None),
     ];
-    let caption = "How far the wizard\u{2019}s signals and those that ToM-Com would have sent match.";
+    let caption = "Agreement between the wizard\u{2019}s signals and the hypothetical signals of ToM-Com.";
     let heads = ["within 3 presses of the human", "recall", "by chance", "precision", "F1"];
     html! {
         (captions.table(caption, &heads, &rows))
@@ -76,7 +76,7 @@ fn matches(captions: &mut Captions, figures: &StudySummary) -> Markup {
     }
 }
 
-/// What keeps the wizard's signals from having a match; of participants who tell what they believed.
+/// Note on wizard signals that have no match in principle; only for participants with recorded beliefs.
 fn limits(figures: &StudySummary, wizard: &WizardMeasures) -> Markup {
     let (Some(late), Some(wrong), Some(needless)) = (wizard.late, wizard.wrong_targets, wizard.needless) else {
         return nothing();
@@ -84,10 +84,9 @@ fn limits(figures: &StudySummary, wizard: &WizardMeasures) -> Markup {
     let who = if figures.simulated_participants { "scripted wizard" } else { "wizard" };
     html! {
         p {
-            "What limits the match: " (late + wrong + needless) " of " (wizard.signals) " signals of the " (who) " were about \
-            something that was believed right, then or already, and ToM-Com has no reason for them. It keeps silent, too, where the \
-            error is likely to end by itself before it costs more presses than a signal does. What it said more than 3 presses \
-            earlier is no match either."
+            "Limits of the match: " (late + wrong + needless) " of " (wizard.signals) " signals of the " (who) " were about a \
+            correctly believed aspect, for which ToM-Com sends no signal. ToM-Com also sends none if the false belief will \
+            probably cost fewer presses than a signal. A signal of ToM-Com more than 3 presses earlier does not match either."
         }
         "\n"
     }
@@ -97,23 +96,23 @@ fn wizard_rows(wizard: &WizardMeasures) -> [Vec<Markup>; 11] {
     let row = |what: &str, value: Option<u64>| cells([&what, &count(value)]);
     [
         row("signals sent", Some(wizard.signals)),
-        row("taken back", Some(wizard.taken_back)),
+        row("signals revoked", Some(wizard.taken_back)),
         row("false beliefs that led to errors", wizard.episodes),
-        row("of those with a signal (hits)", wizard.hits),
-        row("without one (omissions)", wizard.omissions),
-        row("signals about the same again", wizard.repeated),
-        row("late: it was right again already", wizard.late),
-        row("about the wrong thing", wizard.wrong_targets),
-        row("while nothing was believed wrong", wizard.needless),
-        row("about a wrong belief that led to no error", wizard.harmless),
+        row("false beliefs that led to errors, with a signal (hits)", wizard.hits),
+        row("false beliefs that led to errors, without a signal (omissions)", wizard.omissions),
+        row("repeated signals about the same false belief", wizard.repeated),
+        row("late signals, after the belief was corrected", wizard.late),
+        row("signals about a wrong target", wizard.wrong_targets),
+        row("signals without any false belief", wizard.needless),
+        row("signals about a false belief that led to no error", wizard.harmless),
         cells([
-            &"seconds from the beginning of a false belief to its signal, in the median",
+            &"median seconds from the start of a false belief to its signal",
             &number(wizard.latency_s.map(|times| times.median), 1),
         ]),
     ]
 }
 
-/// What participants said.
+/// Section on the participants' answers to questionnaires.
 pub(super) fn people(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let content = html! {
         @if let Some(found) = &figures.acceptance {
@@ -126,7 +125,7 @@ pub(super) fn people(captions: &mut Captions, figures: &StudySummary) -> Markup 
         }
         @if !figures.questionnaires.is_empty() { (scroll(items(captions, figures))) }
     };
-    section("What participants said", content)
+    section("Questionnaires", content)
 }
 
 fn items(captions: &mut Captions, figures: &StudySummary) -> Markup {
@@ -141,6 +140,6 @@ fn items(captions: &mut Captions, figures: &StudySummary) -> Markup {
             &counts.join(" "),
         ])
     });
-    let heads = ["item", "after", "answers", "left out", "mean", "how often 1, 2, \u{2026}"];
+    let heads = ["item", "after", "answers", "skipped", "mean", "number of answers 1, 2, \u{2026}"];
     captions.table("Answers by item and condition.", &heads, &rows.collect::<Vec<_>>())
 }

@@ -1,4 +1,4 @@
-//! What the robot did beside its presses, and what the wizard did with it.
+//! Report section on robot events besides presses, and on the wizard's interventions in the robot.
 
 use maud::{Markup, Render, html};
 
@@ -9,7 +9,7 @@ use crate::study::arm_group::ArmGroup;
 use crate::study::figures::StudySummary;
 use crate::study::robot_tally::ArmSummary;
 
-/// A table with a column for each kind of arm.
+/// Table of robot statistics with one column per kind of arm.
 pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let groups = &figures.robot;
     if groups.is_empty() {
@@ -24,29 +24,29 @@ pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {
     };
     let did = |what: &str, of: fn(&ArmGroup) -> u64| row(what, &|group| of(group).to_string());
     let mut rows = vec![
-        felt("protective stops: it felt somebody", |arm| arm.protective_stops),
+        felt("protective stops after a contact", |arm| arm.protective_stops),
         felt("stops because a joint did not follow", |arm| arm.faults),
-        felt("contacts with somebody", |arm| arm.contacts),
-        seconds("largest force of these in N", |arm| arm.peak_force_n),
-        seconds("seconds slowed by a hand near it (reduced)", |arm| Some(arm.reduced_s)),
-        seconds("seconds waiting for a hand (safeguard)", |arm| Some(arm.safeguard_s)),
+        felt("contacts with a person", |arm| arm.contacts),
+        seconds("largest contact force in N", |arm| arm.peak_force_n),
+        seconds("seconds at reduced speed because of a hand nearby", |arm| Some(arm.reduced_s)),
+        seconds("seconds of waiting for a hand (safeguard stop)", |arm| Some(arm.safeguard_s)),
         did("emergency stops by the wizard", |group| group.robot.emergency_stops),
     ];
     let occurs = |reason: &AbortReason| groups.iter().any(|group| group.robot.given_up.contains_key(reason));
     rows.extend(AbortReason::ALL.into_iter().filter(occurs).map(|reason| {
-        let what = format!("presses given up: {}", reason.words());
+        let what = format!("aborted presses: {}", reason.words());
         row(&what, &|group| count(group.robot.given_up(reason)))
     }));
     rows.extend([
-        did("held by the wizard", |group| group.robot.held),
-        did("skipped by the wizard", |group| group.robot.skipped),
-        did("driven by the wizard", |group| group.robot.driven),
-        did("places put right by the wizard", |group| group.robot.corrected),
+        did("times held by the wizard", |group| group.robot.held),
+        did("presses skipped by the wizard", |group| group.robot.skipped),
+        did("presses chosen by the wizard", |group| group.robot.driven),
+        did("locations corrected by the wizard", |group| group.robot.corrected),
     ]);
     let head = |group: &ArmGroup| format!("{}, {}", arm(group.kind), words::count(group.trials, "trial", "trials"));
     let heads: Vec<String> = std::iter::once("arm".to_string()).chain(groups.iter().map(head)).collect();
     let caption = html! {
-        "Sums over trials, pauses included, by arm. A timed arm has nothing to feel with. Each trial\u{2019}s are in "
+        "Sums over trials, pauses included, by arm. A timed arm has no contacts. Values of each trial are in "
         code { "trials.csv" } "."
     };
     section("The robot", captions.table(caption, &heads, &rows))

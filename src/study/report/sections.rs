@@ -1,4 +1,4 @@
-//! What is around the results: summary, trials, definitions, files.
+//! Report sections around the results: summary, trials, definitions, files.
 
 use maud::{Markup, Render, html};
 
@@ -11,7 +11,7 @@ use crate::study::definitions::DEFINITIONS;
 use crate::study::figures::StudySummary;
 use crate::study::trial::{BeliefBasis, Trial};
 
-/// What it is about, and the main figures.
+/// Section with the study's title and main results.
 pub(super) fn summary(figures: &StudySummary) -> Markup {
     let totals = &figures.totals;
     let effect = match (figures.pearson, &figures.similarity) {
@@ -30,15 +30,15 @@ pub(super) fn summary(figures: &StudySummary) -> Markup {
         "\n"
         @if figures.simulated_participants {
             p class="warning" {
-                "Participants are simulated. Their errors, beliefs and presses are those of a program that is there to try machinery \
-                 and parameters. Nothing here is evidence about people."
+                "Participants are simulated. Their errors, beliefs and presses are those of a program for testing apparatus and \
+                 parameters. Nothing here is evidence about people."
             }
             "\n"
         }
         @if totals.beliefs_from == Some(BeliefBasis::Estimate) {
             p class="warning" {
-                "What participants believed is known only as the assistant's estimate. Figures that rest on it, such as the share of \
-                 belief related errors, need the codes of two raters to be more than that."
+                "Beliefs of participants are known only as the assistant's estimate. Results that rest on them, such as the share of \
+                 belief related errors, are tentative until two raters have coded the errors."
             }
             "\n"
         }
@@ -46,22 +46,22 @@ pub(super) fn summary(figures: &StudySummary) -> Markup {
         div class="cards" {
             "\n"
             (card(&percent(totals.error_rate), "of the presses of both agents are errors of the human"))
-            (card(&percent(totals.belief_related_share), "of the errors come of false beliefs"))
-            (card(&number(totals.mean_sequence_length, 1), "errors in a sequence, in the mean"))
+            (card(&percent(totals.belief_related_share), "of the errors are caused by false beliefs"))
+            (card(&number(totals.mean_sequence_length, 1), "errors per sequence on average"))
             (effect)
         }
         "\n"
     }
 }
 
-/// How far two raters agree, in words.
+/// Paragraph on the agreement of two raters.
 fn raters(found: &Agreement) -> Markup {
     html! {
         p {
-            "Two raters coded why presses were errors. They say the same cause of " (found.same_cause) " of " (found.errors)
-            " errors (Cohen\u{2019}s kappa " (number(found.kappa_cause, 2)) "), and of " (found.beliefs) " errors that both put \
-            down to a belief they say of " (found.same_aspect) " that the same is believed wrong (kappa "
-            (number(found.kappa_aspect, 2)) "). An error is belief related if both say so."
+            "Two raters coded the causes of errors. They agree on the cause of " (found.same_cause) " of " (found.errors)
+            " errors (Cohen\u{2019}s kappa " (number(found.kappa_cause, 2)) "). Of " (found.beliefs) " errors that both \
+            attribute to a false belief, they agree on its location for " (found.same_aspect) " (kappa "
+            (number(found.kappa_aspect, 2)) "). An error counts as belief related if both coded a false belief."
         }
         "\n"
     }
@@ -71,18 +71,18 @@ fn card(value: &str, what: &str) -> Markup {
     html! { div class="card" { b { (value) } span { (what) } } "\n" }
 }
 
-/// No longer list of trials is printed.
+/// Largest number of trials in the printed list.
 const MOST_TRIALS: usize = 60;
 
-/// Every trial, and those that are left out with the reasons.
+/// Section with all trials, and with the reasons for excluded ones.
 pub(super) fn trials(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
     let content = html! {
         div class="scroll long" { (counting(captions, trials)) } "\n"
-        h3 { "Left out" } "\n"
+        h3 { "Excluded" } "\n"
         (left_out(captions, figures))
         @if figures.practice > 0 {
             p class="note" {
-                (words::count(figures.practice, "recording is", "recordings are")) " of practice, and no trial."
+                (words::count(figures.practice, "recording is", "recordings are")) " of practice and not analysed."
             }
             "\n"
         }
@@ -102,17 +102,17 @@ fn counting(captions: &mut Captions, trials: &[Trial]) -> Markup {
         ("errors", |trial| trial.errors.render()),
         ("per press of the human", |trial| percent(trial.error_rate_human()).render()),
         ("belief related", |trial| count(trial.beliefs.as_ref().map(|beliefs| beliefs.errors)).render()),
-        ("in a sequence", |trial| number(trial.sequence_length(), 1).render()),
+        ("per sequence", |trial| number(trial.sequence_length(), 1).render()),
         ("signals", |trial| trial.signals.render()),
         ("orders", |trial| trial.orders.render()),
-        ("s a press", |trial| number(trial.press_s, 2).render()),
+        ("s per press", |trial| number(trial.press_s, 2).render()),
     ];
     let number = trials.iter().filter(|trial| trial.counts()).count();
     let caption = html! {
         @if number > MOST_TRIALS {
             "The first " (MOST_TRIALS) " of " (number) " trials that count; all are in " code { "trials.csv" } "."
         } @else {
-            "Trials that count."
+            "Analysed trials."
         }
     };
     let printed = trials.iter().filter(|trial| trial.counts()).take(MOST_TRIALS);
@@ -121,14 +121,14 @@ fn counting(captions: &mut Captions, trials: &[Trial]) -> Markup {
 
 fn left_out(captions: &mut Captions, figures: &StudySummary) -> Markup {
     if figures.left_out.is_empty() {
-        return html! { p { "No trial is left out." } "\n" };
+        return html! { p { "No trial is excluded." } "\n" };
     }
     let rows: Vec<Vec<Markup>> =
         figures.left_out.iter().map(|one| cells([&one.recording, &one.participant, &one.reason])).collect();
-    captions.table_of_text("Trials that do not count.", &["recording", "participant", "why"], &rows)
+    captions.table_of_text("Excluded trials.", &["recording", "participant", "reason"], &rows)
 }
 
-/// What every term means.
+/// Section with the definitions of all terms.
 pub(super) fn definitions() -> Markup {
     let content = html! {
         dl { @for (term, text) in DEFINITIONS { "\n" dt { (term) } "\n" dd { (text) } } } "\n"
@@ -136,7 +136,7 @@ pub(super) fn definitions() -> Markup {
     section("Definitions", content)
 }
 
-/// The files beside the report that have something in them.
+/// Section that lists the non-empty tables beside the report.
 pub(super) fn files(tables: &[Table]) -> Markup {
     let content = html! {
         p {
@@ -145,8 +145,8 @@ pub(super) fn files(tables: &[Table]) -> Markup {
                 @if index > 0 { ", " }
                 code { (table.name()) ".csv" }
             }
-            ". The last one says what every column of the others means. Empty cells are unknown values; a recording's name joins \
-            the tables."
+            ". The last one defines every column of the others. Empty cells are unknown values; the recording's name is the key \
+            that joins the tables."
         }
         "\n"
     };

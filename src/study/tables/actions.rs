@@ -1,4 +1,4 @@
-//! The table of presses of both agents.
+//! Table of the presses of both agents.
 
 use crate::kitchen::{Agent, Kitchen, Press};
 use crate::measures::JudgedPress;
@@ -7,41 +7,41 @@ use crate::measures::coding::{CauseKind, Code};
 use crate::mind::witness::rounded;
 use crate::study::column::{Column, Table, TableCell, TableRow};
 
-/// A press, as it was made.
+/// A recorded press.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordedPress {
-    /// The number of its event in the log.
+    /// Log number of the press event.
     pub seq: u64,
-    /// On the trial's clock.
+    /// Time on the trial clock, in seconds.
     pub time_s: f64,
     pub press: Press,
-    /// Its number among those of its agent, from 1.
+    /// Number of the press among those of its agent, from 1.
     pub number: u32,
-    /// Since this agent's press before, pauses left out.
+    /// Seconds since this agent's previous press, without pauses.
     pub since_s: Option<f64>,
-    /// Of a press of the human: ln p under the estimated belief.
+    /// Log probability of a human press under the estimated belief, in nats.
     pub log_p: Option<f64>,
 }
 
-/// What is known of a press of the human when its trial is over.
+/// Analysis of a human press.
 #[derive(Clone, Copy, Debug)]
 pub struct PressAnalysis<'a> {
     pub judged: &'a JudgedPress,
-    /// The number of its error sequence in the trial, from 1.
+    /// Number of the press's error sequence in the trial, from 1.
     pub sequence: Option<usize>,
-    /// Of people: the cause by the assistant's estimate.
+    /// Cause of a person's error by the assistant's estimate.
     pub by_estimate: Option<Cause>,
-    /// What the first two raters say.
+    /// Codes of the first two raters.
     pub codes: [Option<&'a Code>; 2],
 }
 
-/// A press, with what is known of it.
+/// A press with its analysis.
 #[derive(Clone, Copy, Debug)]
 pub struct ActionRow<'a> {
     pub recording: &'a str,
     pub kitchen: &'a Kitchen,
     pub recorded: &'a RecordedPress,
-    /// None of the robot's presses.
+    /// Analysis of a human press; `None` for presses of the robot.
     pub analysis: Option<PressAnalysis<'a>>,
 }
 
@@ -50,7 +50,7 @@ impl ActionRow<'_> {
         Some(self.analysis?.judged)
     }
 
-    /// What a false belief behind the press is about: the first target, and where it takes two, the second.
+    /// Targets of the false belief behind the press; the second only if the cause needs two false beliefs.
     fn targets(&self) -> [Option<String>; 2] {
         let label = |target: Target| target.label(self.kitchen);
         match self.judged().and_then(|press| press.cause) {
@@ -59,7 +59,7 @@ impl ActionRow<'_> {
         }
     }
 
-    /// By how much the belief makes the press likelier; raters say nothing of that.
+    /// Log probability ratio of the press under belief and truth; `None` for causes from raters.
     fn gain_nats(&self) -> Option<f64> {
         match self.judged()?.cause? {
             Cause::Belief { gain_nats, .. } => Some(rounded(gain_nats)).filter(|gain| gain.is_finite()),
@@ -95,38 +95,42 @@ impl TableRow for ActionRow<'_> {
     const TABLE: Table = Table::Actions;
 
     fn columns() -> Vec<Column<Self>> {
-        let cause = "of an error: belief or slip, by what beliefs_from of the trial says; empty where nobody knows";
-        let second = "the second one, where it takes two false beliefs to explain it";
-        let sequence = "of a belief related error: which error sequence of the trial, from 1";
-        let rater = "what the first rater by name says: belief (and about what), slip, race or other";
+        let cause = "cause of an error: belief or slip; source in the trial's beliefs_from; empty: unknown";
+        let second = "second aspect, if only two false beliefs together explain the error";
+        let sequence = "number of a belief related error's sequence in the trial, from 1";
+        let rater = "code of the first rater by name: belief (with location), slip, race or other";
         vec![
             Self::column("recording", "", "as in trials", |row| row.recording.into()),
             Self::column("seq", "", "number of the event in the log", |row| row.recorded.seq.into()),
-            Self::column("time_s", "s", "on the trial's clock", |row| rounded(row.recorded.time_s).into()),
+            Self::column("time_s", "s", "time on the trial's clock", |row| rounded(row.recorded.time_s).into()),
             Self::column("agent", "", "human or robot", |row| agent_name(row.recorded.press.agent).into()),
-            Self::column("press", "presses", "which press of this agent it is, from 1", |row| {
+            Self::column("press", "presses", "number of the press among this agent's presses, from 1", |row| {
                 row.recorded.number.into()
             }),
             Self::column("button", "", "name of the button", |row| {
                 let press = &row.recorded.press;
                 (&row.kitchen.button(press.agent, press.button).name).into()
             }),
-            Self::column("effective", "", "it changed the kitchen", |row| row.recorded.press.effective.into()),
-            Self::column("since_s", "s", "since this agent's press before", |row| {
+            Self::column("effective", "", "whether the press changed the kitchen", |row| {
+                row.recorded.press.effective.into()
+            }),
+            Self::column("since_s", "s", "time since this agent's previous press, without pauses", |row| {
                 row.recorded.since_s.map(rounded).into()
             }),
-            Self::column("regret", "presses", "of the human: presses of both that are lost by it", |row| {
+            Self::column("regret", "presses", "regret of a human press: presses of both agents that it loses", |row| {
                 row.judged().map(|press| press.verdict.regret).into()
             }),
-            Self::column("excess", "presses", "regret above that of the best press of the human", |row| {
+            Self::column("excess", "presses", "regret minus that of the human's best press", |row| {
                 row.judged().map(|press| press.verdict.excess).into()
             }),
-            Self::column("race", "", "within 300 ms of a change by the robot at the same place", |row| {
+            Self::column("race", "", "whether a robot change at the same place was less than 300 ms before", |row| {
                 row.judged().map(|press| press.verdict.race).into()
             }),
-            Self::column("error", "", "it is an error", |row| row.judged().map(|press| press.verdict.error).into()),
+            Self::column("error", "", "whether the press is an error", |row| {
+                row.judged().map(|press| press.verdict.error).into()
+            }),
             Self::column("cause", "", cause, |row| row.judged().and_then(|press| press.cause).map(cause_name).into()),
-            Self::column("aspect", "", "of a belief related error: what the false belief is about", |row| {
+            Self::column("aspect", "", "aspect of the false belief behind a belief related error", |row| {
                 let [first, _] = row.targets();
                 first.into()
             }),
@@ -140,12 +144,15 @@ impl TableRow for ActionRow<'_> {
             Self::column("sequence", "", sequence, |row| {
                 row.analysis.and_then(|analysis| analysis.sequence).map(|number| number as u64).into()
             }),
-            Self::column("cause_estimated", "", "of people: belief or slip by the assistant's estimate", |row| {
-                row.analysis.and_then(|analysis| analysis.by_estimate).map(cause_name).into()
-            }),
+            Self::column(
+                "cause_estimated",
+                "",
+                "cause of a person's error by the assistant's estimate: belief or slip",
+                |row| row.analysis.and_then(|analysis| analysis.by_estimate).map(cause_name).into(),
+            ),
             Self::column("rater_1", "", rater, |row| row.code(0)),
-            Self::column("rater_2", "", "what the second rater says", |row| row.code(1)),
-            Self::column("log_p", "nats", "of the human's press under the estimated belief", |row| {
+            Self::column("rater_2", "", "code of the second rater by name", |row| row.code(1)),
+            Self::column("log_p", "nats", "log probability of the human's press under the estimated belief", |row| {
                 row.recorded.log_p.map(rounded).into()
             }),
         ]

@@ -1,19 +1,19 @@
-//! The table of what was believed of each aspect before each press of the human.
+//! Table of the beliefs about each aspect before each human press.
 
 use crate::mind::AspectBelief;
 use crate::mind::witness::AspectEstimate;
 use crate::study::column::{Column, Table, TableRow};
 
-/// What was believed of an aspect before a press of the human.
+/// Estimated and recorded belief about an aspect before a human press.
 #[derive(Clone, Copy, Debug)]
 pub struct BeliefRow<'a> {
     pub recording: &'a str,
-    /// The number of the press's event in the log.
+    /// Log number of the press event.
     pub seq: u64,
-    /// The aspect's true value.
+    /// True value of the aspect.
     pub truth: &'a str,
     pub estimate: &'a AspectEstimate,
-    /// What a simulated participant tells of its belief.
+    /// Recorded belief of a simulated participant.
     pub believed: Option<&'a AspectBelief>,
 }
 
@@ -21,25 +21,31 @@ impl TableRow for BeliefRow<'_> {
     const TABLE: Table = Table::Beliefs;
 
     fn columns() -> Vec<Column<Self>> {
-        let seq = "of the human's press that it is from before, as in actions";
-        let believed = "of simulated participants: that of the truth for it";
+        let seq = "log number of the human press that follows, as in actions";
+        let believed = "probability of the true value in a simulated participant's belief";
         vec![
             Self::column("recording", "", "as in trials", |row| row.recording.into()),
             Self::column("seq", "", seq, |row| row.seq.into()),
             Self::column("aspect", "", "state aspect: a location's content, or a dish's recipe", |row| {
                 (&row.estimate.aspect).into()
             }),
-            Self::column("truth", "", "its true value", |row| row.truth.into()),
-            Self::column("estimate", "", "the value that is expected to be believed most", |row| {
+            Self::column("truth", "", "true value of the aspect", |row| row.truth.into()),
+            Self::column("estimate", "", "most probable value in the estimated belief", |row| {
                 (&row.estimate.believes).into()
             }),
-            Self::column("estimate_p_truth", "probability", "expected, of the truth", |row| {
-                row.estimate.p_truth.into()
-            }),
-            Self::column("estimate_precision", "", "sum of the Dirichlet's alphas", |row| {
-                row.estimate.precision.into()
-            }),
-            Self::column("believed", "", "of simulated participants: the likeliest value for it", |row| {
+            Self::column(
+                "estimate_p_truth",
+                "probability",
+                "probability of the true value in the estimated belief",
+                |row| row.estimate.p_truth.into(),
+            ),
+            Self::column(
+                "estimate_precision",
+                "",
+                "precision of the estimate: sum of the Dirichlet parameters",
+                |row| row.estimate.precision.into(),
+            ),
+            Self::column("believed", "", "most probable value in a simulated participant's belief", |row| {
                 row.believed.map(|own| &own.believes).into()
             }),
             Self::column("believed_p_truth", "probability", believed, |row| row.believed.map(|own| own.p_truth).into()),

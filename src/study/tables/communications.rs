@@ -1,19 +1,19 @@
-//! The table of communications that were sent, or would have been.
+//! Table of sent and hypothetical communications.
 
 use crate::kitchen::Kitchen;
 use crate::measures::matching::{CommunicationEvent, CommunicationKind};
 use crate::mind::witness::rounded;
 use crate::study::column::{Column, Table, TableRow};
 
-/// A communication.
+/// A sent or hypothetical communication.
 #[derive(Clone, Copy, Debug)]
 pub struct CommunicationRow<'a> {
     pub recording: &'a str,
     pub kitchen: &'a Kitchen,
-    /// Who sent it, or what would have.
+    /// Sender: wizard, assistant, or the concept of a hypothetical communication.
     pub lane: &'a str,
     pub sent: &'a CommunicationEvent,
-    /// Whether the other lane has the same within the window; none where there is no other.
+    /// Whether the other lane has a matching communication within the window; `None` without another lane.
     pub matched: Option<bool>,
 }
 
@@ -29,15 +29,17 @@ impl TableRow for CommunicationRow<'_> {
     const TABLE: Table = Table::Communications;
 
     fn columns() -> Vec<Column<Self>> {
-        let lane = "who sent it (wizard, assistant), or what would have said it (tom-com)";
-        let matched = "the other lane said the same within the window; empty where there is no other";
+        let lane = "sender (wizard, assistant), or concept of a hypothetical signal (tom-com)";
+        let matched = "whether the other lane has the same signal within the window; empty: no other lane";
         vec![
             Self::column("recording", "", "as in trials", |row| row.recording.into()),
             Self::column("lane", "", lane, |row| row.lane.into()),
-            Self::column("time_s", "s", "on the trial's clock", |row| rounded(row.sent.clock.as_secs_f64()).into()),
-            Self::column("press", "presses", "of the human before it", |row| row.sent.press.into()),
+            Self::column("time_s", "s", "time on the trial's clock", |row| {
+                rounded(row.sent.clock.as_secs_f64()).into()
+            }),
+            Self::column("press", "presses", "number of human presses before it", |row| row.sent.press.into()),
             Self::column("kind", "", "recipe, highlight or proposal", |row| kind_name(row.sent.content.kind).into()),
-            Self::column("target", "", "location that it is about", |row| {
+            Self::column("target", "", "location that the communication is about", |row| {
                 row.sent.content.target.map(|location| &row.kitchen.location(location).name).into()
             }),
             Self::column("matched", "", matched, |row| row.matched.into()),

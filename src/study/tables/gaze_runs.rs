@@ -1,4 +1,4 @@
-//! The table of the gaze: runs of samples on the same location.
+//! Table of gaze runs: successive gaze samples on the same location.
 
 use crate::base::time::SessionTime;
 use crate::kitchen::{Kitchen, LocationId};
@@ -9,27 +9,27 @@ use crate::study::column::{Column, Table, TableRow};
 #[derive(Clone, Copy, Debug)]
 pub struct GazeRun {
     pub location: Option<LocationId>,
-    /// When its first sample was taken, and its last.
+    /// Times of the first and last sample.
     pub began: SessionTime,
     pub last: SessionTime,
-    /// Of x, y and confidence over the samples.
+    /// Sums of x, y and confidence over the samples.
     pub sums: [f64; 3],
     pub samples: u64,
 }
 
 impl GazeRun {
-    /// The mean of x (0), y (1) or confidence (2).
+    /// Mean of x (0), y (1) or confidence (2).
     fn mean(&self, of: usize) -> f64 {
         rounded(self.sums[of] / self.samples as f64)
     }
 }
 
-/// A run of a recording.
+/// A gaze run with its recording.
 #[derive(Clone, Copy, Debug)]
 pub struct GazeRow<'a> {
     pub recording: &'a str,
     pub kitchen: &'a Kitchen,
-    /// When the run began, on the trial's clock.
+    /// Start of the run on the trial clock, in seconds.
     pub time_s: f64,
     pub run: GazeRun,
 }
@@ -38,20 +38,26 @@ impl TableRow for GazeRow<'_> {
     const TABLE: Table = Table::Gaze;
 
     fn columns() -> Vec<Column<Self>> {
-        let time = "of the first sample of a run on the same location, on the trial's clock";
+        let time = "time of the run's first sample on the trial's clock";
         vec![
             Self::column("recording", "", "as in trials", |row| row.recording.into()),
             Self::column("time_s", "s", time, |row| rounded(row.time_s).into()),
-            Self::column("duration_s", "s", "to the last sample of the run", |row| {
+            Self::column("duration_s", "s", "time from the first to the last sample of the run", |row| {
                 rounded(row.run.last.secs_since(row.run.began)).into()
             }),
-            Self::column("location", "", "where the gaze was; empty: on none, or not usable", |row| {
+            Self::column("location", "", "location at the gaze point; empty: none, or unusable samples", |row| {
                 row.run.location.map(|location| &row.kitchen.location(location).name).into()
             }),
-            Self::column("x", "width of the display", "mean, from the left", |row| row.run.mean(0).into()),
-            Self::column("y", "height of the display", "mean, from the top", |row| row.run.mean(1).into()),
-            Self::column("confidence", "0 to 1", "mean, as the tracker says", |row| row.run.mean(2).into()),
-            Self::column("samples", "samples", "in the run; every single one stands in events.jsonl", |row| {
+            Self::column("x", "width of the display", "mean horizontal gaze position, from the left", |row| {
+                row.run.mean(0).into()
+            }),
+            Self::column("y", "height of the display", "mean vertical gaze position, from the top", |row| {
+                row.run.mean(1).into()
+            }),
+            Self::column("confidence", "0 to 1", "mean confidence that the eye tracker reported", |row| {
+                row.run.mean(2).into()
+            }),
+            Self::column("samples", "samples", "number of samples in the run; events.jsonl has every sample", |row| {
                 row.run.samples.into()
             }),
         ]

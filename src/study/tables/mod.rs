@@ -1,4 +1,4 @@
-//! The tables: of each what a row is made from, and its columns.
+//! Declarations of the tables: source of a row, and columns.
 
 pub mod actions;
 pub mod aspect_beliefs;

@@ -1,21 +1,21 @@
-//! The table of participants, with what is compared between their trials.
+//! Table of participants, with the measures that are compared between their trials.
 
 use crate::study::column::{Column, Table, TableRow};
 use crate::study::effect::{StudyMeasure, TrialPair, pairs};
 use crate::study::tables::trials::{HEADLINE, measures};
 use crate::study::trial::Trial;
 
-/// A participant: its trials, at least one.
+/// A participant with its trials, at least one.
 #[derive(Clone, Copy, Debug)]
 pub struct ParticipantRow<'a>(&'a [Trial]);
 
-/// The participants of trials in the order of participants.
+/// Participants of these trials, which must be ordered by participant.
 pub fn participants(trials: &[Trial]) -> impl Iterator<Item = ParticipantRow<'_>> {
     trials.chunk_by(|a, b| a.participant == b.participant).map(ParticipantRow)
 }
 
 impl ParticipantRow<'_> {
-    /// The two trials that are compared, if there are two that count and have this measure.
+    /// The compared pair of trials for a measure; `None` unless two trials count and have the measure.
     fn pair(&self, measure: StudyMeasure) -> Option<TrialPair> {
         pairs(self.0, measure).pop()
     }
@@ -25,16 +25,16 @@ impl TableRow for ParticipantRow<'_> {
     const TABLE: Table = Table::Participants;
 
     fn columns() -> Vec<Column<Self>> {
-        let code = "code; with the seed in front where several seeds are analysed together";
-        let kind = "simulated, keyboard (at the console) or display (at the wall display)";
-        let group = "starting group of the plan; AB has the conditions in the plan's order";
-        let second = "the second trial is the assisted one; empty without a pair of trials that count";
+        let code = "participant code; prefixed by the seed if several seeds are analysed together";
+        let kind = "kind of participant: simulated, keyboard (at the console) or display (at the wall display)";
+        let group = "starting group in the study plan; AB: conditions in the plan's order";
+        let second = "whether the second trial is the assisted one; empty without a pair of trials that count";
         let mut columns: Vec<Column<Self>> = vec![
             Self::column("participant", "", code, |row| (&row.0[0].participant).into()),
             Self::column("kind", "", kind, |row| row.0[0].kind_name().into()),
             Self::column("group", "", group, |row| row.0[0].group.as_ref().into()),
-            Self::column("trials", "trials", "recorded", |row| (row.0.len() as u64).into()),
-            Self::column("trials_counted", "trials", "that are not left out", |row| {
+            Self::column("trials", "trials", "number of recorded trials", |row| (row.0.len() as u64).into()),
+            Self::column("trials_counted", "trials", "number of trials that are not left out", |row| {
                 (row.0.iter().filter(|trial| trial.counts()).count() as u64).into()
             }),
             Self::column("assisted_second", "", second, |row| {

@@ -1,4 +1,4 @@
-//! The table of trials, and the statistics among its columns that are compared.
+//! Table of trials, and the measures among its columns that are compared between conditions.
 
 use crate::robot::AbortReason;
 use crate::session::event::EndReason;
@@ -7,7 +7,7 @@ use crate::study::effect::StudyMeasure;
 use crate::study::robot_tally::ArmSummary;
 use crate::study::trial::{BeliefErrors, Trial, mean_length};
 
-/// What the headline is about.
+/// Main measure of the report.
 pub const HEADLINE: StudyMeasure = StudyMeasure {
     name: "error_rate_human",
     unit: "errors per press of the human",
@@ -18,16 +18,16 @@ pub const HEADLINE: StudyMeasure = StudyMeasure {
     value: Trial::error_rate_human,
 };
 
-/// A column of the table of trials.
+/// Declaration of a column in the table of trials.
 enum TrialColumn {
     Plain(Column<Trial>),
-    /// A statistic that is compared between assisted and unassisted trials.
+    /// A measure that is compared between assisted and unassisted trials.
     Compared(StudyMeasure),
 }
 
 use TrialColumn::Compared;
 
-/// The statistics that are compared, in the order of the columns; the first is [`HEADLINE`].
+/// The compared measures, in column order; the first is [`HEADLINE`].
 pub fn measures() -> Vec<StudyMeasure> {
     let measure = |column: TrialColumn| match column {
         Compared(measure) => Some(measure),
@@ -50,7 +50,7 @@ impl TableRow for Trial {
     }
 }
 
-/// All columns in their order. A new one goes to the end.
+/// All columns in file order; new columns are appended.
 fn declared() -> impl Iterator<Item = TrialColumn> {
     kind_of_trial().into_iter().chain(errors()).chain(pace()).chain(robot()).chain(presses_given_up()).chain(by_hand())
 }
@@ -66,25 +66,23 @@ fn plain(
 
 fn kind_of_trial() -> Vec<TrialColumn> {
     vec![
-        plain("recording", "", "folder of the recording; the key of all tables by recording", |t| {
-            (&t.recording).into()
-        }),
+        plain("recording", "", "folder of the recording; key of all tables by recording", |t| (&t.recording).into()),
         plain("participant", "", "as in participants", |t| (&t.participant).into()),
         plain("kind", "", "as in participants", |t| t.kind_name().into()),
-        plain("seed", "", "what everything random followed from", |t| t.seed.into()),
+        plain("seed", "", "seed of all random streams", |t| t.seed.into()),
         plain("group", "", "as in participants", |t| t.group.as_ref().into()),
         plain("period", "", "1: the participant's first trial, 2: the second", |t| t.period.into()),
         plain("condition", "", "who sends signals: none, wizard or assistant", |t| t.condition.name().into()),
-        plain("assisted", "", "somebody sends signals", |t| t.is_assisted().into()),
-        plain("counts", "", "false: it is left out of all figures", |t| t.counts().into()),
-        plain("left_out", "", "why it is left out", |t| t.left_out.as_ref().into()),
+        plain("assisted", "", "whether the wizard or the assistant sends signals", |t| t.is_assisted().into()),
+        plain("counts", "", "whether the trial counts; false: left out of all statistics", |t| t.counts().into()),
+        plain("left_out", "", "reason for leaving the trial out", |t| t.left_out.as_ref().into()),
         plain(
             "ended",
             "",
-            "what ended it: presses, time or orders, as many as were set; wizard or aborted, before that; empty: it was cut",
+            "reason of the trial's end: set number of presses, time or orders; early: wizard or aborted; empty: incomplete recording",
             |t| t.ended.map(EndReason::name).into(),
         ),
-        plain("arm", "", "the robot's arm: timed (its presses take a while by chance) or physics (simulated)", |t| {
+        plain("arm", "", "robot arm: timed (random press durations) or physics (simulated with contact forces)", |t| {
             t.arm.name().into()
         }),
     ]
@@ -95,10 +93,10 @@ fn errors() -> Vec<TrialColumn> {
         trial.beliefs.as_ref().map(|beliefs| count(beliefs) as u64).into()
     }
     vec![
-        plain("human_presses", "presses", "of the human while the trial ran", |t| t.human_presses.into()),
-        plain("robot_presses", "presses", "of the robot while the trial ran", |t| t.robot_presses.into()),
-        plain("errors", "errors", "of the human, without races", |t| t.errors.into()),
-        plain("races", "presses", "of the human within 300 ms of a change by the robot at the same place", |t| {
+        plain("human_presses", "presses", "human presses while the trial ran", |t| t.human_presses.into()),
+        plain("robot_presses", "presses", "robot presses while the trial ran", |t| t.robot_presses.into()),
+        plain("errors", "errors", "errors of the human, without races", |t| t.errors.into()),
+        plain("races", "presses", "human presses within 300 ms of a robot change at the same place", |t| {
             t.races.into()
         }),
         Compared(HEADLINE),
@@ -114,35 +112,35 @@ fn errors() -> Vec<TrialColumn> {
         plain(
             "beliefs_from",
             "",
-            "how it is known what was believed: recorded (simulated participants), raters, or estimate",
+            "source of the errors' causes: recorded (beliefs of simulated participants), raters, or estimate",
             |t| t.beliefs.as_ref().map(|beliefs| beliefs.basis.name()).into(),
         ),
         plain("belief_related_errors", "errors", "", |t| t.beliefs.as_ref().map(|beliefs| beliefs.errors).into()),
         plain(
             "sequences",
             "sequences",
-            "belief related errors at most 3 correct presses apart, whatever the aspect",
+            "error sequences: belief related errors at most 3 correct presses apart, of any aspect",
             |t| of_beliefs(t, |beliefs| beliefs.lengths.len()),
         ),
         Compared(StudyMeasure {
             name: "sequence_length",
             unit: "errors",
-            meaning: "mean of the sequences",
-            meaning_in: "mean of the {} trial's error sequences",
-            title: "errors in a sequence",
+            meaning: "mean errors per error sequence",
+            meaning_in: "mean errors per error sequence of the {} trial",
+            title: "errors per sequence",
             digits: 2,
             value: Trial::sequence_length,
         }),
-        plain("sequences_by_aspect", "sequences", "of errors about one aspect alone", |t| {
+        plain("sequences_by_aspect", "sequences", "error sequences of errors about the same aspect", |t| {
             of_beliefs(t, |beliefs| beliefs.lengths_by_aspect.len())
         }),
-        plain("sequence_length_by_aspect", "errors", "mean of those", |t| {
+        plain("sequence_length_by_aspect", "errors", "mean errors per sequence of errors about the same aspect", |t| {
             t.beliefs.as_ref().and_then(|beliefs| mean_length(&beliefs.lengths_by_aspect)).into()
         }),
         Compared(StudyMeasure {
             name: "recovery_s",
             unit: "s",
-            meaning: "mean from a sequence's first error to the first correct press after its last",
+            meaning: "mean time from a sequence's first error to the first correct press after its last",
             meaning_in: "mean recovery time of the {} trial's error sequences",
             title: "seconds to recover from a sequence",
             digits: 2,
@@ -153,36 +151,36 @@ fn errors() -> Vec<TrialColumn> {
 
 fn pace() -> Vec<TrialColumn> {
     vec![
-        plain("orders", "orders", "served", |t| t.orders.into()),
+        plain("orders", "orders", "served orders", |t| t.orders.into()),
         Compared(StudyMeasure {
             name: "order_s",
             unit: "s",
-            meaning: "median from one served order to the next, the first from the start",
+            meaning: "median time from one served order to the next, the first from the start",
             meaning_in: "median time for an order in the {} trial",
-            title: "seconds for an order",
+            title: "seconds per order",
             digits: 2,
             value: |t| t.order_s,
         }),
         Compared(StudyMeasure {
             name: "presses_per_order",
             unit: "presses of both",
-            meaning: "median",
-            meaning_in: "median for an order in the {} trial",
-            title: "presses of both for an order",
+            meaning: "median presses of both agents per order",
+            meaning_in: "median presses of both agents per order in the {} trial",
+            title: "presses of both agents per order",
             digits: 2,
             value: |t| t.presses_per_order,
         }),
         Compared(StudyMeasure {
             name: "press_s",
             unit: "s",
-            meaning: "median from press to press of the human",
-            meaning_in: "median from press to press of the human in the {} trial",
-            title: "seconds from press to press of the human",
+            meaning: "median time between successive human presses",
+            meaning_in: "median time between successive human presses in the {} trial",
+            title: "seconds between human presses",
             digits: 2,
             value: |t| t.press_s,
         }),
-        plain("signals", "signals", "shown to the participant", |t| t.signals.into()),
-        plain("duration_s", "s", "of the trial, without pauses", |t| t.seconds.into()),
+        plain("signals", "signals", "signals shown to the participant", |t| t.signals.into()),
+        plain("duration_s", "s", "duration of the trial, without pauses", |t| t.seconds.into()),
     ]
 }
 
@@ -194,46 +192,50 @@ fn robot() -> Vec<TrialColumn> {
         plain(
             "protective_stops",
             "stops",
-            "of an arm that felt somebody; this and the next five are empty of a timed arm",
+            "protective stops after a contact; this and the next five columns are empty for a timed arm",
             |t| of_arm(t, |arm| arm.protective_stops),
         ),
-        plain("faults", "stops", "of an arm of which a joint did not follow", |t| of_arm(t, |arm| arm.faults)),
-        plain("contacts", "contacts", "of somebody with the arm, those that stopped it among them", |t| {
+        plain("faults", "stops", "stops because a joint did not follow", |t| of_arm(t, |arm| arm.faults)),
+        plain("contacts", "contacts", "contacts of a person with the arm, with or without a protective stop", |t| {
             of_arm(t, |arm| arm.contacts)
         }),
-        plain("peak_force_n", "N", "the largest of these; empty without any", |t| of_arm(t, |arm| arm.peak_force_n)),
-        plain("reduced_s", "s", "on the trial's clock, in which a hand near the arm slowed it", |t| {
+        plain("peak_force_n", "N", "largest contact force; empty without contact", |t| {
+            of_arm(t, |arm| arm.peak_force_n)
+        }),
+        plain("reduced_s", "s", "time at reduced speed because of a hand near the arm, on the trial's clock", |t| {
             of_arm(t, |arm| arm.reduced_s)
         }),
-        plain("safeguard_s", "s", "on the trial's clock, in which the arm waited for a hand in its way", |t| {
+        plain("safeguard_s", "s", "time of waiting for a hand in the arm's way, on the trial's clock", |t| {
             of_arm(t, |arm| arm.safeguard_s)
         }),
-        plain("emergency_stops", "stops", "of the robot by the wizard", |t| t.robot.emergency_stops.into()),
+        plain("emergency_stops", "stops", "emergency stops of the robot by the wizard", |t| {
+            t.robot.emergency_stops.into()
+        }),
     ]
 }
 
-/// One column for each reason.
+/// One column per reason for aborting a press.
 fn presses_given_up() -> Vec<TrialColumn> {
     let why = |reason: AbortReason| match reason {
-        AbortReason::NoLongerUseful => ("no_longer_useful", "pressing was no longer useful when the arm was there"),
+        AbortReason::NoLongerUseful => ("no_longer_useful", "the press was no longer useful when the arm arrived"),
         AbortReason::Stopped => ("stopped", "the wizard stopped it"),
         AbortReason::Skipped => ("skipped", "the wizard skipped the press"),
         AbortReason::Driven => ("driven", "the wizard chose another press"),
-        AbortReason::OutOfReach => ("out_of_reach", "out of reach"),
-        AbortReason::Singular => ("singular", "the arm would be stretched, or in line with itself"),
-        AbortReason::Obstructed => ("obstructed", "something stood in every way to it"),
+        AbortReason::OutOfReach => ("out_of_reach", "the button was out of reach"),
+        AbortReason::Singular => ("singular", "the arm would come close to a singularity"),
+        AbortReason::Obstructed => ("obstructed", "every path to the button was obstructed"),
         AbortReason::HandInTheWay => ("hand_in_the_way", "a hand was in the way for too long"),
         AbortReason::NoClick => ("no_click", "the button did not click"),
-        AbortReason::Contact => ("contact", "the arm felt somebody and stopped"),
+        AbortReason::Contact => ("contact", "the arm stopped after a contact"),
         AbortReason::Fault => ("fault", "a joint did not follow"),
     };
     let column = |reason: AbortReason| {
         let (name, why) = why(reason);
-        let unknown = if reason.is_of_physics() { "; empty of a timed arm" } else { "" };
+        let unknown = if reason.is_of_physics() { "; empty for a timed arm" } else { "" };
         TrialColumn::Plain(Trial::column(
             format!("given_up_{name}"),
             "presses",
-            format!("that the robot gave up: {why}{unknown}"),
+            format!("aborted robot presses: {why}{unknown}"),
             move |trial| trial.robot.given_up(reason).into(),
         ))
     };
@@ -242,10 +244,12 @@ fn presses_given_up() -> Vec<TrialColumn> {
 
 fn by_hand() -> Vec<TrialColumn> {
     vec![
-        plain("wizard_held", "times", "that the wizard held the robot before its next press", |t| t.robot.held.into()),
-        plain("wizard_skipped", "times", "that the wizard skipped a press of the robot", |t| t.robot.skipped.into()),
-        plain("wizard_driven", "times", "that the wizard chose the robot's next press", |t| t.robot.driven.into()),
-        plain("wizard_corrected", "times", "that the wizard put right what is at a location", |t| {
+        plain("wizard_held", "times", "number of times the wizard held the robot before its next press", |t| {
+            t.robot.held.into()
+        }),
+        plain("wizard_skipped", "times", "number of robot presses that the wizard skipped", |t| t.robot.skipped.into()),
+        plain("wizard_driven", "times", "number of robot presses that the wizard chose", |t| t.robot.driven.into()),
+        plain("wizard_corrected", "times", "number of locations that the wizard corrected", |t| {
             t.robot.corrected.into()
         }),
     ]

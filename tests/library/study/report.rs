@@ -122,9 +122,10 @@ fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
         report::page(&StudySummary::from_trials(trials, &Facts::default(), 0), trials, &Facts::default(), tables)
     };
     let page = report(&trials, &[Table::Trials]);
-    assert!(page.contains("6 with the presses.") && page.contains("arm was timed."));
+    assert!(page.contains("6 after the set number of presses.") && page.contains("arm was timed."));
     assert!(
-        !page.contains("what each concept would have") && page.contains("Beside this page: <code>trials.csv</code>.")
+        !page.contains("hypothetical signals of each concept")
+            && page.contains("Beside this page: <code>trials.csv</code>.")
     );
     trials[1].ended = Some(EndReason::Wizard);
     trials[2].ended = Some(EndReason::Time);
@@ -140,11 +141,11 @@ fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
     };
     trials[0].swept = vec![SweptTrial { concept: ConceptName::TomCom, parameter: 1.0, count }];
     let page = report(&trials, &Table::ALL);
-    assert!(page.contains("4 with the presses, 1 as the time was over, 1 as the wizard ended it before."));
-    assert!(page.contains("timed in 5 trials and simulated in the physics in 1 trial; the figures pool them."));
-    assert!(page.contains("what each concept would have said were computed anew"));
+    assert!(page.contains("4 after the set number of presses, 1 after the set time, 1 early by the wizard."));
+    assert!(page.contains("timed in 5 trials and simulated with contact forces in 1 trial; the statistics pool them."));
+    assert!(page.contains("the hypothetical signals of each concept were recomputed"));
     assert!(
-        page.contains("<td>contacts with somebody</td><td>\u{2013}</td><td>3</td>") && page.contains("<td>17.2</td>")
+        page.contains("<td>contacts with a person</td><td>\u{2013}</td><td>3</td>") && page.contains("<td>17.2</td>")
     );
 }
 

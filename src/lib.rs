@@ -28,7 +28,7 @@
 //!
 //! # Features
 //!
-//! All are on by default. With `default-features = false` the crate is the model: some 50 packages, no terminal, no network, no
+//! All are on by default. With `default-features = false` the crate is the model: 28 packages, no terminal, no network, no
 //! async. It reads no files; texts come from the caller.
 //!
 //! | feature | adds |

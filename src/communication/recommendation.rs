@@ -20,7 +20,7 @@ pub struct Recommendation {
     /// The recommended signal; `None` if no signal is worth its cost.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub best: Option<Signal>,
-    /// Reason for the first option.
+    /// Reason for the first option if it saves presses, also if it is not worth its cost and `best` is `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<Reason>,
     /// Proposed presses (DEV only).

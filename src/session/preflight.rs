@@ -68,7 +68,9 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
     let mends = match session.spec.participant.gaze {
         GazeSource::Json => format!("start what sends lines to port {}", session.spec.participant.gaze_port),
         GazeSource::Pupil => "let the participant look at the wall display; Capture needs a calibration".to_string(),
-        _ => "move the pointer over the kitchen".to_string(),
+        GazeSource::Mouse | GazeSource::Simulated | GazeSource::File | GazeSource::None => {
+            "move the pointer over the kitchen".to_string()
+        }
     };
     let Some(hz) = session.gaze_hz(now) else {
         let is_mouse = session.spec.participant.gaze == GazeSource::Mouse;

@@ -93,6 +93,8 @@
 //! # }
 //! ```
 
+#![warn(missing_docs)]
+
 pub mod analysis;
 pub mod arm;
 pub mod base;

@@ -15,8 +15,9 @@ use crate::session::{Event, Session};
 /// A request for advice: the session after an event and all its immediate consequences.
 #[derive(Clone, Debug)]
 pub struct AdviceRequest {
-    /// The number and the time of the event.
+    /// Sequence number of the event.
     pub seq: u64,
+    /// The session time of the event.
     pub time: SessionTime,
     presses: u32,
     state: State,

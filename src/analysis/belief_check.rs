@@ -29,9 +29,11 @@ const LOOK_S: f64 = 0.1;
 /// The output of `tomcom replay --check-beliefs`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BeliefCheck {
+    /// Number of recordings.
     pub recordings: u64,
     /// Presses of the human in the trials.
     pub human_actions: u64,
+    /// How well the estimate finds false beliefs.
     #[serde(flatten)]
     pub detection: Detection,
     /// Log likelihood per press, in nats.

@@ -50,8 +50,11 @@ impl RecordingComparer {
 pub struct ComparedRecording {
     /// Its path, as it was named.
     pub recording: String,
+    /// The session at its end, with what assistants advised.
     pub follower: ComparisonFollower,
+    /// Whether the trial counts in the analysis.
     pub standing: ExclusionStatus,
+    /// Wizard and assistants side by side.
     pub comparison: LaneComparison,
     /// None where nobody could send signals.
     pub wizard: Option<WizardSummary>,

@@ -25,6 +25,7 @@ const LISTED: usize = 20;
 pub struct ComparisonSummary {
     /// Over all recordings that count.
     pub pairs: Vec<LanePairSummary>,
+    /// The recordings, one by one.
     pub recordings: Vec<RecordingComparison>,
     /// Of the wizard who was named.
     pub training: Option<TrainingSummary>,
@@ -33,10 +34,13 @@ pub struct ComparisonSummary {
 /// Two lanes against each other.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LanePairSummary {
+    /// The name of the first lane.
     pub of: String,
+    /// The name of the second lane.
     pub with: String,
     /// Presses of the human within which communications match, and for which the estimate leaves out what was sent.
     pub window_actions: u32,
+    /// How far the two lanes agree.
     #[serde(flatten)]
     pub similarity: Similarity,
 }
@@ -44,20 +48,27 @@ pub struct LanePairSummary {
 /// One recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordingComparison {
+    /// The recording's folder.
     pub recording: String,
+    /// Whether the trial counts in the analysis.
     #[serde(flatten)]
     pub standing: ExclusionStatus,
+    /// Presses of the human in the trial.
     pub human_actions: u64,
+    /// What each side said.
     pub lanes: Vec<LaneSummary>,
     /// Of the wizard; null where nobody could send signals.
     pub wizard: Option<WizardSummary>,
+    /// Communications without a match in another lane.
     pub differences: Vec<UnmatchedSummary>,
 }
 
 /// What one side said.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LaneSummary {
+    /// "wizard", or the assistant's name: "tom-com".
     pub name: String,
+    /// Its communications, in the order of time.
     pub communications: Vec<CommunicationSummary>,
 }
 
@@ -68,6 +79,7 @@ pub struct CommunicationSummary {
     pub press: u32,
     /// On the trial's clock.
     pub clock_s: f64,
+    /// The signal or proposal, in words.
     pub says: String,
 }
 
@@ -78,15 +90,19 @@ pub struct UnmatchedSummary {
     pub number: usize,
     /// In words.
     pub headline: String,
+    /// The lane that said it.
     pub by: String,
+    /// The lane that did not.
     pub not_by: String,
     /// The assistant that it is about, by its lane, and whether who sent the signals said it.
     #[serde(skip)]
     pair: usize,
     #[serde(skip)]
     by_sender: bool,
+    /// The communication.
     #[serde(flatten)]
     pub spoken: CommunicationSummary,
+    /// What was known then; null: the assistants had not been asked yet.
     pub knew: Option<ContextSummary>,
 }
 
@@ -97,15 +113,20 @@ pub struct ContextSummary {
     pub beliefs: Vec<AspectContext>,
     /// What the assistant thought.
     pub advice: Option<Recommendation>,
+    /// What was on the wizard's screen; null before the first frame, and without a wizard.
     pub screen: Option<VisibleScreen>,
 }
 
 /// An aspect of the belief.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AspectContext {
+    /// The aspect's name.
     pub aspect: String,
+    /// Its true value.
     pub truth: String,
+    /// The value that is expected to be believed most.
     pub believes: String,
+    /// The expected probability of the truth.
     pub p_truth: f64,
 }
 

@@ -19,6 +19,7 @@ use crate::session::{Applied, Event, Session, Stamped, apply};
 /// A session with its judged presses, false belief episodes and belief estimate.
 #[derive(Clone, Debug)]
 pub struct Follower {
+    /// The session up to the last event.
     pub session: Session,
     /// Every press of the human so far.
     pub judged: Vec<JudgedPress>,
@@ -48,7 +49,9 @@ pub struct PressEstimate {
     pub press: u64,
     /// State before the press.
     pub state: State,
+    /// The estimate before the press.
     pub belief: DirichletBelief,
+    /// What the filter had to go by.
     pub evidence: Evidence,
 }
 
@@ -64,6 +67,7 @@ impl PressEstimate {
 pub struct InferenceTiming {
     /// The caller's monotonic clock, in nanoseconds.
     now_ns: fn() -> u64,
+    /// For each gaze sample.
     pub gaze_ns: Vec<u64>,
     /// Updates by presses of the human and of the robot.
     pub action_ns: Vec<u64>,

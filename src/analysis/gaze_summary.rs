@@ -20,16 +20,20 @@ pub struct GazeSummary {
     /// Input that was not recorded, by kind.
     #[serde(flatten)]
     pub dropped: DropCounts,
+    /// Number of fixations that the tracker found.
     pub fixations: u64,
+    /// Number of blinks that the tracker found.
     pub blinks: u64,
     /// Number of times that the connection to the tracker was lost.
     pub losses: u64,
     /// Accuracy in the last accepted gaze check, in degrees, after correction if the correction is in use; null without a check.
     pub accuracy_deg: Option<f64>,
+    /// Precision of the gaze in that check, in degrees.
     pub precision_deg: Option<f64>,
 }
 
 impl GazeSummary {
+    /// The gaze of a session up to its last event.
     pub fn from_session(session: &Session) -> GazeSummary {
         let (gaze, tracker) = (&session.gaze, &session.tracker);
         let calibrated = session.calibrated.as_ref();

@@ -12,10 +12,13 @@ use crate::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationKind, 
 /// What is to be known about a kitchen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KitchenSummary {
+    /// The kitchen's identifier.
     pub name: String,
     /// The number of joint values of all aspects, in decimal: it exceeds what JSON readers take as a number.
     pub states: String,
+    /// The state aspects with the number of their values.
     pub aspects: Vec<AspectSummary>,
+    /// The shortest plan for each dish.
     pub plans: Vec<ShortestPlanSummary>,
     /// The tags in the corners of the wall display; null where there is no room for them.
     pub tags: Option<TagsSummary>,
@@ -24,20 +27,25 @@ pub struct KitchenSummary {
 /// The tags by which an eye tracker finds the wall display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TagsSummary {
+    /// The family of the tags.
     pub family: &'static str,
     /// The length of the black edges, in metres.
     pub edge_m: f64,
+    /// The tags, one in each corner.
     pub tags: Vec<TagSummary>,
     /// The corners of the surface that they span: top left, top right, bottom right, bottom left, in fractions of the
     /// display.
     pub surface: [[f64; 2]; 4],
 }
 
-/// A tag: x, y, w and h with its white border, in fractions of the display; rows of cells, `#` for black.
+/// A tag in a corner of the wall display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TagSummary {
+    /// Its number in the family.
     pub id: u16,
+    /// x, y, w and h with its white border, in fractions of the display.
     pub area: [f64; 4],
+    /// Rows of cells, from the top: `#` for black, another sign for white.
     pub cells: Vec<String>,
 }
 
@@ -56,14 +64,18 @@ impl TagsSummary {
 /// The size of a state aspect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AspectSummary {
+    /// The aspect's name.
     pub name: String,
+    /// Number of its possible values.
     pub values: usize,
 }
 
 /// The shortest way to a dish from an empty kitchen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ShortestPlanSummary {
+    /// The dish's name.
     pub recipe: String,
+    /// Number of presses, of both agents together.
     pub actions: u32,
     /// The presses of one such way: "human: take rice".
     pub presses: Vec<String>,

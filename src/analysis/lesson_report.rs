@@ -22,13 +22,17 @@ const TELLING: u64 = 10;
 /// What a wizard was trained.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrainingSummary {
+    /// The wizard's code.
     pub wizard: String,
     /// Where its records are looked for.
     pub folder: String,
+    /// Number of recorded trainings.
     pub times: u64,
+    /// Their duration together, in minutes.
     pub minutes: f64,
-    /// The criterion of the last time, and whether it was met then; null: never trained.
+    /// The criterion of the last training; null: never trained.
     pub criterion: Option<TrainingCriterion>,
+    /// Whether it was met then; null: never trained.
     pub met: Option<bool>,
 }
 

@@ -36,21 +36,27 @@ pub struct AccuracySummary {
     pub clear_steps: u64,
     /// The share of the clear steps with the same decision.
     pub same_decision: Option<f64>,
-    /// Root mean square error of the benefit, in presses, over these pairs of step and signal: those whose converged
-    /// benefit is beyond 0.3.
+    /// Root mean square error of the benefit, in presses, over the pairs of step and signal whose converged benefit is
+    /// beyond 0.3.
     pub benefit_rmse: Option<f64>,
+    /// Number of these pairs.
     pub benefit_pairs: u64,
-    /// Time of the plain reference by the planner's, for planning the same steps.
+    /// Time of the plain reference divided by the planner's time, for planning the same steps.
     pub reference_ratio: Option<f64>,
+    /// Number of these steps.
     pub reference_steps: u64,
-    /// Of the plain reference against the converged planner, over the pairs of its steps: the same error, and how much of
-    /// it the reference's own standard errors explain.
+    /// Root mean square difference of the benefit between the plain reference and the converged planner, in presses,
+    /// over the pairs of the reference's steps.
     pub reference_rmse: Option<f64>,
+    /// How much of that difference the reference's own standard errors explain, in presses.
     pub reference_error: Option<f64>,
+    /// Number of the pairs of the reference's steps.
     pub reference_pairs: u64,
+    /// The share of the reference's steps with the same decision.
     pub reference_same_decision: Option<f64>,
-    /// Time a step, in milliseconds, in the mean over the reference's steps.
+    /// The planner's time for a step, in milliseconds, in the mean over the reference's steps.
     pub plan_ms: Option<f64>,
+    /// The reference's time for a step, in milliseconds, in the mean over the same steps.
     pub reference_ms: Option<f64>,
 }
 
@@ -59,6 +65,7 @@ pub struct AccuracySummary {
 pub struct RecordedQuestions {
     /// The session before its first event.
     pub session: Session,
+    /// The questions, one after each press.
     pub questions: Vec<AdviceRequest>,
 }
 

@@ -11,25 +11,35 @@ use crate::base::words::count;
 /// What `tomcom replay RECORDING` prints as figures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordingSummary {
+    /// Number of events.
     pub events: u64,
     /// The recording ends without its end event, and nobody writes on.
     pub cut: bool,
     /// Its session still runs: these are the figures up to now.
     pub running: bool,
+    /// Whether the trial counts in the analysis.
     #[serde(flatten)]
     pub standing: ExclusionStatus,
+    /// Presses of the human in the trial.
     pub human_actions: u64,
+    /// Presses of the robot in the trial.
     pub robot_actions: u64,
+    /// The human's presses that were errors.
     pub errors: u64,
+    /// The human's presses that were races with the robot and so do not count as errors.
     pub races: u64,
+    /// What is known of the beliefs behind the errors.
     #[serde(flatten)]
     pub beliefs: BeliefErrorSummary,
+    /// Signals that were shown.
     pub signals: u64,
     /// The wizard saw what assistants would say, beside what was sent.
     pub unblinded: bool,
+    /// Orders served.
     pub orders_served: u64,
     /// The trial's length by its own clock, in seconds.
     pub trial_s: f64,
+    /// How good the gaze was.
     pub gaze: GazeSummary,
     /// What was wrong with the gaze, in words.
     #[serde(skip)]

@@ -7,7 +7,9 @@ use super::trial_summary::SimulationSummary;
 /// Errors and presses of the human in a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TrialErrors {
+    /// The human's presses that were errors.
     pub errors: u64,
+    /// Presses of the human.
     pub human_actions: u64,
 }
 
@@ -16,14 +18,19 @@ pub struct TrialErrors {
 pub struct SweepRow {
     /// What was set, by name; nothing in the row without signals.
     pub settings: serde_json::Map<String, serde_json::Value>,
+    /// Number of trials.
     pub trials: u64,
-    /// Errors and signals per 100 presses of the human.
+    /// Errors per 100 presses of the human.
     pub errors_per_100: f64,
+    /// Signals per 100 presses of the human.
     pub signals_per_100: f64,
-    /// Errors per 100 presses of the human fewer than without signals, over the same trials: mean and standard error.
+    /// Errors per 100 presses of the human fewer than without signals: mean over the same trials.
     pub spared_per_100: Option<f64>,
+    /// Standard error of that mean.
     pub spared_error: Option<f64>,
+    /// Mean number of errors in an error sequence; null: there were none.
     pub mean_sequence_length: Option<f64>,
+    /// Presses of both agents per served order; null: none was served.
     pub presses_per_order: Option<f64>,
 }
 

@@ -5,23 +5,30 @@ use serde::Serialize;
 /// What `--timing` prints, in microseconds. Null is what the recording does not have.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TimingSummary {
+    /// Time to process a gaze sample.
     pub gaze_us: Option<DurationPercentiles>,
-    /// A press of the human or of the robot.
+    /// Time to process a press of the human or of the robot.
     pub action_us: Option<DurationPercentiles>,
+    /// Time to plan.
     pub plan_us: Option<DurationPercentiles>,
-    /// Inference and planning.
+    /// Time for inference and planning together.
     pub step_us: Option<DurationPercentiles>,
-    /// The length of the recording by session time, and how long its replay took, in seconds.
+    /// The length of the recording by session time, in seconds.
     pub session_s: f64,
+    /// How long its replay took by the computer's clock, in seconds.
     pub wall_s: f64,
 }
 
 /// Times of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DurationPercentiles {
+    /// Number of times measured.
     pub n: u64,
+    /// Their median.
     pub p50: f64,
+    /// Their 99th percentile.
     pub p99: f64,
+    /// The longest.
     pub max: f64,
 }
 

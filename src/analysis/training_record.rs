@@ -14,13 +14,16 @@ pub struct TrainingRecord {
     pub wizard: String,
     /// When it began (UTC, RFC 3339).
     pub at: String,
+    /// How long it took, in minutes.
     pub minutes: f64,
     /// How many times as fast as it was it was played; null in records from before that was written down.
     #[serde(default)]
     pub speed: Option<f64>,
+    /// When the training is passed.
     pub criterion: TrainingCriterion,
     /// Over all recordings, each watched to its end.
     pub met: bool,
+    /// The recordings that were watched, in turn.
     pub recordings: Vec<JudgedRecording>,
 }
 
@@ -34,10 +37,12 @@ pub struct JudgedRecording {
     pub complete: bool,
     /// Presses of the human in what was watched.
     pub presses: u32,
+    /// The signals that the wizard sent.
     pub signals: Vec<JudgedSignal>,
     /// The false beliefs that led to errors, as far as they had begun.
     #[serde(default)]
     pub beliefs: Vec<JudgedBelief>,
+    /// How well the wizard did.
     pub measures: WizardMeasures,
     /// Kappa with what the same wizard signalled in the same recording the time before; null: there was none.
     pub kappa_with_oneself: Option<f64>,
@@ -51,6 +56,7 @@ pub struct JudgedSignal {
     pub press: u32,
     /// On the trial's clock.
     pub clock_ns: SessionTime,
+    /// The signal.
     pub signal: Signal,
     /// What it was: "hit", "again", "harmless", "late", "wrong" or "needless"; empty in records from before that was written
     /// down.
@@ -68,9 +74,11 @@ pub struct JudgedBelief {
     pub began_ns: SessionTime,
     /// Null: it was held until the end.
     pub corrected_ns: Option<SessionTime>,
+    /// Errors that are put down to it.
     pub errors: u32,
-    /// What was believed most, and what was true, when the participant last told while it was held.
+    /// What was believed most, when the participant last told it while the belief was held.
     pub believed: String,
+    /// What was true then.
     pub truth: String,
     /// The signal that would have been right; null: none tells it.
     pub signal: Option<Signal>,

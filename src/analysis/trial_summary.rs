@@ -15,10 +15,15 @@ use crate::session::settings::{Condition, ParticipantKind};
 /// Summary of one trial.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialSummary {
+    /// Presses of the human.
     pub human_actions: u64,
+    /// Presses of the robot.
     pub robot_actions: u64,
+    /// The human's presses that were errors.
     pub errors: u64,
+    /// Presses of the human that the robot may have overtaken; they are not counted as errors.
     pub races: u64,
+    /// Signals that were shown.
     pub signals: u64,
     /// Belief related errors; `None` where the participant's beliefs are not known.
     pub beliefs: Option<TrialBeliefErrors>,
@@ -60,7 +65,9 @@ pub struct TrialBeliefErrors {
     pub related: u64,
     /// Belief related errors that no single target explains.
     pub related_to_pairs: u64,
+    /// Error sequences: successive errors, whatever each is about.
     pub sequences: Vec<Sequence>,
+    /// Error sequences of errors about the same target alone.
     pub by_target: Vec<Sequence>,
     /// Number of false belief episodes that caused at least one error.
     pub episodes: u64,
@@ -88,15 +95,19 @@ impl TrialBeliefErrors {
 /// Belief related errors of one or several trials. Null where the participants' beliefs are not known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BeliefErrorSummary {
+    /// Errors that are put down to a false belief.
     pub belief_related_errors: Option<u64>,
     /// Belief related errors that only a pair of false beliefs explains.
     pub errors_of_two_beliefs: Option<u64>,
+    /// Number of error sequences.
     pub sequences: Option<u64>,
+    /// Mean number of errors in a sequence; null also where there is none.
     pub mean_sequence_length: Option<f64>,
     /// Seconds from the first error of a sequence to the first correct press after its last.
     pub mean_recovery_s: Option<f64>,
     /// Number of sequences if errors about other aspects are left out.
     pub sequences_by_aspect: Option<u64>,
+    /// Mean number of errors in these; null also where there is none.
     pub mean_sequence_length_by_aspect: Option<f64>,
     /// Number of false belief episodes that caused at least one error.
     pub false_belief_episodes: Option<u64>,
@@ -131,10 +142,15 @@ impl BeliefErrorSummary {
 /// Totals of the trials in one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConditionSummary {
+    /// Who sends signals.
     pub condition: Condition,
+    /// Number of trials.
     pub trials: u64,
+    /// Presses of the human.
     pub human_actions: u64,
+    /// The human's presses that were errors.
     pub errors: u64,
+    /// Signals that were shown.
     pub signals: u64,
 }
 
@@ -147,21 +163,30 @@ impl Default for ConditionSummary {
 /// The output of `tomcom simulate`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SimulationSummary {
+    /// Number of trials.
     pub trials: u64,
+    /// Presses of the human.
     pub human_actions: u64,
+    /// Presses of the robot.
     pub robot_actions: u64,
+    /// The human's presses that were errors.
     pub errors: u64,
     /// Presses of the human shortly after a change by the robot at the same place (races); they do not count as errors.
     pub races: u64,
+    /// What is known of the beliefs behind the errors.
     #[serde(flatten)]
     pub beliefs: BeliefErrorSummary,
+    /// Signals that were shown.
     pub signals: u64,
+    /// Orders served.
     pub orders_served: u64,
     /// Median over served orders of the number of presses of both agents since the previously served order.
     pub presses_per_order: Option<f64>,
     /// Median over served orders of the least number of presses for the dish from an empty kitchen.
     pub optimal_presses_per_order: Option<f64>,
+    /// The trials' length together, by their own clocks, in seconds.
     pub simulated_s: f64,
+    /// How long the simulation took by the computer's clock, in seconds.
     pub wall_s: f64,
     /// Number of excluded recordings, which the summary leaves out.
     pub excluded: u64,
@@ -172,6 +197,7 @@ pub struct SimulationSummary {
     pub moved: Vec<String>,
     /// Totals by condition.
     pub conditions: Vec<ConditionSummary>,
+    /// The folders of the recordings.
     pub recordings: Vec<String>,
 }
 

@@ -38,6 +38,7 @@ use crate::session::{Applied, Event, Session, SessionSpec, Stamped};
 pub struct CompareRequest {
     /// Concepts in addition to the session's own.
     pub with: Vec<ConceptName>,
+    /// Presses of the human within which communications match, and for which the estimate leaves out what was sent.
     pub window: u32,
 }
 
@@ -85,6 +86,7 @@ struct CounterfactualFilter {
 /// Follows a session event by event and asks the concepts.
 #[derive(Debug)]
 pub struct ComparisonFollower {
+    /// The session with its estimate.
     pub follower: Follower,
     window: u32,
     voices: Vec<Voice>,

@@ -26,12 +26,14 @@ pub struct WizardLog {
 pub struct SignalsPerScreen {
     /// Null before the first frame, and without a console.
     pub screen: Option<VisibleScreen>,
+    /// Number of signals.
     pub signals: u64,
 }
 
 /// Performance of a wizard in one session.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WizardSummary {
+    /// How well the wizard did.
     #[serde(flatten)]
     pub measures: WizardMeasures,
     /// Signals by what the screen showed.

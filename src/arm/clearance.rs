@@ -14,7 +14,9 @@ pub const KEPT_M: f64 = 0.02;
 /// A capsule: all points within a radius of a segment. Links, hands and obstacles have this shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
+    /// The ends of the segment, in metres.
     pub ends_m: [Point3<f64>; 2],
+    /// The radius, in metres.
     pub radius_m: f64,
 }
 
@@ -67,7 +69,9 @@ impl Capsule {
 /// What blocks a pose or a path of the arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstruction {
+    /// The table.
     Table,
+    /// A link of the arm itself.
     ItsOwnLinks,
     /// A known obstacle.
     Obstacle,
@@ -76,7 +80,9 @@ pub enum Obstruction {
 /// The table and the obstacles around the arm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArmSurroundings {
+    /// Height of the table in the frame of the arm's base, in metres.
     pub table_m: f64,
+    /// What else stands around the arm, in the frame of its base.
     pub obstacles: Vec<Capsule>,
 }
 

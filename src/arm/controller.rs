@@ -45,7 +45,9 @@ const FAR_M: f64 = SLOWS_M + MARGIN_M + 0.02;
 pub struct ControlCycle {
     /// The button that clicked. A click counts as a press even if the arm was about to give up.
     pub clicked: Option<ButtonId>,
+    /// Why the press was given up, if it was given up in this cycle.
     pub report: Option<PressFailure>,
+    /// The contact forces of this cycle.
     pub felt: CycleForces,
     /// Somebody touched it a moment ago, with this force in newtons at most so far. Every contact is told so, once; one of
     /// more force than [`SafetyMode::threshold_n`] has stopped it by then ([`PressFailure::Contact`]).
@@ -72,6 +74,7 @@ pub struct PhysicalArm {
     may_press: bool,
     /// The arm has given up its press and slows down before it goes up.
     halts: bool,
+    /// The safety mode.
     pub mode: SafetyMode,
     /// Whether speed and separation monitoring is on; without it the arm only reacts to forces.
     pub watches_hands: bool,

@@ -15,6 +15,7 @@ pub const UR5: &str = include_str!("ur5.urdf");
 /// A serial arm, from its base to its tip.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
+    /// The links, from the base on.
     pub links: Vec<ArmLink>,
 }
 

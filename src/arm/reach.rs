@@ -26,11 +26,13 @@ const SINGULAR: f64 = 0.03;
 /// Why the arm cannot press a button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unreachable {
+    /// No joint angles bring the tip there.
     TooFar,
     /// A joint limit is exceeded.
     JointLimit,
     /// The pose is singular: the arm could not move in every direction.
     Singular,
+    /// This is in the way in every pose.
     Blocked(Obstruction),
 }
 
@@ -61,7 +63,9 @@ impl From<Unreachable> for AbortReason {
 /// The joint angles above a button and touching it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ButtonPoses {
+    /// The joint angles above the button, in radians.
     pub above: JointAngles,
+    /// The joint angles at which the tip touches it, in radians.
     pub touching: JointAngles,
 }
 

@@ -9,11 +9,13 @@ use super::kinematics::Arm;
 use super::reach::{ABOVE_M, BUTTON_M, ButtonPoses, Unreachable};
 use crate::robot::moment::{JOINTS, JointAngles};
 
-/// Limits of a leg from pose to pose: radians a second (squared).
+/// Greatest speed of a joint on a leg from pose to pose, in radians per second.
 pub const JOINT_SPEED_RAD_S: f64 = 1.05;
+/// Greatest acceleration of a joint on such a leg, in radians per second squared.
 pub const JOINT_ACCELERATION_RAD_S2: f64 = 1.4;
-/// Limits of the tip on a straight leg: metres a second (squared).
+/// Greatest speed of the tip on a straight leg, in metres per second.
 pub const TIP_SPEED_M_S: f64 = 0.25;
+/// Greatest acceleration of the tip on such a leg, in metres per second squared.
 pub const TIP_ACCELERATION_M_S2: f64 = 1.2;
 /// The greatest speed and acceleration of a quintic from 0 to 1 in a time of 1.
 const QUINTIC_SPEED: f64 = 1.875;
@@ -39,9 +41,11 @@ pub enum LegKind {
 /// One leg of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrajectoryLeg {
+    /// What the leg is for.
     pub kind: LegKind,
     /// Poses at equal distances.
     poses: [JointAngles; 4],
+    /// Its duration at full speed, in seconds.
     pub takes_s: f64,
 }
 

@@ -10,7 +10,9 @@ use crate::robot::moment::JOINTS;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("found {found}, wanted {remedy}")]
 pub struct UrdfError {
+    /// What the URDF says that cannot be.
     pub found: String,
+    /// What would be right.
     pub remedy: &'static str,
 }
 

@@ -15,7 +15,9 @@ type Corner = (f64, Vec<f64>);
 /// The smallest value that was found, and where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minimum {
+    /// The point of the minimum, one value per argument of the function.
     pub at: Vec<f64>,
+    /// The function's value there.
     pub value: f64,
     /// Number of function evaluations.
     pub evaluations: usize,

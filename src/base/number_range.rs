@@ -5,8 +5,9 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-/// Any number above 0, and any that is not below 0.
+/// The bounds of a value above 0.
 pub const ABOVE_0: [f64; 2] = [f64::MIN_POSITIVE, f64::MAX];
+/// The bounds of a value that is at least 0.
 pub const NOT_NEGATIVE: [f64; 2] = [0.0, f64::MAX];
 /// Any number between 0 and 1, without them.
 pub const INSIDE_0_AND_1: [f64; 2] = [f64::MIN_POSITIVE, 1.0 - f64::EPSILON / 2.0];
@@ -18,9 +19,11 @@ pub const ANY: [f64; 2] = [f64::MIN, f64::MAX];
 pub struct NumberRange {
     /// The setting with the tables around it, from outside: `human.decision.tau`. A `*` stands for any one name.
     pub path: &'static str,
-    /// The least and the most that a file may have.
+    /// The least allowed value.
     pub least: f64,
+    /// The greatest allowed value.
     pub most: f64,
+    /// Only whole numbers are allowed.
     pub is_whole: bool,
     /// What it is counted or measured in; empty: it has no unit.
     pub unit: &'static str,

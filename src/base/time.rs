@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct SessionTime(pub u64);
 
 impl SessionTime {
+    /// The beginning of the session.
     pub const ZERO: SessionTime = SessionTime(0);
 
     /// The moment `seconds` after the beginning; negative values and NaN give zero.

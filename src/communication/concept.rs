@@ -16,9 +16,11 @@ use crate::kitchen::cost_to_go::CostToGo;
 pub struct DecisionPoint<'a> {
     /// Sequence number of the event that led to the decision.
     pub seq: u64,
+    /// The session time of that event.
     pub time: SessionTime,
     /// Number of presses of both agents so far, which seeds the random stream.
     pub presses: u32,
+    /// True state, estimate and robot at this moment.
     pub situation: Situation<'a>,
     /// The signals that may be sent, after the repeat rule.
     pub signals: &'a [Signal],

@@ -40,9 +40,11 @@ pub struct Proposal {
 /// A signal with its estimated benefit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SignalOption {
+    /// The signal that could be sent.
     pub signal: Signal,
     /// Expected saving in presses of both agents; for ToM, the expected belief deviation.
     pub benefit: f64,
+    /// Standard error of the benefit, in its unit; 0 for a concept that computes it exactly.
     pub standard_error: f64,
     /// Net benefit: benefit minus the cost of communication; for ToM, deviation minus threshold.
     pub net: f64,
@@ -57,6 +59,7 @@ pub struct Reason {
     pub aspect: String,
     /// Falsely believed value.
     pub believes: String,
+    /// The true value of the aspect, by its label.
     pub truth: String,
     /// Expected probability of the falsely believed value.
     pub p_believes: f64,

@@ -25,9 +25,11 @@ use crate::robot::policy;
 /// Estimated benefit of one signal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceBenefit {
+    /// The signal that was evaluated.
     pub signal: Signal,
     /// Expected saving in presses of both agents.
     pub benefit: f64,
+    /// Standard error of the benefit, in presses.
     pub standard_error: f64,
 }
 

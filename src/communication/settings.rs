@@ -8,7 +8,9 @@ use super::concept_name::ConceptName;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AssistantSpec {
+    /// Whether it advises in trials in which it does not act.
     pub shadow: Shadow,
+    /// The communication concept that decides.
     pub concept: ConceptName,
     /// Cost of communication in presses: the expected saving of a signal must exceed it (1.5 in the paper).
     pub cost_of_communication: f64,
@@ -16,6 +18,7 @@ pub struct AssistantSpec {
     pub belief_threshold: f64,
     /// Number of presses that DEV proposes after an error.
     pub proposed_presses: usize,
+    /// How finely the planner computes.
     pub rollout: RolloutModel,
 }
 
@@ -23,8 +26,10 @@ pub struct AssistantSpec {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shadow {
+    /// It computes recommendations beside the wizard, who may see them.
     #[default]
     On,
+    /// It computes nothing where it does not act.
     Off,
 }
 

@@ -27,7 +27,9 @@ impl Signal {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sender {
+    /// The person at the console, or the script in its place.
     Wizard,
+    /// The communication concept that acts by itself.
     Assistant,
 }
 

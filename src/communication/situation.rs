@@ -6,10 +6,13 @@ use crate::mind::dirichlet::DirichletBelief;
 /// A situation of a trial as the assistant knows it.
 #[derive(Clone, Copy, Debug)]
 pub struct Situation<'a> {
+    /// The true state.
     pub state: State,
+    /// The estimate of the human's belief.
     pub belief: &'a DirichletBelief,
     /// Locations that have just changed and may draw the human's eye.
     pub changed: &'a [AspectId],
+    /// What the robot is about to do.
     pub robot: RobotIntent,
     /// Duration of a robot press, in seconds.
     pub robot_press_s: f64,
@@ -25,8 +28,15 @@ impl<'a> Situation<'a> {
 /// The robot's present action.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RobotIntent {
-    /// The arm moves towards a button and will touch it in `in_s` seconds; `driven` if the wizard chose the press.
-    Busy { button: ButtonId, remaining_s: f64, driven: bool },
+    /// Its arm is on its way to a button.
+    Busy {
+        /// The button, in the list of the robot's buttons.
+        button: ButtonId,
+        /// Time until the arm touches it, in seconds.
+        remaining_s: f64,
+        /// The wizard chose the button, so that the press is made whether it is useful or not.
+        driven: bool,
+    },
     /// It follows its policy.
     Free,
     /// It is stopped or held.

@@ -11,6 +11,7 @@ use crate::kitchen::{Agent, DisplayArea, Kitchen, LocationId, LocationKind};
 /// An element of the kitchen map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapElement {
+    /// A location of the kitchen.
     Location(LocationId),
     /// An index into [`Kitchen::storages`].
     Storage(usize),
@@ -19,7 +20,9 @@ pub enum MapElement {
 /// An element with its box on the screen.
 #[derive(Clone, Debug)]
 pub struct MapBox {
+    /// What stands there.
     pub thing: MapElement,
+    /// Its rectangle of terminal cells.
     pub cells: Rect,
     area: DisplayArea,
     /// Region of the display, and of the screen, that belongs to the element; the regions cover everything.
@@ -30,13 +33,16 @@ pub struct MapBox {
 /// Columns of the map that belong to one agent, or to both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AgentZone {
+    /// Whose columns these are; none: both agents reach them.
     pub owner: Option<Agent>,
+    /// The rectangle of terminal cells.
     pub cells: Rect,
 }
 
 /// The kitchen map.
 #[derive(Clone, Debug)]
 pub struct KitchenMap {
+    /// Everything that is drawn, with its place.
     pub spots: Vec<MapBox>,
     /// Zones of the agents, whose names stand above the columns.
     pub zones: Vec<AgentZone>,

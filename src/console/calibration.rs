@@ -32,7 +32,9 @@ pub(super) fn begin(model: &mut ConsoleModel, session: &Session) -> Option<Conso
 /// What enter does with a result: what is best for the gaze.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationAdvice {
+    /// Accept the gaze with its measured offset taken away.
     Corrected,
+    /// Accept the gaze as it is.
     AsItIs,
     /// Both are too far off, or nothing was found.
     Repeat,

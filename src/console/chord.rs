@@ -34,21 +34,27 @@ const REMEDY: &str = "a character such as \"k\", a letter with ctrl such as \"ct
 /// A key, with or without control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KeyChord {
+    /// The key, as the terminal reports it.
     pub code: KeyCode,
+    /// Whether control is held.
     pub ctrl: bool,
 }
 
 impl KeyChord {
+    /// The space bar.
     pub const SPACE: KeyChord = KeyChord::plain(KeyCode::Char(' '));
 
+    /// This key without control.
     pub const fn plain(code: KeyCode) -> KeyChord {
         KeyChord { code, ctrl: false }
     }
 
+    /// The key that types this character, without control.
     pub const fn char(key: char) -> KeyChord {
         KeyChord::plain(KeyCode::Char(key))
     }
 
+    /// The key that types this character, with control.
     pub const fn ctrl(key: char) -> KeyChord {
         KeyChord { code: KeyCode::Char(key), ctrl: true }
     }

@@ -5,7 +5,9 @@ use crate::history::comparison::{LaneComparison, UnmatchedCommunication};
 /// What a key asks of the list of differences.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ComparisonKey {
+    /// Go to the next difference.
     Next,
+    /// Go to the difference before.
     Last,
     /// Shows what each knew then.
     Open,

@@ -19,8 +19,9 @@ pub struct DisplayHealth {
     pub redraw_ms: Option<f64>,
     /// Pages that only watch.
     pub watching: u64,
-    /// Messages that were none, and what was not let in.
+    /// Messages that could not be read.
     pub malformed: u64,
+    /// Connections that were not let in.
     pub refused: u64,
 }
 

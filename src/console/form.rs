@@ -20,9 +20,12 @@ pub const WAIVERS: [&str; 4] =
 pub enum SheetContent<'a> {
     /// Steps to tick in order.
     Steps {
+        /// The heading of the sheet.
         title: &'static str,
+        /// What is to be done, in this order.
         steps: &'a [String],
     },
+    /// The items of a questionnaire.
     Questions(&'a Questionnaire),
     /// The criterion was not met: repeat the practice, or waive it.
     Failed,

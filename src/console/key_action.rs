@@ -13,28 +13,40 @@ use crate::measures::coding::CauseKind;
 /// Key layer: the wizard's keys, or the buttons of a person who plays the participant at this keyboard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyLayer {
+    /// Keys send signals.
     Wizard,
+    /// Keys press the human's buttons.
     Participant,
 }
 
 /// Action of a key.
 #[derive(Clone, Debug, PartialEq)]
 pub enum KeyAction {
+    /// Send this signal about this location.
     Signal(LocationId, Signal),
+    /// Press this button of the human.
     Press(ButtonId),
     /// Send the recommended signal.
     Accept,
+    /// Take the shown signal back.
     TakeBack,
     /// Set a marker with this preset note.
     Note(usize),
     /// Start, pause or resume the trial.
     Advance,
+    /// Ask whether to end the trial.
     EndTrial,
+    /// Stop the robot at once.
     StopRobot,
+    /// Let a stopped robot go on.
     ResumeRobot,
+    /// Change between the wizard's keys and the participant's buttons.
     SwitchLayer,
+    /// Correct the kitchen, steer the robot, or abort the trial.
     Hand(ManualAction),
+    /// Move a replay.
     Move(ReplayKey),
+    /// Change what the screen shows.
     Look(PanelKey),
     /// Show the belief about one aspect over time; again for the next aspect.
     Belief,
@@ -42,7 +54,9 @@ pub enum KeyAction {
     Differ(ComparisonKey),
     /// A key of the rater, to code an error.
     Rate(RaterKey),
+    /// Open or close the help.
     Help,
+    /// Ask whether to end the session and leave.
     Quit,
 }
 
@@ -76,10 +90,13 @@ pub enum ManualAction {
 pub enum PanelKey {
     /// Show the next panel at full size; after the last one, all panels.
     Next,
+    /// Show the panel before it alone.
     Last,
+    /// Show all panels.
     All,
     /// Scroll back in time.
     Back,
+    /// Scroll forward in time.
     Forward,
 }
 
@@ -88,6 +105,7 @@ pub enum PanelKey {
 pub enum RaterKey {
     /// Go to the next error.
     Next,
+    /// Go to the error before.
     Last,
     /// Code a false belief about this location, or about the order and the recipe of its dish.
     Belief(LocationId),
@@ -127,12 +145,15 @@ impl fmt::Display for KeySection {
 pub struct KeyBinding {
     /// Table of the key file that contains the entry.
     pub section: KeySection,
+    /// Its name in that section.
     pub name: String,
     /// Its keys; the first one is shown on the screen.
     pub chords: Vec<KeyChord>,
+    /// What the keys do.
     pub action: KeyAction,
     /// Heading in the help.
     pub group: &'static str,
+    /// What the help says about it.
     pub help: String,
     /// Label in the footer, if it is shown there.
     pub footer: Option<&'static str>,
@@ -168,7 +189,10 @@ pub enum KeyPlace {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{found}")]
 pub struct KeyError {
+    /// Where the key is bound: in the key file or in the layout.
     pub place: KeyPlace,
+    /// What is wrong.
     pub found: String,
+    /// What would be right.
     pub remedy: String,
 }

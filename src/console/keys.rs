@@ -13,6 +13,7 @@ use crate::session::settings::{ParticipantKind, SessionSpec};
 /// The key table.
 #[derive(Clone, Debug)]
 pub struct KeyBindings {
+    /// The lines, in the order of the help.
     pub bindings: Vec<KeyBinding>,
     /// Key of the signal about each location, as the timeline shows it.
     marks: Vec<Option<KeyChord>>,

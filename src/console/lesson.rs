@@ -21,6 +21,8 @@ pub struct TrainingPanel {
 pub struct TrainingFeedback {
     /// Time on the trial's clock.
     pub clock: SessionTime,
+    /// How it is drawn.
     pub level: NoticeLevel,
+    /// The line.
     pub text: String,
 }

@@ -8,6 +8,7 @@ use crate::session::Event;
 /// An input to the console.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConsoleMessage {
+    /// A key was pressed, repeated or released.
     Key(KeyEvent),
     /// The mouse pointer moved to this cell (column, row).
     Pointer(u16, u16),

@@ -30,6 +30,7 @@ const TRAIL: usize = 240;
 /// An open dialog.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Dialog {
+    /// The table of keys.
     Help,
     /// Asks whether to end the session and leave.
     Quit,
@@ -52,7 +53,9 @@ pub enum Dialog {
 /// A message to the wizard.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
+    /// The line.
     pub text: String,
+    /// How urgent it is.
     pub level: NoticeLevel,
     /// Time on [`ConsoleModel::clock`].
     pub at: SessionTime,
@@ -76,6 +79,7 @@ pub struct ViewerStreamStatus {
     pub address: Option<String>,
     /// Number of rows written.
     pub written: u64,
+    /// Number of rows dropped because the viewers were too slow.
     pub dropped: u64,
 }
 
@@ -98,11 +102,17 @@ pub struct ConsoleModel {
     pub clock: SessionTime,
     /// Columns and rows of the terminal.
     pub size: (u16, u16),
+    /// Colours and signs.
     pub theme: Theme,
+    /// The table of keys.
     pub keys: KeyBindings,
+    /// The layer of keys that is active.
     pub layer: KeyLayer,
+    /// What is open above the panels.
     pub dialog: Option<Dialog>,
+    /// The newest line to the wizard.
     pub notice: Option<Notice>,
+    /// Whether the session is recorded.
     pub recording: RecordingStatus,
     /// The stream to Rerun's viewers, if there is one.
     pub viewers: Option<ViewerStreamStatus>,
@@ -114,6 +124,7 @@ pub struct ConsoleModel {
     pub help_from: usize,
     /// Scroll position of the list of events, in entries.
     pub events_back: usize,
+    /// Scroll position of the timeline, in seconds.
     pub timeline_back_s: u32,
     /// Whether the terminal has keyboard focus.
     pub focused: bool,

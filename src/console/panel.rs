@@ -5,12 +5,19 @@ use crate::session::settings::Visibility;
 /// A panel that may be shown alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panel {
+    /// The kitchen as it truly is, with the wizard's keys.
     Kitchen,
+    /// The estimate of the participant's belief.
     Belief,
+    /// What the assistant advises.
     Recommendation,
+    /// Where the participant looked lately.
     GazeMap,
+    /// The newest events.
     Events,
+    /// Presses, signals and errors over time.
     Timeline,
+    /// Wizard and assistants side by side.
     Comparison,
 }
 

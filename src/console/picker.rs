@@ -28,16 +28,22 @@ pub enum PickerQuestion {
 /// What can be answered.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PickerAnswer {
+    /// A location.
     Place(LocationId),
+    /// What lies at the location.
     Content(ContentId),
+    /// A button of the robot.
     Button(ButtonId),
+    /// Why the trial is aborted, or not to be counted.
     Reason(String),
 }
 
 /// A line of the list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PickerEntry {
+    /// What choosing it answers.
     pub answer: PickerAnswer,
+    /// The text that is shown and searched.
     pub label: String,
     /// What else there is to know, at the right.
     pub remark: String,
@@ -46,6 +52,7 @@ pub struct PickerEntry {
 /// An open list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picker {
+    /// What is asked.
     pub question: PickerQuestion,
     /// What was typed.
     pub filter: String,
@@ -60,10 +67,12 @@ pub enum PickerOutcome {
     Nothing,
     /// It was left without an answer.
     Left,
+    /// This was chosen.
     This(PickerAnswer),
 }
 
 impl Picker {
+    /// An open list without a filter, with the cursor on the first line.
     pub fn new(question: PickerQuestion) -> Picker {
         Picker { question, filter: String::new(), at: 0 }
     }

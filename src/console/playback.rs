@@ -9,18 +9,25 @@ pub const SPEEDS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, f64::INFINIT
 /// A key of the replay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReplayKey {
+    /// Play or pause.
     PlayPause,
-    /// Go to the next or previous event that is not a gaze sample.
+    /// Go to the next event that is not a gaze sample.
     StepForward,
+    /// Go to the previous event that is not a gaze sample.
     StepBack,
-    /// Go to the next or previous landmark of this kind.
+    /// Go to the next landmark of this kind.
     On(ReplayLandmark),
+    /// Go to the previous landmark of this kind.
     BackTo(ReplayLandmark),
-    /// Go ten seconds forward or back.
+    /// Go ten seconds forward.
     SeekForward,
+    /// Go ten seconds back.
     SeekBack,
+    /// Play at the next higher speed.
     Faster,
+    /// Play at the next lower speed.
     Slower,
+    /// Go to the beginning, before the first event.
     ToStart,
     /// Go to the position after the event with this sequence number.
     ToEvent(u64),
@@ -33,6 +40,7 @@ pub enum ReplayKey {
 pub struct Playback {
     /// Name of the recording, for the head line.
     pub name: String,
+    /// The replay moves on by itself.
     pub playing: bool,
     /// An index into [`SPEEDS`].
     pub speed: usize,
@@ -40,6 +48,7 @@ pub struct Playback {
     pub length: SessionTime,
     /// Number of events applied so far.
     pub event: usize,
+    /// Number of events known in all.
     pub events: usize,
     /// Whether the recording is followed while it is made.
     pub follows: bool,

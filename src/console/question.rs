@@ -5,6 +5,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 /// A question with numbered answers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct QuestionPage {
+    /// The heading.
     pub title: String,
     /// Paragraphs.
     pub text: Vec<String>,

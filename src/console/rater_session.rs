@@ -6,9 +6,11 @@ use crate::measures::coding::{Code, Codes};
 /// The codes of one rater for a recording so far.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RaterSession {
+    /// The rater's name in the file of codes.
     pub rater: String,
     /// Sequence numbers of the errors, in order.
     pub errors: Vec<u64>,
+    /// The causes given so far, by press.
     pub codes: Codes,
 }
 

@@ -17,6 +17,7 @@ type Rect = [f64; 4];
 /// The display as it is built once.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayScene {
+    /// What the page calls the kitchen.
     pub title: String,
     /// "en": for the browser.
     pub language: String,
@@ -24,18 +25,23 @@ pub struct DisplayScene {
     pub display_m: [f64; 2],
     /// In the order of [`super::DisplayUpdate::contents`].
     pub locations: Vec<DisplayLocation>,
+    /// The storages with their areas and pictures.
     pub storages: Vec<DisplayStorage>,
     /// The human's.
     pub buttons: Vec<DisplayButton>,
     /// AprilTags: none, if the session wants none or there is no room for them.
     pub tags: Vec<TagPicture>,
-    /// How items and dishes look, by their names. No dish says here what it is made of.
+    /// How items look, by their names.
     pub items: BTreeMap<String, LabelledAppearance>,
+    /// How dishes look, by their names. No dish says here what it is made of.
     pub dishes: BTreeMap<String, LabelledAppearance>,
     /// The page's own words.
     pub words: BTreeMap<String, String>,
+    /// Names in the display's language.
     pub names: Names,
+    /// The page shows the keys of the buttons.
     pub keys: bool,
+    /// New events are marked by a flash, for recordings with a camera.
     pub flash: bool,
     /// The mouse pointer stands for the gaze.
     pub pointer: bool,

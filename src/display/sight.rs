@@ -14,6 +14,7 @@ use crate::session::{Phase, Session, TimelineEvent};
 /// What the participant sees of the session now; always the whole of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayUpdate {
+    /// What the display is for now.
     pub stage: DisplayStage,
     /// It is for practice.
     pub practice: bool,
@@ -25,9 +26,11 @@ pub struct DisplayUpdate {
     pub presses: [Option<DisplayedPress>; 2],
     /// Where the robot is about to press, if the session shows it.
     pub intention: Option<DisplayPlace>,
+    /// The signal that is shown, if one is.
     pub signal: Option<DisplayedSignal>,
     /// The number of the newest event to be marked by a flash.
     pub cue: Option<u64>,
+    /// The questionnaire item that is asked, if one is.
     pub question: Option<DisplayedItem>,
     /// Where the eyes are asked to look while the gaze is checked, in fractions of the display.
     pub target: Option<[f64; 2]>,
@@ -39,14 +42,21 @@ pub struct DisplayUpdate {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayStage {
+    /// Before a trial or the first step of the protocol.
     Welcome,
+    /// The experimenter instructs.
     Instruction,
     /// The kitchen before the trial starts.
     Ready,
+    /// The trial runs.
     Running,
+    /// The trial is paused.
     Paused,
+    /// The trial is over.
     Over,
+    /// An item of a questionnaire is asked.
     Questionnaire,
+    /// The debriefing, and after the session's end.
     Thanks,
 }
 

@@ -34,6 +34,7 @@ const WRITTEN: &str = "2025-01-01";
 pub struct DoctorReport {
     /// Nothing is broken.
     pub healthy: bool,
+    /// What was looked at, and how it was found.
     pub checks: Vec<PreflightCheck>,
 }
 

@@ -22,7 +22,9 @@ const PARTS_NAME: &str = ".rows";
 #[error("{}: cannot be written: {reason}", path.display())]
 #[diagnostic(help("another folder with --out, on a disk with free space"))]
 pub struct ExportError {
+    /// The file or folder.
     pub path: PathBuf,
+    /// Why not.
     pub reason: io::Error,
 }
 
@@ -44,6 +46,7 @@ impl TableRows {
         self.rows.serialize(row.cells()).expect("rows are flat, and written to memory");
     }
 
+    /// The rows as CSV in UTF-8, without a header line.
     pub fn into_bytes(self) -> Vec<u8> {
         self.rows.into_inner().expect("rows are written to memory")
     }

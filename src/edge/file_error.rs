@@ -18,30 +18,44 @@ pub type FileResult<T> = Result<T, FileError>;
 /// Something is wrong with a file.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 pub enum FileError {
+    /// The file cannot be read.
     #[error("{}: cannot be read: {reason}", path.display())]
     Unreadable {
+        /// The file.
         path: PathBuf,
+        /// Why not.
         reason: io::Error,
+        /// What would be right.
         #[help]
         remedy: String,
     },
     /// A folder or an option of the command line, or a file as a whole.
     #[error("{name}: found {found}")]
     Unfit {
+        /// The folder, option or file.
         name: String,
+        /// What is wrong.
         found: String,
+        /// What would be right.
         #[help]
         remedy: String,
     },
+    /// Something in a text file is wrong.
     #[error("{name}:{line}: found {found}")]
     Wrong {
+        /// The file, as messages name it.
         name: String,
+        /// The line, counted from 1.
         line: usize,
+        /// What is wrong.
         found: String,
+        /// The file's text, to show the place.
         #[source_code]
         text: Arc<NamedSource<String>>,
+        /// The place in the text, in bytes.
         #[label("here")]
         span: Option<SourceSpan>,
+        /// What would be right.
         #[help]
         remedy: String,
     },

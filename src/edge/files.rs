@@ -24,10 +24,13 @@ use crate::session::settings::SettingError;
 /// A session file with its kitchen and its key file.
 #[derive(Clone, Debug)]
 pub struct SessionFiles {
+    /// The settings.
     pub spec: SessionSpec,
+    /// The kitchen with its two files.
     pub kitchen: KitchenFiles,
+    /// The key file, if the settings name one.
     pub keys: Option<FileText>,
-    /// Those that its plan names, in order.
+    /// The questionnaires that the plan names, in its order.
     pub questionnaires: Vec<Questionnaire>,
 }
 
@@ -181,7 +184,9 @@ pub fn built_in_session() -> FileResult<SessionFiles> {
 /// A kitchen with the texts it was made from, which go into the header of every recording.
 #[derive(Clone, Debug)]
 pub struct KitchenFiles {
+    /// The compiled kitchen.
     pub kitchen: Kitchen,
+    /// The layout file.
     pub layout: FileText,
     /// Its path is as the layout names it.
     pub recipes: FileText,

@@ -24,13 +24,17 @@ pub enum GazeNews {
     Connected(String),
     /// A tracker's program no longer responds.
     Lost(String),
+    /// The tracker sees the display by its tags, or not any more.
     SeesDisplay(bool),
     /// A finished fixation.
     Fixation(TrackerFixation),
     /// Onset or offset of a blink.
     Blink {
+        /// Closed; false: opened.
         is_onset: bool,
+        /// The tracker's confidence, 0 to 1.
         confidence: f64,
+        /// When.
         taken: SampleTime,
     },
 }
@@ -38,18 +42,25 @@ pub enum GazeNews {
 /// A time on the tracker's clock and on ours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleTime {
+    /// On the tracker's clock, in nanoseconds.
     pub device_ns: u64,
+    /// On this computer's clock, if the clocks were compared.
     pub at: Option<Instant>,
 }
 
 /// A fixation detected by a tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerFixation {
+    /// The tracker's number for it: news about the same fixation have the same one.
     pub id: u64,
     /// Position on the display, if it was there.
     pub at: Option<[f64; 2]>,
+    /// How long it was, in milliseconds.
     pub duration_ms: f64,
+    /// How far its samples are spread, in degrees.
     pub dispersion_deg: f64,
+    /// The tracker's confidence, 0 to 1.
     pub confidence: f64,
+    /// When it began.
     pub began: SampleTime,
 }

@@ -48,6 +48,7 @@ struct Line {
 pub struct GazeListener {
     /// Address for connections and datagrams.
     pub address: SocketAddr,
+    /// What trackers send.
     pub news: Receiver<GazeNews>,
 }
 

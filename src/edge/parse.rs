@@ -15,12 +15,19 @@ use crate::session::plan::Questionnaire;
 /// The kinds of files that people write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
+    /// A session file.
     Session,
+    /// A layout file of a kitchen.
     Layout,
+    /// A recipe file of a kitchen.
     Recipes,
+    /// A parameter file of the human model.
     HumanModel,
+    /// A key file of the console.
     Keys,
+    /// A questionnaire.
     Questionnaire,
+    /// Words of the participant's display in a language.
     Language,
 }
 

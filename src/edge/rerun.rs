@@ -66,6 +66,7 @@ pub struct StreamIdentity {
 /// Where a stream goes.
 #[derive(Clone, Debug, Default)]
 pub struct StreamOutlets {
+    /// The file that is written, if one is.
     pub file: Option<PathBuf>,
     /// Where viewers connect; `true`: they are given all of it, however much that is.
     pub server: Option<(SocketAddr, bool)>,

@@ -31,6 +31,7 @@ pub fn mark() -> String {
 /// How a file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RrdState {
+    /// There is no file.
     Missing,
     /// It was not written to its end.
     Cut,
@@ -42,6 +43,7 @@ pub enum RrdState {
     Damaged,
     /// It shows another log, or the log as it was before.
     Stale,
+    /// It shows the whole log as it is now.
     Whole,
 }
 

@@ -23,8 +23,9 @@ pub const PORTS: u16 = 20;
 /// How the stream fares.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StreamCounts {
-    /// Rows that were written, and that were dropped.
+    /// Rows that were written.
     pub written: u64,
+    /// Rows that were dropped.
     pub dropped: u64,
 }
 
@@ -94,6 +95,7 @@ impl RerunStream {
         }
     }
 
+    /// How many rows were written and dropped so far.
     pub fn fares(&self) -> StreamCounts {
         StreamCounts { written: self.counters.written.load(Relaxed), dropped: self.counters.dropped.load(Relaxed) }
     }

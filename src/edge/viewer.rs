@@ -28,6 +28,7 @@ pub enum Viewer {
     Other(String),
     /// There is no screen that it could open a window on.
     NoScreen,
+    /// There is none.
     None,
 }
 

@@ -6,15 +6,17 @@ use super::GazeSample;
 
 /// Where the targets are, in fractions of the display: the centre first.
 pub const TARGETS: [[f64; 2]; 5] = [[0.5, 0.5], [0.2, 0.25], [0.8, 0.25], [0.8, 0.75], [0.2, 0.75]];
-/// How long a target is shown, and from when on samples count, in seconds: until then the eyes are on their way.
+/// How long a target is shown, in seconds.
 pub const TARGET_S: f64 = 1.8;
+/// Samples count from this time after the target appears, in seconds: until then the eyes are on their way.
 pub const SETTLE_S: f64 = 0.7;
 /// A target with fewer samples was not looked at, or not seen by the tracker.
 pub const LEAST_SAMPLES: usize = 10;
 /// A check with fewer targets says nothing about the display.
 const LEAST_TARGETS: usize = 3;
-/// Gaze is good up to this accuracy, and usable up to that, in degrees: locations are 0.15 m apart, 4.3 degrees at 2 m.
+/// Gaze is good up to this accuracy, in degrees: locations are 0.15 m apart, which is 4.3 degrees seen from 2 m.
 pub const GOOD_DEG: f64 = 2.0;
+/// Gaze is usable up to this accuracy, in degrees.
 pub const USABLE_DEG: f64 = 3.0;
 
 /// The result of a gaze accuracy check. Degrees are of visual angle, seen from the configured distance in front of the

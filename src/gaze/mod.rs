@@ -22,7 +22,9 @@ pub const MIN_CONFIDENCE: f64 = 0.6;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GazeSample {
+    /// Fraction of the display's width; outside 0 to 1 the gaze is beside the display.
     pub x: f64,
+    /// Fraction of the display's height, downwards.
     pub y: f64,
     /// 0 to 1.
     pub confidence: f64,

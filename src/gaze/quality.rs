@@ -29,8 +29,11 @@ pub enum GazeFault {
 /// How many samples were recorded and not read, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct FaultCounts {
+    /// Samples that came a second time.
     pub duplicate: u64,
+    /// Samples that were older than [`TOO_OLD_S`] when they arrived.
     pub too_old: u64,
+    /// Samples that were taken before one that had arrived already.
     pub out_of_order: u64,
 }
 
@@ -66,6 +69,7 @@ pub struct SampleChecker {
     newest: Option<SessionTime>,
     recent: Vec<(Option<u64>, [u64; 2])>,
     next: usize,
+    /// Faults found so far, by kind.
     pub counts: FaultCounts,
 }
 

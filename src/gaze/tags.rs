@@ -41,6 +41,7 @@ pub struct DisplayTags {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{found}")]
 pub struct TagError {
+    /// What does not fit, and where.
     pub found: String,
     /// What would be right.
     pub remedy: String,

@@ -21,6 +21,7 @@ pub const SHOWN_S: f64 = 60.0;
 pub struct AspectSnapshot {
     /// Index of the value with the highest expected probability.
     pub believes: u8,
+    /// The expected probability of that value.
     pub p: f32,
     /// Expected probability of the true value.
     pub p_truth: f32,
@@ -36,6 +37,7 @@ impl AspectSnapshot {
 /// Estimate of all aspects at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeliefSnapshot {
+    /// Session time of the estimate.
     pub time: SessionTime,
     /// Whether only gaze samples came since the previous snapshot.
     by_gaze: bool,

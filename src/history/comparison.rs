@@ -24,6 +24,7 @@ const SURE: f64 = 0.9;
 pub struct CommunicationContext {
     /// Sequence number of the event that led to the question.
     pub seq: u64,
+    /// The true state at that event.
     pub state: State,
     /// Estimate by aspect, without the signals sent within the window.
     pub held: Vec<AspectSnapshot>,
@@ -36,6 +37,7 @@ pub struct CommunicationContext {
 /// Content of a communication.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CommunicationContent {
+    /// A signal of the wizard or of an assistant.
     Signal(Signal),
     /// Proposed presses, by the names of their buttons.
     Proposal(Vec<String>),
@@ -74,9 +76,11 @@ impl CommunicationContent {
 /// A communication of one lane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Communication {
+    /// Number of presses, trial clock and content, for the matching.
     pub said: CommunicationEvent,
     /// Session time.
     pub time: SessionTime,
+    /// The signal or proposal itself.
     pub what: CommunicationContent,
     /// Context at the last question to the assistants before it.
     pub known: Option<Arc<CommunicationContext>>,
@@ -89,10 +93,12 @@ pub struct CommunicationLane {
     pub name: String,
     /// Concept of an assistant's lane; `None` for the lane of the signals that the participant saw.
     pub concept: Option<ConceptName>,
+    /// The communications, in the order of time.
     pub spoken: Vec<Communication>,
 }
 
 impl CommunicationLane {
+    /// The communications as the matching takes them, in the order of time.
     pub fn said(&self) -> Vec<CommunicationEvent> {
         self.spoken.iter().map(|spoken| spoken.said).collect()
     }
@@ -103,6 +109,7 @@ impl CommunicationLane {
 pub struct UnmatchedCommunication {
     /// Index of the lane.
     pub lane: usize,
+    /// Its index in that lane.
     pub index: usize,
     /// Index of the lane without a match.
     pub not: usize,
@@ -113,6 +120,7 @@ pub struct UnmatchedCommunication {
 pub struct LanePair {
     /// Strict matches, as indices into both lanes.
     pub matched: Vec<(usize, usize)>,
+    /// How far the two lanes agree.
     pub similarity: Similarity,
 }
 

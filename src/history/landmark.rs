@@ -5,7 +5,9 @@
 pub enum ReplayLandmark {
     /// A press that was an error.
     Error,
+    /// A signal was shown.
     Signal,
+    /// The wizard set a marker.
     Marker,
     /// Start of a false belief in the estimate.
     FalseBelief,

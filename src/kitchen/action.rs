@@ -8,6 +8,7 @@ use super::location::LocationId;
 pub struct ButtonId(pub u8);
 
 impl ButtonId {
+    /// The button's place in its agent's list of [`Kitchen::buttons`](super::Kitchen::buttons).
     #[inline]
     pub fn index(self) -> usize {
         usize::from(self.0)
@@ -34,6 +35,7 @@ pub enum ButtonAction {
 pub struct Button {
     /// "take rice", "cutting_board", "cut", "trash", "serve 1".
     pub name: String,
+    /// What a press of it does.
     pub action: ButtonAction,
     /// Its place on the table in metres, in the frame of the robot's base.
     pub at_m: [f64; 2],

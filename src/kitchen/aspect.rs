@@ -13,6 +13,7 @@ impl AspectId {
         AspectId(location.0)
     }
 
+    /// The aspect's place in [`Kitchen::aspects`](super::Kitchen::aspects).
     #[inline]
     pub fn index(self) -> usize {
         usize::from(self.0)
@@ -33,6 +34,7 @@ pub enum AspectKind {
 pub struct Aspect {
     /// The location's name, or "recipe of DISH".
     pub name: String,
+    /// The location or the dish that it is about.
     pub kind: AspectKind,
     /// The possible values, as codes (see [`AspectKind`]).
     pub values: Vec<u8>,

@@ -9,7 +9,9 @@ use super::state::State;
 /// A press of either agent, and what it did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Press {
+    /// Who pressed.
     pub agent: Agent,
+    /// The button, in the list of that agent's buttons.
     pub button: ButtonId,
     /// The kitchen before the press.
     pub before: State,
@@ -25,16 +27,44 @@ pub enum Change {
     /// The event does not change the kitchen.
     None,
     /// The trial started with an empty kitchen.
-    TrialStarted { before: State, after: State },
-    /// An agent pressed a button during the trial. `presses`: how many presses each agent has made, this one included,
-    /// indexed by [`Agent::index`].
-    Press { press: Press, presses: [u32; 2] },
+    TrialStarted {
+        /// The state until then.
+        before: State,
+        /// The empty kitchen.
+        after: State,
+    },
+    /// An agent pressed a button during the trial.
+    Press {
+        /// The press with the states before and after it.
+        press: Press,
+        /// How many presses each agent has made, this one included, indexed by [`Agent::index`].
+        presses: [u32; 2],
+    },
     /// A press while no trial ran: it has no effect and does not count.
-    UncountedPress { agent: Agent, button: ButtonId },
+    UncountedPress {
+        /// Who pressed.
+        agent: Agent,
+        /// The button, in the list of that agent's buttons.
+        button: ButtonId,
+    },
     /// An order appeared, or stopped showing that it was served.
-    Order { order: LocationId, before: State, after: State },
+    Order {
+        /// The order's location.
+        order: LocationId,
+        /// The state before the change.
+        before: State,
+        /// The state after the change.
+        after: State,
+    },
     /// The wizard corrected what the program believes of a location.
-    Correction { location: LocationId, before: State, after: State },
+    Correction {
+        /// The location that was corrected.
+        location: LocationId,
+        /// The state before the correction.
+        before: State,
+        /// The state after the correction.
+        after: State,
+    },
 }
 
 impl Kitchen {

@@ -77,18 +77,22 @@ impl Kitchen {
         locations.filter(move |&location| before.code(location) != after.code(location))
     }
 
+    /// The location of this kitchen with this id.
     pub fn location(&self, id: LocationId) -> &Location {
         &self.locations[id.index()]
     }
 
+    /// The content of this kitchen with this id.
     pub fn content(&self, id: ContentId) -> &Content {
         &self.contents[id.index()]
     }
 
+    /// The button of this agent with this id.
     pub fn button(&self, agent: Agent, id: ButtonId) -> &Button {
         &self.buttons[agent.index()][id.index()]
     }
 
+    /// The dish of this kitchen with this id.
     pub fn dish(&self, id: DishId) -> &Dish {
         &self.dishes[id.index()]
     }

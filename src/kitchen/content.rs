@@ -7,13 +7,16 @@ use super::look::Appearance;
 pub struct ContentId(pub u8);
 
 impl ContentId {
+    /// Nothing: the location is empty.
     pub const EMPTY: ContentId = ContentId(0);
 
+    /// The content's place in [`Kitchen::contents`](super::Kitchen::contents).
     #[inline]
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
 
+    /// Whether this is the empty content.
     #[inline]
     pub fn is_empty(self) -> bool {
         self.0 == 0

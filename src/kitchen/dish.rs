@@ -11,6 +11,7 @@ use super::look::Appearance;
 pub struct DishId(pub u8);
 
 impl DishId {
+    /// The dish's place in [`Kitchen::dishes`](super::Kitchen::dishes).
     #[inline]
     pub fn index(self) -> usize {
         usize::from(self.0)
@@ -20,6 +21,7 @@ impl DishId {
 /// A dish of the menu.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dish {
+    /// The name from the recipe file, which orders and screens show.
     pub name: String,
     /// Variants of its recipe that people may believe in: full stacks, the true one first.
     pub variants: Vec<ContentId>,

@@ -11,6 +11,7 @@ use super::look::Appearance;
 pub struct LocationId(pub u8);
 
 impl LocationId {
+    /// The location's place in [`Kitchen::locations`](super::Kitchen::locations).
     #[inline]
     pub fn index(self) -> usize {
         usize::from(self.0)
@@ -21,9 +22,13 @@ impl LocationId {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DisplayArea {
+    /// Left edge, as a fraction of the display's width.
     pub x: f64,
+    /// Upper edge, as a fraction of the display's height.
     pub y: f64,
+    /// Width, as a fraction of the display's width.
     pub w: f64,
+    /// Height, as a fraction of the display's height.
     pub h: f64,
 }
 
@@ -64,7 +69,9 @@ pub enum LocationKind {
 /// A location whose content a person can be wrong about.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Location {
+    /// Identifier from the layout file: "cooking_pot".
     pub name: String,
+    /// Whether it is an order, a hand or a place.
     pub kind: LocationKind,
     /// Its area on the wall display.
     pub display: DisplayArea,
@@ -84,9 +91,12 @@ impl Location {
 /// An endless supply of one ingredient, within reach of one agent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Storage {
+    /// The agent who can take from it.
     pub agent: Agent,
+    /// The ingredient, in the state in which a storage gives it.
     pub item: ContentId,
     /// The ingredient's name.
     pub label: String,
+    /// Its area on the wall display.
     pub display: DisplayArea,
 }

@@ -6,6 +6,7 @@ use super::location::LocationId;
 /// A compiled processing step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Process {
+    /// The name from the recipe file: "cut".
     pub name: String,
     /// Location of the process; `None` for the hand of the agent who presses.
     pub place: Option<LocationId>,

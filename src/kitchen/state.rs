@@ -64,6 +64,7 @@ impl State {
         OrderContent::from_code(self.code(location))
     }
 
+    /// Sets what an order shows.
     #[inline]
     pub fn set_order(&mut self, location: LocationId, content: OrderContent) {
         self.set_code(location, content.code());
@@ -75,6 +76,7 @@ impl State {
         self.0[location.index() & (MAX_LOCATIONS - 1)]
     }
 
+    /// Sets a location's code: that of [`OrderContent::code`] for orders, a [`ContentId`] for other locations.
     #[inline]
     pub fn set_code(&mut self, location: LocationId, code: u8) {
         self.0[location.index() & (MAX_LOCATIONS - 1)] = code;
@@ -93,6 +95,7 @@ impl State {
 pub struct Recipes([u8; MAX_DISHES]);
 
 impl Recipes {
+    /// The full stack that is taken for this dish's recipe.
     #[inline]
     pub fn get(&self, dish: DishId) -> ContentId {
         ContentId(self.0[dish.index() & (MAX_DISHES - 1)])
@@ -104,6 +107,7 @@ impl Recipes {
         u128::from_le_bytes(self.0)
     }
 
+    /// Sets the full stack that is taken for this dish's recipe.
     #[inline]
     pub fn set(&mut self, dish: DishId, stack: ContentId) {
         self.0[dish.index() & (MAX_DISHES - 1)] = stack.0;

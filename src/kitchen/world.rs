@@ -7,20 +7,25 @@ use super::state::{Recipes, State};
 /// One complete hypothesis of kitchen state and recipes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct World {
+    /// The content of every location.
     pub state: State,
+    /// What is taken for the recipe of every dish.
     pub recipes: Recipes,
 }
 
 /// A world with its weight: a probability (`f64`) or a number of draws (`u32`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WeightedWorld<W = f64> {
+    /// The world.
     pub world: World,
+    /// Its probability, or its number of draws.
     pub weight: W,
 }
 
 /// A set of weighted worlds, which approximates a belief. Probabilities sum to 1.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct WeightedWorlds<W = f64> {
+    /// The worlds with their weights, each world once.
     pub all: Vec<WeightedWorld<W>>,
 }
 

@@ -35,9 +35,11 @@ pub enum Target {
 pub enum Cause {
     /// A slip: the press is not likelier under the belief than under the truth.
     Slip,
+    /// A false belief made the press likelier than the truth would have.
     Belief {
         /// log p(a | b) - log p(a | truth), in nats.
         gain_nats: f64,
+        /// What was believed wrong.
         target: Target,
         /// Second target, where a single target does not explain the error.
         with: Option<Target>,
@@ -100,6 +102,7 @@ struct Inquiry<'a> {
 }
 
 impl Attributor {
+    /// Attributes errors by this choice model; `seed` names the random stream of the worlds that it draws.
     pub fn new(model: DecisionModel, seed: u64) -> Attributor {
         Attributor { model, seed }
     }

@@ -22,6 +22,7 @@ pub const CALIBRATION_BINS: usize = 10;
 /// Area under the ROC curve of one aspect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AspectAuc {
+    /// The aspect's name.
     pub aspect: String,
     /// Null if its belief was never or always false.
     pub auc: Option<f64>,
@@ -34,17 +35,22 @@ pub struct AspectAuc {
 pub struct Detection {
     /// Mean of the areas of locations and recipes.
     pub auc: Option<f64>,
+    /// Area under the ROC curve over the locations.
     pub auc_locations: Option<f64>,
+    /// Area under the ROC curve over the recipes.
     pub auc_recipes: Option<f64>,
     /// Area of the baseline on locations, which knows only whether somebody else changed a location since the human last looked at it.
     pub auc_baseline: Option<f64>,
     /// Mean of the areas of single aspects.
     pub auc_mean_of_aspects: Option<f64>,
+    /// How well episodes are flagged at the chosen thresholds.
     #[serde(flatten)]
     pub flags: Flags,
     /// The expected calibration error of the predictions within [`CALIBRATED`].
     pub ece: Option<f64>,
+    /// The predictions in bins, against what was true.
     pub calibration: Calibration,
+    /// The area under the ROC curve of each aspect by itself.
     pub aspects: Vec<AspectAuc>,
 }
 

@@ -19,6 +19,7 @@ pub enum Code {
     Slip,
     /// A race: the robot changed the location shortly before the press.
     Race,
+    /// Another cause.
     Other,
 }
 
@@ -26,9 +27,13 @@ pub enum Code {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CauseKind {
+    /// Something was believed wrong.
     Belief,
+    /// The hand or the attention slipped.
     Slip,
+    /// The robot was quicker.
     Race,
+    /// Another cause.
     Other,
 }
 
@@ -64,6 +69,7 @@ impl Code {
         }
     }
 
+    /// The kind of the cause, without what is believed wrong.
     pub fn kind(&self) -> CauseKind {
         match self {
             Code::Belief(_) => CauseKind::Belief,
@@ -170,13 +176,15 @@ pub struct AgreementTable {
 /// Agreement of two raters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Agreement {
-    /// Number of errors that both coded, and number of these with the same cause.
+    /// Errors that both have coded.
     pub errors: u64,
+    /// Of these, errors about which both say the same kind of cause.
     pub same_cause: u64,
     /// Cohen's kappa of the cause over {belief, slip, race, other}; null without codes, or if all codes are equal.
     pub kappa_cause: Option<f64>,
-    /// Number of errors that both coded as false beliefs, and number of these with the same location.
+    /// Errors that both put down to a false belief.
     pub beliefs: u64,
+    /// Of these, errors where both say that the same thing is believed wrong.
     pub same_aspect: u64,
     /// Cohen's kappa of the false belief's location.
     pub kappa_aspect: Option<f64>,

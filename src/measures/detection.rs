@@ -37,6 +37,7 @@ pub struct CalibrationBin {
 /// Calibration of predicted probabilities, in bins of equal width.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Calibration {
+    /// The bins, in the order of the predicted probability.
     pub bins: Vec<CalibrationBin>,
     /// Expected calibration error: mean over predictions of the difference between predicted and observed in their bin (Naeini et al.
     /// 2015). `None` without predictions.

@@ -27,6 +27,7 @@ pub struct PressVerdict {
     pub excess: i32,
     /// Whether somebody else changed the same place within [`RACE_S`] before; such presses are not counted.
     pub race: bool,
+    /// The press counts as an error.
     pub error: bool,
 }
 
@@ -38,6 +39,7 @@ pub struct PressJudge {
 }
 
 impl PressJudge {
+    /// A judge at the start of a trial, when nobody has changed anything yet.
     pub fn new(kitchen: Arc<Kitchen>) -> PressJudge {
         PressJudge { kitchen, others_changed_at: [None; MAX_LOCATIONS] }
     }

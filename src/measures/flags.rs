@@ -27,7 +27,9 @@ const CANDIDATES: usize = 200;
 /// Probabilities of a false belief from which an aspect is flagged.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Thresholds {
+    /// The threshold for locations, as a probability.
     pub locations: f64,
+    /// The threshold for recipes, as a probability.
     pub recipes: f64,
 }
 
@@ -38,9 +40,11 @@ pub struct Flags {
     pub episodes: Option<u64>,
     /// Share of these episodes that were flagged in time.
     pub flagged_before_third_error: Option<f64>,
+    /// Flags on aspects that were believed right, per 20 presses of the human.
     pub false_flags_per_20_actions: Option<f64>,
     /// Share of (press, aspect) pairs with a right belief that were flagged.
     pub wrongly_flagged: Option<f64>,
+    /// The thresholds at which all this holds.
     pub thresholds: Option<Thresholds>,
 }
 

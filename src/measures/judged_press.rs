@@ -7,8 +7,11 @@ use crate::base::time::SessionTime;
 /// A judged press of the human. The nth judged press is the nth press of the human on the session's timeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JudgedPress {
+    /// Sequence number of its event.
     pub seq: u64,
+    /// Session time of the press.
     pub time: SessionTime,
+    /// Its regret, and whether it was an error.
     pub verdict: PressVerdict,
     /// Whether the human's belief before the press is known.
     pub belief_known: bool,

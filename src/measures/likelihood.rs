@@ -31,11 +31,13 @@ pub struct LogLikelihood {
     pub informed: Option<f64>,
     /// Under a human who presses random buttons.
     pub uniform: Option<f64>,
-    /// Difference between model and informed human, and its 95 % bootstrap interval over trials.
+    /// By how much the mean log probability under the model exceeds that under the informed human, in nats per press.
     pub gain: Option<f64>,
+    /// 95 % interval of the gain, by a bootstrap over trials.
     pub gain_interval: Option<[f64; 2]>,
-    /// Fitted parameters of the informed human.
+    /// The choice model's tau that fits the informed human best, per press.
     pub informed_tau: Option<f64>,
+    /// The lapse probability that fits the informed human best.
     pub informed_lapse: Option<f64>,
 }
 

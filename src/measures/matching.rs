@@ -23,7 +23,9 @@ pub const WINDOW: u32 = 3;
 /// Kind of a communication.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum CommunicationKind {
+    /// A signal that shows an order's recipe.
     Recipe,
+    /// A signal that highlights a location.
     Highlight,
     /// A proposal of presses after an error (not a signal).
     Proposal,
@@ -32,6 +34,7 @@ pub enum CommunicationKind {
 /// Content of a communication, as the matching compares it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct CommunicationTarget {
+    /// The kind of communication.
     pub kind: CommunicationKind,
     /// Location of the signal.
     pub target: Option<LocationId>,
@@ -44,6 +47,7 @@ pub struct CommunicationEvent {
     pub press: u32,
     /// Time on the trial's clock.
     pub clock: SessionTime,
+    /// What is communicated.
     pub content: CommunicationTarget,
 }
 
@@ -187,6 +191,7 @@ pub struct MatchShares {
     pub recall: Option<f64>,
     /// Share of the second lane's communications that are matched.
     pub precision: Option<f64>,
+    /// The harmonic mean of recall and precision.
     pub f1: Option<f64>,
 }
 
@@ -202,9 +207,11 @@ pub struct Similarity {
     pub median_lead_s: Option<f64>,
     /// Chance level of recall: mean over circular shifts of the second lane.
     pub chance_recall: Option<f64>,
-    /// Number of communications of the first lane, of the second lane, and of strict pairs.
+    /// Number of communications of the first lane.
     pub of_n: u64,
+    /// Number of communications of the second lane.
     pub with_n: u64,
+    /// Number of strict pairs.
     pub matched: u64,
     /// Matches with the same kind of signal.
     pub lenient: MatchShares,

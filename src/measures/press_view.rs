@@ -9,6 +9,7 @@ use crate::mind::witness::EstimateWitness;
 pub struct PressView {
     /// State before the press.
     pub state: State,
+    /// The button, in the list of the human's buttons.
     pub button: ButtonId,
     /// The participant's P(truth) of each aspect; `None` where it is not known, as with people.
     pub held: Option<Vec<f64>>,

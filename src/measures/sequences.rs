@@ -25,6 +25,7 @@ pub struct Sequence {
     pub target: Target,
     /// The number of errors.
     pub length: u32,
+    /// Session time of the first error.
     pub began: SessionTime,
     /// Time of the first correct press after the last error; `None` if the trial ended before.
     pub recovered: Option<SessionTime>,
@@ -97,7 +98,9 @@ fn closed(errors: &[(SessionTime, Target)], recovered: Option<SessionTime>) -> O
 /// A false belief episode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Episode {
+    /// What was believed wrong.
     pub aspect: AspectId,
+    /// When the belief became false.
     pub began: SessionTime,
     /// Time at which the belief was right again; `None` if the trial ended before.
     pub corrected: Option<SessionTime>,

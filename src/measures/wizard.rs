@@ -16,7 +16,9 @@ pub const LATE_PRESSES: u32 = 3;
 /// A period of false belief about an aspect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FalseBeliefPeriod {
+    /// What was believed wrong.
     pub aspect: AspectId,
+    /// When the belief became false.
     pub began: SessionTime,
     /// End of the period with the number of human presses until then; `None` if the trial ended before.
     pub corrected: Option<(SessionTime, u32)>,
@@ -34,6 +36,7 @@ impl FalseBeliefPeriod {
 /// A signal of a wizard.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WizardSignal {
+    /// When it was sent, on the trial's clock.
     pub clock: SessionTime,
     /// Number of human presses before it.
     pub press: u32,
@@ -41,14 +44,20 @@ pub struct WizardSignal {
     pub aspects: Vec<AspectId>,
     /// Time from the key press to the frame that shows the signal, in milliseconds; `None` if it was not recorded.
     pub to_display_ms: Option<f64>,
+    /// The wizard took it back before its time was over.
     pub taken_back: bool,
 }
 
 /// Judgement of a signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SignalVerdict {
-    /// The first signal about a false belief that led to an error: the index of the period, and the seconds since it began.
-    Hit { latency_s: f64, spell: usize },
+    /// The first signal about something that was believed wrong and led to an error.
+    Hit {
+        /// Time from the beginning of the false belief to the signal, in seconds.
+        latency_s: f64,
+        /// The index of the false belief period.
+        spell: usize,
+    },
     /// A further signal about the same false belief.
     Again,
     /// A signal about a false belief that led to no error.
@@ -108,8 +117,11 @@ pub fn worths(sent: &[WizardSignal], spells: &[FalseBeliefPeriod]) -> Vec<Signal
 /// Summary of durations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimeSummary {
+    /// Number of times.
     pub n: u64,
+    /// Their median, in the unit that the field with this summary names.
     pub median: f64,
+    /// The longest one, in the same unit.
     pub max: f64,
 }
 
@@ -133,7 +145,9 @@ impl TimeSummary {
 /// Performance of a wizard in a trial. Numbers that need the participant's beliefs are null where those are not known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WizardMeasures {
+    /// Signals that the wizard sent.
     pub signals: u64,
+    /// Of these, signals that were taken back.
     pub taken_back: u64,
     /// Time from key press to the frame that shows the signal, in milliseconds; null if it was not recorded.
     pub key_to_display_ms: Option<TimeSummary>,
@@ -145,8 +159,11 @@ pub struct WizardMeasures {
     pub omissions: Option<u64>,
     /// Time from the beginning of a period to its signal, in seconds.
     pub latency_s: Option<TimeSummary>,
+    /// Signals about a false belief that an earlier signal had been about.
     pub repeated: Option<u64>,
+    /// Signals about something that was believed right again already, since a few presses at most.
     pub late: Option<u64>,
+    /// Signals about something that was believed right, while something else was believed wrong.
     pub wrong_targets: Option<u64>,
     /// Number of signals while no belief was false.
     pub needless: Option<u64>,

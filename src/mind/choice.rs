@@ -19,7 +19,9 @@ const MOST_PRESSES: usize = u8::MAX as usize;
 /// A choice of the human: to press a button or to wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HumanChoice {
+    /// Presses nothing now.
     Wait,
+    /// Presses this button.
     Press(ButtonId),
 }
 

@@ -125,6 +125,7 @@ fn sum_of(values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
 /// The estimate of what the human believes: one Dirichlet per aspect, in the order of the kitchen's aspects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DirichletBelief {
+    /// The Dirichlet distribution of each aspect.
     pub aspects: Vec<Dirichlet>,
 }
 
@@ -163,6 +164,7 @@ impl DirichletBelief {
         DirichletBelief { aspects: (0..kitchen.aspects.len()).map(of).collect() }
     }
 
+    /// The Dirichlet distribution of this aspect.
     pub fn aspect(&self, aspect: AspectId) -> &Dirichlet {
         &self.aspects[aspect.index()]
     }

@@ -132,6 +132,7 @@ impl Parameter {
 /// Number of the human's presses in one trial, and their log likelihood.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Likelihood {
+    /// Number of presses.
     pub presses: u64,
     /// Sum over presses of ln p under the estimate before each press, in nats.
     pub log_p: f64,

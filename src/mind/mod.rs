@@ -28,6 +28,7 @@ pub struct BeliefWitness {
 /// A participant's belief about one aspect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AspectBelief {
+    /// The aspect's name.
     pub aspect: String,
     /// Name of the most probable value.
     pub believes: String,

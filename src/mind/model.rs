@@ -11,11 +11,17 @@ use super::decision::DecisionModel;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HumanModel {
+    /// Beliefs before anything was seen.
     pub prior: PriorModel,
+    /// What gaze reads.
     pub perception: PerceptionModel,
+    /// How beliefs change between observations.
     pub transition: TransitionModel,
+    /// How presses follow from beliefs.
     pub decision: DecisionModel,
+    /// How signals are noticed and read.
     pub signal: SignalModel,
+    /// How finely the belief is inferred: no property of people.
     pub inference: InferenceModel,
 }
 

@@ -7,7 +7,9 @@ use crate::kitchen::{LocationId, Press, State};
 /// One piece of evidence with its session time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
+    /// Session time.
     pub time: SessionTime,
+    /// What happened.
     pub what: Observed,
 }
 
@@ -16,24 +18,30 @@ pub struct Observation {
 pub enum Observed {
     /// The trial starts; the human knows the state of the kitchen.
     Started {
+        /// The kitchen at the start.
         state: State,
     },
     /// A gaze sample, taken by the tracker at this session time.
     Gaze {
+        /// The sample, in display coordinates.
         sample: GazeSample,
+        /// When the tracker took it, in session time.
         taken: SessionTime,
     },
     /// An agent pressed a button.
     Pressed(Press),
     /// The display changes without a press, for instance because an order appears or disappears.
     Displayed {
+        /// What the display shows from now on.
         state: State,
     },
     /// A signal about a location: an order's dish and recipe, or the content of another location.
     Told {
+        /// The location that the signal is about.
         location: LocationId,
     },
-    /// The trial is paused or resumed; nothing is read or forgotten in between.
+    /// The trial stands still: nothing is read or forgotten until it goes on.
     Paused,
+    /// The trial goes on.
     Resumed,
 }

@@ -10,6 +10,7 @@ use crate::base::rng::Stream;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TraitSpread {
+    /// Median of the trait, in the trait's unit.
     pub median: f64,
     /// Standard deviation of the logarithm of the trait (of the logit, for a probability).
     pub sigma: f64,
@@ -51,8 +52,9 @@ pub struct Population {
     pub press_s: TraitSpread,
     /// Standard deviation of the logarithm of one participant's times between presses.
     pub press_jitter: f64,
-    /// Slowdown of the first presses (0.3: 30 % slower), and number of presses after which half of it is gone.
+    /// How much slower the first presses are (0.3: by 30 %).
     pub novice_slowdown: f64,
+    /// Number of presses after which half of that slowdown is gone.
     pub practice_presses: f64,
     /// Probability of pressing the neighbouring button on the table.
     pub slip: TraitSpread,
@@ -117,6 +119,7 @@ pub struct Population {
 /// Trials of a participant before the present one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Experience {
+    /// Number of earlier trials.
     pub trials: u32,
     /// Number of own presses in the earlier trials.
     pub presses: f64,
@@ -165,27 +168,49 @@ impl Default for Population {
 /// Traits of one simulated participant, drawn from the population. Meanings and units as in [`Population`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Individual {
+    /// Median time from one press to the next, in seconds, with some practice.
     pub press_s: f64,
+    /// Chance to hit the neighbouring button on the table.
     pub slip: f64,
+    /// Chance to take the look-alike from the storage.
     pub look_alike_slip: f64,
+    /// Chance of a press without a thought.
     pub thoughtless: f64,
+    /// Chance to look at a place right before using it.
     pub checks: f64,
+    /// Chance to look once more before a press if the last look is some time ago.
     pub makes_sure: f64,
+    /// Chance that a change anywhere on the display draws the eye.
     pub capture: f64,
+    /// Chance that a new order draws the eye.
     pub order_capture: f64,
+    /// Chance that a look goes to no place of the task.
     pub wanders: f64,
+    /// Weight of the robot's hand among the places worth watching.
     pub watches_robot: f64,
+    /// Median length of a fixation, in seconds.
     pub fixation_s: f64,
+    /// Chance to take a content for one that looks like it.
     pub misreads: f64,
+    /// How much belief in an unseen robot's hand gives way when the robot presses something, 0 to 1.
     pub doubts_robot_hand: f64,
+    /// The same for an unseen shared place, 0 to 1.
     pub doubts_places: f64,
+    /// Probability of the true recipe after the instruction.
     pub learned: f64,
+    /// Probability of the true recipe to which an unused memory of it decays.
     pub half_forgotten: f64,
+    /// Half-life of that decay, in seconds.
     pub half_life_s: f64,
+    /// How often the thread is lost while working on an order, per second.
     pub loses_thread_per_s: f64,
+    /// Chance to question the own recipe when what the robot does or makes does not fit it.
     pub takes_hints: f64,
+    /// Time without anything to do after which the person looks around and doubts its recipes, in seconds.
     pub patience_s: f64,
+    /// How long the person stays with one order, in seconds.
     pub commitment_s: f64,
+    /// Chance to notice a signal.
     pub notices_signal: f64,
 }
 

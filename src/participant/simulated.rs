@@ -24,7 +24,12 @@ pub enum ParticipantAction {
     /// A gaze sample of its eye tracker.
     Gaze(GazeSample),
     /// A press of a button; `belief` records the participant's beliefs at the press and the cause of the press.
-    Press { button: ButtonId, belief: BeliefWitness },
+    Press {
+        /// The button, in the list of the human's buttons.
+        button: ButtonId,
+        /// What it believes at this moment, and why it presses.
+        belief: BeliefWitness,
+    },
 }
 
 /// A simulated participant in one trial.

@@ -40,6 +40,7 @@ pub enum AbortReason {
 }
 
 impl AbortReason {
+    /// Every reason, in the order in which tables count them.
     pub const ALL: [AbortReason; 11] = [
         AbortReason::NoLongerUseful,
         AbortReason::Stopped,
@@ -93,8 +94,13 @@ pub enum IdleReason {
 /// Something that the robot does at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RobotActivity {
-    /// Starts a press; the arm will touch the button at `until`.
-    Intend { button: ButtonId, until: SessionTime },
+    /// Starts a press.
+    Intend {
+        /// The button that it goes for.
+        button: ButtonId,
+        /// When the arm will touch the button.
+        until: SessionTime,
+    },
     /// Presses the button that it set out for.
     Press(ButtonId),
     /// Gives up the press that it set out for, or was about to.
@@ -103,9 +109,18 @@ pub enum RobotActivity {
     Idle(IdleReason),
     /// A sample of the arm's motion.
     Move(ArmSample),
-    /// The safety mode changed. With the force in newtons or the number of the faulty joint (1 is the first) that
-    /// caused the change.
-    Safety { mode: SafetyMode, force_n: Option<f64>, joint: Option<u8> },
-    /// Somebody touched the arm with this force, in newtons.
-    Touched { force_n: f64 },
+    /// The safety mode changed.
+    Safety {
+        /// The mode from now on.
+        mode: SafetyMode,
+        /// The contact force that caused the change, in newtons, if a contact did.
+        force_n: Option<f64>,
+        /// The faulty joint that caused the change, if one did; 1 is the first.
+        joint: Option<u8>,
+    },
+    /// Somebody touched the arm.
+    Touched {
+        /// The force of the contact in newtons.
+        force_n: f64,
+    },
 }

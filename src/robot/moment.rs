@@ -27,14 +27,16 @@ pub enum ArmPhase {
 /// A sample of the arm's motion, as it is recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ArmSample {
+    /// What the arm was doing.
     pub phase: ArmPhase,
     /// Joint angles in radians, from the base on, to a ten thousandth.
     pub joints: JointAngles,
     /// The greatest force that it felt since it was told last, from a button or from somebody, in newtons.
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub force_n: f64,
-    /// The middle of the human's hand, in the frame of the arm's base, in metres, and how far it is from the arm.
+    /// The middle of the human's hand, in the frame of the arm's base, in metres.
     pub hand_m: [f64; 3],
+    /// The distance of the human's hand from the arm, in metres.
     pub hand_away_m: f64,
 }
 

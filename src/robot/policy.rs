@@ -10,7 +10,9 @@ use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, Recipes
 /// What the robot does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PolicyDecision {
+    /// It sets out for this button of the robot.
     Press(ButtonId),
+    /// It waits, for this reason.
     Idle(IdleReason),
 }
 

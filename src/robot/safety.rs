@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Contact with more force than this stops the arm, in newtons; less where it moves slowly, because less is felt there.
+/// Contact with more force than this stops the arm at normal speed, in newtons.
 pub const STOP_N: f64 = 60.0;
+/// The same where a hand is near and the arm moves slowly, in newtons: less force is felt there.
 pub const STOP_REDUCED_N: f64 = 20.0;
 /// A hand nearer than this slows the arm, in metres.
 pub const SLOWS_M: f64 = 0.25;
@@ -11,6 +12,7 @@ pub const SLOWS_M: f64 = 0.25;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SafetyMode {
+    /// Nobody is near: full speed.
     #[default]
     Normal,
     /// A hand is near: slower.

@@ -27,6 +27,7 @@ pub fn check(
 /// Recorded trials of one kitchen.
 #[derive(Clone, Debug)]
 pub struct BeliefCheckTrials {
+    /// The kitchen of all these trials.
     pub kitchen: Arc<Kitchen>,
     /// Trials in the order of the recordings.
     pub trials: Vec<TrialView>,

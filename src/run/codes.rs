@@ -16,7 +16,9 @@ use crate::session::settings::{ParticipantKind, is_code};
 /// A recording with the codes of its errors.
 #[derive(Clone, Debug)]
 pub struct CodedRecording {
+    /// The recording's folder.
     pub folder: PathBuf,
+    /// The errors that can be coded, and where they can lie.
     pub codable: Codable,
     /// Codes by rater.
     pub codes: BTreeMap<String, Codes>,
@@ -58,6 +60,7 @@ impl CodedRecording {
 /// Output of `tomcom codes`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CodesSummary {
+    /// The recordings with what each rater has coded.
     pub recordings: Vec<CodedRecordingSummary>,
     /// Agreement of each pair of raters with common errors.
     pub agreements: Vec<RaterPairSummary>,
@@ -68,7 +71,9 @@ pub struct CodesSummary {
 /// Summary of one recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CodedRecordingSummary {
+    /// The name of the recording's folder.
     pub recording: String,
+    /// Number of errors.
     pub errors: u64,
     /// Number of errors coded by each rater.
     pub coded: BTreeMap<String, u64>,
@@ -77,8 +82,11 @@ pub struct CodedRecordingSummary {
 /// Agreement of two raters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RaterPairSummary {
+    /// The first rater.
     pub of: String,
+    /// The second rater, or "simulation" for what a simulated participant believed.
     pub with: String,
+    /// How far they agree, over all recordings together.
     #[serde(flatten)]
     pub agreement: Agreement,
 }

@@ -13,9 +13,11 @@ use crate::gaze::tags::TagError;
 /// A file cannot be read, or a result cannot be written.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum RunError {
+    /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
+    /// A recording cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] WriteError),
@@ -35,30 +37,51 @@ pub struct TerminalError(pub io::Error);
 /// Error of a live session.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum LiveError {
+    /// The console cannot be opened.
     #[error(transparent)]
     #[diagnostic(help("run it in a terminal, not through a pipe"))]
     Terminal(#[from] TerminalError),
+    /// A key cannot be bound.
     #[error(transparent)]
     #[diagnostic(help("{}", .0.remedy))]
     Keys(#[from] KeyError),
+    /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
+    /// Nothing can listen for gaze.
     #[error("nothing can listen on port {port} of localhost for gaze: {reason}")]
     #[diagnostic(help("another port as gaze_port in the session file"))]
-    Gaze { port: u16, reason: io::Error },
+    Gaze {
+        /// The port on localhost.
+        port: u16,
+        /// Why not.
+        reason: io::Error,
+    },
+    /// The participant's display cannot be served.
     #[error("nothing can listen on {address}, port {port}, for the participant's display: {reason}")]
     #[diagnostic(help("another port in the session file (port under [display]), or an address of this computer"))]
-    Display { address: IpAddr, port: u16, reason: io::Error },
+    Display {
+        /// The address to listen on.
+        address: IpAddr,
+        /// The port there.
+        port: u16,
+        /// Why not.
+        reason: io::Error,
+    },
+    /// The tags do not fit on the display, so that the eye tracker has no surface.
     #[error("the eye tracker has no surface to look for: found {}", .0.found)]
     #[diagnostic(help("{}; or a surface of your own, with its corners in [tracker]", .0.remedy))]
     Tags(TagError),
+    /// The recording cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] WriteError),
+    /// The recording cannot be continued.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Resume(#[from] ResumeError),
+    /// The recordings do not belong to the study plan, as this says.
     #[error("found {0}")]
     #[diagnostic(help(
         "the plan as it was, or another folder with --out for another plan; tomcom plan SESSION shows it"
@@ -75,15 +98,24 @@ impl From<FileError> for LiveError {
 /// Error of showing a recording.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ReviewError {
+    /// The console cannot be opened.
     #[error(transparent)]
     #[diagnostic(help("run it in a terminal; `tomcom replay RECORDING` tells a recording in words through a pipe"))]
     Terminal(#[from] TerminalError),
+    /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
+    /// The record of a training cannot be written.
     #[error("{}: the training cannot be recorded: {reason}", path.display())]
     #[diagnostic(help("a folder that can be written to, with --out"))]
-    Training { path: PathBuf, reason: io::Error },
+    Training {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        reason: io::Error,
+    },
+    /// A key of the recording's key file cannot be bound.
     #[error("the header of the recording: {0}")]
     #[diagnostic(help("{}", .0.remedy))]
     Keys(#[from] KeyError),

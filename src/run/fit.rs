@@ -17,6 +17,7 @@ use crate::mind::observation::Observation;
 /// The trials of a fit, all of one kitchen.
 #[derive(Clone, Debug)]
 pub struct FitTrials {
+    /// The kitchen of all these trials.
     pub kitchen: Arc<Kitchen>,
     /// Human model in the header of the first recording.
     pub model: HumanModel,

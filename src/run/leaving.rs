@@ -23,8 +23,11 @@ pub enum LeavingReason {
 pub struct LiveOutcome {
     /// The folder of the recording.
     pub folder: PathBuf,
+    /// Why the console was left.
     pub leaving: LeavingReason,
+    /// The summary of the trial.
     pub figures: TrialSummary,
+    /// Whether the trial counts in the analysis.
     pub standing: ExclusionStatus,
     /// Start of the repeated trial, if requested.
     pub again: Option<SessionStart>,

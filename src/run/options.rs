@@ -17,9 +17,23 @@ use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, 
 #[derive(Clone, Debug)]
 pub enum SessionStart {
     /// A repeated trial in another recording in `out`: its header and kitchen.
-    Again { header: Box<Header>, kitchen: Arc<Kitchen>, out: PathBuf },
+    Again {
+        /// The header of the new recording.
+        header: Box<Header>,
+        /// The kitchen that the header describes.
+        kitchen: Arc<Kitchen>,
+        /// The folder for the recording's folder.
+        out: PathBuf,
+    },
     /// A new session with these settings, recorded in `out`; `trial` distinguishes sessions with the same seed.
-    New { files: Box<SessionFiles>, trial: u64, out: PathBuf },
+    New {
+        /// The settings with their files.
+        files: Box<SessionFiles>,
+        /// Which trial of its seed it is.
+        trial: u64,
+        /// The folder for the recording's folder.
+        out: PathBuf,
+    },
     /// The session of a recording that was cut off.
     Continued(PathBuf),
 }
@@ -40,17 +54,25 @@ pub struct TrialSeries {
 /// Session settings that the command line overrides.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SettingOverrides {
+    /// Who plays the human's part.
     pub participant: Option<ParticipantKind>,
+    /// Which arm carries out the robot's presses.
     pub arm: Option<ArmKind>,
+    /// Where gaze samples come from.
     pub gaze: Option<GazeSource>,
     /// Address of the display's server.
     pub listen: Option<IpAddr>,
     /// File from which gaze is replayed.
     pub gaze_file: Option<PathBuf>,
+    /// Who may send signals.
     pub condition: Option<Condition>,
+    /// The assistant's communication concept.
     pub concept: Option<ConceptName>,
+    /// The seed of everything random.
     pub seed: Option<u64>,
+    /// The participant's code.
     pub code: Option<String>,
+    /// Where Rerun's viewers connect: "ADDRESS:PORT".
     pub rerun_listen: Option<String>,
 }
 

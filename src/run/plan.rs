@@ -13,12 +13,17 @@ use crate::session::plan::{Progress, RecordingOutcome, Study};
 /// Output of `tomcom plan SESSION`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyPlanSummary {
+    /// The plan's name.
     pub plan: String,
+    /// The checksum of the plan and its settings.
     pub digest: String,
+    /// The seed of counterbalancing and trials.
     pub seed: u64,
-    /// Number of participants, and number of finished participants.
+    /// Number of participants.
     pub planned: usize,
+    /// Of these, participants who have had everything.
     pub finished: usize,
+    /// How far each participant is.
     pub participants: Vec<Progress>,
 }
 

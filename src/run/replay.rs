@@ -17,13 +17,16 @@ use crate::session::{Event, Session, Stamped};
 #[derive(Debug)]
 pub struct Replay {
     log: LogReader,
+    /// The session up to here, with what follows from its events.
     pub follower: Follower,
 }
 
 /// An applied event with its change of the kitchen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReplayedEvent {
+    /// The event with its number and time.
     pub stamped: Stamped,
+    /// What it changed in the kitchen.
     pub change: Change,
 }
 
@@ -103,6 +106,7 @@ impl Replay {
         Ok(None)
     }
 
+    /// The session after the events that were replayed so far.
     pub fn session(&self) -> &Session {
         &self.follower.session
     }

@@ -31,24 +31,42 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Why a recording could not be reviewed.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum RerunError {
+    /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
+    /// The stream's file cannot be written.
     #[error("{}: the stream cannot be written: {reason}", path.display())]
     #[diagnostic(help("a place that can be written to, with --save=FILE"))]
-    Unwritable { path: PathBuf, reason: io::Error },
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        reason: io::Error,
+    },
+    /// The viewer cannot be served on this machine.
     #[error("the viewer cannot be served on this machine: {0}")]
     #[diagnostic(help(
         "a free port from {WEB_PORT} and from {SERVER_PORT} on, up to {PORTS} further: end another tomcom review, or see who \
          listens there"
     ))]
     Web(io::Error),
+    /// Another program writes the stream of this recording.
     #[error("{}: another program writes this recording, and its stream", folder.display())]
     #[diagnostic(help("--save=FILE, for what is there up to now"))]
-    InUse { folder: PathBuf },
+    InUse {
+        /// The recording's folder.
+        folder: PathBuf,
+    },
+    /// The viewer's program cannot be started.
     #[error("{}: the viewer cannot be started: {reason}", path.display())]
     #[diagnostic(help("--web serves one for a browser"))]
-    Viewer { path: PathBuf, reason: io::Error },
+    Viewer {
+        /// The program.
+        path: PathBuf,
+        /// Why not.
+        reason: io::Error,
+    },
 }
 
 impl From<FileError> for RerunError {
@@ -60,6 +78,7 @@ impl From<FileError> for RerunError {
 /// Request of `tomcom review`.
 #[derive(Clone, Debug)]
 pub struct ReviewRequest {
+    /// The recordings to look at, by their folders.
     pub recordings: Vec<PathBuf>,
     /// Write the file only: beside the log, or to this path.
     pub save: Option<Option<PathBuf>>,
@@ -72,6 +91,7 @@ pub struct ReviewRequest {
 /// A stream file with its origin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SavedStream {
+    /// The file of the stream.
     pub path: PathBuf,
     /// Whether it was just rebuilt from the log.
     pub made: bool,
@@ -82,6 +102,7 @@ pub struct SavedStream {
 /// A recording that is still being written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OngoingRecording {
+    /// Its folder.
     pub recording: PathBuf,
     /// Address for live viewers, if there is one.
     pub viewers: Option<String>,
@@ -108,7 +129,14 @@ pub enum ReviewOutcome {
     /// The viewer was opened on the file.
     Opened(SavedStream),
     /// The viewer is served until this is dropped.
-    Served { url: String, because: &'static str, _serving: Box<(RerunWriter, WebViewer)> },
+    Served {
+        /// The address to open in a browser.
+        url: String,
+        /// Why no other viewer was opened.
+        because: &'static str,
+        /// Keeps the viewer and its stream alive.
+        _serving: Box<(RerunWriter, WebViewer)>,
+    },
 }
 
 /// Opens recordings in the viewer, several beside each other by the clocks of their trials.

@@ -13,21 +13,31 @@ use crate::session::{Event, Header, Stamped};
 /// Why a recording cannot be continued.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ResumeError {
+    /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
+    /// The new part cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] WriteError),
+    /// The session of this recording was brought to its end.
     #[error("{}: this session was brought to its end: there is nothing to continue", .0.display())]
     #[diagnostic(help("a recording that was cut; a new session: tomcom operate"))]
     Ended(PathBuf),
+    /// This recording is simulated.
     #[error("{}: this recording is simulated", .0.display())]
     #[diagnostic(help("simulate it again with the same seed: tomcom simulate"))]
     Simulated(PathBuf),
+    /// An event does not come out the same again.
     #[error("{}: event {seq} does not come out the same again, so nobody knows how the session stood", log.display())]
     #[diagnostic(help("the tomcom that wrote it; tomcom replay RECORDING --verify shows the difference"))]
-    Differs { log: PathBuf, seq: u64 },
+    Differs {
+        /// The log.
+        log: PathBuf,
+        /// Sequence number of the event.
+        seq: u64,
+    },
 }
 
 impl From<FileError> for ResumeError {
@@ -39,6 +49,7 @@ impl From<FileError> for ResumeError {
 /// A continued session.
 #[derive(Debug)]
 pub struct ResumedSession {
+    /// The engine, in the state at the cut.
     pub engine: Engine,
     /// First events of the new part: events lost by the cut, and the pause of a running trial.
     pub first: Vec<Stamped>,
@@ -48,6 +59,7 @@ pub struct ResumedSession {
     pub time: SessionTime,
     /// Lock on the folder of the previous part.
     pub folder: PathBuf,
+    /// Keeps the recording's folder locked.
     pub lock: RecordingLock,
 }
 

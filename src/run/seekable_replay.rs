@@ -28,6 +28,7 @@ pub struct SeekableReplay {
     pub beliefs: BeliefHistory,
     /// Session after the first `position` events.
     pub session: Session,
+    /// Number of events that are applied.
     pub position: usize,
     /// Snapshots after every [`KEEP_EVERY`] events, starting before the first.
     kept: Vec<Session>,

@@ -17,6 +17,7 @@ use crate::session::plan::{NextRecording, Progress, Study};
 /// Result of a session or of a series.
 #[derive(Clone, Debug)]
 pub struct SeriesOutcome {
+    /// What came of each session, in order.
     pub done: Vec<LiveOutcome>,
     /// Progress of the participant, as text.
     pub remark: Option<String>,

@@ -28,7 +28,9 @@ use crate::session::{Header, Stamped};
 /// Request of `tomcom simulate`.
 #[derive(Clone, Debug)]
 pub struct SimulationRequest {
+    /// The settings with their files.
     pub files: SessionFiles,
+    /// Number of trials in all, over all shards.
     pub trials: u64,
     /// The shard of the trials.
     pub shard: Shard,
@@ -47,7 +49,9 @@ impl SimulationRequest {
 /// A shard of the trials: number `number` (from 1) of `of` disjoint parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
+    /// Which part it is; 1 is the first.
     pub number: u64,
+    /// Number of parts.
     pub of: u64,
 }
 
@@ -117,8 +121,11 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
 
 /// A simulated trial.
 pub struct SimulatedTrial {
+    /// The recording's folder.
     pub folder: PathBuf,
+    /// Who could send signals.
     pub condition: Condition,
+    /// The summary of the trial.
     pub figures: TrialSummary,
     /// Whether its recording existed already, or another program made it meanwhile.
     pub found: bool,

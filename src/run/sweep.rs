@@ -125,6 +125,7 @@ type Cell = Vec<(&'static str, String)>;
 pub struct SweepSummary {
     /// Rows; the first is without signals.
     pub rows: Vec<SweepRow>,
+    /// The file with the table.
     pub table: PathBuf,
     /// Where logs went that ended before the end of their header; their trials were simulated again.
     pub moved: Vec<String>,

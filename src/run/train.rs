@@ -28,6 +28,7 @@ pub struct TrainingRequest {
     pub wizard: String,
     /// Folder of the result.
     pub out: PathBuf,
+    /// When the training is passed.
     pub criterion: TrainingCriterion,
     /// An index into [`SPEEDS`].
     pub speed: usize,

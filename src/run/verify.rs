@@ -20,6 +20,7 @@ use crate::session::{Event, Stamped};
 /// Result of `tomcom replay RECORDING --verify`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Verification {
+    /// The re-run gave the same events and states.
     pub verified: bool,
     /// Number of recorded events.
     pub events: u64,
@@ -41,6 +42,7 @@ pub struct VerificationDifference {
     pub log: PathBuf,
     /// Line number in the log, from 1.
     pub line: usize,
+    /// The recorded event, as in the log.
     pub recorded: String,
     /// Line of the re-run; null if there is none.
     pub again: Option<String>,

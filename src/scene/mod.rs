@@ -25,11 +25,13 @@ pub const VERSION: u32 = 3;
 /// Updates of entities at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneUpdate {
+    /// Session time.
     pub time: SessionTime,
     /// Time on the trial's clock, which starts with the trial and stops in pauses, as on the console.
     pub trial: SessionTime,
     /// Sequence number of the newest event.
     pub step: u64,
+    /// The entities that change, with what they show from now on.
     pub rows: Vec<EntityUpdate>,
 }
 

@@ -16,7 +16,12 @@ use crate::kitchen::{Agent, ButtonAction, ButtonId, Change, ContentId, DishId, L
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
     /// Set a timer; [`Effect::Postpone`] can delay it.
-    At { time: SessionTime, timer: Timer },
+    At {
+        /// The session time at which it is due, or later by what [`Effect::Postpone`] adds meanwhile.
+        time: SessionTime,
+        /// What is due then.
+        timer: Timer,
+    },
     /// Cancel a timer.
     Cancel(Timer),
     /// Cancel all timers, at the end of the trial.
@@ -48,15 +53,20 @@ pub enum Timer {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{found}; right would be {remedy}")]
 pub struct ApplyError {
+    /// Sequence number of the event.
     pub seq: u64,
+    /// What the event says that cannot be.
     pub found: String,
+    /// What would be right.
     pub remedy: String,
 }
 
 /// Result of an event: effects to perform, and the change of the kitchen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Applied {
+    /// What has to be done because of the event, in this order.
     pub effects: Vec<Effect>,
+    /// What the event did to the kitchen.
     pub change: Change,
 }
 

@@ -8,6 +8,7 @@ use super::setting_checks::SettingError;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ConsoleSpec {
+    /// What the wizard may see.
     pub visibility: Visibility,
     /// Draw with ASCII signs only, for terminals and fonts without the others.
     pub ascii: bool,
@@ -72,7 +73,9 @@ impl ConsoleSpec {
 pub enum ThemeChoice {
     /// The background that the terminal reports; dark if it reports none.
     Auto,
+    /// Colours for a dark background.
     Dark,
+    /// Colours for a light background.
     Light,
 }
 

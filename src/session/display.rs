@@ -15,12 +15,14 @@ use crate::base::time::SessionTime;
 pub struct DisplaySpec {
     /// Address at which the page is served; other addresses than localhost need the pairing code that the console shows.
     pub listen: IpAddr,
+    /// The TCP port of the page.
     pub port: u16,
     /// Language of the page: "en", "de", or the path of a file with words, relative to the session file.
     pub language: String,
     /// Words from that file; in a recording, the words in use.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub words: BTreeMap<String, String>,
+    /// What is written beside the pictures.
     pub names: Names,
     /// Whether each button shows its key.
     pub keys: bool,
@@ -30,6 +32,7 @@ pub struct DisplaySpec {
     pub tags: bool,
     /// Whether a square flashes at the start of the trial and at signals, to synchronise video recordings.
     pub flash: bool,
+    /// Where questionnaires are answered.
     pub questionnaire: Answering,
 }
 
@@ -80,6 +83,7 @@ impl DisplaySpec {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Names {
+    /// Nothing: pictures alone.
     None,
     /// Labels at storages.
     Storages,
@@ -102,10 +106,20 @@ pub enum Answering {
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum DisplayEvent {
     /// The page is connected, with this size in pixels.
-    Connected { width_px: u32, height_px: u32 },
+    Connected {
+        /// Width of the page in pixels.
+        width_px: u32,
+        /// Height of the page in pixels.
+        height_px: u32,
+    },
     /// The page is disconnected.
     Lost,
     /// The page drew the event with this sequence number (trial start, signal) with a flash, at this session time by its
     /// synchronised clock.
-    Drawn { cue: u64, at_ns: SessionTime },
+    Drawn {
+        /// Sequence number of that event.
+        cue: u64,
+        /// When it was drawn by the page's own clock, in session time.
+        at_ns: SessionTime,
+    },
 }

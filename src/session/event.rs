@@ -31,6 +31,7 @@ pub struct Stamped {
     /// Session time; never decreases along the log.
     #[serde(rename = "t_ns")]
     pub time: SessionTime,
+    /// What happened.
     #[serde(flatten)]
     pub event: Event,
 }
@@ -41,23 +42,30 @@ pub struct Stamped {
 pub enum Event {
     /// Results of the preflight checks before the trial, and whether the wizard overrode them.
     Preflight {
+        /// What was looked at, and how it was found.
         checks: Vec<PreflightCheck>,
+        /// The trial was started although not all was ok.
         overridden: bool,
     },
     /// The trial starts with an empty kitchen.
     TrialStarted,
     /// The trial is paused: clock, robot and orders stop, presses have no effect.
     TrialPaused,
+    /// Clock, robot and orders go on.
     TrialResumed,
+    /// The trial is over.
     TrialEnded {
+        /// Why it ended.
         reason: EndReason,
     },
     /// The trial is aborted and does not count; it may be repeated in another recording.
     TrialAborted {
+        /// Why, in the wizard's words.
         reason: String,
     },
     /// The trial is excluded from the analysis.
     TrialExcluded {
+        /// Why, in the wizard's words.
         reason: String,
     },
     /// The exclusion is taken back.
@@ -70,7 +78,9 @@ pub enum Event {
     Calibration(CalibrationEvent),
     /// An agent pressed a physical button.
     Press {
+        /// Who pressed.
         agent: Agent,
+        /// The button's name.
         button: String,
         /// Session time of the press by the display's synchronised clock; slightly before the event's time, at which the
         /// session received it.
@@ -79,25 +89,33 @@ pub enum Event {
     },
     /// A new order appears at an order location.
     OrderShown {
+        /// The order's location, by its name.
         order: String,
+        /// The wanted dish, by its name.
         dish: String,
     },
     /// An order location no longer shows `served`.
     OrderCleared {
+        /// The order's location, by its name.
         order: String,
     },
     /// The robot starts a press and will touch the button at `until_ns` unless it is interrupted.
     RobotIntends {
+        /// The button's name.
         button: String,
+        /// When it will touch the button if nothing comes between, in session time.
         until_ns: SessionTime,
     },
     /// The robot aborts its ongoing press.
     RobotAborts {
+        /// The button's name.
         button: String,
+        /// Why it gave up.
         reason: AbortReason,
     },
     /// The robot becomes idle.
     RobotIdles {
+        /// Why nothing is useful now.
         reason: IdleReason,
     },
     /// Witness: a sample of the simulated arm's motion, about 12 per second while it moves.
@@ -105,6 +123,7 @@ pub enum Event {
     /// The safety mode of the simulated arm changes. After a protective stop or a fault the arm does not move until the wizard
     /// resumes it.
     RobotSafety {
+        /// The safety mode from now on.
         mode: SafetyMode,
         /// Contact force in newtons, if it caused the change.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -115,35 +134,47 @@ pub enum Event {
     },
     /// Witness: a contact between the simulated arm and the human, with its peak force in newtons; once per contact.
     RobotTouched {
+        /// The greatest force of the contact in newtons.
         force_n: f64,
     },
     /// The wizard stops the robot until it is resumed.
     RobotStopped,
+    /// The wizard lets the stopped robot go on.
     RobotResumed,
     /// The wizard holds the robot: it starts no press and waits before the button of the ongoing press, until it is released.
     RobotHeld {
+        /// Who holds it.
         by: Sender,
     },
+    /// The robot goes on after it was held.
     RobotReleased {
+        /// Who releases it.
         by: Sender,
     },
     /// The wizard skips the robot's ongoing press; the robot decides anew.
     RobotSkipped {
+        /// Who skips the press.
         by: Sender,
     },
     /// The wizard chooses the robot's next press.
     RobotDriven {
+        /// Who chose the press.
         by: Sender,
+        /// The button's name.
         button: String,
     },
     /// The wizard corrects the content of a location in the program's state.
     KitchenCorrected {
+        /// The location's name.
         location: String,
+        /// What really lies there, by its name.
         content: String,
     },
     /// A signal is shown to the participant and replaces an earlier one.
     SignalShown {
+        /// Who sent it.
         by: Sender,
+        /// The signal that is shown.
         signal: Signal,
         /// Sequence number of the event whose recommendation the wizard accepted, if any.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -153,14 +184,17 @@ pub enum Event {
     Advised(Recommendation),
     /// Witness: the first frame with the signal of this sequence number was written to the terminal.
     SignalDrawn {
+        /// Sequence number of the event that showed the signal.
         signal: u64,
     },
     /// The signal disappears.
     SignalEnded {
+        /// Why it vanishes.
         reason: SignalEnd,
     },
     /// The wizard sets a marker with a note.
     Marker {
+        /// The wizard's note.
         note: String,
     },
     /// An event of the study protocol.
@@ -168,6 +202,7 @@ pub enum Event {
     /// Witness: the wall clock advanced by this much more than session time, in milliseconds (negative: less), because the
     /// computer was suspended or its clock was set.
     ClockJumped {
+        /// By how much more the wall clock went on than session time, in milliseconds; negative: less.
         by_ms: i64,
     },
     /// Witness: a report of the participant's display.
@@ -176,10 +211,12 @@ pub enum Event {
     Screen(VisibleScreen),
     /// Witness: the wizard sees the comparison with these concepts from now on.
     Unblinded {
+        /// The concepts, by their names.
         concepts: Vec<ConceptName>,
     },
     /// Witness: the terminal lost or regained keyboard focus; without it no key arrives, including the robot stop.
     FocusLost,
+    /// Witness: the terminal has the keyboard again.
     FocusRegained,
     /// Witness: the belief of a simulated participant before its next press.
     ParticipantBelieves(BeliefWitness),

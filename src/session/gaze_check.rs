@@ -16,20 +16,35 @@ const READY_S: f64 = 1.0;
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum CalibrationEvent {
     /// The check begins or restarts, with its targets in fractions of the display.
-    Begun { targets: Vec<[f64; 2]> },
+    Begun {
+        /// The targets in the order in which they are shown, in fractions of the display.
+        targets: Vec<[f64; 2]>,
+    },
     /// The target with this index is shown.
-    TargetShown { target: usize },
+    TargetShown {
+        /// Its index in the list of targets.
+        target: usize,
+    },
     /// All targets have been shown.
     TargetsHidden,
     /// Measured accuracy; `None` if too few samples were usable.
     Measured {
+        /// What follows from the samples; none if too few were usable.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         found: Option<GazeAccuracy>,
     },
     /// The wizard accepts the gaze, with or without correction of the offset.
-    Accepted { corrected: bool },
+    Accepted {
+        /// The measured offset is taken off the gaze from now on.
+        corrected: bool,
+    },
     /// The accepted result of the previous recording is carried over.
-    Carried { found: GazeAccuracy, corrected: bool },
+    Carried {
+        /// The result that was accepted there.
+        found: GazeAccuracy,
+        /// The measured offset is taken off the gaze.
+        corrected: bool,
+    },
     /// The check is cancelled; the earlier accepted result remains valid.
     Dismissed,
 }
@@ -37,6 +52,7 @@ pub enum CalibrationEvent {
 /// A running gaze accuracy check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunningGazeCheck {
+    /// The targets, in fractions of the display.
     pub targets: Vec<[f64; 2]>,
     /// Index of the shown target with the time since which it is shown.
     pub shown: Option<(usize, SessionTime)>,
@@ -44,6 +60,7 @@ pub struct RunningGazeCheck {
     pub(super) samples: Vec<Vec<GazeSample>>,
     /// Time of its last event.
     pub(super) at: SessionTime,
+    /// The result, once all targets were shown.
     pub result: Option<GazeCheckResult>,
     pub(super) are_hidden: bool,
 }
@@ -58,7 +75,9 @@ pub struct GazeCheckResult {
 /// An accepted gaze accuracy check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcceptedGazeCheck {
+    /// When it was accepted, in session time.
     pub at: SessionTime,
+    /// The result of the check.
     pub found: GazeAccuracy,
     /// Whether the offset is corrected.
     pub corrected: bool,

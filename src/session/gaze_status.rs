@@ -10,11 +10,13 @@ use crate::kitchen::state::MAX_LOCATIONS;
 pub struct GazeStatus {
     /// Arrival time of the latest sample, usable or not.
     pub arrived: Option<SessionTime>,
+    /// The newest usable sample that lies on the display, and when it arrived.
     pub last: Option<(SessionTime, GazeSample)>,
     /// Time of the last look at each location (gaze inside its area).
     pub looked_at: [Option<SessionTime>; MAX_LOCATIONS],
     /// Number of samples; samples with low confidence or outside the display are counted in `unusable`.
     pub samples: u64,
+    /// Of these, samples with too low a confidence or outside of the display.
     pub unusable: u64,
     /// Detector and counts of faulty samples.
     pub judge: SampleChecker,

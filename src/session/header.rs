@@ -34,7 +34,9 @@ pub struct Header {
     pub redoes: Option<String>,
     /// All settings in use, including the seed.
     pub session: SessionSpec,
+    /// The layout file.
     pub layout: FileText,
+    /// The recipe file.
     pub recipes: FileText,
     /// The key file, if the session had one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -59,6 +61,7 @@ pub struct Continues {
 pub struct FileText {
     /// Path from which it was read, for messages.
     pub path: String,
+    /// The whole text.
     pub text: String,
 }
 

@@ -10,7 +10,9 @@ use crate::participant::population::Population;
 pub struct ParticipantSpec {
     /// Participant code, never a name.
     pub code: String,
+    /// Who plays the human's part.
     pub kind: ParticipantKind,
+    /// Where gaze samples come from.
     pub gaze: GazeSource,
     /// Port of the JSON gaze input on localhost.
     pub gaze_port: u16,
@@ -47,6 +49,7 @@ impl ParticipantSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ParticipantKind {
+    /// A simulated participant.
     Simulated,
     /// A person at the keyboard of the console.
     Keyboard,
@@ -58,6 +61,7 @@ pub enum ParticipantKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GazeSource {
+    /// The eyes of the simulated participant.
     Simulated,
     /// The mouse pointer: over the console's kitchen, or over the display if the participant plays there.
     Mouse,

@@ -7,7 +7,9 @@ use super::event::EndReason;
 pub enum Phase {
     /// Before the trial's start.
     Ready,
+    /// The trial runs.
     Running,
+    /// The trial's clock stands still.
     Paused,
     /// The trial is over.
     Over(EndReason),

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PreflightVerdict {
+    /// All is well.
     Ok,
     /// Usable with limitations.
     Warning,
@@ -17,8 +18,11 @@ pub enum PreflightVerdict {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PreflightCheck {
+    /// What was looked at: "display", "disk".
     pub name: String,
+    /// How it was found.
     pub verdict: PreflightVerdict,
+    /// What was found, in words.
     pub found: String,
     /// Remedy, unless the verdict is ok.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -26,6 +30,7 @@ pub struct PreflightCheck {
 }
 
 impl PreflightCheck {
+    /// A check with its result; an ok one needs no remedy and gets none.
     pub fn new(
         name: &str,
         verdict: PreflightVerdict,

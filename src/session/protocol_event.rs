@@ -6,16 +6,20 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StudyPhase {
+    /// The wizard instructs the participant.
     Instruction,
     /// Practice.
     Familiarisation,
+    /// A trial that counts.
     Trial,
+    /// The participant answers a questionnaire.
     Questionnaire,
     /// Debriefing of the wizard.
     Debriefing,
 }
 
 impl StudyPhase {
+    /// The phase's name in logs and tables.
     pub fn name(self) -> &'static str {
         match self {
             StudyPhase::Instruction => "instruction",
@@ -40,39 +44,53 @@ pub enum ProtocolEvent {
     ConsentGiven,
     /// The next phase of the recording begins; `number` counts from 1.
     PhaseStarted {
+        /// Which phase begins.
         phase: StudyPhase,
+        /// Its place in the recording, counted from 1.
         number: usize,
     },
     /// A step of an instruction or debriefing, counted from 1, was ticked or unticked.
     Ticked {
+        /// The step, counted from 1.
         step: usize,
+        /// Whether it is done now.
         done: bool,
     },
     /// An item of a questionnaire is shown.
     ItemShown {
+        /// The item's name.
         item: String,
     },
     /// All answers are shown, to be confirmed.
     AnswersShown,
     /// Answer to the shown item, from 1 to the points of the scale; a later answer replaces it. The next item follows.
     ItemAnswered {
+        /// The item's name.
         item: String,
+        /// The answer, from 1 to the number of points of the scale.
         answer: u8,
     },
     /// The shown item is skipped. The next item follows.
     ItemSkipped {
+        /// The item's name.
         item: String,
     },
+    /// The participant confirms the answers: they hold.
     AnswersConfirmed,
     /// Result of the practice, and whether it meets the criterion.
     CriterionChecked {
+        /// Whether the criterion is met.
         met: bool,
+        /// Orders served in the practice.
         orders: u32,
+        /// The participant's presses in the practice.
         presses: u32,
+        /// Of these, errors.
         errors: u32,
     },
     /// The wizard waives the criterion, for this reason.
     CriterionWaived {
+        /// Why, in the wizard's words.
         reason: String,
     },
 }

@@ -3,16 +3,22 @@
 /// An answer to an item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ItemAnswer {
+    /// This point of the scale, counted from 1.
     Rated(u8),
+    /// The participant gave no answer.
     Skipped,
 }
 
 /// Result of the practice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Practice {
+    /// Whether the criterion was met.
     pub met: bool,
+    /// Orders served.
     pub orders: u32,
+    /// The participant's presses.
     pub presses: u32,
+    /// Of these, errors.
     pub errors: u32,
     /// Reason for waiving the criterion, if it was waived.
     pub waived: Option<String>,
@@ -21,6 +27,7 @@ pub struct Practice {
 /// State of the study protocol in a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Protocol {
+    /// The participant agreed to what the plan asks.
     pub consent: bool,
     /// Number of the phase, from 1; 0 before the first.
     pub number: usize,
@@ -30,7 +37,9 @@ pub struct Protocol {
     pub answers: Vec<Option<ItemAnswer>>,
     /// Index of the shown item; the number of items while all answers are shown for confirmation.
     pub item: usize,
+    /// The answers of the phase are confirmed.
     pub confirmed: bool,
+    /// How the practice went, once it is over.
     pub practice: Option<Practice>,
 }
 

@@ -28,6 +28,7 @@ pub struct RobotStatus {
 pub struct ArmStatus {
     /// Last sample with its time; `None` before the first motion and for the timed arm.
     pub last: Option<(SessionTime, ArmSample)>,
+    /// The safety mode of the arm.
     pub mode: SafetyMode,
     /// Contact force that caused a protective stop, in newtons.
     pub stopped_by_n: Option<f64>,

@@ -7,6 +7,7 @@ use super::console_settings::Visibility;
 /// Visible content of the wizard's screen.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct VisibleScreen {
+    /// What the wizard may see in this session.
     pub visibility: Visibility,
     /// Size class: `small`, `medium`, `large`, or `too_small` for anything but questions.
     pub room: String,

@@ -23,16 +23,21 @@ const SILENT_S: f64 = 1.0;
 /// The state of a session after the events so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Session {
+    /// The compiled kitchen.
     pub kitchen: Arc<Kitchen>,
+    /// The settings, as they are in force.
     pub spec: SessionSpec,
     /// Index of the trial.
     pub trial: u64,
     /// The time of the last event.
     pub time: SessionTime,
+    /// Where the trial is.
     pub phase: Phase,
     /// Session time of the trial's start.
     pub trial_start: SessionTime,
+    /// How long the trial's clock stood still, in all pauses that are over.
     pub paused_total: SessionTime,
+    /// When the trial's clock last came to a stand: at the beginning of a pause, or at the trial's end.
     pub paused_at: SessionTime,
     /// Start and end of each finished pause.
     pub pauses: Vec<(SessionTime, SessionTime)>,
@@ -44,6 +49,7 @@ pub struct Session {
     pub presses: [u32; 2],
     /// Served orders.
     pub served: Vec<Served>,
+    /// What is known of the robot.
     pub robot: RobotStatus,
     /// The signal on the display, if there is one.
     pub shown: Option<ShownSignal>,
@@ -59,6 +65,7 @@ pub struct Session {
     pub aborted: Option<String>,
     /// Reason for excluding the trial from the analysis, if it is excluded.
     pub excluded: Option<String>,
+    /// The participant's gaze.
     pub gaze: GazeStatus,
     /// State of the eye tracker.
     pub tracker: TrackerStatus,
@@ -75,7 +82,9 @@ pub struct Session {
 /// A served order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Served {
+    /// Session time of serving.
     pub time: SessionTime,
+    /// The dish that was wanted.
     pub dish: DishId,
     /// Number of presses of both agents in the trial, including the serving press.
     pub presses: u32,
@@ -84,11 +93,15 @@ pub struct Served {
 /// A signal on the display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownSignal {
+    /// The signal.
     pub signal: Signal,
     /// The location that the signal is about.
     pub location: LocationId,
+    /// Who sent it.
     pub by: Sender,
+    /// When it appeared, in session time.
     pub since: SessionTime,
+    /// When it vanishes by itself, in session time.
     pub until: SessionTime,
 }
 

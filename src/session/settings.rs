@@ -26,25 +26,34 @@ pub struct SessionSpec {
     /// Seed of all random streams of the session.
     #[serde(default = "default_seed")]
     pub seed: u64,
+    /// When a trial ends, and who sends signals.
     #[serde(default)]
     pub trial: TrialSpec,
+    /// Who plays the human's part, and where gaze comes from.
     #[serde(default)]
     pub participant: ParticipantSpec,
+    /// The eye tracker.
     #[serde(default, skip_serializing_if = "TrackerSpec::is_default")]
     pub tracker: TrackerSpec,
+    /// The robot's arm and its timing.
     #[serde(default)]
     pub robot: RobotSpec,
     /// The wizard: a person, or a script.
     #[serde(default, skip_serializing_if = "WizardSpec::is_default")]
     pub wizard: WizardSpec,
+    /// How long signals are shown, and which are allowed.
     #[serde(default)]
     pub signals: SignalSpec,
+    /// The assistant that advises or acts.
     #[serde(default)]
     pub assistant: AssistantSpec,
+    /// The wizard's console.
     #[serde(default)]
     pub console: ConsoleSpec,
+    /// The participant's display.
     #[serde(default)]
     pub display: DisplaySpec,
+    /// The stream to Rerun's viewers.
     #[serde(default)]
     pub rerun: RerunSpec,
     /// Path of a file with the parameters of the human model, relative to the session file; `None` for those in [`Self::human`].
@@ -136,9 +145,11 @@ impl SessionSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TrialSpec {
+    /// Who may send signals.
     pub condition: Condition,
     /// Largest number of presses of both agents; the default is the paper's mean.
     pub presses: u32,
+    /// The longest duration in seconds of the trial's clock, which stands still in pauses.
     pub seconds: f64,
     /// Number of served orders that also ends the trial, if set.
     #[serde(skip_serializing_if = "Option::is_none")]

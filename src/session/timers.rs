@@ -13,6 +13,7 @@ pub struct TimerQueue {
 }
 
 impl TimerQueue {
+    /// Adds a timer that is due at this session time.
     pub fn set(&mut self, time: SessionTime, timer: Timer) {
         self.pending.insert((time, self.set_so_far, timer));
         self.set_so_far += 1;
@@ -23,6 +24,7 @@ impl TimerQueue {
         self.pending.retain(|(_, _, pending)| *pending != timer);
     }
 
+    /// Removes all timers.
     pub fn cancel_all(&mut self) {
         self.pending.clear();
     }

@@ -12,8 +12,9 @@ use crate::gaze::surface::SurfaceMap;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TrackerSpec {
-    /// Address of Pupil Capture, and port of its Pupil Remote.
+    /// The host where Pupil Capture runs.
     pub address: String,
+    /// The port of Capture's Pupil Remote.
     pub port: u16,
     /// Name of the surface that Pupil Capture defines by the tags on the wall display.
     pub surface: String,
@@ -73,9 +74,15 @@ impl TrackerSpec {
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum TrackerEvent {
     /// The tracker's program responds; `device` is its name.
-    Connected { device: String },
+    Connected {
+        /// What the tracker calls itself.
+        device: String,
+    },
     /// The tracker's program no longer responds; the connection is retried without limit.
-    Lost { reason: String },
+    Lost {
+        /// What happened to the connection.
+        reason: String,
+    },
     /// The tracker detects the display by its tags.
     DisplayFound,
     /// The tracker does not detect the display, so there is no gaze on it.
@@ -84,17 +91,31 @@ pub enum TrackerEvent {
     Dropped(DropCounts),
     /// A finished fixation, as detected by the tracker; its position in fractions of the display.
     Fixation {
+        /// Its place in fractions of the display, if it was there.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         at: Option<[f64; 2]>,
+        /// How long it was, in milliseconds.
         duration_ms: f64,
+        /// How far its samples are spread, in degrees.
         dispersion_deg: f64,
+        /// The tracker's confidence, 0 to 1.
         confidence: f64,
+        /// When it began on the tracker's clock, in nanoseconds.
         device_ns: u64,
         /// Session time of its beginning.
         began_ns: SessionTime,
     },
     /// Onset or offset of a blink, as detected by the tracker.
-    Blink { closed: bool, confidence: f64, device_ns: u64, taken_ns: SessionTime },
+    Blink {
+        /// Closed (onset); false: opened (offset).
+        closed: bool,
+        /// The tracker's confidence, 0 to 1.
+        confidence: f64,
+        /// When, on the tracker's clock, in nanoseconds.
+        device_ns: u64,
+        /// When, in session time.
+        taken_ns: SessionTime,
+    },
 }
 
 /// State of the connection to the tracker's program.
@@ -103,11 +124,16 @@ pub enum TrackerConnection {
     /// No message received yet.
     #[default]
     Unknown,
+    /// Its program answers.
     Connected {
+        /// What the tracker calls itself.
         device: String,
     },
+    /// Its program does not answer any more.
     Lost {
+        /// Since when, in session time.
         since: SessionTime,
+        /// What happened to the connection.
         reason: String,
     },
 }
@@ -115,13 +141,17 @@ pub enum TrackerConnection {
 /// State of the eye tracker in a session.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrackerStatus {
+    /// Whether its program is there.
     pub link: TrackerConnection,
     /// Whether it detects the display; `None` if it has not reported that.
     pub sees_display: Option<bool>,
     /// Number of connection losses.
     pub losses: u64,
+    /// What came and could not be recorded, by kind.
     pub dropped: DropCounts,
+    /// Number of fixations that it found.
     pub fixations: u64,
+    /// Number of blinks that it found.
     pub blinks: u64,
 }
 

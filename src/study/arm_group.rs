@@ -9,8 +9,11 @@ use crate::session::settings::ArmKind;
 /// Sums of robot statistics over the trials with one kind of arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmGroup {
+    /// The kind of arm.
     pub kind: ArmKind,
+    /// Number of trials.
     pub trials: u64,
+    /// Sums over these trials.
     #[serde(flatten)]
     pub robot: RobotSummary,
 }

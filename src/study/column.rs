@@ -8,18 +8,28 @@ use serde::Serialize;
 /// Tables that the analysis of a study writes as CSV files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Table {
+    /// A row for each participant.
     Participants,
+    /// A row for each trial.
     Trials,
+    /// A row for each answer.
     Questionnaires,
+    /// A row for each unassisted trial, concept and value of its parameter.
     Concepts,
+    /// A row for each press.
     Actions,
+    /// A row for each signal that was sent, or would have been.
     Communications,
+    /// A row for each press of the human and state aspect.
     Beliefs,
+    /// A row for each run of gaze samples on one location.
     Gaze,
+    /// A row for each column of every table: its unit and meaning.
     Dictionary,
 }
 
 impl Table {
+    /// Every table.
     pub const ALL: [Table; 9] = [
         Table::Participants,
         Table::Trials,
@@ -76,9 +86,11 @@ pub trait TableRow: Sized {
 
 /// Declaration of a column; `Row` is the source of a row.
 pub struct Column<Row> {
+    /// The column's name.
     pub name: Cow<'static, str>,
     /// Unit; empty for columns without a unit.
     pub unit: &'static str,
+    /// What the column says.
     pub meaning: Cow<'static, str>,
     value: Box<dyn Fn(&Row) -> TableCell<'_>>,
 }
@@ -96,10 +108,15 @@ impl<Row> Column<Row> {
 pub enum TableCell<'a> {
     /// Unknown or missing value: an empty field.
     Unknown,
+    /// True or false.
     Flag(bool),
+    /// A number of things.
     Count(u64),
+    /// A whole number with a sign.
     Whole(i64),
+    /// A number with a fraction.
     Number(f64),
+    /// Words.
     Text(Cow<'a, str>),
 }
 

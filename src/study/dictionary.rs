@@ -15,9 +15,13 @@ use super::trial::Trial;
 /// Dictionary entry of one table column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DictionaryRow {
+    /// The table's name, which is its file's without `.csv`.
     pub table: Table,
+    /// The column's name.
     pub column: Cow<'static, str>,
+    /// The column's unit; empty: none.
     pub unit: &'static str,
+    /// What the column says.
     pub meaning: Cow<'static, str>,
 }
 

@@ -17,6 +17,7 @@ pub const LEVEL: f64 = 0.95;
 /// A participant's two trials, one assisted and one unassisted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrialPair {
+    /// The participant's code.
     pub participant: String,
     /// Whether the second trial is the assisted one.
     pub assisted_second: bool,
@@ -72,6 +73,7 @@ impl Serialize for StudyMeasure {
 /// Estimates and tests of the effect of assistance on one measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AssistanceEffect {
+    /// What is compared.
     pub measure: StudyMeasure,
     /// Number of participants whose second trial was assisted, and whose first was.
     pub groups: [usize; 2],

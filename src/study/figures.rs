@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::acceptance::{Acceptance, ItemSummary, acceptance, items};
 use super::arm_group::{ArmGroup, by_arm};
 use super::effect::{AssistanceEffect, effect, pairs};
 use super::facts::Facts;
@@ -23,39 +24,52 @@ const SEED: u64 = 1;
 /// Summary of a study. Unknown values are null.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudySummary {
+    /// The title of the report.
     pub title: String,
     /// Whether any participant was simulated.
     pub simulated_participants: bool,
-    /// Number of trials that count, and number of participants with at least one such trial.
+    /// Number of trials that count.
     pub trials: u64,
+    /// Number of participants with at least one of them.
     pub participants: u64,
+    /// Sums and means over these trials.
     #[serde(flatten)]
     pub totals: TrialTotals,
     /// Number of trials by the reason of their end.
     pub ended: BTreeMap<EndReason, u64>,
     /// Robot statistics by kind of arm.
     pub robot: Vec<ArmGroup>,
+    /// The trials by condition.
     pub conditions: Vec<StudyConditionSummary>,
     /// Effect of assistance on errors per human press: the interaction of period and starting group.
     pub anova: Option<FTest>,
+    /// Correlation of the starting group and the improvement in errors per press of the human.
     pub pearson: Option<Correlation>,
+    /// Two-sided p of a permutation test of that improvement between the groups.
     pub permutation_p: Option<f64>,
     /// Effects of assistance on all compared measures, the first of them in full.
     pub effects: Vec<AssistanceEffect>,
+    /// The receiver operating characteristic of each concept.
     pub roc: Vec<Roc>,
-    /// Number of participants and unassisted trials in the comparison of concepts.
+    /// Number of participants that the comparison of concepts rests on.
     pub roc_participants: u64,
+    /// Number of their unassisted trials.
     pub roc_trials: u64,
+    /// The largest false positive rate that all concepts reach.
     pub roc_common_fpr: Option<f64>,
     /// Similarity of the wizard's signals (first lane) and the assistant's hypothetical ones; null without wizard signals.
     pub similarity: Option<Similarity>,
     /// Similarity of wizard and assistant in each trial.
     pub similarity_by_trial: Vec<TrialSimilarity>,
+    /// How well wizards did, over all trials with a wizard.
     pub wizard: Option<WizardMeasures>,
+    /// How participants take the assistance.
     pub acceptance: Option<Acceptance>,
+    /// The answers, by item and condition.
     pub questionnaires: Vec<ItemSummary>,
     /// Agreement of two raters, where causes of errors are known from their codes.
     pub raters: Option<Agreement>,
+    /// The trials that do not count, with the reasons.
     pub left_out: Vec<ExcludedTrial>,
     /// Number of practice recordings, which are not analysed as trials.
     pub practice: u64,
@@ -66,37 +80,57 @@ pub struct StudySummary {
 pub struct TrialTotals {
     /// Number of presses of both agents.
     pub actions: u64,
+    /// Presses of the human.
     pub human_actions: u64,
+    /// Presses of the robot.
     pub robot_actions: u64,
+    /// The human's presses that were errors.
     pub errors: u64,
+    /// Presses of the human that the robot may have overtaken; they are not counted as errors.
     pub races: u64,
-    /// Errors per press of both agents, and per human press.
+    /// Errors per press of both agents.
     pub error_rate: Option<f64>,
+    /// Errors per press of the human.
     pub error_rate_human: Option<f64>,
     /// Source of the participants' beliefs; null if beliefs are unknown in some trial.
     pub beliefs_from: Option<BeliefBasis>,
+    /// Errors that are put down to a false belief.
     pub belief_related_errors: Option<u64>,
+    /// Their share of all errors, 0 to 1.
     pub belief_related_share: Option<f64>,
+    /// 95 % interval of that share.
     pub belief_related_interval: Option<Interval>,
+    /// Number of error sequences.
     pub sequences: Option<u64>,
+    /// Mean number of errors in a sequence.
     pub mean_sequence_length: Option<f64>,
+    /// Mean number of errors in a sequence of errors about one aspect alone.
     pub mean_sequence_length_by_aspect: Option<f64>,
+    /// Mean time from a sequence's first error to the first correct press after its last, in seconds.
     pub mean_recovery_s: Option<f64>,
+    /// False belief episodes that caused at least one error.
     pub false_belief_episodes: Option<u64>,
+    /// Signals that were shown.
     pub signals: u64,
+    /// Orders served.
     pub orders_served: u64,
 }
 
 /// Summary of the trials in one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyConditionSummary {
+    /// Who sends signals.
     pub condition: Condition,
+    /// Number of trials.
     pub trials: u64,
+    /// Sums and means over these trials.
     #[serde(flatten)]
     pub totals: TrialTotals,
     /// Mean errors per trial.
     pub mean_errors: Option<f64>,
+    /// Mean over trials of the median time for an order, in seconds.
     pub mean_order_s: Option<f64>,
+    /// Mean over trials of the median time from press to press of the human, in seconds.
     pub mean_press_s: Option<f64>,
     /// Number of error sequences with 1, 2, 3, … errors.
     pub sequence_lengths: Vec<u64>,
@@ -105,51 +139,26 @@ pub struct StudyConditionSummary {
 /// Similarity of wizard and assistant in one trial.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrialSimilarity {
+    /// The recording's folder.
     pub recording: String,
+    /// Number of signals of the wizard.
     pub of_n: u64,
+    /// Number of communications of the assistant.
     pub with_n: u64,
+    /// Number of strict pairs.
     pub matched: u64,
+    /// The share of the wizard's signals that have a match.
     pub recall: Option<f64>,
-}
-
-/// Acceptance of the assistance: each participant's mean answer to the items about acceptance after assisted trials, from 0 (none)
-/// to 1 (full). Answers to items in which agreement means rejection are reversed.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Acceptance {
-    /// Number of participants above 2/3.
-    pub high: u64,
-    /// Number of participants above 7/12, up to 2/3.
-    pub medium: u64,
-    /// Number of participants within 1/12 of the middle (one point of a seven-point scale).
-    pub undecided: u64,
-    /// Number of participants below 5/12.
-    pub low: u64,
-    pub not_reported: u64,
-    /// Mean acceptance over participants.
-    pub mean: Option<f64>,
-}
-
-/// Answers to one questionnaire item in one condition.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ItemSummary {
-    pub questionnaire: String,
-    pub item: String,
-    pub text: String,
-    pub about: Option<String>,
-    pub reversed: bool,
-    pub condition: Condition,
-    pub points: u8,
-    /// Number of answers at each scale point, from 1.
-    pub counts: Vec<u64>,
-    pub left_out: u64,
-    pub mean: Option<f64>,
 }
 
 /// A trial that is excluded from the analysis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExcludedTrial {
+    /// The recording's folder.
     pub recording: String,
+    /// The participant's code.
     pub participant: String,
+    /// Why it is left out.
     pub reason: String,
 }
 
@@ -314,73 +323,4 @@ fn agreement(trials: &[&Trial]) -> Option<Agreement> {
     let coded: Vec<&[Codes; 2]> = trials.iter().filter_map(|trial| trial.raters.as_ref()).collect();
     coded.iter().for_each(|[one, other]| table.add(one, other));
     (!coded.is_empty()).then(|| table.agreement())
-}
-
-/// Items of all questionnaires by condition, in order of occurrence.
-fn items(trials: &[&Trial]) -> Vec<ItemSummary> {
-    let mut items: Vec<ItemSummary> = Vec::new();
-    for trial in trials {
-        for answered in &trial.answers {
-            let is_it = |item: &ItemSummary| {
-                (&item.questionnaire, &item.item, item.condition, item.points)
-                    == (&answered.questionnaire, &answered.item, trial.condition, answered.points)
-            };
-            let at = match items.iter().position(is_it) {
-                Some(at) => at,
-                None => {
-                    items.push(ItemSummary {
-                        questionnaire: answered.questionnaire.clone(),
-                        item: answered.item.clone(),
-                        text: answered.text.clone(),
-                        about: answered.about.clone(),
-                        reversed: answered.reversed,
-                        condition: trial.condition,
-                        points: answered.points,
-                        counts: vec![0; usize::from(answered.points)],
-                        left_out: 0,
-                        mean: None,
-                    });
-                    items.len() - 1
-                }
-            };
-            match answered.answer.and_then(|answer| items[at].counts.get_mut(usize::from(answer).checked_sub(1)?)) {
-                Some(count) => *count += 1,
-                None => items[at].left_out += 1,
-            }
-        }
-    }
-    for item in &mut items {
-        let given = item.counts.iter().enumerate();
-        let answers = given.flat_map(|(index, &count)| std::iter::repeat_n((index + 1) as f64, count as usize));
-        item.mean = mean(answers);
-    }
-    items
-}
-
-/// Acceptance from the answers in assisted trials; `None` without any answer.
-fn acceptance(trials: &[&Trial]) -> Option<Acceptance> {
-    let mut by_participant: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
-    for trial in trials.iter().filter(|trial| trial.is_assisted()) {
-        for answered in trial.answers.iter().filter(|one| one.about.as_deref() == Some("acceptance")) {
-            let of_one = by_participant.entry(&trial.participant).or_default();
-            let Some(answer) = answered.answer.filter(|_| answered.points > 1) else { continue };
-            let share = f64::from(answer.saturating_sub(1)) / f64::from(answered.points - 1);
-            of_one.push(if answered.reversed { 1.0 - share } else { share });
-        }
-    }
-    if by_participant.is_empty() {
-        return None;
-    }
-    let means: Vec<Option<f64>> = by_participant.into_values().map(|shares| mean(shares.into_iter())).collect();
-    // Acceptance in twelfths, rounded so that means of whole scale points fall on the correct side of a limit.
-    let twelfths: Vec<f64> = means.iter().flatten().map(|mean| (12.0 * mean * 1e6).round() / 1e6).collect();
-    let count = |is: fn(f64) -> bool| twelfths.iter().filter(|&&twelfths| is(twelfths)).count() as u64;
-    Some(Acceptance {
-        high: count(|twelfths| twelfths > 8.0),
-        medium: count(|twelfths| twelfths > 7.0 && twelfths <= 8.0),
-        undecided: count(|twelfths| (5.0..=7.0).contains(&twelfths)),
-        low: count(|twelfths| twelfths < 5.0),
-        not_reported: means.iter().filter(|mean| mean.is_none()).count() as u64,
-        mean: mean(means.iter().flatten().copied()),
-    })
 }

@@ -13,6 +13,7 @@
 //!   generated.
 //! - [`report`] builds the page, with [`charts`].
 
+pub mod acceptance;
 pub mod arm_group;
 pub mod charts;
 pub mod column;

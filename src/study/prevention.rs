@@ -13,15 +13,20 @@ use crate::kitchen::AspectId;
 /// True errors, false beliefs and error sequences of a trial.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialTruth {
+    /// The human's presses, in order.
     pub presses: Vec<PressTruth>,
+    /// The times in which an aspect was believed wrong.
     pub spells: Vec<FalseBeliefTruth>,
+    /// The error sequences.
     pub sequences: Vec<SequenceTruth>,
 }
 
 /// Truth about one human press.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressTruth {
+    /// Session time of the press.
     pub time: SessionTime,
+    /// It was an error.
     pub error: bool,
     /// Whether the press is a belief related error.
     pub related: bool,
@@ -30,8 +35,11 @@ pub struct PressTruth {
 /// Period in which the participant held a false belief about one aspect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FalseBeliefTruth {
+    /// What was believed wrong.
     pub aspect: AspectId,
+    /// Session time from which it was believed wrong.
     pub began: SessionTime,
+    /// Until when; none: until the end of the trial.
     pub ended: Option<SessionTime>,
     /// Whether the false belief led to an error, which makes it an episode.
     pub harmful: bool,
@@ -49,6 +57,7 @@ pub struct SequenceTruth {
 /// A signal that a concept would have sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConceptSignal {
+    /// Session time of the signal.
     pub time: SessionTime,
     /// Number of human presses before the signal.
     pub press: usize,

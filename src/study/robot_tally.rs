@@ -21,24 +21,30 @@ pub struct RobotSummary {
     pub emergency_stops: u64,
     /// Number of aborted robot presses by reason; reasons that did not occur are absent.
     pub given_up: BTreeMap<AbortReason, u64>,
-    /// Numbers of the wizard's interventions: robot held, press skipped, press chosen, location corrected.
+    /// Times that the wizard held the robot before its next press.
     pub held: u64,
+    /// Times that the wizard skipped a press of the robot.
     pub skipped: u64,
+    /// Times that the wizard chose the robot's next press.
     pub driven: u64,
+    /// Times that the wizard corrected what lies at a location.
     pub corrected: u64,
 }
 
 /// Safety and contact statistics of a simulated physical arm.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ArmSummary {
-    /// Number of protective stops after a contact, and number of stops because a joint did not follow.
+    /// Times that the arm stopped because it felt somebody.
     pub protective_stops: u64,
+    /// Times that the arm stopped because a joint did not follow.
     pub faults: u64,
-    /// Number of contacts with a person, and largest contact force in newtons (`None` without contact).
+    /// Times that somebody touched the arm, those that stopped it among them.
     pub contacts: u64,
+    /// The largest force of these contacts, in newtons; none without any.
     pub peak_force_n: Option<f64>,
-    /// Seconds at reduced speed because of a hand nearby, and seconds of waiting for a hand, on the trial clock.
+    /// Time on the trial's clock in which a hand near the arm slowed it, in seconds.
     pub reduced_s: f64,
+    /// Time on the trial's clock in which the arm waited for a hand in its way, in seconds.
     pub safeguard_s: f64,
 }
 
@@ -90,6 +96,7 @@ pub struct RobotTally {
 }
 
 impl RobotTally {
+    /// A tally at the beginning of a trial with this kind of arm.
     pub fn new(arm: ArmKind) -> RobotTally {
         let arm = (arm == ArmKind::Physics).then(ArmSummary::default);
         let figures = RobotSummary { arm, ..RobotSummary::default() };
@@ -145,6 +152,7 @@ impl RobotTally {
         }
     }
 
+    /// What was counted.
     pub fn into_figures(self) -> RobotSummary {
         self.figures
     }

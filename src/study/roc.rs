@@ -47,18 +47,26 @@ pub const CONCEPTS: [ConceptName; 3] = [ConceptName::TomCom, ConceptName::Tom, C
 /// Prevention counts of a concept with one parameter value in a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweptTrial {
+    /// The concept.
     pub concept: ConceptName,
+    /// The value of its parameter.
     pub parameter: f64,
+    /// What it would have done.
     pub count: PreventionCounts,
 }
 
 /// A point of a receiver operating characteristic.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RocPoint {
+    /// The value of the concept's parameter.
     pub parameter: f64,
+    /// False positive rate: the share of the presses outside of episodes with a false signal before them.
     pub fpr: f64,
+    /// True positive rate: the share of the belief related errors that would have been prevented.
     pub tpr: f64,
+    /// Signals per 100 presses of the human.
     pub signals_per_100_actions: f64,
+    /// What the concept would have done, over all trials.
     #[serde(flatten)]
     pub count: PreventionCounts,
 }
@@ -66,19 +74,26 @@ pub struct RocPoint {
 /// A value with its bootstrap interval over participants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct BootstrapInterval {
+    /// The value; none where it cannot be told.
     pub value: Option<f64>,
+    /// The lower end of the 95 % interval.
     pub low: Option<f64>,
+    /// The upper end of the 95 % interval.
     pub high: Option<f64>,
 }
 
 /// The receiver operating characteristic of a concept.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Roc {
+    /// The concept.
     pub concept: ConceptName,
     /// Mean true positive rate over the false positive rates that all concepts reach: partial area divided by the range's width.
     pub auc: Option<f64>,
+    /// The lower end of its 95 % interval.
     pub auc_low: Option<f64>,
+    /// The upper end of its 95 % interval.
     pub auc_high: Option<f64>,
+    /// The points, in the order of the parameter.
     pub points: Vec<RocPoint>,
     /// Confidence band: false positive rate, lower and upper true positive rate.
     pub band: Vec<[f64; 3]>,
@@ -91,11 +106,13 @@ pub struct Roc {
 /// Comparison of the concepts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ConceptComparison {
-    /// Number of participants, and number of their unassisted trials.
+    /// Number of participants with unassisted trials.
     pub participants: u64,
+    /// Number of these trials.
     pub trials: u64,
     /// The largest false positive rate that all concepts reach.
     pub common_fpr: Option<f64>,
+    /// The concepts, in the order in which they are compared.
     pub concepts: Vec<Roc>,
 }
 

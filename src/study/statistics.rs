@@ -12,10 +12,13 @@ use crate::base::rng::stream;
 /// Result of an F test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FTest {
+    /// The value of F.
     pub f: f64,
     /// Degrees of freedom of the effect and of the residuals.
     pub df: [f64; 2],
+    /// The probability of at least this value without an effect.
     pub p: f64,
+    /// Partial eta squared: the effect's share of its own and the residual sum of squares.
     pub partial_eta_sq: f64,
 }
 
@@ -34,8 +37,11 @@ impl FTest {
 /// Mixed analysis of variance with two measurements per person (within) and any number of groups (between).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MixedAnova {
+    /// The factor within participants.
     pub within: Option<FTest>,
+    /// The factor between groups.
     pub between: Option<FTest>,
+    /// The interaction of both.
     pub interaction: Option<FTest>,
 }
 
@@ -70,8 +76,11 @@ pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
 /// A correlation coefficient with its two-sided p value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Correlation {
+    /// Pearson's r.
     pub r: f64,
+    /// The two-sided p.
     pub p: f64,
+    /// Number of pairs.
     pub n: usize,
 }
 
@@ -153,8 +162,11 @@ fn for_each_choice(n: usize, m: usize, mut visit: impl FnMut(&[usize])) {
 /// An estimate with its confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Interval {
+    /// The estimate.
     pub estimate: f64,
+    /// The lower end of the interval.
     pub low: f64,
+    /// The upper end of the interval.
     pub high: f64,
     /// Actual coverage of the interval; it differs from the requested level where only some levels are possible.
     pub level: f64,

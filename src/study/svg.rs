@@ -11,8 +11,11 @@ const MARGIN: [f64; 4] = [54.0, 14.0, 14.0, 44.0];
 /// Axis of a chart.
 #[derive(Clone, Debug)]
 pub struct PlotAxis {
+    /// What it shows, with the unit.
     pub label: &'static str,
+    /// The value at its beginning.
     pub from: f64,
+    /// The value at its end.
     pub to: f64,
     /// Ticks: position and label.
     pub ticks: Vec<(f64, String)>,

@@ -17,23 +17,31 @@ pub struct Trial {
     pub recording: String,
     /// Participant code; prefixed by the seed if several seeds have simulated participants with the same codes.
     pub participant: String,
+    /// The seed of everything random.
     pub seed: u64,
+    /// Who played the human's part.
     pub kind: ParticipantKind,
     /// Start by the wall clock; `None` for simulated trials.
     pub started: Option<String>,
-    /// Starting group in the study plan, and number of the trial in the plan, from 1.
+    /// The starting group of a plan.
     pub group: Option<String>,
+    /// The number of the trial in the participant's series; 1 is the first.
     pub period: Option<u32>,
     /// Whether the trial belongs to a study plan, which then defines its period.
     pub is_planned: bool,
+    /// Who could send signals.
     pub condition: Condition,
     /// Reason for excluding the trial; `None` if it counts.
     pub left_out: Option<String>,
     /// Reason of the trial's end; `None` if the recording is incomplete.
     pub ended: Option<EndReason>,
+    /// The robot's arm.
     pub arm: ArmKind,
+    /// What was counted of the robot.
     pub robot: RobotSummary,
+    /// Presses of the human.
     pub human_presses: u64,
+    /// Presses of the robot.
     pub robot_presses: u64,
     /// Number of human errors, without races.
     pub errors: u64,
@@ -41,8 +49,9 @@ pub struct Trial {
     pub races: u64,
     /// Statistics of false beliefs; `None` if the human's beliefs are unknown.
     pub beliefs: Option<BeliefErrors>,
-    /// Number of served orders, and median seconds from one served order to the next, the first from the trial's start.
+    /// Orders served.
     pub orders: u64,
+    /// The median time from one served order to the next, the first from the trial's start, in seconds.
     pub order_s: Option<f64>,
     /// Median presses of both agents per order.
     pub presses_per_order: Option<f64>,
@@ -52,6 +61,7 @@ pub struct Trial {
     pub signals: u64,
     /// Length of the trial without pauses, in seconds.
     pub seconds: f64,
+    /// The answers to questionnaires after the trial.
     pub answers: Vec<QuestionnaireAnswer>,
     /// Measures of the wizard; `None` in other conditions.
     pub wizard: Option<WizardMeasures>,
@@ -89,6 +99,7 @@ impl BeliefBasis {
 /// Errors that false beliefs caused in a trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeliefErrors {
+    /// How it is known what the human believed.
     pub basis: BeliefBasis,
     /// Number of belief related errors.
     pub errors: u64,
@@ -107,13 +118,19 @@ pub struct BeliefErrors {
 /// An answer to a questionnaire item.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct QuestionnaireAnswer {
+    /// The questionnaire's name.
     pub questionnaire: String,
+    /// The item's id.
     pub item: String,
+    /// The statement.
     pub text: String,
+    /// What the item is about.
     pub about: Option<String>,
+    /// Agreement speaks against what it is about.
     pub reversed: bool,
     /// Scale point; `None` if the participant skipped the item.
     pub answer: Option<u8>,
+    /// Number of points of the scale.
     pub points: u8,
 }
 

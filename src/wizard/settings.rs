@@ -6,9 +6,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct WizardSpec {
+    /// Who it is: a person or a script.
     pub kind: WizardKind,
-    /// Time from noticing a false belief to sending the signal, in seconds: median, and standard deviation of the logarithm.
+    /// Median time from noticing a false belief to sending the signal, in seconds.
     pub reaction_s: f64,
+    /// Standard deviation of the logarithm of that time.
     pub reaction_spread: f64,
     /// Probability of noticing that a press of the participant was an error.
     pub sees_errors: f64,

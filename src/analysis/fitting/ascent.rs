@@ -28,13 +28,16 @@ const CLOSE: f64 = 1e-9;
 /// The bound at which a variable has its maximum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoundReached {
+    /// The lower bound.
     Low,
+    /// The upper bound.
     High,
 }
 
 /// Estimate of one variable with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedVariable {
+    /// Its best value.
     pub at: f64,
     /// `None` at a bound, and where the log likelihood is not concave.
     pub standard_error: Option<f64>,
@@ -47,6 +50,7 @@ pub struct FittedVariable {
 /// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Maximum {
+    /// The variables, in the order in which they were given.
     pub variables: Vec<FittedVariable>,
     /// Number of evaluations of the log likelihood.
     pub evaluations: usize,

@@ -34,6 +34,7 @@ pub struct FittedRecordings<'a> {
 /// Which parameters to fit, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitPlan {
+    /// The parameters to fit.
     pub parameters: Vec<Parameter>,
     /// Start of the search, and value of parameters that are not fitted. `None` for the parameters in the recordings.
     pub start: Option<HumanModel>,
@@ -44,12 +45,15 @@ pub struct FitPlan {
 /// The output of `tomcom fit`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FitSummary {
+    /// Number of recordings.
     pub recordings: u64,
     /// Presses of the human.
     pub human_actions: u64,
-    /// Log likelihood per press, in nats, before and after the fit.
+    /// Log likelihood per press with the parameters from before, in nats.
     pub log_likelihood_before: f64,
+    /// Log likelihood per press with the parameters that were found, in nats.
     pub log_likelihood: f64,
+    /// Number of parameter sets tried.
     pub tries: u64,
     /// Largest number of evaluations that was allowed.
     pub most_tries: u64,
@@ -59,6 +63,7 @@ pub struct FitSummary {
     pub recordings_differ: bool,
     /// Whether the search converged within the allowed evaluations.
     pub converged: bool,
+    /// The parameters that were fitted.
     pub parameters: Vec<FittedParameter>,
     /// The human model with the fitted values.
     #[serde(skip)]
@@ -68,9 +73,13 @@ pub struct FitSummary {
 /// Result for one fitted parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FittedParameter {
+    /// The parameter's name in a parameter file: "tau".
     pub name: &'static str,
+    /// Its unit.
     pub unit: &'static str,
+    /// Its value before.
     pub before: f64,
+    /// The value that was found.
     pub value: f64,
     /// Whether the interval is finite on both sides within the bounds of the search.
     pub identified: bool,

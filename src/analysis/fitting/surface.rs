@@ -13,6 +13,7 @@ const SWEEPS: usize = 60;
 pub struct QuadraticSurface {
     /// Value at the centre.
     pub value: f64,
+    /// First derivatives at the centre.
     pub slope: Vec<f64>,
     /// Second derivatives.
     pub curvature: Vec<Vec<f64>>,

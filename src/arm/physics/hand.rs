@@ -5,8 +5,9 @@ use rapier3d::prelude::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Vector}
 
 use crate::arm::clearance::Capsule;
 
-/// Effective mass and stiffness of a hand (ISO/TS 15066, annex A).
+/// Effective mass of a hand, in kilograms (ISO/TS 15066, annex A).
 const MASS_KG: f32 = 0.6;
+/// Stiffness of a hand, in N/m (ISO/TS 15066, annex A).
 pub const STIFFNESS_N_M: f64 = 75_000.0;
 /// Damping of skin and flesh, in N s/m; small, so that the spring determines the peak force.
 pub const FLESH_NS_M: f64 = 40.0;
@@ -22,8 +23,9 @@ const HAND_LENGTH_M: f64 = 0.09;
 /// The pose of a person's hand and elbow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandPose {
-    /// The middle of the hand, in the frame of the arm's base.
+    /// The middle of the hand, in the frame of the arm's base, in metres.
     pub at_m: Point3<f64>,
+    /// The elbow, in the same frame, in metres.
     pub elbow_m: Point3<f64>,
 }
 

@@ -21,8 +21,9 @@ use crate::robot::moment::{JOINTS, JointAngles};
 use button::PhysicalButton;
 use hand::{HandPose, PhysicalHand, double, single};
 
-/// The fixed step of the physics, in seconds, and how many make a cycle of the controller.
+/// The fixed step of the physics, in seconds.
 pub const STEP_S: f64 = 0.002;
+/// Number of physics steps in a cycle of the controller.
 pub const STEPS_A_CYCLE: usize = 4;
 /// A cycle of the controller, in seconds: the real one's 125 Hz.
 pub const CYCLE_S: f64 = STEP_S * STEPS_A_CYCLE as f64;

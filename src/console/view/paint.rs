@@ -11,7 +11,9 @@ use crate::base::printable::printable;
 
 /// Paints on a buffer in a theme.
 pub struct Painter<'a> {
+    /// The cells that are painted.
     pub buffer: &'a mut Buffer,
+    /// Colours and signs.
     pub theme: Theme,
 }
 
@@ -56,6 +58,7 @@ pub fn wrap(text: &str, columns: u16) -> Vec<String> {
 }
 
 impl Painter<'_> {
+    /// The style of a role in this theme.
     pub fn style(&self, role: TextRole) -> Style {
         self.theme.style(role)
     }

@@ -28,23 +28,33 @@ pub enum ScreenSize {
 /// Areas of the panels; a panel with an empty area is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Regions {
+    /// How much the terminal has room for.
     pub room: ScreenSize,
+    /// The head line.
     pub head: Rect,
+    /// The kitchen.
     pub kitchen: Rect,
+    /// The belief panel.
     pub belief: Rect,
+    /// The recommendation panel.
     pub recommendation: Rect,
     /// Gaze map, which replaces belief and recommendations where the wizard may not see those.
     pub gaze_map: Rect,
     /// The participant's side: signal on the display, and gaze.
     pub shown: Rect,
+    /// Where the participant looks, and how good the gaze is.
     pub gaze: Rect,
+    /// What the robot does.
     pub robot: Rect,
+    /// The newest events.
     pub events: Rect,
+    /// The timeline.
     pub timeline: Rect,
     /// Comparison of wizard and assistants, which replaces the timeline.
     pub comparison: Rect,
     /// Training panel.
     pub lesson: Rect,
+    /// The keys that matter now.
     pub footer: Rect,
 }
 

@@ -7,6 +7,7 @@ use ratatui::style::{Color, Modifier, Style};
 /// Role of a text on the screen, from which its style follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextRole {
+    /// Ordinary text.
     Text,
     /// Labels and normal states.
     Quiet,
@@ -14,10 +15,13 @@ pub enum TextRole {
     Frame,
     /// Titles and contents.
     Strong,
+    /// The participant and its presses.
     Human,
+    /// The robot and its presses.
     Robot,
     /// Keys of the wizard, and signals.
     Signal,
+    /// The participant's gaze.
     Gaze,
     /// Alarms: stopped, lost, failed.
     Alarm,
@@ -28,15 +32,20 @@ pub enum TextRole {
 /// The terminal's background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TerminalBackground {
+    /// Light text on a dark background.
     Dark,
+    /// Dark text on a light background.
     Light,
 }
 
 /// Colours and signs of the console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Theme {
+    /// Whether colours are used; without, weight and signs tell the same.
     pub colour: bool,
+    /// Whether signs beyond ASCII are used.
     pub unicode: bool,
+    /// The terminal's background, which the colours must contrast with.
     pub ground: TerminalBackground,
 }
 
@@ -47,27 +56,43 @@ pub struct Glyphs {
     pub frame: [&'static str; 6],
     /// Rules of a card: normal, just changed, highlighted by a signal.
     pub rules: [&'static str; 3],
+    /// A full cell of a bar.
     pub bar_full: &'static str,
+    /// An empty cell of a bar.
     pub bar_empty: &'static str,
+    /// Where the participant looks.
     pub gaze: &'static str,
+    /// Where the participant looked before.
     pub trail: &'static str,
+    /// A press.
     pub press: &'static str,
+    /// A press without effect.
     pub no_effect: &'static str,
+    /// A press that was an error.
     pub error: &'static str,
+    /// An order that was served.
     pub served: &'static str,
+    /// A signal that was taken back.
     pub taken_back: &'static str,
+    /// The robot is stopped.
     pub stopped: &'static str,
     /// Contact with the arm.
     pub touched: &'static str,
     /// Manual intervention of the experimenter.
     pub by_hand: &'static str,
+    /// From one thing to another.
     pub to: &'static str,
+    /// Changed just now.
     pub changed: &'static str,
+    /// The session is recorded.
     pub recording: &'static str,
+    /// The trial is paused.
     pub pause: &'static str,
+    /// Text that was cut.
     pub ellipsis: &'static str,
     /// Bars from low to full, for curves.
     pub levels: [&'static str; 8],
+    /// No value.
     pub dash: &'static str,
 }
 
@@ -120,6 +145,7 @@ const ASCII: Glyphs = Glyphs {
 };
 
 impl Theme {
+    /// The signs of this theme.
     pub fn signs(&self) -> &'static Glyphs {
         if self.unicode { &UNICODE } else { &ASCII }
     }
@@ -140,6 +166,7 @@ impl Theme {
         Some(if ground == TerminalBackground::Dark { dark } else { light })
     }
 
+    /// The style of a role in this theme.
     pub fn style(&self, role: TextRole) -> Style {
         let modifier = match role {
             TextRole::Text | TextRole::Human | TextRole::Robot => Modifier::empty(),

@@ -7,34 +7,46 @@ use std::time::Instant;
 pub enum PageInput {
     /// The page is connected, with this size in pixels.
     Connected {
+        /// Width of the page in pixels.
         width_px: u32,
+        /// Height of the page in pixels.
         height_px: u32,
     },
+    /// The page is gone.
     Lost,
     /// A press at this instant.
     Press {
+        /// The button's name.
         button: String,
+        /// When, by this computer's clock.
         at: Instant,
     },
     /// Position of the pointer, in fractions of the display.
     Pointer {
+        /// Fraction of the display's width.
         x: f64,
+        /// Fraction of the display's height, downwards.
         y: f64,
     },
     /// Answer to a questionnaire item, or skipping it.
     Answer {
+        /// The item's name.
         item: String,
+        /// The point of the scale, from 1; none: left out.
         rated: Option<u8>,
     },
     /// Return to a questionnaire item.
     Back {
+        /// The item's name.
         item: String,
     },
     /// Confirmation of all answers.
     Confirm,
     /// The event with this sequence number was drawn at this instant.
     Drawn {
+        /// Sequence number of the event.
         cue: u64,
+        /// When, by this computer's clock.
         at: Instant,
     },
 }

@@ -6,7 +6,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// State of the acting page.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ActivePage {
+    /// Width in pixels.
     pub width_px: u32,
+    /// Height in pixels.
     pub height_px: u32,
     /// Last measured round trip time, in milliseconds.
     pub round_trip_ms: Option<f64>,
@@ -17,6 +19,7 @@ pub struct ActivePage {
 /// Counters so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DisplayCounts {
+    /// The page that acts, if there is one.
     pub page: Option<ActivePage>,
     /// Number of watching pages.
     pub watching: u64,

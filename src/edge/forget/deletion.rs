@@ -18,15 +18,26 @@ pub enum ForgetError {
     #[error("nothing was deleted: {0}")]
     #[diagnostic(transparent)]
     Recording(WriteError),
+    /// A file cannot be read.
     #[error("nothing was deleted: {0}")]
     #[diagnostic(transparent)]
     File(Box<FileError>),
+    /// A file cannot be deleted or written anew.
     #[error("nothing was deleted: {}: cannot be deleted or written anew: {reason}", path.display())]
     #[diagnostic(help("the right to write to its folder, on a disk with free space"))]
-    Unwritable { path: PathBuf, reason: io::Error },
+    Unwritable {
+        /// The file or folder.
+        path: PathBuf,
+        /// Why not.
+        reason: io::Error,
+    },
+    /// Files have changed since they were listed.
     #[error("nothing was deleted: files in {} have changed since they were listed", folder.display())]
     #[diagnostic(help("run the command again, when nothing else writes there"))]
-    Changed { folder: PathBuf },
+    Changed {
+        /// The folder that they are in.
+        folder: PathBuf,
+    },
 }
 
 /// Deletes what was found. What could not be deleted in the end is told as left. Nothing is deleted if one of the recordings

@@ -24,9 +24,11 @@ const MAX_BYTES: u64 = 64 << 20;
 /// What there is about a code.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParticipantData {
+    /// The participant's code.
     pub code: String,
-    /// Where it was looked for: in this folder, and in the system's folder for temporary files.
+    /// The folder that was searched.
     pub root: PathBuf,
+    /// The system's folder for temporary files, which was searched as well.
     pub temporary: PathBuf,
     /// Folders of recordings, their later parts among them.
     pub recordings: Vec<PathBuf>,

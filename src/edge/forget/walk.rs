@@ -19,7 +19,9 @@ const STRANGE: &str = "in the folder of one of the participant's recordings, and
 /// What is or may be about the participant and is left, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct LeftFile {
+    /// The file.
     pub path: PathBuf,
+    /// Why it is left, in words.
     pub reason: String,
 }
 

@@ -14,6 +14,7 @@ use crate::session::settings::is_code;
 
 /// The columns of the file; those of an export of several recordings have two more before them.
 const COLUMNS: [&str; 3] = ["press", "cause", "aspect"];
+/// The columns of an export of several recordings.
 pub const EXPORT_COLUMNS: [&str; 5] = ["recording", "rater", "press", "cause", "aspect"];
 /// What would be right of a line that is no row at all.
 const REMEDY: &str = "as many fields as the first line has";
@@ -25,8 +26,11 @@ pub struct CodeRow {
     pub line: usize,
     /// The name of the recording's folder.
     pub recording: String,
+    /// The rater.
     pub rater: String,
+    /// The number of the press that was an error.
     pub press: u64,
+    /// The cause that the rater saw.
     pub code: Code,
 }
 

@@ -19,6 +19,7 @@ pub const EXCLUSION_NAME: &str = "exclusion.toml";
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExclusionRecord {
+    /// The recording is left out of the analysis; false: it is not any more.
     pub excluded: bool,
     /// Why; of those that take an exclusion back it may be empty.
     #[serde(default)]
@@ -37,12 +38,15 @@ struct Rulings {
 /// Why nothing can be said about a recording.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ExclusionError {
+    /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
+    /// The record cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] WriteError),
+    /// The reason does not have 1 to 200 characters; it has this many.
     #[error("found a reason of {0} characters")]
     #[diagnostic(help("a reason of 1 to 200 characters, on one line"))]
     Reason(usize),

@@ -24,6 +24,7 @@ pub struct RecordingLock {
 /// Who writes a recording now, as far as that is told.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LockHolder {
+    /// Its process id.
     pub pid: Option<u32>,
     /// Where viewers can look on.
     pub viewers: Option<String>,

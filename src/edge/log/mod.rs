@@ -35,7 +35,9 @@ pub enum WriteError {
     #[error("{}: the recording cannot be written: {reason}{}", path.display(), rescued(.saved))]
     #[diagnostic(help("a folder that can be written to, on a disk with free space"))]
     Unwritable {
+        /// The file or folder.
         path: PathBuf,
+        /// Why not.
         reason: io::Error,
         /// Where what was recorded was saved to, if it is no longer where it was.
         saved: Option<PathBuf>,
@@ -47,20 +49,40 @@ pub enum WriteError {
          saved one as {LOG_NAME}.damaged"
     ))]
     Damaged {
+        /// The log.
         path: PathBuf,
         /// What was done to it.
         found: String,
+        /// Where what was recorded was saved to, if it could be saved.
         saved: Option<PathBuf>,
     },
+    /// Another program writes this recording.
     #[error("{}: another program{} writes this recording", folder.display(), process(.pid))]
     #[diagnostic(help("end the other one first, or watch it: tomcom replay RECORDING --follow"))]
-    InUse { folder: PathBuf, pid: Option<u32> },
+    InUse {
+        /// The recording's folder.
+        folder: PathBuf,
+        /// That program's process id, if it is known.
+        pid: Option<u32>,
+    },
+    /// The recording was continued already.
     #[error("{}: this recording was continued already", folder.display())]
     #[diagnostic(help("its next part: tomcom operate --continue {}, if that was cut", part.display()))]
-    Continued { folder: PathBuf, part: PathBuf },
+    Continued {
+        /// The recording's folder.
+        folder: PathBuf,
+        /// The folder of its next part.
+        part: PathBuf,
+    },
+    /// The folder holds something else already.
     #[error("{}: {what} is there already", folder.display())]
     #[diagnostic(help("another folder, or remove that one first: only the same session replaces its recording"))]
-    Taken { folder: PathBuf, what: &'static str },
+    Taken {
+        /// The folder.
+        folder: PathBuf,
+        /// What is there.
+        what: &'static str,
+    },
 }
 
 impl WriteError {

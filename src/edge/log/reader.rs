@@ -24,7 +24,9 @@ const MAX_PARTS: usize = 100;
 pub struct LogLine {
     /// Counted from 1, the header's line.
     pub number: usize,
+    /// The line as it stands in the file, without its end.
     pub text: String,
+    /// The event that it holds.
     pub stamped: Stamped,
 }
 
@@ -43,7 +45,9 @@ pub enum LogEnding {
 /// on when it has grown.
 #[derive(Debug)]
 pub struct LogReader {
+    /// The header of this part.
     pub header: Header,
+    /// The kitchen that the header describes.
     pub kitchen: Arc<Kitchen>,
     path: PathBuf,
     /// The part that this one continues, until all that was continued of it is read.

@@ -20,6 +20,7 @@ const LAST: u64 = 256;
 pub enum SimulatedLog {
     /// It is to be written.
     Begun {
+        /// The log to write to.
         log: Box<LogWriter>,
         /// Where a log went that ended before the end of its header.
         moved: Option<PathBuf>,

@@ -23,21 +23,28 @@ pub struct SurfaceGaze {
 /// A fixation; messages with the same id repeat while it lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PupilFixation {
+    /// Pupil's number for it.
     pub id: u64,
     /// Position on the surface; `None` if it is given in the scene camera's picture.
     pub on_surface: Option<[f64; 2]>,
+    /// Pupil's confidence, 0 to 1.
     pub confidence: f64,
     /// Beginning in Pupil time, in seconds.
     pub timestamp: f64,
+    /// How long it has lasted, in milliseconds.
     pub duration_ms: f64,
+    /// How far its samples are spread, in degrees.
     pub dispersion_deg: f64,
 }
 
 /// The beginning (onset) or end of a blink.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PupilBlink {
+    /// The lids closed; false: they opened.
     pub is_onset: bool,
+    /// Pupil's confidence, 0 to 1.
     pub confidence: f64,
+    /// When, in Pupil time in seconds.
     pub timestamp: f64,
 }
 
@@ -48,7 +55,9 @@ pub struct PupilMessage {
     pub sees_surface: bool,
     /// Samples in the order in which they were taken.
     pub gaze: Vec<SurfaceGaze>,
+    /// Fixations that go on or are over.
     pub fixations: Vec<PupilFixation>,
+    /// A blink that began or ended, if the message tells one.
     pub blink: Option<PupilBlink>,
     /// Number of malformed items; 1 for a malformed message.
     pub malformed: u64,

@@ -32,9 +32,11 @@ const ORDERS: usize = 256;
 /// Address of Capture, and what to receive from it.
 #[derive(Clone, Debug)]
 pub struct CaptureAddress {
+    /// The host on which Capture runs.
     pub address: String,
     /// Port of Pupil Remote.
     pub port: u16,
+    /// The name of the surface that Capture defines by the tags.
     pub surface: String,
     /// Map from the surface to the display.
     pub map: SurfaceMap,
@@ -47,6 +49,7 @@ pub struct CaptureAddress {
 pub enum CaptureRequest {
     /// Start a recording with this name.
     Record(String),
+    /// End the recording.
     StopRecording,
     /// Annotate its recording with an event at this instant.
     Annotate(String, Instant),

@@ -9,7 +9,9 @@ use crate::kitchen::look::Appearance;
 /// Which of the two files an error is in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpecFile {
+    /// The layout file.
     Layout,
+    /// The recipe file.
     Recipes,
 }
 
@@ -17,6 +19,7 @@ pub enum SpecFile {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{found}")]
 pub struct SpecError {
+    /// The file that the error is in.
     pub file: SpecFile,
     /// Where in the file's text, in bytes.
     pub span: Option<Range<usize>>,

@@ -42,6 +42,7 @@ pub struct EvaluationCounts {
     pub decisions_missed: u64,
     /// Number of requested single values.
     pub values: u64,
+    /// Values that had to be computed, because no cache held them.
     pub values_missed: u64,
     /// Number of values for which bounds and plans differed.
     pub searches: u64,
@@ -67,6 +68,7 @@ pub(super) struct SuccessorState {
 }
 
 impl CostToGo {
+    /// An evaluator for this kitchen, with empty caches.
     pub fn new(kitchen: Arc<Kitchen>) -> CostToGo {
         let ground = KitchenTables::new(&kitchen);
         let goals = vec![None; kitchen.contents.len() * kitchen.contents.len()];

@@ -24,6 +24,7 @@ pub struct Particles {
     pub prior: DirichletBelief,
     /// Distribution that replaces a belief after an observation with probability 0.
     pub doubt: DirichletBelief,
+    /// The explicit beliefs.
     pub of: Vec<Particle>,
     sight: GazeFollower,
     shown: State,

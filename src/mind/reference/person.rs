@@ -24,6 +24,7 @@ const NEGLIGIBLE: f64 = 1e-4;
 /// A belief: for every aspect the probabilities of its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Particle {
+    /// For every aspect the probabilities of its values, in the kitchen's order.
     pub of: Vec<Vec<f64>>,
     /// Whether each location has been read in the present look.
     pub read: Vec<bool>,
@@ -32,8 +33,11 @@ pub struct Particle {
 /// A world with its probability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PossibleWorld {
+    /// The content of every location.
     pub state: State,
+    /// What is taken for the recipe of every dish.
     pub recipes: Recipes,
+    /// Its probability.
     pub p: f64,
 }
 

@@ -11,6 +11,7 @@ const ELSEWHERE: f64 = 0.1;
 /// The effect of a gaze sample at one location.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocationReading {
+    /// The location near the gaze.
     pub location: LocationId,
     /// Whether a new look begins, in which the location can be read again.
     pub begins: bool,

@@ -29,9 +29,11 @@ use crate::study::trial::{Trial, arrange};
 /// Reasons why a study could not be analysed.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum StudyError {
+    /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
+    /// A table cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Export(#[from] ExportError),
@@ -48,7 +50,9 @@ impl From<FileError> for StudyError {
 pub struct AnalysisRequest {
     /// Recordings, or folders that contain recordings.
     pub paths: Vec<PathBuf>,
+    /// The folder for tables and report.
     pub out: PathBuf,
+    /// How much is computed.
     pub extent: AnalysisScope,
 }
 
@@ -83,6 +87,7 @@ impl NamedRecordings {
         Ok(NamedRecordings { found })
     }
 
+    /// Number of recordings.
     pub fn number(&self) -> usize {
         self.found.len()
     }

@@ -36,7 +36,9 @@ use crate::study::trial::{BeliefBasis, BeliefErrors, QuestionnaireAnswer, Trial}
 /// Result of analysing one recording.
 #[derive(Debug)]
 pub struct RecordingAnalysis {
+    /// The trial's measures.
     pub trial: Trial,
+    /// What the report tells about the recording.
     pub facts: Facts,
     /// CSV rows of the four tables of events.
     pub rows: [Vec<u8>; 4],

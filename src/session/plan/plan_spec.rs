@@ -15,6 +15,7 @@ const MAX_CONDITIONS: usize = 4;
 pub struct PlanSpec {
     /// Name of the plan, which identifies its recordings.
     pub name: String,
+    /// Who takes part.
     pub participants: Participants,
     /// Conditions; each participant has one trial in each, in counterbalanced order.
     pub conditions: Vec<Condition>,
@@ -27,8 +28,10 @@ pub struct PlanSpec {
     /// Steps of the instruction.
     #[serde(default)]
     pub instruction: Vec<String>,
+    /// Practice before the first trial, if the plan has any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub familiarisation: Option<FamiliarisationSpec>,
+    /// Which questionnaires are asked, and when.
     #[serde(default)]
     pub questionnaire: Vec<QuestionnaireSpec>,
     /// Steps of the wizard's debriefing after the last trial.
@@ -44,7 +47,9 @@ fn default_consent() -> String {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "a number of participants, or a list of their codes")]
 pub enum Participants {
+    /// So many participants, with the codes P01, P02, …
     Count(u32),
+    /// The participants with these codes.
     Codes(Vec<String>),
 }
 
@@ -52,10 +57,12 @@ pub enum Participants {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FamiliarisationSpec {
+    /// Who may send signals during the practice.
     #[serde(default = "unassisted")]
     pub condition: Condition,
     /// End of the practice: presses of both agents, unless time or orders end it earlier.
     pub presses: u32,
+    /// The practice ends after this time on the trial's clock, in seconds.
     pub seconds: f64,
     /// Criterion: least number of served orders.
     pub orders: u32,

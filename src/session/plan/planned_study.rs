@@ -15,17 +15,20 @@ use crate::session::settings::SessionSpec;
 pub struct Slot {
     /// Number of the trial, from 1; `None` for the familiarisation.
     pub period: Option<u32>,
+    /// Who may send signals in it.
     pub condition: Condition,
 }
 
 /// A study plan with its session settings and questionnaires.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
+    /// The plan of the session file.
     pub plan: PlanSpec,
     /// Questionnaires in the order of the plan.
     pub questionnaires: Vec<Questionnaire>,
     /// Session settings that all trials share.
     pub session: SessionSpec,
+    /// A checksum of plan, questionnaires and settings: recordings with another one belong to another study.
     pub digest: String,
 }
 
@@ -53,6 +56,7 @@ impl Study {
         Some(Study { plan, questionnaires, session, digest })
     }
 
+    /// The starting group of the participant with this index in the plan.
     pub fn group(&self, participant: usize) -> StartingGroup {
         self.plan.group(self.session.seed, participant)
     }

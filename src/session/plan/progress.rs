@@ -14,9 +14,15 @@ pub enum RecordingOutcome {
     /// Unfinished: cut off or left early; it can be continued.
     Open,
     /// Finished and excluded from the analysis, but not repeated.
-    Excluded { reason: String },
+    Excluded {
+        /// Why it is left out.
+        reason: String,
+    },
     /// Finished and invalid: it must be repeated.
-    Void { reason: String },
+    Void {
+        /// Why it does not count.
+        reason: String,
+    },
 }
 
 /// Facts about a recording of a plan, all its parts together.
@@ -26,6 +32,7 @@ pub struct PlanRecording {
     pub recording: String,
     /// The participant's code.
     pub code: String,
+    /// Its place in the plan.
     pub step: StepSpec,
     /// Whether the participant consented.
     pub consent: bool,
@@ -33,6 +40,7 @@ pub struct PlanRecording {
     pub instructed: bool,
     /// The presses of both agents in its trial.
     pub presses: u32,
+    /// How it ended.
     pub outcome: RecordingOutcome,
 }
 
@@ -42,15 +50,21 @@ pub struct PlanRecording {
 pub enum NextRecording {
     /// A new recording.
     Begin {
+        /// The index of the place in the series that it is for.
         slot: usize,
+        /// Which attempt at that place it is, counted from 1.
         attempt: u32,
     },
     /// An unfinished recording, which is continued or repeated as this attempt.
     Choose {
+        /// The name of the open recording's folder.
         recording: String,
+        /// The index of its place in the series.
         slot: usize,
+        /// The attempt that doing it again would be, counted from 1.
         attempt: u32,
     },
+    /// Nothing: the participant has had everything.
     Finished,
 }
 
@@ -67,8 +81,10 @@ impl NextRecording {
 /// A slot of the series with its attempts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SlotProgress {
+    /// The place.
     #[serde(flatten)]
     pub slot: Slot,
+    /// A recording fills it.
     pub is_done: bool,
     /// Attempts in order.
     pub recordings: Vec<Attempt>,
@@ -89,15 +105,21 @@ pub struct Attempt {
 /// Progress of one participant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Progress {
+    /// The participant's code.
     pub code: String,
     /// Index of the participant in the plan.
     #[serde(skip)]
     pub participant: usize,
+    /// The name of the starting group.
     pub group: String,
+    /// The participant agreed to be recorded.
     pub consent: bool,
+    /// The participant went through the instruction, if there is one.
     #[serde(skip)]
     pub instructed: bool,
+    /// The places of the series, in their order.
     pub steps: Vec<SlotProgress>,
+    /// What comes next.
     pub next: NextRecording,
 }
 

@@ -10,12 +10,15 @@ use crate::session::setting_checks::{SettingError, is_code};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Questionnaire {
+    /// Stands for the questionnaire in the log and in tables.
     pub name: String,
     /// Heading above the items.
     pub title: String,
     /// The language of the items, as in "en".
     pub language: String,
+    /// The scale of all items.
     pub scale: Scale,
+    /// The items, in the order in which they are asked.
     #[serde(rename = "item")]
     pub items: Vec<Item>,
 }
@@ -24,9 +27,11 @@ pub struct Questionnaire {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scale {
+    /// Number of points.
     pub points: u8,
-    /// Labels of the lowest and the highest point.
+    /// What 1 means.
     pub low: String,
+    /// What the highest point means.
     pub high: String,
 }
 
@@ -36,6 +41,7 @@ pub struct Scale {
 pub struct Item {
     /// Identifier of the item in logs and tables.
     pub id: String,
+    /// The statement, as the participant reads it.
     pub text: String,
     /// Construct that the item measures; items with the same construct form a scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]

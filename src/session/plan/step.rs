@@ -36,7 +36,9 @@ pub struct StepSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Criterion {
+    /// The least number of orders served.
     pub orders: u32,
+    /// The greatest share of errors among the human's presses, 0 to 1; none: errors do not matter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_rate: Option<f64>,
 }
@@ -53,14 +55,29 @@ impl Criterion {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case", deny_unknown_fields)]
 pub enum PhaseSpec {
-    Instruction { steps: Vec<String> },
+    /// The wizard instructs the participant.
+    Instruction {
+        /// What is told or shown, step by step.
+        steps: Vec<String>,
+    },
+    /// A trial for practice.
     Familiarisation,
+    /// A trial that counts.
     Trial,
-    Questionnaire { questionnaire: Questionnaire },
-    Debriefing { steps: Vec<String> },
+    /// The participant answers a questionnaire.
+    Questionnaire {
+        /// The questionnaire, with the items that are asked here.
+        questionnaire: Questionnaire,
+    },
+    /// The participant is debriefed.
+    Debriefing {
+        /// What the wizard goes through, step by step.
+        steps: Vec<String>,
+    },
 }
 
 impl PhaseSpec {
+    /// The kind of the phase, without what is shown in it.
     pub fn phase(&self) -> StudyPhase {
         match self {
             PhaseSpec::Instruction { .. } => StudyPhase::Instruction,

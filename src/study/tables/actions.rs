@@ -14,6 +14,7 @@ pub struct RecordedPress {
     pub seq: u64,
     /// Time on the trial clock, in seconds.
     pub time_s: f64,
+    /// The press with the states before and after it.
     pub press: Press,
     /// Number of the press among those of its agent, from 1.
     pub number: u32,
@@ -26,6 +27,7 @@ pub struct RecordedPress {
 /// Analysis of a human press.
 #[derive(Clone, Copy, Debug)]
 pub struct PressAnalysis<'a> {
+    /// Its regret, whether it was an error, and the cause of that.
     pub judged: &'a JudgedPress,
     /// Number of the press's error sequence in the trial, from 1.
     pub sequence: Option<usize>,
@@ -38,8 +40,11 @@ pub struct PressAnalysis<'a> {
 /// A press with its analysis.
 #[derive(Clone, Copy, Debug)]
 pub struct ActionRow<'a> {
+    /// Folder of the recording.
     pub recording: &'a str,
+    /// The kitchen of the recording.
     pub kitchen: &'a Kitchen,
+    /// The press.
     pub recorded: &'a RecordedPress,
     /// Analysis of a human press; `None` for presses of the robot.
     pub analysis: Option<PressAnalysis<'a>>,

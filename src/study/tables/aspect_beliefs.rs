@@ -7,11 +7,13 @@ use crate::study::column::{Column, Table, TableRow};
 /// Estimated and recorded belief about an aspect before a human press.
 #[derive(Clone, Copy, Debug)]
 pub struct BeliefRow<'a> {
+    /// Folder of the recording.
     pub recording: &'a str,
     /// Log number of the press event.
     pub seq: u64,
     /// True value of the aspect.
     pub truth: &'a str,
+    /// The estimate before the press.
     pub estimate: &'a AspectEstimate,
     /// Recorded belief of a simulated participant.
     pub believed: Option<&'a AspectBelief>,

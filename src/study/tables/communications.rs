@@ -8,10 +8,13 @@ use crate::study::column::{Column, Table, TableRow};
 /// A sent or hypothetical communication.
 #[derive(Clone, Copy, Debug)]
 pub struct CommunicationRow<'a> {
+    /// Folder of the recording.
     pub recording: &'a str,
+    /// The kitchen of the recording.
     pub kitchen: &'a Kitchen,
     /// Sender: wizard, assistant, or the concept of a hypothetical communication.
     pub lane: &'a str,
+    /// The communication.
     pub sent: &'a CommunicationEvent,
     /// Whether the other lane has a matching communication within the window; `None` without another lane.
     pub matched: Option<bool>,

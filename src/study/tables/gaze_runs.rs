@@ -8,12 +8,15 @@ use crate::study::column::{Column, Table, TableRow};
 /// A run of gaze samples on one location, or on none.
 #[derive(Clone, Copy, Debug)]
 pub struct GazeRun {
+    /// The location that the gaze was on; none: on no location, or not usable.
     pub location: Option<LocationId>,
-    /// Times of the first and last sample.
+    /// When its first sample was taken, in session time.
     pub began: SessionTime,
+    /// When its last sample was taken, in session time.
     pub last: SessionTime,
     /// Sums of x, y and confidence over the samples.
     pub sums: [f64; 3],
+    /// Number of samples.
     pub samples: u64,
 }
 
@@ -27,10 +30,13 @@ impl GazeRun {
 /// A gaze run with its recording.
 #[derive(Clone, Copy, Debug)]
 pub struct GazeRow<'a> {
+    /// Folder of the recording.
     pub recording: &'a str,
+    /// The kitchen of the recording.
     pub kitchen: &'a Kitchen,
     /// Start of the run on the trial clock, in seconds.
     pub time_s: f64,
+    /// The run.
     pub run: GazeRun,
 }
 

@@ -1,6 +1,6 @@
 //! The server of the participant's display, as anybody can reach it: with raw sockets.
 
-use std::io::{BufReader, ErrorKind, Read, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpStream};
 use std::time::Duration;
 
@@ -40,11 +40,9 @@ fn status(address: SocketAddr, path: &str, headers: &[String]) -> u32 {
     };
     let lines: String = headers.iter().map(|line| format!("{line}\r\n")).collect();
     write!(stream, "GET {path} HTTP/1.1\r\n{upgrade}{lines}\r\n").expect("sent");
-    let mut line = Vec::new();
-    for byte in BufReader::new(stream).bytes().map_while(Result::ok).take_while(|byte| *byte != b'\r') {
-        line.push(byte);
-    }
-    let line = String::from_utf8_lossy(&line).into_owned();
+    let mut line = String::new();
+    // A connection that is closed without an answer gives an empty line.
+    let _ = BufReader::new(stream).read_line(&mut line);
     line.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or_default()
 }
 

@@ -15,6 +15,7 @@ mod frames;
 pub mod gaze_file;
 pub mod gaze_input;
 pub mod gaze_json;
+#[cfg(any(feature = "display", feature = "rerun"))]
 mod host_name;
 pub mod key_file;
 pub mod language;

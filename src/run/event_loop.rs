@@ -39,7 +39,7 @@ pub(super) enum LoopEvent {
     /// An input of the participant's page.
     Page(PageInput),
     /// A recommendation of the assistant.
-    Advice(Recommendation),
+    Advice(Box<Recommendation>),
     /// Time to sample the mouse pointer.
     PointerTick,
     /// Time to flush or read growing files.
@@ -170,7 +170,7 @@ async fn next_event<S: ConsoleShell>(shell: &mut S, desk: &mut OperatorDesk, tic
         () = until(due.engine) => LoopEvent::EngineDue,
         () = until(due.target) => LoopEvent::TargetDue,
         Some(input) = desk.wall.next() => LoopEvent::Page(input),
-        Some(advice) = shell.advice() => LoopEvent::Advice(advice),
+        Some(advice) = shell.advice() => LoopEvent::Advice(Box::new(advice)),
         _ = ticks.pointer.tick(), if with_pointer => LoopEvent::PointerTick,
         _ = ticks.files.tick() => LoopEvent::FileTick,
         _ = ticks.watch.tick() => LoopEvent::WatchTick,

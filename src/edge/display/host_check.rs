@@ -1,9 +1,9 @@
 //! Check of the `Host` and `Origin` headers. A browser lets every website connect to this machine, but no website can change
 //! these two headers.
 
-use std::net::{IpAddr, Ipv6Addr};
-
 use axum::http::{HeaderMap, HeaderName, Uri, header};
+
+use crate::edge::host_name::is_local;
 
 /// Whether a request is addressed to this server. Without a pairing code the host must be a loopback address or
 /// `localhost`: any other name that resolves to this machine, `127.evil.example` too, belongs to a foreign page (DNS
@@ -30,21 +30,6 @@ fn single(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
     match (values.next(), values.next()) {
         (Some(value), None) => value.to_str().ok(),
         _ => None,
-    }
-}
-
-/// Whether the value of a `Host` header, with or without a port, is a loopback address or `localhost`.
-fn is_local(host: &str) -> bool {
-    let name = match host.rsplit_once(':') {
-        Some((name, port)) if !port.is_empty() && port.bytes().all(|byte| byte.is_ascii_digit()) => name,
-        _ => host,
-    };
-    match name.strip_prefix('[').and_then(|name| name.strip_suffix(']')) {
-        Some(address) => address.parse::<Ipv6Addr>().is_ok_and(|address| address.is_loopback()),
-        None if name.contains(':') => false,
-        None => {
-            name.eq_ignore_ascii_case("localhost") || name.parse::<IpAddr>().is_ok_and(|address| address.is_loopback())
-        }
     }
 }
 

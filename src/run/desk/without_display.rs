@@ -8,7 +8,7 @@ pub(in crate::run) enum PageInput {}
 
 /// No display.
 #[derive(Default)]
-pub(in crate::run) struct WallDisplay;
+pub(in crate::run) struct WallDisplay {}
 
 impl WallDisplay {
     /// Opens no display: sessions with a participant at a display have been refused before.
@@ -16,7 +16,7 @@ impl WallDisplay {
     /// # Errors
     /// None.
     pub async fn open(_: &SessionSpec) -> Result<WallDisplay, LiveError> {
-        Ok(WallDisplay)
+        Ok(WallDisplay {})
     }
 
     /// Never.

@@ -115,7 +115,7 @@ impl ConsoleShell for Live {
             LoopEvent::EngineDue => self.fire(),
             LoopEvent::TargetDue => self.show_target(),
             LoopEvent::Page(input) => self.hear(input),
-            LoopEvent::Advice(advice) => self.input(Event::Advised(advice)),
+            LoopEvent::Advice(advice) => self.input(Event::Advised(*advice)),
             LoopEvent::PointerTick => self.sample_pointer(),
             LoopEvent::FileTick => self.flush(),
             LoopEvent::WatchTick => self.watch(),

@@ -40,8 +40,8 @@ pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
     Ok(last.map(|(name, part)| part.made(name, &found)).collect())
 }
 
-/// The recordings that are meant by a path: the recording itself, or those in the folder, in the order of their names; of
-/// those with several parts the last one.
+/// The recordings that are meant by a path: the recording itself, or those in the folder, in the order of their names. Of a
+/// recording with several parts, only the last part is listed.
 ///
 /// # Errors
 /// The folder cannot be read, or there is no recording.

@@ -39,9 +39,9 @@ pub enum RrdState {
     Other,
     /// Nothing says which log it shows.
     Unsealed,
-    /// It is not as it was written.
+    /// Its bytes differ from those that were written.
     Damaged,
-    /// It shows another log, or the log as it was before.
+    /// The Rerun file was made from another log, or from this log before more was written to it.
     Stale,
     /// It shows the whole log as it is now.
     Whole,

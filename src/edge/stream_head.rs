@@ -11,6 +11,8 @@ pub const BEGINS: &[u8] = b"RRF2";
 pub const MARK: &str = "tomcom-scene-";
 /// What the mark ends with.
 pub const MARK_END: &str = "-whole";
+/// Protocol Buffers' tag of the identity in Rerun's `StoreId`: field 2, with a length before its content.
+const IDENTITY_TAG: u8 = 0x12;
 /// The identity of a stream is within so many bytes; that of hundreds of recordings side by side is longer.
 const HEAD: u64 = 1 << 16;
 
@@ -29,12 +31,16 @@ pub fn identity(path: &Path) -> io::Result<Option<String>> {
     Ok(head.starts_with(BEGINS).then(|| identity_in(&head)).flatten())
 }
 
-/// The identity is a field of a Protocol Buffers message, with its length before it. Its end is known by the mark.
+/// The identity is a field of a Protocol Buffers message, with the field's tag and its length before it. Its end is known
+/// by the mark. The tag is a control character, which the identity has none of: a length alone may look like a digit of it.
 fn identity_in(head: &[u8]) -> Option<String> {
     let find = |from: usize, what: &str| head[from..].windows(what.len()).position(|bytes| bytes == what.as_bytes());
     let mark = find(0, MARK)?;
     let end = mark + find(mark, MARK_END)? + MARK_END.len();
-    let start = (0..=mark).rev().find(|&start| head[..start].ends_with(&length_prefix(end - start)))?;
+    let start = (0..=mark).rev().find(|&start| {
+        let before = head[..start].strip_suffix(length_prefix(end - start).as_slice());
+        before.is_some_and(|before| before.ends_with(&[IDENTITY_TAG]))
+    })?;
     String::from_utf8(head[start..end].to_vec()).ok()
 }
 

@@ -207,9 +207,9 @@ pub struct Similarity {
     pub median_lead_s: Option<f64>,
     /// Chance level of recall: mean over circular shifts of the second lane.
     pub chance_recall: Option<f64>,
-    /// Number of communications of the first lane.
+    /// Number of communications that the first lane sent or recommended.
     pub of_n: u64,
-    /// Number of communications of the second lane.
+    /// Number of communications that the second lane sent or recommended.
     pub with_n: u64,
     /// Number of strict pairs.
     pub matched: u64,

@@ -36,7 +36,7 @@ pub struct ParticipantData {
     pub recording_files: Vec<PathBuf>,
     /// Other files that are deleted as a whole.
     pub files: Vec<PathBuf>,
-    /// Tables, and how many of their rows are deleted.
+    /// CSV tables about several participants, each with the number of its rows that are deleted.
     pub tables: Vec<(PathBuf, u64)>,
     /// Records of a wizard's training from which these recordings are deleted.
     pub trainings: Vec<PathBuf>,
@@ -231,7 +231,7 @@ impl FolderLook<'_> {
     }
 }
 
-/// What a wizard watched beside the participant's recordings.
+/// The recordings of other participants that a wizard judged in the same training.
 pub(super) fn others(record: &TrainingRecord, subject: &ForgetSubject) -> Vec<JudgedRecording> {
     let is_other = |one: &&JudgedRecording| subject.recording(&one.recording) != NamedPerson::Subject;
     record.recordings.iter().filter(is_other).cloned().collect()

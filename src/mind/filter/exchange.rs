@@ -4,7 +4,7 @@ use crate::base::rng::Stream;
 use crate::kitchen::{Agent, AspectId, ButtonAction, Kitchen, LocationId};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 
-use super::gamma::Gammas;
+use super::gamma::DirichletSampler;
 use super::own_press::DOUBT;
 
 /// Effect of a press for given values of hand and location.
@@ -101,7 +101,7 @@ impl Exchange {
         let mut shares = Shares::new(rows, columns);
         let mut drawn = [vec![0.0; rows], vec![0.0; columns]];
         let mut joint = vec![0.0; rows * columns];
-        let gammas = [0, 1].map(|side: usize| Gammas::new(&sides[side].alphas));
+        let gammas = [0, 1].map(|side: usize| DirichletSampler::new(&sides[side].alphas));
         let fits: Vec<bool> = self.by_kind.iter().map(|kind| (*kind != Outcome::Nothing) == effective).collect();
         for _ in 0..draws {
             for ((parts, gammas), drawn) in sides.iter().zip(&gammas).zip(&mut drawn) {

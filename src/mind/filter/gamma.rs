@@ -7,15 +7,15 @@ use crate::base::rng::Stream;
 
 /// Sampler of one Dirichlet. Gamma variates are drawn as logarithms (Gamma(a) = Gamma(a + 1) U^(1/a); Marsaglia and Tsang
 /// 2000), since those of small alphas underflow otherwise.
-pub struct Gammas {
+pub struct DirichletSampler {
     /// Distribution Gamma(a + 1) and a itself, by component.
     of: Vec<(Option<Gamma<f64>>, f64)>,
 }
 
-impl Gammas {
+impl DirichletSampler {
     /// The sampler of the Dirichlet with these alphas, all above 0.
-    pub fn new(alphas: &[f64]) -> Gammas {
-        Gammas { of: alphas.iter().map(|&alpha| (Gamma::new(alpha + 1.0, 1.0).ok(), alpha)).collect() }
+    pub fn new(alphas: &[f64]) -> DirichletSampler {
+        DirichletSampler { of: alphas.iter().map(|&alpha| (Gamma::new(alpha + 1.0, 1.0).ok(), alpha)).collect() }
     }
 
     /// Fills `out` with a draw.

@@ -30,7 +30,7 @@ use crate::kitchen::{
 pub use evidence::Evidence;
 use evidence::{EvidenceModel, Sampler};
 use exchange::Exchange;
-use reading::Reader;
+use reading::GazeReader;
 use serving::Serving;
 
 /// Update rule of a button: from one location, or from several that jointly determine the effect of the press.
@@ -50,7 +50,7 @@ pub struct BeliefFilter {
     belief: DirichletBelief,
     /// The prior to which recipe beliefs decay.
     prior: DirichletBelief,
-    reader: Reader,
+    reader: GazeReader,
     choice: ChoiceModel,
     /// Update rule of each button of the human, by [`ButtonId`].
     lessons: Vec<Lesson>,
@@ -76,7 +76,7 @@ impl BeliefFilter {
         };
         let lessons = kitchen.buttons[Agent::Human.index()].iter().map(|button| lesson(button.action)).collect();
         BeliefFilter {
-            reader: Reader::new(&kitchen, &model.perception),
+            reader: GazeReader::new(&kitchen, &model.perception),
             choice: ChoiceModel::for_draws(&kitchen, &model.decision, model.inference.states),
             belief: prior.clone(),
             sampler: Sampler::new(&kitchen),

@@ -45,7 +45,7 @@ impl Look {
 
 /// Applies gaze samples to the estimate.
 #[derive(Clone, Debug)]
-pub struct Reader {
+pub struct GazeReader {
     /// Confusion matrix of each location: by true value, the probability of reading each value.
     confusions: Vec<Vec<Vec<f64>>>,
     rate: ReadingRate,
@@ -56,15 +56,15 @@ pub struct Reader {
     last: Option<SessionTime>,
 }
 
-impl Reader {
-    pub fn new(kitchen: &Kitchen, model: &PerceptionModel) -> Reader {
+impl GazeReader {
+    pub fn new(kitchen: &Kitchen, model: &PerceptionModel) -> GazeReader {
         let of_location = |index: usize| {
             let values = kitchen.aspects[index].values.len();
             (0..values).map(|value| confusion(kitchen, model, LocationId(index as u8), value)).collect()
         };
         let confusions: Vec<_> = (0..kitchen.locations.len()).map(of_location).collect();
         let looks = vec![Look { unread: 1.0, survived: 1.0, code: 0, last: SessionTime::ZERO }; confusions.len()];
-        Reader { confusions, rate: model.reading_rate(), looks, shown: VecDeque::new(), last: None }
+        GazeReader { confusions, rate: model.reading_rate(), looks, shown: VecDeque::new(), last: None }
     }
 
     /// Notes that the display shows `state` from `now` on.

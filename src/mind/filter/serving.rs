@@ -8,7 +8,7 @@ use crate::base::rng::Stream;
 use crate::kitchen::{AspectId, DishId, Kitchen, LocationId, OrderContent};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 
-use super::gamma::Gammas;
+use super::gamma::DirichletSampler;
 use super::own_press::DOUBT;
 
 /// Dishes with a smaller expected probability of being ordered are ignored.
@@ -146,14 +146,14 @@ struct Draw {
     part_of: Vec<usize>,
     means: Vec<f64>,
     precision: f64,
-    gammas: Gammas,
+    gammas: DirichletSampler,
     now: Vec<f64>,
 }
 
 /// The sampler of a Dirichlet with these means; a class may be empty.
-fn gammas(means: &[f64], precision: f64) -> Gammas {
+fn gammas(means: &[f64], precision: f64) -> DirichletSampler {
     let alphas: Vec<f64> = means.iter().map(|mean| (precision * mean).max(f64::MIN_POSITIVE)).collect();
-    Gammas::new(&alphas)
+    DirichletSampler::new(&alphas)
 }
 
 impl Draw {

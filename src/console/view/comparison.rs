@@ -142,7 +142,7 @@ impl View<'_> {
 fn figures_line(brush: &mut Painter, inside: Rect, y: u16, seen: &LaneComparison, lane: usize) {
     let name = format!("{:<9}", seen.lanes[lane].name);
     if seen.lanes[0].spoken.is_empty() {
-        let text = "no signal was sent yet: nothing to hold against";
+        let text = "no signal was sent yet: nothing to compare with";
         brush.parts(inside.x + 1, y, inside.width - 1, &[(&name, TextRole::Strong), (text, TextRole::Quiet)]);
         return;
     }

@@ -60,7 +60,7 @@ pub(super) const RANGES: [NumberRange; 42] = [
         "participant.population.loses_thread_per_min.median",
         [0.0001, 60.0],
         "per minute",
-        "from never to every second",
+        "from never to once a second",
     )
     .recorded(ABOVE_0),
     NumberRange::real("participant.population.patience_s.median", [0.1, 3_600.0], SECONDS, "from none to endless")

@@ -1,5 +1,5 @@
-//! Output of commands: summaries, errors and progress bars. Control characters are written out, since texts come from files,
-//! too.
+//! Output of commands: summaries, errors and progress bars. Control characters are escaped, since texts also come from
+//! files.
 
 use std::error::Error;
 use std::fmt::{self, Display, Formatter};
@@ -36,25 +36,25 @@ pub(super) fn print(
     Ok(put(&text)?)
 }
 
-/// Prints a text of whole lines.
+/// Prints a text.
 pub(super) fn put(text: &str) -> io::Result<()> {
     terminal::print(false, printable_lines(text).into_owned().into_bytes())
 }
 
-/// Prints a text of whole lines on standard error.
+/// Prints a text on standard error.
 pub(super) fn put_aside(text: &str) {
-    // Where that is gone there is nobody to tell it to.
+    // A message that cannot be printed is lost.
     let _ = terminal::print(true, printable_lines(text).into_owned().into_bytes());
 }
 
-/// Prints an error on standard error, with its place in the file and what would be right.
+/// Prints an error on standard error.
 pub(super) fn put_error(report: Report) {
     let report = Report::new(PrintableReport(report));
-    // Where that is gone there is nobody to tell it to.
+    // A message that cannot be printed is lost.
     let _ = terminal::print(true, format!("{report:?}\n").into_bytes());
 }
 
-/// An error whose texts are written out; the excerpt of a file is that already.
+/// An error with escaped control characters; excerpts of files are escaped already.
 #[derive(Debug)]
 struct PrintableReport(Report);
 

@@ -62,7 +62,7 @@ pub enum FileError {
 }
 
 impl FileError {
-    /// An error at a place of a file's text, whose control characters are written out.
+    /// An error at a place of a file's text. Control characters are escaped.
     pub fn at(path: &Path, text: &str, span: Option<Range<usize>>, found: String, remedy: String) -> FileError {
         let name = name_of(path);
         let boundary = |at: usize| (0..=at.min(text.len())).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0);
@@ -116,10 +116,10 @@ fn one_line(text: String) -> String {
     printable(&text).into_owned()
 }
 
-/// Opens a file in the folder of a recording. Reading a pipe or a device that stands in its place could wait for ever.
+/// Opens a file in the folder of a recording. Pipes and devices are refused, since reading them could block forever.
 ///
 /// # Errors
-/// There is none, it cannot be opened, or it is no regular file.
+/// The file does not exist, cannot be opened, or is no regular file.
 pub fn open_regular(path: &Path) -> io::Result<File> {
     match fs::metadata(path)?.is_file() {
         true => File::open(path),
@@ -129,10 +129,10 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
     }
 }
 
-/// The text of a file in the folder of a recording; see [`open_regular`].
+/// Text of a file in the folder of a recording.
 ///
 /// # Errors
-/// Those of [`open_regular`], or it is no text in UTF-8.
+/// Errors of [`open_regular`], or the file is no UTF-8.
 pub fn read_regular(path: &Path) -> io::Result<String> {
     let mut text = String::new();
     open_regular(path)?.read_to_string(&mut text).map(|_| text)

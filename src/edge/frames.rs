@@ -1,5 +1,5 @@
-//! Bytes on their way to the terminal, written by a thread of their own: a terminal that is slow, or that nobody reads, holds
-//! up neither the session nor its end.
+//! Writes frames to the terminal from a separate thread, so that a terminal that is slow, or is not read at all, blocks neither
+//! the session nor its end.
 
 use std::io::{self, Write};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
@@ -7,31 +7,32 @@ use std::time::Duration;
 
 use crossterm::terminal::disable_raw_mode;
 
-/// So long the last bytes may take behind a frame that is still being written.
+/// Time limit of the last bytes, after a frame that is still being written.
 const PATIENCE: Duration = Duration::from_millis(600);
-/// So long they may take once what the terminal has not read is thrown away.
+/// Time limit of the last bytes after unread output was discarded.
 const LAST_PATIENCE: Duration = Duration::from_millis(300);
-/// Written at once, in bytes; what a pseudoterminal holds is more.
+/// Size of a write, in bytes. It is less than a pseudoterminal's buffer, so that a write ends after unread output was
+/// discarded.
 const PIECE: usize = 2048;
 
-/// What the thread and whoever draws share.
+/// State shared with the thread.
 #[derive(Debug, Default)]
 struct Pending {
-    /// What is written next.
+    /// The frame that is written next.
     frame: Option<Vec<u8>>,
-    /// What is written last.
+    /// The last bytes.
     last: Option<Vec<u8>>,
-    /// Something is being written.
+    /// Whether the thread is writing.
     writing: bool,
-    /// What is being written is not worth to be finished.
+    /// Whether the rest of the frame is skipped.
     hurries: bool,
-    /// The terminal is gone.
+    /// Whether a write failed: the terminal was closed.
     lost: bool,
-    /// The last bytes were written, or cannot be.
+    /// Whether the thread has ended.
     done: bool,
 }
 
-/// The way to the terminal, which has room for one frame.
+/// The writer of frames. It holds at most one frame that is not yet being written.
 #[derive(Debug)]
 pub(super) struct FrameWriter {
     pending: Mutex<Pending>,
@@ -42,7 +43,7 @@ impl FrameWriter {
     /// Starts the thread.
     ///
     /// # Errors
-    /// There can be no further thread.
+    /// The thread cannot be started.
     pub(super) fn start() -> io::Result<Arc<FrameWriter>> {
         let writer = Arc::new(FrameWriter { pending: Mutex::default(), changed: Condvar::new() });
         let own = writer.clone();
@@ -60,20 +61,20 @@ impl FrameWriter {
         pending.frame.is_none() && !pending.writing
     }
 
-    /// Whether the terminal is gone, or was given back.
+    /// Whether the terminal was closed or given back.
     pub(super) fn is_lost(&self) -> bool {
         let pending = self.pending();
         pending.lost || pending.done
     }
 
-    /// Leaves a frame to the thread, which has none: see [`FrameWriter::is_ready`].
+    /// Passes a frame to the thread, which must be ready.
     pub(super) fn show(&self, frame: Vec<u8>) {
         self.pending().frame = Some(frame);
         self.changed.notify_all();
     }
 
-    /// Writes these bytes after the frame that is on its way, and nothing after them; whether the terminal took them. It
-    /// waits no longer than a second. A terminal that takes nothing loses what it has not read, so that they fit in.
+    /// Writes the last bytes after the present frame, and ends the thread; returns whether the terminal took them. Waits for
+    /// less than a second. If the terminal's buffer is full, its unread content is discarded to make room.
     pub(super) fn end(&self, last: Vec<u8>) -> bool {
         let mut pending = self.pending();
         pending.last = Some(last);
@@ -82,7 +83,7 @@ impl FrameWriter {
         if !pending.done {
             pending.hurries = true;
             discard_unread();
-            // What waits for room in the terminal looks again when its modes change.
+            // A change of the modes wakes up a write that waits for room.
             let _ = disable_raw_mode();
             pending = self.wait(pending, LAST_PATIENCE);
         }
@@ -94,7 +95,7 @@ impl FrameWriter {
         waited.unwrap_or_else(|poisoned| poisoned.into_inner()).0
     }
 
-    /// Writes what comes next; whether more can come.
+    /// Writes the next bytes; returns whether the thread goes on.
     fn write_next(&self) -> bool {
         let waited = self.changed.wait_while(self.pending(), |it| it.frame.is_none() && it.last.is_none());
         let mut pending = waited.unwrap_or_else(|poisoned| poisoned.into_inner());
@@ -125,10 +126,10 @@ impl FrameWriter {
     }
 }
 
-/// Writes something on a thread of its own, and waits for it no longer than this; whether it was written is not known then.
+/// Runs a write on a separate thread, and waits for it until the time limit; a write that takes longer counts as done.
 ///
 /// # Errors
-/// It cannot be written.
+/// Errors of the write within the time limit, or the thread cannot be started.
 pub(super) fn write_within(
     longest: Duration,
     write: impl FnOnce() -> io::Result<()> + Send + 'static,
@@ -138,14 +139,14 @@ pub(super) fn write_within(
     written.recv_timeout(longest).unwrap_or(Ok(()))
 }
 
-/// Throws away what the terminal was given and has not read.
+/// Discards the output that the terminal has not read.
 #[cfg(unix)]
 fn discard_unread() {
     use rustix::termios::{QueueSelector, tcflush};
-    // A terminal that is gone has nothing to throw away.
+    // A terminal that was closed has no output to discard.
     let _ = tcflush(io::stdout(), QueueSelector::OFlush);
 }
 
-/// Other systems keep it.
+/// Not available on this system.
 #[cfg(not(unix))]
 fn discard_unread() {}

@@ -1,5 +1,5 @@
-//! The terminal: taken over for the console, given back whole on every way out, its keys and mouse as messages, and
-//! frames that nothing waits for.
+//! The terminal: taken over for the console, given back on every way out, with keys and mouse as messages. Frames are written
+//! without blocking.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -29,16 +29,16 @@ use crate::console::{ConsoleMessage, ConsoleModel, view};
 use crate::session::Session;
 use crate::session::settings::{ConsoleSpec, ThemeChoice};
 
-/// The way to the terminal while that is ours.
+/// The writer of frames while the terminal is taken.
 static TAKEN: Mutex<Option<Arc<FrameWriter>>> = Mutex::new(None);
-/// The terminal did not take what gives it back.
+/// Whether the terminal did not accept the bytes that give it back.
 static OUT_OF_REACH: AtomicBool = AtomicBool::new(false);
-/// Set when the terminal is first taken: then panics give it back.
+/// Completed when the terminal is first taken; from then on a panic gives it back.
 static HOOK: Once = Once::new();
-/// So long what is printed after a session may take.
+/// Time limit of output after a session.
 const LAST_WORDS: Duration = Duration::from_millis(300);
-/// So long the program may take to end after a signal has asked it to; whoever reads its terminal or its streams may be
-/// stuck, and a recording is closed in milliseconds.
+/// Time limit of the program's end after a signal. Readers of its terminal or streams may be stuck; a recording is closed within
+/// milliseconds.
 const ENDING: Duration = Duration::from_millis(1800);
 
 /// The console's terminal. It is given back when this is dropped, and when anything panics.
@@ -84,7 +84,7 @@ impl TerminalScreen {
         HOOK.call_once(|| {
             let then = std::panic::take_hook();
             std::panic::set_hook(Box::new(move |panic| {
-                // To a terminal that takes nothing the message could wait for ever.
+                // A message to a terminal that is not read could block.
                 if give_back() || !io::stderr().is_terminal() {
                     then(panic);
                 }
@@ -113,7 +113,7 @@ impl TerminalScreen {
         self.frames.is_ready()
     }
 
-    /// Whether the terminal is gone, or was given back because something panicked.
+    /// Whether the terminal was closed, or given back because of a panic.
     pub fn is_lost(&self) -> bool {
         self.frames.is_lost()
     }
@@ -152,24 +152,24 @@ impl Drop for TerminalScreen {
     }
 }
 
-/// Gives the terminal back as it was, and says whether it took that; nothing is left to do where that was done already. It
-/// never waits long: a terminal that takes no bytes must not keep the program from ending.
+/// Gives the terminal back, once; returns whether it accepted the bytes for that. Waits for less than a second, since a terminal
+/// that is not read must not keep the program from ending.
 fn give_back() -> bool {
     let taken = TAKEN.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take();
     let Some(frames) = taken else { return !OUT_OF_REACH.load(Ordering::Acquire) };
     let took = frames.end(way_out());
     OUT_OF_REACH.store(!took, Ordering::Release);
-    // Its modes can be set also where it takes no bytes.
+    // The modes can be set even if the terminal accepts no bytes.
     let _ = disable_raw_mode();
     took
 }
 
-/// Writes to standard output or standard error. After a session at the console it waits no longer than a moment, as whoever
-/// has stopped reading the terminal would otherwise keep the program from ending; to a terminal that did not even take what
-/// gives it back it writes nothing.
+/// Writes to standard output or standard error. After a session at the console the write has a time limit, since a terminal that
+/// is not read must not keep the program from ending. Nothing is written to a terminal that did not accept the bytes that give
+/// it back.
 ///
 /// # Errors
-/// It cannot be written.
+/// The write fails.
 pub fn print(to_errors: bool, bytes: Vec<u8>) -> io::Result<()> {
     let is_terminal = !to_errors || io::stderr().is_terminal();
     let write = move || match to_errors {
@@ -275,19 +275,19 @@ pub fn outlive_file_limits() -> io::Result<()> {
     Ok(())
 }
 
-/// Waits until the program is asked to end by a signal (terminate, interrupt, hang up). From then on it has little time: if
-/// it is still there after that, because something waits for whoever is to read it, it ends all the same.
+/// Waits for a signal that asks the program to end (terminate, interrupt, hang up). From then on the program has a time limit,
+/// after which it is ended with exit code 1: something waits for a reader of its output.
 ///
 /// # Errors
 /// Signals cannot be received.
 pub async fn asked_to_end() -> io::Result<()> {
     let (sender, asked) = tokio::sync::oneshot::channel();
-    // On a thread of its own it is heard whatever the others wait for.
+    // A separate thread receives the signal whatever the other threads wait for.
     std::thread::Builder::new().name("signals".to_string()).spawn(move || {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         let signal = runtime.and_then(|runtime| runtime.block_on(next_signal()));
         let is_asked = signal.is_ok();
-        // Whoever no longer waits for it is about to end.
+        // Without a receiver the program is about to end.
         let _ = sender.send(signal);
         if is_asked {
             std::thread::sleep(ENDING);

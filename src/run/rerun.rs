@@ -25,7 +25,7 @@ use crate::session::Stamped;
 /// First ports of the server and of the web viewer.
 const SERVER_PORT: u16 = 9878;
 const WEB_PORT: u16 = 9090;
-/// A stream that another program makes is looked at so often.
+/// Interval at which a stream that another program writes is looked at.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// Why a recording could not be reviewed.
@@ -191,13 +191,13 @@ pub fn save(recording: &Path) -> Result<PathBuf, RerunError> {
     }
 }
 
-/// Where the file of a stream goes.
+/// Place of a stream file.
 #[derive(Clone, Copy)]
 enum StreamPlace<'a> {
     File(&'a Path),
-    /// Beside the log of a recording that nobody writes; several recordings have no such place.
+    /// Beside the log of a single recording that no program is writing.
     BesideLog,
-    /// Beside the log, or else below the system's folder for temporary files, for a viewer to read.
+    /// Beside the log, or else in the system's folder for temporary files, for a viewer.
     Anywhere,
 }
 

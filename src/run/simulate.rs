@@ -129,7 +129,7 @@ pub struct SimulatedTrial {
     pub figures: TrialSummary,
     /// Whether its recording existed already, or another program made it meanwhile.
     pub found: bool,
-    /// Where a log went that ended before the end of its header.
+    /// New path of a log that ended before the end of its header.
     pub moved: Option<PathBuf>,
 }
 
@@ -181,7 +181,7 @@ pub fn each_trial(
     }
 }
 
-/// Waits until nobody writes one of the recordings of these trials.
+/// Waits until at least one of these trials' recordings is not being written.
 fn wait_for_any(simulation: &SimulationRequest, trials: &[u64]) {
     let folders: Vec<PathBuf> = trials.iter().map(|&trial| folder_of(simulation, trial)).collect();
     while folders.iter().all(|folder| RecordingLock::holder(folder).is_some()) {
@@ -232,7 +232,7 @@ fn folder_of(simulation: &SimulationRequest, trial: u64) -> PathBuf {
     folder_of_trial(&simulation.out, &header_of_trial(simulation, trial).session)
 }
 
-/// Simulates a trial, or reads it where it is there already, with a cost to go that was used before or one that was not.
+/// Simulates a trial, or reads its complete recording. `own` is the cost to go of this thread's last trial, `unused` a new one.
 fn simulate_trial(
     simulation: &SimulationRequest,
     kitchen: &Arc<Kitchen>,
@@ -309,7 +309,7 @@ pub fn describe(figures: &SimulationSummary) -> String {
     )
 }
 
-/// Which logs could not be used, a line each.
+/// One line for each log that ended before the end of its header.
 pub(super) fn describe_moved(moved: &[String]) -> String {
     let line = |log: &String| {
         format!("a log that ended before the end of its header was moved to {log}; its trial was simulated again\n")

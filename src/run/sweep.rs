@@ -127,7 +127,7 @@ pub struct SweepSummary {
     pub rows: Vec<SweepRow>,
     /// The file with the table.
     pub table: PathBuf,
-    /// Where logs went that ended before the end of their header; their trials were simulated again.
+    /// New paths of logs that ended before the end of their header; their trials were simulated again.
     pub moved: Vec<String>,
 }
 

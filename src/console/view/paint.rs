@@ -63,7 +63,7 @@ impl Painter<'_> {
         self.theme.style(role)
     }
 
-    /// Writes at most `columns` of a text and returns the column after it. Control characters in it are written out.
+    /// Writes at most `columns` of a text and returns the column after it. Control characters are escaped.
     pub fn text(&mut self, x: u16, y: u16, columns: u16, text: &str, style: Style) -> u16 {
         let area = *self.buffer.area();
         if y < area.y || y >= area.bottom() || x < area.x || x >= area.right() {

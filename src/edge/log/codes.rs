@@ -129,7 +129,10 @@ pub fn write_export(path: &Path, rows: &[CodeRow]) -> Result<(), WriteError> {
     write().map_err(|error| failed(error.into()))
 }
 
-/// The text of a table, or in which line it is none.
+/// The text of a table.
+///
+/// # Errors
+/// A line is no UTF-8.
 fn text_of(path: &Path, bytes: Vec<u8>) -> FileResult<String> {
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
@@ -153,7 +156,7 @@ type ParsedRow = (usize, Vec<String>, u64, Code);
 /// recording.
 fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<ParsedRow>> {
     let mut table = csv::Reader::from_reader(text.as_bytes());
-    // The position of a row counts empty lines before it to it.
+    // The position of a row is that of the first empty line before it.
     let (mut counted, mut number) = (0, 1);
     let mut line_of = |position: Option<&csv::Position>| {
         let start = position.map_or(0, |position| (position.byte() as usize).min(text.len()));

@@ -1,15 +1,15 @@
-//! The file of a log while it is written. What goes into a guarded file is kept a second time, where no other program can
-//! change it: so damage to the log is noticed, and what was recorded can be saved.
+//! The file of a log while it is written. A guarded file has a copy that no other program can change: the log is compared with
+//! it, and saved from it if another program damaged the log.
 
 use std::fs::File;
 use std::io::{self, Seek, Write};
 use std::path::Path;
 
-/// The end of the log that every check compares, in bytes: some seconds of gaze.
+/// Length of the end of the log that every check compares, in bytes (some seconds of gaze).
 const TAIL: u64 = 64 << 10;
-/// What every check compares of the rest beside that, in bytes, so that checks go round the whole log.
+/// Length of the stretch of the rest that every check compares, in bytes; consecutive checks go round the whole log.
 const STRETCH: u64 = 1 << 20;
-/// Compared at once, in bytes.
+/// Length of a comparison, in bytes.
 #[cfg(unix)]
 const PIECE: usize = 64 << 10;
 
@@ -17,11 +17,11 @@ const PIECE: usize = 64 << 10;
 #[derive(Debug)]
 pub(super) struct GuardedFile {
     file: File,
-    /// The same bytes in a file without a name; none where it is not guarded, or the copy could not be written.
+    /// The copy, a file without a name; `None` if the file is not guarded or the copy could not be written.
     copy: Option<File>,
-    /// What was written to it, in bytes.
+    /// Number of bytes written.
     length: u64,
-    /// Where the next check goes on, in bytes.
+    /// Position of the next check's stretch, in bytes.
     next: u64,
 }
 
@@ -29,7 +29,7 @@ impl Write for GuardedFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let written = self.file.write(bytes)?;
         self.length += written as u64;
-        // A copy that is not whole is none; the log goes on without it.
+        // An incomplete copy is dropped; the log continues without it.
         self.copy = self.copy.take().filter(|mut copy| copy.write_all(&bytes[..written]).is_ok());
         Ok(written)
     }
@@ -40,12 +40,12 @@ impl Write for GuardedFile {
 }
 
 impl GuardedFile {
-    /// A file that is as its writer left it, whatever others do to it: nobody looks.
+    /// A file without a copy.
     pub(super) fn unguarded(file: File) -> GuardedFile {
         GuardedFile { file, copy: None, length: 0, next: 0 }
     }
 
-    /// A file with a copy below the system's folder for temporary files, or else in this folder.
+    /// A file with a copy in the system's folder for temporary files, or else in this folder.
     pub(super) fn guarded(file: File, folder: &Path) -> GuardedFile {
         let copy = nameless(&std::env::temp_dir()).or_else(|_| nameless(folder)).ok();
         GuardedFile { copy, ..GuardedFile::unguarded(file) }
@@ -55,7 +55,7 @@ impl GuardedFile {
         &self.file
     }
 
-    /// What another program did to the file, if it is not as it was written: its length, its end, and by and by the rest.
+    /// Compares length, end and the next stretch of the file with what was written; returns the damage, if any.
     pub(super) fn damage(&mut self) -> Option<String> {
         let length = match self.file.metadata() {
             Ok(data) => data.len(),
@@ -75,7 +75,7 @@ impl GuardedFile {
         Some(format!("was overwritten by another program, at byte {at} of {}", self.length))
     }
 
-    /// The first byte between these two that is not as it was written; none where there is no copy to tell.
+    /// Position of the first differing byte in this range; `None` without a difference or a copy.
     #[cfg(unix)]
     fn difference(&mut self, from: u64, until: u64) -> Option<u64> {
         use std::os::unix::fs::FileExt;
@@ -88,7 +88,7 @@ impl GuardedFile {
                 self.copy = None;
                 return None;
             }
-            // What cannot be read back was taken away meanwhile, or the disk is broken.
+            // The file was cut meanwhile, or the disk is broken.
             if self.file.read_exact_at(&mut found[..size], at).is_err() {
                 return Some(at);
             }
@@ -101,16 +101,16 @@ impl GuardedFile {
         None
     }
 
-    /// There are no copies on this system.
+    /// This system has no copies.
     #[cfg(not(unix))]
     fn difference(&mut self, _from: u64, _until: u64) -> Option<u64> {
         None
     }
 
-    /// Writes what was recorded to another file: from the copy, or from the file itself where that is undamaged.
+    /// Writes the log to another file, from the copy, or from the file itself if that is undamaged.
     ///
     /// # Errors
-    /// There is nothing to take it from, or it cannot be written.
+    /// There is no undamaged source, or the other file cannot be written.
     pub(super) fn save(&mut self, is_damaged: bool, to: &mut File) -> io::Result<()> {
         let from = match (&mut self.copy, is_damaged) {
             (Some(copy), _) => copy,
@@ -123,11 +123,11 @@ impl GuardedFile {
     }
 }
 
-/// A file that only this process can reach, and that ends with it.
+/// A file without a name, which only this process can reach.
 #[cfg(unix)]
 fn nameless(folder: &Path) -> io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt;
-    /// Other programs may have taken a name.
+    /// Number of names to try; some may exist.
     const NAMES: u32 = 100;
     let mut failed = io::Error::from(io::ErrorKind::AlreadyExists);
     for n in 0..NAMES {
@@ -140,7 +140,7 @@ fn nameless(folder: &Path) -> io::Result<File> {
     Err(failed)
 }
 
-/// A file that is open cannot lose its name on this system.
+/// Not available on this system.
 #[cfg(not(unix))]
 fn nameless(_folder: &Path) -> io::Result<File> {
     Err(io::Error::from(io::ErrorKind::Unsupported))
@@ -150,7 +150,7 @@ fn nameless(_folder: &Path) -> io::Result<File> {
 mod tests {
     use super::*;
 
-    /// A guarded log of so many bytes that are all alike, in a folder of its own.
+    /// Harms a guarded log of this length, and compares the damage that is found, and the saved log.
     fn check(name: &str, bytes: usize, harm: impl FnOnce(&Path), found: Option<&str>) {
         let folder = std::env::temp_dir().join(format!("tomcom-guarded-{}-{name}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
@@ -160,7 +160,7 @@ mod tests {
         log.write_all(&vec![b'x'; bytes]).unwrap();
         assert_eq!(log.damage(), None);
         harm(&path);
-        // As a live session does before it looks again.
+        // A live session writes before the next check.
         log.write_all(b"more\n").unwrap();
         let rounds = bytes as u64 / STRETCH + 2;
         let damage = (0..rounds).find_map(|_| log.damage());
@@ -182,7 +182,7 @@ mod tests {
     fn what_another_program_does_to_a_log_is_noticed_and_what_was_recorded_is_saved() {
         const LONG: usize = 5 << 20;
         check("untouched", LONG, |_| (), None);
-        // Its own next write makes it as long as before, with zeros between.
+        // The next write restores the length, with zeros in between.
         check(
             "cut",
             LONG,

@@ -42,7 +42,7 @@ pub enum WriteError {
         /// Where what was recorded was saved to, if it is no longer where it was.
         saved: Option<PathBuf>,
     },
-    /// Everything that was acknowledged is in the saved log, if there is one.
+    /// The saved log, if there is one, has every acknowledged event.
     #[error("{}: the log {found}{}", path.display(), rescued(.saved))]
     #[diagnostic(help(
         "other programs may read the log of a running session, and change nothing; as they left it, it is kept beside the \
@@ -51,7 +51,7 @@ pub enum WriteError {
     Damaged {
         /// The log.
         path: PathBuf,
-        /// What was done to it.
+        /// The damage.
         found: String,
         /// Where what was recorded was saved to, if it could be saved.
         saved: Option<PathBuf>,
@@ -99,8 +99,8 @@ fn process(pid: &Option<u32>) -> String {
     pid.map_or(String::new(), |pid| format!(" (process {pid})"))
 }
 
-/// Gives a log that cannot be used a name beside it that is free: `events.jsonl.damaged`, `events.jsonl.damaged2`, …; its
-/// path now, if there was one.
+/// Renames an unusable log to the first free one of `events.jsonl.damaged`, `events.jsonl.damaged2`, …; returns its new path, or
+/// `None` if there was no log.
 fn move_aside(log: &Path) -> io::Result<Option<PathBuf>> {
     let named = |n: u32| {
         let number = if n == 1 { String::new() } else { n.to_string() };

@@ -229,14 +229,14 @@ fn open_before(path: &Path, text: &str, header: &Header, before: &Continues, par
     }
 }
 
-/// Whether the first line of a log is all that a power failure left of it: nothing, zeros, or the beginning of a header.
+/// Whether the first line of a log is what a power failure left of a header: nothing, zeros, or its beginning.
 pub(super) fn ends_in_header(line: &[u8]) -> bool {
     let begins = format!("{{\"format\":\"{FORMAT}\"");
     let is_begun = line.iter().zip(begins.as_bytes()).all(|(there, ours)| there == ours);
     line.last() != Some(&b'\n') && (is_begun || line.iter().all(|&byte| byte == 0))
 }
 
-/// The first line of a log, with its end where it has one.
+/// The first line of a log, with its line end if it has one.
 pub(super) fn first_line(log: &mut impl BufRead) -> io::Result<Vec<u8>> {
     let mut line = Vec::new();
     log.take(MAX_LINE as u64).read_until(b'\n', &mut line).map(|_| line)

@@ -1,5 +1,5 @@
-//! Simulated recordings: the same header gives the same recording, so one that is there whole is read, and one that is not
-//! is made again. Several programs may fill a folder; each recording is written by one of them.
+//! Logs of simulated sessions. The same header gives the same recording, so a complete recording is read, and an incomplete one is
+//! replaced. Several programs may simulate into one folder; each recording is written by one of them.
 
 use std::fs;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -12,37 +12,37 @@ use super::{LOG_NAME, LogReader, LogWriter, SETTINGS_NAME, WriteError, move_asid
 use crate::edge::file_error::open_regular;
 use crate::session::{Event, Header, Stamped};
 
-/// The last line of a whole log is shorter, in bytes.
+/// Upper limit of the length of a complete log's last line, in bytes.
 const LAST: u64 = 256;
 
-/// What comes of asking for the log of a simulated session.
+/// The log of a simulated session, before it is simulated.
 #[derive(Debug)]
 pub enum SimulatedLog {
-    /// It is to be written.
+    /// A new log.
     Begun {
         /// The log to write to.
         log: Box<LogWriter>,
-        /// Where a log went that ended before the end of its header.
+        /// New path of a log that ended before the end of its header.
         moved: Option<PathBuf>,
     },
-    /// It is there, whole.
+    /// The recording exists and is complete.
     Whole,
 }
 
 impl SimulatedLog {
-    /// Begins the recording in this folder, unless it is there already.
+    /// Starts the recording in this folder, unless it exists and is complete.
     ///
     /// # Errors
-    /// Those of [`check_simulated`]; another program writes it just now; or the folder cannot be written to.
+    /// Errors of [`check_simulated`], another program is writing the recording, or the folder cannot be written to.
     pub fn open(folder: &Path, header: &Header) -> Result<SimulatedLog, WriteError> {
-        // Where it is whole nothing is locked: others may be reading it.
+        // A complete recording is not locked, so that several programs can read it.
         if is_whole(folder, header) {
             return Ok(SimulatedLog::Whole);
         }
         fs::create_dir_all(folder).map_err(|reason| WriteError::unwritable(folder, reason))?;
         let lock = RecordingLock::take(folder)?;
         check_simulated(folder, header)?;
-        // Whoever had the lock before may have brought it to its end.
+        // The last holder of the lock may have completed it.
         if is_whole(folder, header) {
             return Ok(SimulatedLog::Whole);
         }
@@ -56,11 +56,11 @@ impl SimulatedLog {
     }
 }
 
-/// Whether a simulated recording may go into this folder: the same header gives the same recording, which may be
-/// replaced; any other one may not. A log that ends before the end of its header may be moved aside.
+/// Checks that a simulated recording may be written to this folder: it may replace a recording with the same header, and a log
+/// that ends before the end of its header.
 ///
 /// # Errors
-/// Another recording is there.
+/// The folder holds another recording.
 pub fn check_simulated(folder: &Path, header: &Header) -> Result<(), WriteError> {
     let path = folder.join(LOG_NAME);
     if !path.exists() {
@@ -81,13 +81,13 @@ pub fn check_simulated(folder: &Path, header: &Header) -> Result<(), WriteError>
     Err(WriteError::Taken { folder: folder.to_path_buf(), what })
 }
 
-/// Whether a log is as a power failure leaves one that was just begun.
+/// Whether a log ends before the end of its header.
 fn is_without_header(path: &Path) -> bool {
     let line = open_regular(path).and_then(|file| first_line(&mut BufReader::new(file)));
     line.is_ok_and(|line| ends_in_header(&line))
 }
 
-/// Whether the simulated recording of this header is in this folder, whole: with the end of its session.
+/// Whether this folder holds the complete recording of this header.
 fn is_whole(folder: &Path, header: &Header) -> bool {
     let ends = || -> io::Result<bool> {
         let mut log = open_regular(&folder.join(LOG_NAME))?;

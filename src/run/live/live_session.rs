@@ -243,6 +243,7 @@ impl Live {
                 self.input(Event::SessionEnded);
             }
             self.flush_log();
+            self.check_log();
         }
         if let Some(viewing) = self.viewing.take() {
             viewing.close(&self.log);

@@ -86,6 +86,11 @@ impl Live {
         if self.engine.session().phase == Phase::Ready {
             self.model.free_bytes = free_bytes(self.log.folder()).ok();
         }
+        self.check_log();
+    }
+
+    /// Checks that the log is in place and undamaged.
+    pub(super) fn check_log(&mut self) {
         if self.failed.is_none()
             && let Err(error) = self.log.check()
         {

@@ -25,6 +25,7 @@ mod robot;
 mod scenarios;
 mod session;
 mod study;
+mod viewers;
 
 /// Holds a text against `tests/snapshots/THEME__NAME.snap`.
 fn check_snapshot(theme: &str, name: impl std::fmt::Display, text: impl std::fmt::Display) {

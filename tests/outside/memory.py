@@ -18,12 +18,12 @@ from stream import RERUN, run
 
 PORT = 20400
 ADDRESS = "127.0.0.1:20312"
-# A viewer keeps what it was sent: this is its own limit, and has nothing to do with the session.
-VIEWER = [RERUN, f"rerun+http://{ADDRESS}/proxy", "--headless", "--memory-limit", "500MB"]
 
 
-def viewer():
-    return subprocess.Popen(VIEWER, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+def viewer(file, port):
+    """Rerun's own program, which takes the stream as a viewer does, and puts it into a file. It listens at a port itself."""
+    command = [RERUN, f"rerun+http://{ADDRESS}/proxy", "--save", file, "--port", str(port)]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
 def measure(arguments, folder):
@@ -38,7 +38,7 @@ def measure(arguments, folder):
             console.wait_for(r"conf\w* 0.9")
             console.start()
             if arguments.viewers:
-                viewers = [viewer(), viewer()]
+                viewers = [viewer(folder / f"{name}.rrd", PORT + nth) for nth, name in ((1, "reads"), (2, "stopped"))]
                 time.sleep(10)
                 assert all(one.poll() is None for one in viewers), "a viewer ended by itself"
                 viewers[1].send_signal(signal.SIGSTOP)

@@ -1,7 +1,7 @@
 //! How a file of Rerun begins: which program wrote it, and what it shows. The rest of such a file is read by `rrd`, where
 //! the program is built with Rerun.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
@@ -17,17 +17,20 @@ const IDENTITY_TAG: u8 = 0x12;
 const HEAD: u64 = 1 << 16;
 
 /// The identity of a stream that this program made of whole recordings: the names of their folders, when they began, and the
-/// mark, with spaces between. None where the file is not there, or is anything else.
+/// mark, with spaces between. `None` if there is no such file, or it is anything else.
 ///
 /// # Errors
 /// The file is there and cannot be read.
 pub fn identity(path: &Path) -> io::Result<Option<String>> {
-    let mut head = Vec::new();
-    match File::open(path) {
-        Ok(file) => file.take(HEAD).read_to_end(&mut head)?,
+    // Opening a pipe would wait for its other end.
+    match fs::metadata(path) {
+        Ok(data) if data.is_file() => {}
+        Ok(_) => return Ok(None),
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(error),
-    };
+    }
+    let mut head = Vec::new();
+    File::open(path)?.take(HEAD).read_to_end(&mut head)?;
     Ok(head.starts_with(BEGINS).then(|| identity_in(&head)).flatten())
 }
 

@@ -1,6 +1,7 @@
 //! The house keeps its own rules: who imports whom, what is not named where, how long a file is.
 
 mod imports;
+mod names;
 
 use std::path::{Path, PathBuf};
 

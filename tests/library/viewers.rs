@@ -96,7 +96,9 @@ fn nobody_adds_to_the_stream() {
     // Rerun's service that steers viewers is none of this server's.
     let mut other = TcpStream::connect(server).expect("the server listens");
     let path = "/rerun.sdk_comms.v1alpha1.ViewerControlService/SetTimeCursor";
-    let head = format!("POST {path} HTTP/1.1\r\nhost: {server}\r\ncontent-type: application/grpc-web+proto\r\ncontent-length: 5\r\n\r\n");
+    let head = format!(
+        "POST {path} HTTP/1.1\r\nhost: {server}\r\ncontent-type: application/grpc-web+proto\r\ncontent-length: 5\r\n\r\n"
+    );
     other.write_all(&[head.as_bytes(), &[0; 5]].concat()).expect("the server takes the request");
     read_until(&mut other, &["grpc-status: 12"]);
 }

@@ -1,7 +1,7 @@
 //! A recording is written by one program at a time.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Read, Write};
+use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 use super::WriteError;
@@ -49,6 +49,13 @@ impl RecordingLock {
     pub fn take(folder: &Path) -> Result<RecordingLock, WriteError> {
         let path = folder.join(LOCK_NAME);
         let failed = |reason| WriteError::unwritable(&path, reason);
+        // Taking it empties the file, which must not be one that a link leads to; opening a pipe would wait for its other end.
+        if fs::symlink_metadata(&path).is_ok_and(|data| !data.is_file()) {
+            return Err(failed(io::Error::new(
+                ErrorKind::InvalidInput,
+                "it is no regular file, but a link, pipe or folder",
+            )));
+        }
         for _ in 0..ATTEMPTS {
             let options = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
             let mut file = options.map_err(failed)?;
@@ -132,6 +139,20 @@ mod tests {
         assert_eq!(RecordingLock::holder(&folder), None);
         fs::write(folder.join(LOCK_NAME), "1\n").unwrap();
         assert_eq!(RecordingLock::holder(&folder), None, "what a killed program left behind is held by nobody");
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_that_a_link_leads_to_is_left_as_it_is() {
+        let folder = std::env::temp_dir().join(format!("tomcom-lock-link-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let other = folder.join("notes.txt");
+        fs::write(&other, "of somebody else").unwrap();
+        std::os::unix::fs::symlink(&other, folder.join(LOCK_NAME)).unwrap();
+        let refusal = RecordingLock::take(&folder).unwrap_err().to_string();
+        assert!(refusal.contains("a link"), "{refusal}");
+        assert_eq!(fs::read_to_string(&other).unwrap(), "of somebody else");
         fs::remove_dir_all(folder).unwrap();
     }
 }

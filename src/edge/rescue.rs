@@ -1,10 +1,12 @@
 //! Rescue of recordings whose folder vanished while they were written: the rescue folder, and the note with their original place.
 
-use std::fs::{self, OpenOptions};
+use std::fs::OpenOptions;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+
+use super::file_error::read_regular;
 
 /// Prefix of rescue folders in the system's temporary folder.
 pub const RESCUED: &str = "tomcom-rescued-";
@@ -37,6 +39,6 @@ impl RescueNote {
 
     /// The note in the folder of a recording; `None` if it is missing or unreadable.
     pub fn read(folder: &Path) -> Option<RescueNote> {
-        toml::from_str(&fs::read_to_string(folder.join(RESCUE_NOTE_NAME)).ok()?).ok()
+        toml::from_str(&read_regular(&folder.join(RESCUE_NOTE_NAME)).ok()?).ok()
     }
 }

@@ -225,6 +225,9 @@ fn a_log_without_its_header_is_moved_aside_and_made_again() {
     assert_eq!(fs::read(recording(1).join(ASIDE)).expect("kept"), b"");
     assert_eq!(fs::read_to_string(recording(1).join(format!("{ASIDE}2"))).expect("moved"), "{");
     assert!(logs(&out) == whole, "the same recordings again");
+    // They are the participant's, too.
+    let forgotten = tomcom(&["forget", "S001", "--in", &out, "--yes"]);
+    assert!(forgotten.status.success() && !recording(1).exists(), "{forgotten:?}");
 }
 
 #[test]

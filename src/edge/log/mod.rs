@@ -23,6 +23,8 @@ pub use writer::{LogWriter, check_continued, is_written_settings};
 
 /// The name of the log in its folder.
 pub const LOG_NAME: &str = "events.jsonl";
+/// Suffix of the name of an unusable log; from the second on a number follows.
+const DAMAGED: &str = ".damaged";
 /// The name of the settings in the folder of a recording.
 pub const SETTINGS_NAME: &str = "session.toml";
 /// The name of the stream in the folder of a recording.
@@ -99,12 +101,18 @@ fn process(pid: &Option<u32>) -> String {
     pid.map_or(String::new(), |pid| format!(" (process {pid})"))
 }
 
+/// Whether a file of this name in the folder of a recording is a log that was renamed because it was unusable.
+pub fn is_damaged_log(name: &str) -> bool {
+    let number = name.strip_prefix(LOG_NAME).and_then(|rest| rest.strip_prefix(DAMAGED));
+    number.is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
 /// Renames an unusable log to the first free one of `events.jsonl.damaged`, `events.jsonl.damaged2`, …; returns its new path, or
 /// `None` if there was no log.
 fn move_aside(log: &Path) -> io::Result<Option<PathBuf>> {
     let named = |n: u32| {
         let number = if n == 1 { String::new() } else { n.to_string() };
-        log.with_file_name(format!("{LOG_NAME}.damaged{number}"))
+        log.with_file_name(format!("{LOG_NAME}{DAMAGED}{number}"))
     };
     let aside = (1..).map(named).find(|path| fs::symlink_metadata(path).is_err());
     let Some(aside) = aside.filter(|_| fs::symlink_metadata(log).is_ok()) else { return Ok(None) };

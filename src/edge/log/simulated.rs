@@ -9,7 +9,7 @@ use super::lock::RecordingLock;
 use super::reader::{ends_in_header, first_line};
 use super::writer::is_written_settings;
 use super::{LOG_NAME, LogReader, LogWriter, SETTINGS_NAME, WriteError, move_aside};
-use crate::edge::file_error::open_regular;
+use crate::edge::file_error::{open_regular, read_regular};
 use crate::session::{Event, Header, Stamped};
 
 /// Upper limit of the length of a complete log's last line, in bytes.
@@ -65,7 +65,7 @@ pub fn check_simulated(folder: &Path, header: &Header) -> Result<(), WriteError>
     let path = folder.join(LOG_NAME);
     if !path.exists() {
         // A kill before the log leaves settings behind.
-        let is_foreign = fs::read_to_string(folder.join(SETTINGS_NAME)).is_ok_and(|text| !is_written_settings(&text));
+        let is_foreign = read_regular(&folder.join(SETTINGS_NAME)).is_ok_and(|text| !is_written_settings(&text));
         let what = "a session.toml that tomcom did not write";
         return if is_foreign { Err(WriteError::Taken { folder: folder.to_path_buf(), what }) } else { Ok(()) };
     }

@@ -47,39 +47,53 @@ pub struct DisplayScene {
     pub pointer: bool,
 }
 
-/// An AprilTag with its white border: rows from the top, "#" for black cells.
+/// An AprilTag.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TagPicture {
+    /// Its area with its white border.
     pub area: Rect,
+    /// Rows of cells from the top, "#" for black cells.
     pub rows: Vec<String>,
 }
 
 /// A location.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayLocation {
+    /// The location's name in the layout file.
     pub name: String,
+    /// Its name in the display's language.
     pub label: String,
     /// "order", "human_hand", "robot_hand", "place".
     pub kind: &'static str,
+    /// Its area.
     pub area: Rect,
+    /// How it is drawn, if its file says so.
     pub look: Option<Appearance>,
 }
 
 /// A storage.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayStorage {
+    /// The agent who can take from it.
     pub agent: Agent,
+    /// The item that it gives, by its name in [`DisplayScene::items`].
     pub item: String,
+    /// Its name in the display's language.
     pub label: String,
+    /// Its area.
     pub area: Rect,
 }
 
 /// A button of the human.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayButton {
+    /// The button's name in logs.
     pub name: String,
+    /// Its name in the display's language.
     pub label: String,
+    /// Its key on the keyboard.
     pub key: Option<char>,
+    /// The number of its gamepad button.
     pub gamepad: Option<u8>,
     /// What it does: "take", "use", "process", "trash", "serve".
     pub does: &'static str,
@@ -90,7 +104,9 @@ pub struct DisplayButton {
 /// How something looks, and what it is called.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LabelledAppearance {
+    /// The name in the display's language.
     pub label: String,
+    /// How it is drawn, if its file says so.
     pub look: Option<Appearance>,
 }
 

@@ -64,10 +64,13 @@ pub enum DisplayStage {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShownContent {
+    /// Nothing.
     Empty,
+    /// This item.
     Item(String),
     /// What lies on one another. A stack that is on the menu is its dish.
     Stack(Vec<String>),
+    /// This dish: wanted by an order, or lying on one another.
     Dish(String),
     /// An order that was served a moment ago.
     Served,
@@ -77,16 +80,20 @@ pub enum ShownContent {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayPlace {
+    /// The location with this index in the scene.
     Location(usize),
+    /// The storage with this index in the scene.
     Storage(usize),
 }
 
-/// A press and what came of it.
+/// A press and its effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct DisplayedPress {
     /// Presses of this agent so far.
     pub number: u32,
+    /// Where the button is.
     pub at: DisplayPlace,
+    /// The press changed the kitchen.
     pub effective: bool,
 }
 
@@ -96,26 +103,35 @@ pub struct DisplayedPress {
 pub enum DisplayedSignal {
     /// The recipe of what an order wants.
     Recipe {
+        /// The order's location, by its index in the scene.
         order: usize,
+        /// The wanted dish.
         dish: String,
+        /// What the dish is made of.
         items: Vec<String>,
     },
+    /// The location with this index in the scene is highlighted.
     Highlight(usize),
 }
 
 /// An item of a questionnaire that the participant answers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayedItem {
+    /// The heading above the items.
     pub title: String,
     /// The item; nothing: all are answered, and are to be confirmed.
     pub item: Option<String>,
+    /// The statement; once all are answered, what to do.
     pub text: String,
     /// Counted from 1.
     pub number: usize,
+    /// Number of items.
     pub of: usize,
-    /// 1 to so many points, with what the ends mean.
+    /// Number of points of the scale.
     pub points: u8,
+    /// What 1 means.
     pub low: String,
+    /// What the highest point means.
     pub high: String,
     /// What was answered before.
     pub answer: Option<u8>,
@@ -128,7 +144,9 @@ pub struct DisplayedItem {
 /// An item with what the participant answered.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GivenAnswer {
+    /// The statement.
     pub text: String,
+    /// The answer, from 1; none: left out.
     pub rated: Option<u8>,
 }
 

@@ -11,8 +11,11 @@ const MOST_GLANCES: usize = 6;
 /// Queue of locations to look at, and the time of the last reading of each location.
 #[derive(Clone, Debug, Default)]
 pub struct Attention {
+    /// The locations to look at, in order.
     pub glances: VecDeque<LocationId>,
+    /// The location that is looked at.
     pub looking_at: Option<LocationId>,
+    /// Time of the last reading, by location.
     pub read_at: Vec<SessionTime>,
 }
 

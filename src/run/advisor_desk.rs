@@ -30,6 +30,7 @@ impl Advisor {
 #[derive(Debug)]
 pub struct AdvisorDesk {
     ask: Sender<AdviceRequest>,
+    /// The recommendations, in the order of the requests.
     pub answers: UnboundedReceiver<Recommendation>,
 }
 

@@ -174,10 +174,12 @@ impl GazeTracker {
         self.link.iter().chain(&self.sees_display).cloned().collect::<Vec<_>>().into_iter()
     }
 
+    /// The file that gaze is replayed from, if it is.
     pub fn file(&self) -> Option<Arc<GazeFile>> {
         self.file.clone()
     }
 
+    /// The way to Pupil Capture, if the tracker is one.
     pub fn orders(&self) -> Option<Sender<CaptureRequest>> {
         self.orders.clone()
     }

@@ -56,6 +56,7 @@ pub struct ArmScene {
 }
 
 impl ArmScene {
+    /// The arm as it stands in this session.
     pub fn new(session: &Session) -> ArmScene {
         let arm = Arm::ur5();
         let motion = JointMotion::new(&session.kitchen, &arm);

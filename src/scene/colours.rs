@@ -5,23 +5,37 @@ use crate::kitchen::{Agent, AspectId, ContentId, Kitchen};
 /// Red, green, blue, opacity.
 pub type Colour = [u8; 4];
 
+/// The outline of the display.
 pub const FRAME: Colour = [104, 110, 122, 255];
+/// Locations without content.
 pub const EMPTY: Colour = [124, 130, 142, 255];
+/// Locations with content.
 pub const FULL: Colour = [0, 172, 160, 255];
+/// The human and its presses.
 pub const HUMAN: Colour = [52, 152, 235, 255];
 /// Of the human's hand and forearm.
 pub const SKIN: Colour = [222, 170, 136, 255];
+/// The robot and its presses.
 pub const ROBOT: Colour = [236, 136, 32, 255];
+/// Signals, and gaze that is usable.
 pub const SIGNAL: Colour = [236, 184, 0, 255];
+/// What the wizard sends.
 pub const WIZARD: Colour = [180, 100, 230, 255];
+/// What the assistant advises or sends.
 pub const ASSISTANT: Colour = [40, 176, 104, 255];
+/// Errors and stops.
 pub const ERROR: Colour = [232, 60, 60, 255];
+/// What matters less.
 pub const QUIET: Colour = [134, 140, 152, 255];
 /// A gaze sample that tells nothing.
 pub const LOST: Colour = [120, 120, 120, 255];
+/// The table.
 pub const TABLE: Colour = [92, 84, 76, 255];
+/// Buttons on the table.
 pub const BUTTON: Colour = [176, 58, 58, 255];
+/// Links of the arm.
 pub const STEEL: Colour = [176, 186, 200, 255];
+/// Joints of the arm.
 pub const JOINT: Colour = [82, 132, 190, 255];
 
 /// Of ingredients that do not look alike: yellow, green, orange, blue, pink, violet, cyan, lime.

@@ -8,12 +8,14 @@ use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, Recipes, State};
 /// The kitchen as the participant last saw it, location by location.
 #[derive(Clone, Debug)]
 pub struct SeenKitchen {
+    /// The last seen content of every location.
     pub state: State,
     /// Location that the gaze rests on, and the time at which it arrived there.
     resting: Option<(LocationId, SessionTime)>,
 }
 
 impl SeenKitchen {
+    /// A kitchen that was seen in this state.
     pub fn new(state: State) -> SeenKitchen {
         SeenKitchen { state, resting: None }
     }
@@ -50,8 +52,11 @@ impl SeenKitchen {
 /// A press of the participant, with the true state and the last seen state at that time.
 #[derive(Clone, Copy, Debug)]
 pub struct ObservedPress {
+    /// The true state before the press.
     pub truth: State,
+    /// The state as it was last seen.
     pub seen: State,
+    /// The button, in the list of the human's buttons.
     pub button: ButtonId,
 }
 

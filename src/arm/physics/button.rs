@@ -58,6 +58,7 @@ impl PhysicalButton {
         PhysicalButton { body, collider, up_m: middle.z, closed: false }
     }
 
+    /// The collider of the button's top.
     pub fn collider(&self) -> ColliderHandle {
         self.collider
     }

@@ -61,6 +61,7 @@ pub(super) struct PhysicalHand {
 }
 
 impl PhysicalHand {
+    /// A hand in this pose over a table of this height in metres, added to the bodies.
     pub fn new(bodies: &mut RigidBodySet, wanted: HandPose, table_m: f64) -> PhysicalHand {
         let body = RigidBodyBuilder::dynamic()
             .translation(single(wanted.at_m.coords))
@@ -71,6 +72,7 @@ impl PhysicalHand {
         PhysicalHand { body: bodies.insert(body), wanted, table_m }
     }
 
+    /// The rigid body of hand and forearm.
     pub fn body(&self) -> RigidBodyHandle {
         self.body
     }

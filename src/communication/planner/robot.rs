@@ -7,15 +7,17 @@ use crate::robot::policy;
 /// The policy cache has 2^15 entries.
 const BITS: u32 = 15;
 
-/// The equally likely choices of the robot in a state, and the presses that it completes if its arm is already moving, as bit sets
-/// of buttons.
+/// The presses of the robot in a state, as bit sets of buttons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RobotChoices {
+    /// The equally likely choices, one bit for each of the robot's buttons.
     pub choices: u64,
+    /// The presses that it completes if its arm is already moving, one bit for each of the robot's buttons.
     pub useful: u64,
 }
 
 impl RobotChoices {
+    /// Number of equally likely choices.
     pub fn count(self) -> u32 {
         self.choices.count_ones()
     }
@@ -92,9 +94,11 @@ fn hash(state: State, recipes: &Recipes) -> u64 {
 /// The press towards which the robot's arm is moving.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OngoingRobotPress {
+    /// The button, in the list of the robot's buttons.
     pub button: ButtonId,
     /// Time at which the arm touches the button, in seconds since the start of the rollout.
     pub due_s: f64,
+    /// The wizard chose the press, so that it is made whether it is useful or not.
     pub driven: bool,
 }
 

@@ -30,6 +30,7 @@ pub struct RolloutDraws {
 }
 
 impl RolloutDraws {
+    /// Draws the random numbers of one rollout from this stream.
     pub fn draw(random: &mut Stream) -> RolloutDraws {
         let mut draws = RolloutDraws { decision: random.random(), slip: random.random(), ..RolloutDraws::default() };
         draws.looks.iter_mut().for_each(|draw| *draw = random.random());
@@ -50,14 +51,19 @@ impl RolloutDraws {
 
 /// Data shared by all rollouts of one recommendation.
 pub struct RolloutContext<'a> {
+    /// The kitchen.
     pub kitchen: &'a Kitchen,
+    /// The true recipes.
     pub recipes: Recipes,
+    /// The human's choice model.
     pub choice: &'a ChoiceModel,
     /// By button of the human, the aspects of the locations on which its effect depends.
     pub involved: &'a [Vec<AspectId>],
     /// By button of the human, the aspects that it looks at before the press.
     pub watched: &'a [Vec<AspectId>],
+    /// Horizon, number of rollouts and their accuracy.
     pub model: &'a RolloutModel,
+    /// Duration of a press of the robot, in seconds.
     pub robot_press_s: f64,
     /// Probability that a needed location is looked at before a press.
     pub looks: f64,
@@ -80,11 +86,12 @@ pub struct RolloutState {
     now_s: f64,
 }
 
-/// The rollout without a signal: its states, the human's choices, and its value (presses plus the cost to go at its end).
+/// The rollout without a signal: its states, the human's choices, and its value.
 #[derive(Clone, Debug, Default)]
 pub struct BaselineRollout {
     states: Vec<RolloutState>,
     choices: Vec<HumanChoice>,
+    /// Presses of both agents up to the horizon plus the cost to go there.
     pub value: i32,
 }
 
@@ -138,9 +145,13 @@ impl RolloutState {
 
 /// One rollout with its models, caches and random numbers.
 pub struct Rollout<'a> {
+    /// What it has in common with the other rollouts.
     pub context: &'a RolloutContext<'a>,
+    /// The cost to go, with its caches.
     pub cost: &'a mut CostToGo,
+    /// The robot's policy, with its caches.
     pub policy: &'a mut RobotPolicy,
+    /// The random numbers of each decision of the human, in order.
     pub draws: &'a [RolloutDraws],
     /// Time of the human's first decision, in seconds.
     pub first_s: f64,

@@ -50,14 +50,17 @@ impl PairedDifferences {
         }
     }
 
+    /// Number of pairs.
     pub fn count(&self) -> u32 {
         self.count
     }
 
+    /// Mean difference, in presses; 0 without pairs.
     pub fn mean(&self) -> f64 {
         self.sum / f64::from(self.count.max(1))
     }
 
+    /// Standard error of the mean, in presses.
     pub fn standard_error(&self) -> f64 {
         self.error_with(0.0)
     }

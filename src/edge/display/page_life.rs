@@ -24,6 +24,7 @@ pub(super) struct PageLife {
 }
 
 impl PageLife {
+    /// A page that was heard just now.
     pub fn new(now: Instant) -> PageLife {
         PageLife { heard: now, spoke: now, pinged: now, is_hidden: false }
     }
@@ -41,6 +42,7 @@ impl PageLife {
         self.is_hidden = is_hidden;
     }
 
+    /// A ping was sent to the page.
     pub fn pinged(&mut self, now: Instant) {
         self.pinged = now;
     }
@@ -50,6 +52,7 @@ impl PageLife {
         (self.pinged + PING).min(self.gone_at())
     }
 
+    /// Nothing was heard of the page for too long.
     pub fn is_gone(&self, now: Instant) -> bool {
         now >= self.gone_at()
     }

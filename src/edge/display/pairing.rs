@@ -47,6 +47,7 @@ pub(super) struct PairingDesk {
 }
 
 impl PairingDesk {
+    /// A desk that asks for this code and has seen nobody yet.
     pub fn new(code: String) -> PairingDesk {
         PairingDesk { code, wrong: BTreeMap::new(), known: VecDeque::new() }
     }

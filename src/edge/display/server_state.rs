@@ -41,6 +41,7 @@ pub(super) struct ServerState {
 }
 
 impl ServerState {
+    /// The state of a server that nobody is connected to yet.
     pub fn new(
         code: Option<String>,
         words: BTreeMap<String, String>,

@@ -38,6 +38,7 @@ pub(super) struct DisplayStatus {
 }
 
 impl DisplayStatus {
+    /// What was counted so far.
     pub fn counts(&self) -> DisplayCounts {
         let page = *self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         DisplayCounts {

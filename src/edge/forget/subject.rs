@@ -40,6 +40,7 @@ pub(super) struct ForgetSubject {
 }
 
 impl ForgetSubject {
+    /// The participant with this code, of whom nothing else is known yet.
     pub fn new(code: &str) -> ForgetSubject {
         ForgetSubject { code: code.to_string(), ..ForgetSubject::default() }
     }

@@ -17,6 +17,7 @@ pub(super) struct PupilClock {
 }
 
 impl PupilClock {
+    /// A clock that was not compared with Pupil's yet.
     pub fn new() -> PupilClock {
         PupilClock { anchor: Instant::now(), answers: Vec::new() }
     }

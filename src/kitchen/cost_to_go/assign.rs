@@ -13,8 +13,11 @@ pub const MAX_TASKS: usize = 16;
 /// An assignment of items to all targets, in the order in which the targets will be served.
 #[derive(Clone, Copy, Debug)]
 pub struct Assignment {
+    /// The tasks, of which the first [`Self::count`] count.
     pub tasks: [AssemblyTask; MAX_TASKS],
+    /// Number of tasks.
     pub count: usize,
+    /// The targets in the order in which they will be served.
     pub order: [usize; MAX_TARGETS],
     /// Locations whose content is used, one bit each.
     used: u32,

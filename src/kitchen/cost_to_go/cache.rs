@@ -45,6 +45,7 @@ impl ValueCache {
         self.buckets[self.bucket(key)].0[0]
     }
 
+    /// The value that is kept under this key, if any.
     #[inline]
     pub fn get(&self, key: u64) -> Option<u32> {
         let Bucket(bucket) = &self.buckets[self.bucket(key)];
@@ -52,6 +53,7 @@ impl ValueCache {
         Some((entry & 0xff) as u32)
     }
 
+    /// Keeps a value under this key; another one may have to go.
     pub fn insert(&mut self, key: u64, value: u32) {
         let bucket = self.bucket(key);
         let Bucket(bucket) = &mut self.buckets[bucket];
@@ -112,11 +114,13 @@ impl DecisionCache {
         (index, line.question == question && line.state == state)
     }
 
+    /// The entry at this index, whatever it was computed for.
     #[inline]
     pub fn get(&self, index: usize) -> &DecisionCosts {
         &self.lines[index]
     }
 
+    /// Replaces the entry at this index.
     pub fn set(&mut self, index: usize, state: State, question: u32, here: u8, after: [u8; MAX_BUTTONS]) {
         self.lines[index] = DecisionCosts { state, question, here, after };
     }

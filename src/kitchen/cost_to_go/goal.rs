@@ -26,6 +26,7 @@ impl ItemValue {
         self.0 as u8
     }
 
+    /// The location of the item.
     #[inline]
     pub fn location(self) -> u8 {
         !((self.0 >> 8) as u8)
@@ -82,6 +83,7 @@ pub struct ServingGoal {
 }
 
 impl ServingGoal {
+    /// The tables for these targets in this kitchen.
     pub fn new(kitchen: &Kitchen, ground: &KitchenTables, targets: Vec<ContentId>) -> ServingGoal {
         let journeys = &ground.journeys;
         let mut content = vec![ContentId::EMPTY];

@@ -10,12 +10,17 @@ use super::journeys::{FreeMask, JourneyTables};
 /// Tables of one kitchen that do not depend on goals.
 #[derive(Clone, Debug)]
 pub struct KitchenTables {
+    /// Ways of items through processes onto the board.
     pub journeys: JourneyTables,
-    /// Physical locations: first and one past the last index.
+    /// Index of the first physical location.
     pub first: usize,
+    /// One past the index of the last physical location.
     pub last: usize,
+    /// The location index of each agent's hand.
     pub hands: [usize; 2],
+    /// The location index of the board.
     pub board: usize,
+    /// The location index of the plate.
     pub plate: usize,
     /// Places where any content can be put temporarily.
     spare: Vec<usize>,
@@ -34,6 +39,7 @@ pub struct KitchenTables {
 }
 
 impl KitchenTables {
+    /// The tables of this kitchen.
     pub fn new(kitchen: &Kitchen) -> KitchenTables {
         let contents = kitchen.contents.len();
         let first = kitchen.orders.len();
@@ -87,6 +93,7 @@ impl KitchenTables {
         self.first..self.last
     }
 
+    /// Whether the location with this index is a hand.
     #[inline]
     pub fn is_hand(&self, location: usize) -> bool {
         self.is_hand[location]
@@ -98,6 +105,7 @@ impl KitchenTables {
         self.accepts[location * self.contents + content.index()]
     }
 
+    /// Presses that serve a complete stack from the location with this index, without obstacles.
     #[inline]
     pub fn last_presses(&self, location: usize) -> u32 {
         self.last_presses[location]

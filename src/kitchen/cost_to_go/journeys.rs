@@ -35,6 +35,7 @@ pub struct JourneyTables {
 pub type JourneyNeeds = u16;
 
 impl JourneyTables {
+    /// The tables of this kitchen.
     pub fn new(kitchen: &Kitchen) -> JourneyTables {
         let mut stations: Vec<LocationId> = kitchen.processes.iter().filter_map(|process| process.place).collect();
         stations.sort_unstable();

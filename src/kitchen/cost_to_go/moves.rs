@@ -10,17 +10,45 @@ const MAX_MOVES: usize = 32;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClearingMove {
     /// Throws away a useless content of this hand.
-    Throw { hand: usize },
+    Throw {
+        /// The location index of the hand.
+        hand: usize,
+    },
     /// Picks up a useless content.
-    PickUp { from: usize, hand: usize },
+    PickUp {
+        /// The location index of the content.
+        from: usize,
+        /// The location index of the hand that picks it up.
+        hand: usize,
+    },
     /// Brings the item of a task to a place or into a hand.
-    Bring { task: usize, to: usize },
+    Bring {
+        /// The index of the task.
+        task: usize,
+        /// The location index that the item is brought to.
+        to: usize,
+    },
     /// Throws away an item that can be taken anew.
-    Discard { task: usize },
+    Discard {
+        /// The index of the task.
+        task: usize,
+    },
     /// Takes an item of this class from a storage early and brings it to a place on its way.
-    Fetch { task: usize, class: u8, hand: usize, to: usize },
+    Fetch {
+        /// The index of the task that the item is for.
+        task: usize,
+        /// The class of the item.
+        class: u8,
+        /// The location index of the hand that takes it.
+        hand: usize,
+        /// The location index that the item is brought to.
+        to: usize,
+    },
     /// Two tasks exchange their items, without a press.
-    Exchange { tasks: [usize; 2] },
+    Exchange {
+        /// The indices of the two tasks.
+        tasks: [usize; 2],
+    },
 }
 
 /// A set of distinct moves.
@@ -31,10 +59,12 @@ pub struct ClearingMoves {
 }
 
 impl ClearingMoves {
+    /// No moves.
     pub fn new() -> ClearingMoves {
         ClearingMoves { all: [ClearingMove::Throw { hand: 0 }; MAX_MOVES], count: 0 }
     }
 
+    /// Adds a move, unless it is there already or there is no room.
     pub fn add(&mut self, other: ClearingMove) {
         if self.count < MAX_MOVES && !self.all().contains(&other) {
             self.all[self.count] = other;
@@ -42,6 +72,7 @@ impl ClearingMoves {
         }
     }
 
+    /// The moves, in the order in which they were added.
     pub fn all(&self) -> &[ClearingMove] {
         &self.all[..self.count]
     }

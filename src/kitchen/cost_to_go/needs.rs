@@ -6,6 +6,7 @@ use super::plan::PressPlan;
 /// Requirements of the work on a target.
 #[derive(Clone, Copy, Debug)]
 pub struct TargetNeeds {
+    /// The index of the target.
     pub target: usize,
     /// Whether parts have to come onto the board.
     pub assembling: bool,
@@ -13,6 +14,7 @@ pub struct TargetNeeds {
     pub needs: FreeMask,
     /// Free hands and places that all remaining tasks require.
     pub later: FreeMask,
+    /// Whether both hands hold something.
     pub hands_full: bool,
 }
 

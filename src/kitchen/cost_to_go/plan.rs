@@ -25,6 +25,7 @@ pub struct PressPlan<'a> {
 }
 
 impl<'a> PressPlan<'a> {
+    /// A plan that begins in this state and follows this assignment.
     pub fn new(
         ground: &'a KitchenTables,
         goal: &'a ServingGoal,

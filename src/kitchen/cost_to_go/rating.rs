@@ -15,6 +15,7 @@ pub struct AssignmentRating {
 }
 
 impl AssignmentRating {
+    /// The assignments of this state, with the lower bound that follows from them.
     pub fn new(ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> AssignmentRating {
         let forwards = Assignment::choose(ground, goal, state, [0, 1]);
         let lower = forwards.demand.bound(ground, state);
@@ -37,10 +38,12 @@ impl AssignmentRating {
         if order_counts(goal, state) { forwards.min(of_order([1, 0])) } else { forwards }
     }
 
+    /// The assignments, the one with the smaller lower bound first.
     pub fn choices(&self) -> &[Assignment] {
         &self.choices[..self.count]
     }
 
+    /// The assignment with the smaller lower bound.
     pub fn best_choice(&self) -> &Assignment {
         &self.choices[0]
     }

@@ -6,6 +6,7 @@ pub const STORAGE: u8 = u8::MAX;
 /// A task: a part to bring to the board, or a complete stack to serve.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct AssemblyTask {
+    /// The index of the target.
     pub target: u8,
     /// Bit set of the target's items in it; all bits for a complete stack.
     pub bits: u8,

@@ -16,8 +16,7 @@ use crate::mind::model::InferenceModel;
 use super::distinct::DistinctWorlds;
 use super::urn::Urn;
 
-/// Share of the first draws of a recipe that are spread evenly over its variants (importance sampling): presses are the only
-/// evidence of a false recipe, so improbable variants need enough samples.
+/// Share of a recipe's first draws spread evenly over its variants (importance sampling): improbable ones need samples.
 const SPREAD: f64 = 0.4;
 /// Marks an aspect that is not drawn because the decision does not depend on it.
 const UNDRAWN: u8 = u8::MAX;
@@ -104,12 +103,16 @@ struct Alike {
 
 /// The models that define the likelihood of a press.
 pub struct EvidenceModel<'a> {
+    /// The kitchen.
     pub kitchen: &'a Kitchen,
+    /// The human's choice model.
     pub choice: &'a ChoiceModel,
+    /// How finely the belief is inferred.
     pub inference: &'a InferenceModel,
 }
 
 impl Sampler {
+    /// A sampler for this kitchen.
     pub fn new(kitchen: &Kitchen) -> Sampler {
         Sampler { wants: kitchen.orders.iter().map(|&order| wants(kitchen, order)).collect(), ..Sampler::default() }
     }

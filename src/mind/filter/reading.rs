@@ -57,6 +57,7 @@ pub struct GazeReader {
 }
 
 impl GazeReader {
+    /// A reader at the start of a trial, before the first sample.
     pub fn new(kitchen: &Kitchen, model: &PerceptionModel) -> GazeReader {
         let of_location = |index: usize| {
             let values = kitchen.aspects[index].values.len();

@@ -47,11 +47,13 @@ impl EventRows {
 /// Analysis of the human's presses, available after the replay.
 #[derive(Clone, Copy, Debug)]
 pub struct PressFacts<'a> {
+    /// The human's presses with their verdicts, in order.
     pub judged: &'a [JudgedPress],
     /// Error sequences, each as indices of the human's presses.
     pub sequences: &'a [Vec<usize>],
     /// Causes of people's errors by the estimated beliefs, with the log number of the press.
     pub by_estimate: Option<&'a [(u64, Cause)]>,
+    /// The codes of two raters, if they coded the trial.
     pub raters: Option<&'a [Codes; 2]>,
 }
 
@@ -71,6 +73,7 @@ impl<'a> PressFacts<'a> {
 }
 
 impl RowCollector {
+    /// A collector without rows for this recording.
     pub fn new(recording: &str) -> RowCollector {
         RowCollector {
             recording: recording.to_string(),

@@ -34,6 +34,7 @@ struct SweptConcept {
 /// Replays a session and evaluates all concepts after every press and order change, as the assistant does live.
 #[derive(Debug)]
 pub struct ConceptSweep {
+    /// The session, with the estimate.
     pub follower: Follower,
     planner: Planner,
     tom: TomConcept,

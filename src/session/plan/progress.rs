@@ -93,10 +93,13 @@ pub struct SlotProgress {
 /// One attempt at a slot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Attempt {
+    /// The name of the recording's last folder.
     pub recording: String,
     /// Number of the attempt, from 1.
     pub attempt: u32,
+    /// Presses of both agents in its trial.
     pub presses: u32,
+    /// How it ended.
     pub outcome: RecordingOutcome,
     /// Whether it was recorded under another version of the plan.
     pub other_version: bool,

@@ -62,7 +62,8 @@ pub(super) struct OperateFlags {
     /// Seed of all random numbers; by default that of the session file.
     #[arg(long)]
     pub(super) seed: Option<u64>,
-    /// Address at which Rerun viewers connect, instead of the session file's.
+    /// Address at which Rerun viewers connect, instead of the session file's. Whoever reaches it can watch without a password,
+    /// and change nothing.
     #[arg(long, value_name = "ADDRESS")]
     pub(super) rerun_listen: Option<String>,
     /// Folder in which the recording's folder is created. Not with --continue: a further part is created beside the recording.

@@ -1,6 +1,8 @@
 //! Preflight checks at the console. If all are ok the trial starts at once; else a list shows the problems with remedies, and the
 //! wizard fixes them or overrides them. The results are recorded.
 
+use core::net::SocketAddr;
+
 use crossterm::event::KeyCode;
 
 use super::display::DisplayHealth;
@@ -68,7 +70,11 @@ fn recording(model: &ConsoleModel) -> PreflightCheck {
 
 fn viewers(viewers: &ViewerStreamStatus) -> PreflightCheck {
     let ViewerStreamStatus { address, dropped, .. } = viewers;
+    let is_open = |address: &String| address.parse::<SocketAddr>().is_ok_and(|address| !address.ip().is_loopback());
     let found = match address {
+        Some(address) if is_open(address) => {
+            format!("viewers connect at {address}; whoever reaches that can watch, without a password")
+        }
         Some(address) => format!("viewers connect at {address}"),
         None => "recorded, no viewer can connect".to_string(),
     };

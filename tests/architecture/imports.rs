@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use syn::visit::Visit;
-use syn::{Attribute, File, ItemMod, ItemUse, Macro, UseTree, Visibility};
+use syn::{ItemMod, ItemUse, Macro, UseTree, Visibility};
+
+use crate::sources::{Source, is_for_tests, words};
 
 /// A module's place below the crate's root: `["console", "view"]`.
 type ModulePath = Vec<String>;
@@ -24,17 +26,15 @@ pub struct Imports {
 }
 
 impl Imports {
-    /// Reads and parses these files, whose paths begin with `src`.
-    pub fn read(files: &[PathBuf]) -> Imports {
-        let places: BTreeSet<ModulePath> = files.iter().map(|file| module_path(file)).collect();
-        let modules = files.iter().map(|file| {
-            let text = std::fs::read_to_string(file).expect("a source file");
-            let parsed: File = syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
-            let mut reader =
-                Reader { place: module_path(file), places: &places, used: BTreeSet::new(), handed_on: BTreeMap::new() };
-            reader.visit_file(&parsed);
+    /// Reads these files, whose paths begin with `src`.
+    pub fn read(sources: &[Source]) -> Imports {
+        let places: BTreeSet<ModulePath> = sources.iter().map(|source| module_path(&source.path)).collect();
+        let modules = sources.iter().map(|source| {
+            let place = module_path(&source.path);
+            let mut reader = Reader { place, places: &places, used: BTreeSet::new(), handed_on: BTreeMap::new() };
+            reader.visit_file(&source.parsed);
             let Reader { place, used, handed_on, .. } = reader;
-            (place, Module { file: file.clone(), used, handed_on })
+            (place, Module { file: source.path.clone(), used, handed_on })
         });
         Imports { modules: modules.collect() }
     }
@@ -67,13 +67,19 @@ impl Imports {
 
     /// The file that defines what stands at this path from the crate's root.
     fn definition(&self, path: &[String]) -> Option<&Path> {
+        self.place(path).map(|(file, _)| file)
+    }
+
+    /// The file that defines what stands at this path from the crate's root, and what it is called there; no name is the
+    /// module itself.
+    pub fn place(&self, path: &[String]) -> Option<(&Path, Vec<String>)> {
         let mut path = path.to_vec();
         // A name is handed on a few times at most; a module that hands on itself would go on for ever.
         for _ in 0..8 {
             let depth = (0..=path.len()).rev().find(|&depth| self.modules.contains_key(&path[..depth]))?;
             let module = &self.modules[&path[..depth]];
             let Some(meant) = path.get(depth).and_then(|name| module.handed_on.get(name)) else {
-                return Some(&module.file);
+                return Some((&module.file, path[depth..].to_vec()));
             };
             path = [meant.as_slice(), &path[depth + 1..]].concat();
         }
@@ -124,20 +130,26 @@ impl Reader<'_> {
             }
         }
     }
+}
 
-    /// Takes up the paths of a `use` item, with the names that they get here.
-    fn leaves(tree: &UseTree, before: &[String], into: &mut Vec<(String, Vec<String>)>) {
-        let with = |name: &syn::Ident| [before, &[name.to_string()]].concat();
-        match tree {
-            UseTree::Path(path) => Self::leaves(&path.tree, &with(&path.ident), into),
-            UseTree::Group(group) => group.items.iter().for_each(|item| Self::leaves(item, before, into)),
-            UseTree::Name(name) if name.ident == "self" => {
-                into.push((before.last().cloned().unwrap_or_default(), before.to_vec()));
-            }
-            UseTree::Name(name) => into.push((name.ident.to_string(), with(&name.ident))),
-            UseTree::Rename(rename) => into.push((rename.rename.to_string(), with(&rename.ident))),
-            UseTree::Glob(_) => into.push(("*".to_string(), before.to_vec())),
+/// The paths of a `use` item, with the names that they get here.
+pub fn leaves(item: &ItemUse) -> Vec<(String, Vec<String>)> {
+    let mut into = Vec::new();
+    collect_leaves(&item.tree, &[], &mut into);
+    into
+}
+
+fn collect_leaves(tree: &UseTree, before: &[String], into: &mut Vec<(String, Vec<String>)>) {
+    let with = |name: &syn::Ident| [before, &[name.to_string()]].concat();
+    match tree {
+        UseTree::Path(path) => collect_leaves(&path.tree, &with(&path.ident), into),
+        UseTree::Group(group) => group.items.iter().for_each(|item| collect_leaves(item, before, into)),
+        UseTree::Name(name) if name.ident == "self" => {
+            into.push((before.last().cloned().unwrap_or_default(), before.to_vec()));
         }
+        UseTree::Name(name) => into.push((name.ident.to_string(), with(&name.ident))),
+        UseTree::Rename(rename) => into.push((rename.rename.to_string(), with(&rename.ident))),
+        UseTree::Glob(_) => into.push(("*".to_string(), before.to_vec())),
     }
 }
 
@@ -149,9 +161,7 @@ impl<'ast> Visit<'ast> for Reader<'_> {
     }
 
     fn visit_item_use(&mut self, item: &'ast ItemUse) {
-        let mut leaves = Vec::new();
-        Self::leaves(&item.tree, &[], &mut leaves);
-        for (name, path) in leaves {
+        for (name, path) in leaves(item) {
             let Some(path) = self.path_of_names(&path) else { continue };
             match item.vis {
                 Visibility::Inherited => drop(self.used.insert(path)),
@@ -169,17 +179,10 @@ impl<'ast> Visit<'ast> for Reader<'_> {
     }
 
     fn visit_macro(&mut self, call: &'ast Macro) {
-        // What a macro is given is no syntax yet: its paths are read from the tokens.
-        let tokens = call.tokens.to_string().replace(" :: ", "::");
-        let words = tokens.split(|sign: char| !(sign.is_alphanumeric() || sign == '_' || sign == ':'));
-        for word in words.filter(|word| word.starts_with("crate::") || word.starts_with("super::")) {
+        let words = words(&call.tokens.to_string());
+        for word in words.iter().filter(|word| word.starts_with("crate::") || word.starts_with("super::")) {
             let names: Vec<String> = word.split("::").filter(|name| !name.is_empty()).map(str::to_string).collect();
             self.used.extend(self.path_of_names(&names));
         }
     }
-}
-
-/// `#[cfg(test)]`.
-fn is_for_tests(attribute: &Attribute) -> bool {
-    attribute.path().is_ident("cfg") && attribute.parse_args::<syn::Ident>().is_ok_and(|name| name == "test")
 }

@@ -1,93 +1,265 @@
-//! One word for one thing: names of types, the glossary, and the size of the pages that everybody reads first.
+//! Names: each stands for one thing, and what is public says what it is.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::collections::{BTreeMap, BTreeSet};
 
-use syn::{Item, UseTree, Visibility};
+use syn::visit::Visit;
+use syn::{
+    Attribute, Fields, ImplItem, Item, ItemEnum, ItemImpl, ItemMod, ItemStruct, ItemTrait, ItemType, ItemUnion,
+    Signature, TraitItem, Visibility,
+};
 
-/// Types of one name in two files, of which a build has only one.
-const ALTERNATIVES: [(&str, &str); 1] = [("SteppedArm", "the arm of a build with physics, and of one without")];
-/// Sizes that a page has at most, in bytes.
-const PAGES: [(&str, usize); 2] = [("README.md", 8 << 10), ("ARCHITECTURE.md", 12 << 10)];
+use crate::sources::{is_documentation, is_for_tests, sources, sources_below};
 
-/// The public types that a file declares itself, and the names that it hands on.
-fn public_names(path: &Path) -> (Vec<String>, Vec<String>) {
-    let text = std::fs::read_to_string(path).expect("a source file");
-    let parsed = syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    let (mut declared, mut handed_on) = (Vec::new(), Vec::new());
-    for item in parsed.items {
-        let (is_public, name) = match item {
-            Item::Struct(item) => (is_public(&item.vis), item.ident.to_string()),
-            Item::Enum(item) => (is_public(&item.vis), item.ident.to_string()),
-            Item::Trait(item) => (is_public(&item.vis), item.ident.to_string()),
-            Item::Type(item) => (is_public(&item.vis), item.ident.to_string()),
-            Item::Use(item) if is_public(&item.vis) => {
-                last_names(&item.tree, &mut handed_on);
-                continue;
+/// Names of files that several rooms have on purpose, and why.
+const SHARED_FILE_NAMES: [(&str, &str); 2] =
+    [("mod.rs", "the root of a folder"), ("settings.rs", "the settings of each room that has any")];
+
+/// Names of files that several rooms still have; the list only gets shorter.
+const FILE_NAMES_STILL_SHARED: [&str; 37] = [
+    "assign.rs",
+    "belief.rs",
+    "beliefs.rs",
+    "calibration.rs",
+    "codes.rs",
+    "coding.rs",
+    "comparison.rs",
+    "concepts.rs",
+    "decision.rs",
+    "display.rs",
+    "gaze.rs",
+    "hand.rs",
+    "hands.rs",
+    "human.rs",
+    "layout.rs",
+    "message.rs",
+    "model.rs",
+    "people.rs",
+    "places.rs",
+    "plan.rs",
+    "preflight.rs",
+    "question.rs",
+    "reading.rs",
+    "recommendation.rs",
+    "rerun.rs",
+    "review.rs",
+    "robot.rs",
+    "screen.rs",
+    "shown.rs",
+    "sight.rs",
+    "simulated.rs",
+    "stream.rs",
+    "surface.rs",
+    "trial.rs",
+    "witness.rs",
+    "wizard.rs",
+    "words.rs",
+];
+
+/// Stands in for a part of the program that a build leaves out, with the same types.
+fn is_stand_in(file: &str) -> bool {
+    file.starts_with("without_")
+}
+
+#[test]
+fn public_types_have_names_of_their_own() {
+    let mut types: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for source in sources() {
+        let file = source.path.file_name().expect("a file").to_string_lossy().into_owned();
+        let mut found = PublicTypes::default();
+        found.visit_file(&source.parsed);
+        assert!(found.names.len() == found.names.iter().collect::<BTreeSet<_>>().len(), "{}", source.path.display());
+        for name in found.names.into_iter().filter(|_| !is_stand_in(&file)) {
+            types.entry(name).or_default().insert(source.path.display().to_string());
+        }
+    }
+    for (name, files) in types {
+        assert!(files.len() == 1, "several public types are called {name}: {files:?}");
+    }
+}
+
+/// The types of a file that other files can name.
+#[derive(Default)]
+struct PublicTypes {
+    names: Vec<String>,
+}
+
+impl PublicTypes {
+    fn note(&mut self, visibility: &Visibility, name: &syn::Ident) {
+        if !matches!(visibility, Visibility::Inherited) {
+            self.names.push(name.to_string());
+        }
+    }
+}
+
+impl<'ast> Visit<'ast> for PublicTypes {
+    fn visit_item_mod(&mut self, item: &'ast ItemMod) {
+        if !item.attrs.iter().any(is_for_tests) {
+            syn::visit::visit_item_mod(self, item);
+        }
+    }
+
+    fn visit_item_struct(&mut self, item: &'ast ItemStruct) {
+        self.note(&item.vis, &item.ident);
+    }
+
+    fn visit_item_enum(&mut self, item: &'ast ItemEnum) {
+        self.note(&item.vis, &item.ident);
+    }
+
+    fn visit_item_union(&mut self, item: &'ast ItemUnion) {
+        self.note(&item.vis, &item.ident);
+    }
+
+    fn visit_item_trait(&mut self, item: &'ast ItemTrait) {
+        self.note(&item.vis, &item.ident);
+    }
+
+    fn visit_item_type(&mut self, item: &'ast ItemType) {
+        self.note(&item.vis, &item.ident);
+    }
+}
+
+/// `of` says nothing of what a function returns: `from_…`, `for_…`, or the noun.
+#[test]
+fn no_function_is_called_of() {
+    struct Functions(BTreeSet<String>);
+    impl<'ast> Visit<'ast> for Functions {
+        fn visit_signature(&mut self, signature: &'ast Signature) {
+            self.0.insert(signature.ident.to_string());
+            syn::visit::visit_signature(self, signature);
+        }
+    }
+    for source in sources_below(&["src", "tests", "benches", "examples"]) {
+        let mut functions = Functions(BTreeSet::new());
+        functions.visit_file(&source.parsed);
+        assert!(!functions.0.contains("of"), "{}: a function is called `of`", source.path.display());
+    }
+}
+
+#[test]
+fn files_of_different_rooms_have_names_of_their_own() {
+    let mut rooms: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for source in sources() {
+        let file = source.path.file_name().expect("a file").to_string_lossy().into_owned();
+        rooms.entry(file).or_default().insert(source.room());
+    }
+    rooms.retain(|file, rooms| {
+        let is_shared = SHARED_FILE_NAMES.iter().any(|(name, _)| name == file);
+        rooms.len() > 1 && !is_shared && !is_stand_in(file)
+    });
+    let told = |(file, rooms): (&String, &BTreeSet<String>)| {
+        format!("{file}: {}", rooms.iter().cloned().collect::<Vec<_>>().join(", "))
+    };
+    let is_known = |file: &str| FILE_NAMES_STILL_SHARED.contains(&file);
+    let new: Vec<String> = rooms.iter().filter(|(file, _)| !is_known(file)).map(told).collect();
+    assert!(new.is_empty(), "files of different rooms have the same name:\n{}", new.join("\n"));
+    for name in FILE_NAMES_STILL_SHARED {
+        assert!(rooms.contains_key(name), "{name} is the name of one file by now: take it off the list");
+    }
+}
+
+/// The compiler warns of what can be reached from outside; this holds for everything that is `pub`, and for every file.
+#[test]
+fn every_public_item_says_what_it_is() {
+    let mut missing = Vec::new();
+    for source in sources() {
+        let path = source.path.display();
+        let mut silent = Silent::default();
+        silent.note(&source.parsed.attrs, "the file");
+        silent.items(&source.parsed.items);
+        missing.extend(silent.0.into_iter().map(|name| format!("{path}: {name}")));
+    }
+    assert!(missing.is_empty(), "without a comment that says what it is:\n{}", missing.join("\n"));
+}
+
+#[test]
+fn the_compiler_warns_of_public_items_without_a_comment() {
+    let sources = sources();
+    let root = sources.iter().find(|source| source.path.ends_with("lib.rs")).expect("the crate's root");
+    let warns = |attribute: &Attribute| {
+        let is_lint = ["warn", "deny", "forbid"].iter().any(|level| attribute.path().is_ident(level));
+        is_lint && attribute.parse_args::<syn::Path>().is_ok_and(|lint| lint.is_ident("missing_docs"))
+    };
+    assert!(root.parsed.attrs.iter().any(warns), "src/lib.rs needs #![warn(missing_docs)]");
+}
+
+/// Collects public items without documentation.
+#[derive(Default)]
+struct Silent(Vec<String>);
+
+impl Silent {
+    fn note(&mut self, attributes: &[Attribute], name: &str) {
+        if !attributes.iter().any(is_documentation) {
+            self.0.push(name.to_string());
+        }
+    }
+
+    fn items(&mut self, items: &[Item]) {
+        for item in items {
+            self.item(item);
+        }
+    }
+
+    fn item(&mut self, item: &Item) {
+        let is_public = |visibility: &Visibility| matches!(visibility, Visibility::Public(_));
+        match item {
+            Item::Struct(item) if is_public(&item.vis) => {
+                self.note(&item.attrs, &item.ident.to_string());
+                self.fields(&item.fields, &item.ident.to_string(), is_public);
             }
-            _ => continue,
-        };
-        if is_public {
-            declared.push(name);
+            Item::Enum(item) if is_public(&item.vis) => {
+                self.note(&item.attrs, &item.ident.to_string());
+                for variant in &item.variants {
+                    let name = format!("{}::{}", item.ident, variant.ident);
+                    self.note(&variant.attrs, &name);
+                    self.fields(&variant.fields, &name, |_| true);
+                }
+            }
+            Item::Trait(item) if is_public(&item.vis) => {
+                self.note(&item.attrs, &item.ident.to_string());
+                item.items.iter().for_each(|inner| self.trait_item(inner, &item.ident.to_string()));
+            }
+            Item::Type(item) if is_public(&item.vis) => self.note(&item.attrs, &item.ident.to_string()),
+            Item::Const(item) if is_public(&item.vis) => self.note(&item.attrs, &item.ident.to_string()),
+            Item::Static(item) if is_public(&item.vis) => self.note(&item.attrs, &item.ident.to_string()),
+            Item::Fn(item) if is_public(&item.vis) => self.note(&item.attrs, &item.sig.ident.to_string()),
+            Item::Impl(item) if item.trait_.is_none() => self.methods(item, is_public),
+            Item::Mod(item) if !item.attrs.iter().any(is_for_tests) => {
+                let items = item.content.as_ref().map_or(&[][..], |(_, items)| items);
+                self.items(items);
+            }
+            _ => {}
         }
     }
-    (declared, handed_on)
-}
 
-fn is_public(visibility: &Visibility) -> bool {
-    matches!(visibility, Visibility::Public(_))
-}
-
-fn last_names(tree: &UseTree, into: &mut Vec<String>) {
-    match tree {
-        UseTree::Path(path) => last_names(&path.tree, into),
-        UseTree::Name(name) => into.push(name.ident.to_string()),
-        UseTree::Rename(name) => into.push(name.rename.to_string()),
-        UseTree::Group(group) => group.items.iter().for_each(|tree| last_names(tree, into)),
-        UseTree::Glob(_) => {}
-    }
-}
-
-#[test]
-fn no_two_public_types_have_one_name() {
-    let mut files: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
-    for source in super::sources() {
-        for name in public_names(&source.path).0 {
-            files.entry(name).or_default().push(source.path.clone());
+    fn fields(&mut self, fields: &Fields, owner: &str, is_public: impl Fn(&Visibility) -> bool) {
+        for field in fields.iter().filter(|field| is_public(&field.vis)) {
+            if let Some(name) = &field.ident {
+                self.note(&field.attrs, &format!("{owner}.{name}"));
+            }
         }
     }
-    files.retain(|name, files| files.len() > 1 && ALTERNATIVES.iter().all(|(alternative, _)| alternative != name));
-    assert!(files.is_empty(), "public types of one name: {files:?}");
-}
 
-#[test]
-fn no_function_is_named_of() {
-    for source in super::sources() {
-        assert!(!source.code.contains("fn of("), "{}: name what the function gives", source.path.display());
+    fn trait_item(&mut self, item: &TraitItem, owner: &str) {
+        match item {
+            TraitItem::Fn(function) => self.note(&function.attrs, &format!("{owner}::{}", function.sig.ident)),
+            TraitItem::Const(constant) => self.note(&constant.attrs, &format!("{owner}::{}", constant.ident)),
+            TraitItem::Type(inner) => self.note(&inner.attrs, &format!("{owner}::{}", inner.ident)),
+            _ => {}
+        }
     }
-}
 
-#[test]
-fn every_type_of_the_glossary_exists() {
-    let glossary = std::fs::read_to_string("docs/glossary.md").expect("docs/glossary.md");
-    let paths: Vec<&str> = glossary.split('`').filter(|text| text.starts_with("tomcom::")).collect();
-    assert!(paths.len() >= 60, "the glossary has only {} types", paths.len());
-    for path in paths {
-        let parts: Vec<&str> = path.split("::").collect();
-        let [_, modules @ .., name] = parts.as_slice() else { panic!("{path} is no path of a type") };
-        let folder = Path::new("src").join(modules.join("/"));
-        let candidates = [folder.with_extension("rs"), folder.join("mod.rs")];
-        let file = candidates.iter().find(|file| file.is_file()).unwrap_or_else(|| panic!("{path}: no such module"));
-        let (declared, handed_on) = public_names(file);
-        let has_it = declared.iter().chain(&handed_on).any(|found| found == name);
-        assert!(has_it, "docs/glossary.md: {path} is not in {}", file.display());
-    }
-}
-
-#[test]
-fn pages_that_everybody_reads_first_are_short() {
-    for (page, most) in PAGES {
-        let size = std::fs::metadata(page).expect("a page").len() as usize;
-        assert!(size <= most, "{page} has {size} bytes; at most {most}");
+    fn methods(&mut self, item: &ItemImpl, is_public: impl Fn(&Visibility) -> bool) {
+        for inner in &item.items {
+            match inner {
+                ImplItem::Fn(method) if is_public(&method.vis) => {
+                    self.note(&method.attrs, &method.sig.ident.to_string())
+                }
+                ImplItem::Const(constant) if is_public(&constant.vis) => {
+                    self.note(&constant.attrs, &constant.ident.to_string());
+                }
+                _ => {}
+            }
+        }
     }
 }

@@ -3,15 +3,23 @@
 
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use tomcom::base::time::SessionTime;
+use tomcom::communication::settings::Shadow;
+use tomcom::edge::files::read_session;
 use tomcom::edge::rerun::StreamIdentity;
+use tomcom::edge::rrd;
 use tomcom::edge::stream::RerunStream;
-use tomcom::scene::{EntityData, EntityUpdate, SceneUpdate};
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::run::engine::Engine;
+use tomcom::scene::{DerivedData, EntityData, EntityUpdate, SceneUpdate, SessionScene};
+use tomcom::session::Event;
+use tomcom::session::settings::Condition;
 
 const SERVICE: &str = "/rerun.sdk_comms.v1alpha1.MessageProxyService";
 /// What is waited for comes within this time.
@@ -120,6 +128,23 @@ fn pages_of_other_websites_get_nothing() {
     read_until(&mut page, &["access-control-allow-origin: http://127.0.0.1:9090", "opening/entity"]);
 }
 
+/// Takes what comes at a connection, and counts its bytes.
+fn take_all(viewer: &TcpStream) -> Arc<AtomicUsize> {
+    let came = Arc::new(AtomicUsize::new(0));
+    let (counted, mut viewer) = (came.clone(), viewer.try_clone().expect("a socket"));
+    thread::spawn(move || {
+        let mut piece = vec![0; 1 << 16];
+        loop {
+            match viewer.read(&mut piece) {
+                Ok(0) => return,
+                Ok(length) => counted.fetch_add(length, Ordering::Relaxed),
+                Err(_) => 0,
+            };
+        }
+    });
+    came
+}
+
 #[test]
 fn a_viewer_that_stopped_and_many_silent_connections_hold_up_nobody() {
     let stream = stream("stopped");
@@ -127,19 +152,7 @@ fn a_viewer_that_stopped_and_many_silent_connections_hold_up_nobody() {
     let stopped = ask(server, "ReadMessages", &[], &[]);
     let mut reading = ask(server, "ReadMessages", &[], &[]);
     read_until(&mut reading, &["opening/entity"]);
-    let came = Arc::new(AtomicUsize::new(0));
-    let counted = came.clone();
-    let mut copy = reading.try_clone().expect("a socket");
-    thread::spawn(move || {
-        let mut piece = vec![0; 1 << 16];
-        loop {
-            match copy.read(&mut piece) {
-                Ok(0) => return,
-                Ok(length) => counted.fetch_add(length, Ordering::Relaxed),
-                Err(_) => 0,
-            };
-        }
-    });
+    let came = take_all(&reading);
     // More than sockets hold: the first viewer takes none of it.
     let (mut told, mut told_at) = (1, Instant::now());
     wait_until("the reading viewer got too little", || {
@@ -160,4 +173,69 @@ fn a_viewer_that_stopped_and_many_silent_connections_hold_up_nobody() {
         late.read(&mut piece).is_ok_and(|length| piece[..length].starts_with(b"HTTP/1.1 200"))
     });
     drop((silent, stopped));
+}
+
+/// Memory of this process, in MB; none where the system does not tell it so.
+fn resident_mb() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    Some(line.trim().strip_suffix(" kB")?.trim().parse::<f64>().ok()? / 1000.0)
+}
+
+/// Two hours of the default session (arm in the physics, gaze at 120 Hz) at ten times real time, with its file, a viewer that reads and
+/// one that takes nothing. Takes 12 minutes: `cargo test --test library -- --ignored --nocapture two_hours`.
+#[test]
+#[ignore = "takes 12 minutes"]
+fn two_hours_of_a_session_stay_below_200_mb() {
+    const TIMES_REAL: f64 = 10.0;
+    const MOST_MB: f64 = 200.0;
+    let folder = std::env::temp_dir().join(format!("tomcom-two-hours-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    let kitchen = Arc::new(files.kitchen.kitchen);
+    let mut spec = files.spec;
+    (spec.trial.seconds, spec.trial.presses) = (7200.0, u32::MAX);
+    (spec.trial.condition, spec.assistant.shadow) = (Condition::None, Shadow::Off);
+    let mut engine = Engine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen)).without_causes();
+    let mut scene = SessionScene::new(engine.session(), 0);
+    let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).and_then(|one| one.local_addr()).expect("a port");
+    let identity = StreamIdentity { id: rrd::mark(), name: "two hours".to_string() };
+    let file = folder.join(rrd::RRD_NAME);
+    let (fixed, opening) = (scene.fixed(), scene.opening());
+    let stream = RerunStream::open(&identity, Some(&file), Some(free), fixed, opening).expect("a stream");
+    let server = stream.server.expect("a server");
+    let reading = ask(server, "ReadMessages", &[], &[]);
+    let came = take_all(&reading);
+    let _stopped = ask(server, "ReadMessages", &[], &[]);
+    let (began, mut told_at, mut most) = (Instant::now(), 0.0, 0.0_f64);
+    let mut events = engine.input(SessionTime::ZERO, Event::TrialStarted).events;
+    while engine.session().is_running() || !events.is_empty() {
+        let count = events.len();
+        for (index, stamped) in std::mem::take(&mut events).iter().enumerate() {
+            let belief = (index + 1 == count).then(|| engine.belief());
+            stream.tell(scene.see(stamped, DerivedData { judged: engine.judged(), belief }));
+        }
+        let now_s = engine.session().time.as_secs_f64();
+        thread::sleep(Duration::from_secs_f64((now_s / TIMES_REAL - began.elapsed().as_secs_f64()).max(0.0)));
+        if now_s - told_at >= 300.0 {
+            let resident = resident_mb().unwrap_or_default();
+            (told_at, most) = (now_s, most.max(resident));
+            let (read, written) =
+                (came.load(Ordering::Relaxed) >> 20, file.metadata().map_or(0, |file| file.len() >> 20));
+            println!(
+                "{:3.0} min: {resident:.1} MB resident; {read} MB read by a viewer, {written} MB in the file",
+                now_s / 60.0
+            );
+            assert!(resident < MOST_MB, "{resident} MB");
+        }
+        if engine.session().is_running() {
+            events = engine.fire();
+        }
+    }
+    let fares = stream.fares();
+    println!("{} rows, {} dropped; {most:.1} MB at most", fares.written, fares.dropped);
+    assert_eq!(fares.dropped, 0);
+    assert!(stream.close().is_some(), "the file is whole");
+    println!("{:.1} MB after the end of the file", resident_mb().unwrap_or_default());
+    std::fs::remove_dir_all(folder).expect("the folder can be removed");
 }

@@ -156,6 +156,38 @@ fn operate(terminal: &Terminal, session: &Path, out: &Path) {
     terminal.run(&format!("{TOMCOM} operate {} --code A1 --out {}", session.display(), out.display()));
 }
 
+/// The series goes on with the trial that a kill has cut, and comes to its end.
+fn check_goes_on_after_a_kill(other: &Terminal, session: &Path, out: &Path) {
+    operate(other, session, out);
+    other.see("A1: trial 1 is not done");
+    other.key("1");
+    other.see("A1 trial 1/2");
+    // The few presses may have been over before the kill, or not.
+    other.wait("the trial's end", || {
+        if other.screen().contains("PAUSED") {
+            other.key(".");
+            std::thread::sleep(std::time::Duration::from_millis(800));
+        }
+        other.screen().contains(". questionnaire")
+    });
+    other.key(".");
+    answer(other, "4");
+    other.key(".");
+    other.see("A1 trial 2/2");
+    trial(other, ". questionnaire");
+    other.key(".");
+    answer(other, "7");
+    on_until(other, "Debriefing of the wizard");
+    other.wait("the end of the series", || {
+        if other.folder.join("after").exists() {
+            return true;
+        }
+        other.key("Enter");
+        std::thread::sleep(std::time::Duration::from_millis(800));
+        false
+    });
+}
+
 #[test]
 #[serial]
 fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
@@ -185,34 +217,7 @@ fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     assert!(killed.success());
     assert_eq!(first(&session, &out)["next"]["is"], "choose");
     let Some(other) = Terminal::open("plan-goes-on") else { return };
-    operate(&other, &session, &out);
-    other.see("A1: trial 1 is not done");
-    other.key("1");
-    other.see("A1 trial 1/2");
-    // The few presses may have been over before the kill, or not.
-    other.wait("the trial's end", || {
-        if other.screen().contains("PAUSED") {
-            other.key(".");
-            std::thread::sleep(std::time::Duration::from_millis(800));
-        }
-        other.screen().contains(". questionnaire")
-    });
-    other.key(".");
-    answer(&other, "4");
-    other.key(".");
-    other.see("A1 trial 2/2");
-    trial(&other, ". questionnaire");
-    other.key(".");
-    answer(&other, "7");
-    on_until(&other, "Debriefing of the wizard");
-    other.wait("the end of the series", || {
-        if other.folder.join("after").exists() {
-            return true;
-        }
-        other.key("Enter");
-        std::thread::sleep(std::time::Duration::from_millis(800));
-        false
-    });
+    check_goes_on_after_a_kill(&other, &session, &out);
     other.is_whole("0");
     other.see("A1: everything is done");
     let plan = first(&session, &out);

@@ -1,7 +1,7 @@
 //! Raters' codes: agreement, the file beside the log, export and import.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use miette::Diagnostic;
 use tomcom::edge::log::LOG_NAME;
@@ -74,6 +74,32 @@ fn kappa_is_that_of_known_tables() {
     assert_eq!(coded(&[("slip", "slip", 9)]).agreement().kappa_cause, None, "who always says the same proves nothing");
 }
 
+/// A row of a table that is wrong is named with what would be right, and nothing of the table is taken over.
+fn check_wrong_rows(coded: &mut [CodedRecording], recording: &Path, table: &Path) {
+    let name = recording.file_name().expect("a name").to_string_lossy().into_owned();
+    let [first, second] = [0, 1].map(|index| coded[0].codable.errors[index]);
+    let right = format!("{name},R3,{second},slip,");
+    for (row, found, remedy) in [
+        (format!("{name},R1,{first},belief,the_moon"), "the aspect \"the_moon\"", "cooking_pot"),
+        (format!("{name},R1,{first},belief,"), "the cause \"belief\" with the aspect \"\"", "location"),
+        (format!("{name},R1,{first},slip,plate"), "the cause \"slip\" with the aspect \"plate\"", "none"),
+        (format!("{name},R1,{first},hunger,"), "the cause \"hunger\"", "belief, slip, race or other"),
+        (format!("{name},R1,1,slip,"), "press 1, which was no error", &format!("the nearest: {first}")),
+        (format!("{name},R1,first,slip,"), "the press \"first\"", "number"),
+        (format!("{name},R3,{second},race,"), &format!("press {second} again, after line 2"), "one line"),
+        (format!("{name},Jane Doe,{first},slip,"), "the rater \"Jane Doe\"", "never a name"),
+        (format!("elsewhere,R1,{first},slip,"), "the recording \"elsewhere\"", name.as_str()),
+        (format!("{name},R1,{first}"), "found record with 3 fields", "as many fields"),
+    ] {
+        fs::write(table, format!("recording,rater,press,cause,aspect\n{right}\n{row}\n")).expect("written");
+        let told = import(coded, table).expect_err(&row);
+        let help = told.help().map(|help| help.to_string()).unwrap_or_default();
+        let told = told.to_string();
+        assert!(told.contains("codes.csv:3:") && told.contains(found) && help.contains(remedy), "{told}; {help}");
+    }
+    assert!(!recording.join("codes-R3.csv").exists(), "nothing of a table with a wrong row is taken over");
+}
+
 #[test]
 fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     let out = folder("codes");
@@ -112,30 +138,10 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     );
     assert!(fs::read(recording.join(LOG_NAME)).expect("a log") == log, "the log stays as it is");
 
-    let name = recording.file_name().expect("a name").to_string_lossy().into_owned();
-    let [first, second] = [0, 1].map(|index| coded[0].codable.errors[index]);
-    let right = format!("{name},R3,{second},slip,");
-    for (row, found, remedy) in [
-        (format!("{name},R1,{first},belief,the_moon"), "the aspect \"the_moon\"", "cooking_pot"),
-        (format!("{name},R1,{first},belief,"), "the cause \"belief\" with the aspect \"\"", "location"),
-        (format!("{name},R1,{first},slip,plate"), "the cause \"slip\" with the aspect \"plate\"", "none"),
-        (format!("{name},R1,{first},hunger,"), "the cause \"hunger\"", "belief, slip, race or other"),
-        (format!("{name},R1,1,slip,"), "press 1, which was no error", &format!("the nearest: {first}")),
-        (format!("{name},R1,first,slip,"), "the press \"first\"", "number"),
-        (format!("{name},R3,{second},race,"), &format!("press {second} again, after line 2"), "one line"),
-        (format!("{name},Jane Doe,{first},slip,"), "the rater \"Jane Doe\"", "never a name"),
-        (format!("elsewhere,R1,{first},slip,"), "the recording \"elsewhere\"", name.as_str()),
-        (format!("{name},R1,{first}"), "found record with 3 fields", "as many fields"),
-    ] {
-        fs::write(&table, format!("recording,rater,press,cause,aspect\n{right}\n{row}\n")).expect("written");
-        let told = import(&mut coded, &table).expect_err(&row);
-        let help = told.help().map(|help| help.to_string()).unwrap_or_default();
-        let told = told.to_string();
-        assert!(told.contains("codes.csv:3:") && told.contains(found) && help.contains(remedy), "{told}; {help}");
-    }
-    assert!(!recording.join("codes-R3.csv").exists(), "nothing of a table with a wrong row is taken over");
+    check_wrong_rows(&mut coded, &recording, &table);
 
     // The same beside the log, which somebody may have written by hand.
+    let first = coded[0].codable.errors[0];
     for (row, found) in [(format!("{first},belief,the_moon"), "the_moon"), ("1,slip,".to_string(), "no error")] {
         fs::write(recording.join("codes-R3.csv"), format!("press,cause,aspect\n{row}\n")).expect("written");
         let told = CodedRecording::open(&recording).expect_err(&row).to_string();

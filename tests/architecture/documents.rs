@@ -1,0 +1,112 @@
+//! The documents: how long they may be, and that what they name exists.
+
+use std::path::Path;
+
+use syn::visit::Visit;
+use syn::{ItemEnum, ItemStruct, ItemTrait, ItemType, Visibility};
+
+use crate::imports::Imports;
+use crate::sources::{Source, sources};
+
+/// Documents that have to be read in one go, with the most bytes that they may have.
+const MAX_BYTES: [(&str, usize); 2] = [("ARCHITECTURE.md", 12 << 10), ("README.md", 8 << 10)];
+
+fn read(name: &str) -> String {
+    std::fs::read_to_string(name).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+#[test]
+fn documents_stay_short() {
+    for (name, most) in MAX_BYTES {
+        let bytes = read(name).len();
+        assert!(bytes <= most, "{name}: {bytes} bytes, more than {most}: details of a module stand in its own comment");
+    }
+}
+
+/// Paths in backticks that begin with a folder or file of the repository.
+#[test]
+fn every_path_in_the_architecture_exists() {
+    let text = read("ARCHITECTURE.md");
+    let roots = ["src/", "tests/", "layouts/", "recipes/", "sessions/", "benches/", "docs/", "examples/", ".ci/"];
+    let is_path = |path: &&str| roots.iter().any(|root| path.starts_with(root)) && !path.contains(' ');
+    let paths: Vec<&str> = quoted(&text).filter(is_path).collect();
+    assert!(!paths.is_empty(), "ARCHITECTURE.md names no path");
+    for path in paths.into_iter().flat_map(braced) {
+        let is_there = match path.split_once('*') {
+            Some((folder, _)) => Path::new(folder.rsplit_once('/').map_or(folder, |(folder, _)| folder)).exists(),
+            None => Path::new(path.split(':').next().unwrap_or(&path)).exists(),
+        };
+        assert!(is_there, "ARCHITECTURE.md names {path}");
+    }
+}
+
+/// What stands between backticks.
+fn quoted(text: &str) -> impl Iterator<Item = &str> {
+    text.split('`').skip(1).step_by(2)
+}
+
+/// `src/{a,b}` stands for `src/a` and `src/b`.
+fn braced(path: &str) -> Vec<String> {
+    match (path.split_once('{'), path.split_once('}')) {
+        (Some((before, rest)), Some((_, after))) => {
+            let list = rest.split('}').next().unwrap_or_default();
+            list.split(',').map(|name| format!("{before}{}{after}", name.trim())).collect()
+        }
+        _ => vec![path.to_string()],
+    }
+}
+
+/// Types that the glossary gives with their path, as another crate would write it.
+#[test]
+fn every_type_of_the_glossary_exists() {
+    let (text, sources) = (read("docs/glossary.md"), sources());
+    let imports = Imports::read(&sources);
+    let paths: Vec<&str> = quoted(&text).filter_map(|path| path.strip_prefix("tomcom::")).collect();
+    assert!(paths.len() >= 60, "the glossary names {} types", paths.len());
+    let missing: Vec<&str> = paths.into_iter().filter(|path| !exists(path, &sources, &imports)).collect();
+    assert!(missing.is_empty(), "docs/glossary.md names types that do not exist:\n{}", missing.join("\n"));
+}
+
+/// Whether there is a public type at this path from the crate's root.
+fn exists(path: &str, sources: &[Source], imports: &Imports) -> bool {
+    let names: Vec<String> = path.split("::").map(str::to_string).collect();
+    let Some((file, rest)) = imports.place(&names) else { return false };
+    let source = sources.iter().find(|source| source.path == file).expect("a source file");
+    matches!(&rest[..], [name] if defines(source, name))
+}
+
+/// Looks for a public type by its name.
+struct TypeSearch<'a> {
+    name: &'a str,
+    found: bool,
+}
+
+fn defines(source: &Source, name: &str) -> bool {
+    let mut search = TypeSearch { name, found: false };
+    search.visit_file(&source.parsed);
+    search.found
+}
+
+impl TypeSearch<'_> {
+    fn look(&mut self, visibility: &Visibility, name: &syn::Ident) {
+        self.found |= matches!(visibility, Visibility::Public(_)) && name == self.name;
+    }
+}
+
+impl<'ast> Visit<'ast> for TypeSearch<'_> {
+    fn visit_item_struct(&mut self, item: &'ast ItemStruct) {
+        self.look(&item.vis, &item.ident);
+    }
+
+    fn visit_item_enum(&mut self, item: &'ast ItemEnum) {
+        self.look(&item.vis, &item.ident);
+    }
+
+    fn visit_item_trait(&mut self, item: &'ast ItemTrait) {
+        self.look(&item.vis, &item.ident);
+    }
+
+    fn visit_item_type(&mut self, item: &'ast ItemType) {
+        self.look(&item.vis, &item.ident);
+    }
+}

@@ -7,7 +7,7 @@ use std::time::Instant;
 use nalgebra::Point3;
 use tomcom::arm::controller::PhysicalArm;
 use tomcom::arm::physics::CYCLE_S;
-use tomcom::arm::physics::hand::HandPose;
+use tomcom::arm::physics::hand_body::HandPose;
 use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::{Agent, ButtonId};
 use tomcom::robot::moment::ArmPhase;

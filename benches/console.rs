@@ -11,7 +11,7 @@ use ratatui::backend::CrosstermBackend;
 use ratatui::layout::Rect;
 use ratatui::{Terminal, TerminalOptions, Viewport};
 use tomcom::base::time::SessionTime;
-use tomcom::console::model::RecordingStatus;
+use tomcom::console::console_model::RecordingStatus;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleModel, KeyBindings, KeyMap, view};
 use tomcom::history::belief_track::BeliefSnapshot;

@@ -8,10 +8,10 @@ mod failure;
 mod operate;
 mod output;
 #[cfg(feature = "rerun")]
-mod rerun;
+mod rerun_messages;
 #[cfg(not(feature = "rerun"))]
 #[path = "cli/without_rerun.rs"]
-mod rerun;
+mod rerun_messages;
 mod review;
 mod simulation;
 mod study;
@@ -40,7 +40,7 @@ use crate::edge::key_file;
 use crate::edge::log::{self, LogEnding, LogReader};
 use crate::run::plan::{self, StudyPlanSummary};
 use crate::run::replay::Replay;
-use crate::run::review as console_over;
+use crate::run::review_console as console_over;
 use crate::run::{options, standing, timing, verify};
 
 /// Exit code: something failed.

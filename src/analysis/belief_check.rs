@@ -13,11 +13,11 @@ use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Change, Kitchen, LocationId, Press};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
-use crate::measures::beliefs::{Detection, EstimateView, PressView, TrialView};
+use crate::measures::belief_detection::{Detection, EstimateView, PressView, TrialView};
 use crate::measures::flags::{MOST_FALSE_FLAGS, Thresholds};
 use crate::measures::likelihood::LogLikelihood;
 use crate::mind::belief::Belief;
-use crate::mind::decision::DecisionModel;
+use crate::mind::choice_parameters::DecisionModel;
 use crate::session::{Event, Session, Stamped};
 
 /// The seed of the bootstrap: the same recordings give the same interval.

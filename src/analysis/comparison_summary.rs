@@ -15,7 +15,7 @@ use crate::history::belief_track::AspectSnapshot;
 use crate::history::comparison::{Communication, UnmatchedCommunication};
 use crate::kitchen::AspectId;
 use crate::measures::matching::{CommunicationEvent, MatchCounts, MatchShares, Similarity, WINDOW};
-use crate::session::screen::VisibleScreen;
+use crate::session::wizard_screen::VisibleScreen;
 
 /// So many differences of a kind are listed for people.
 const LISTED: usize = 20;

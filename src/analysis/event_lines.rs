@@ -10,13 +10,13 @@ use crate::kitchen::{Agent, Kitchen};
 use crate::measures::attribution::Cause;
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::BeliefWitness;
-use crate::mind::witness::{AspectEstimate, EstimateWitness};
+use crate::mind::recorded_estimate::{AspectEstimate, EstimateWitness};
 use crate::robot::IdleReason;
 use crate::robot::safety::SafetyMode;
-use crate::session::display::DisplayEvent;
 use crate::session::event::{EndReason, SignalEnd};
-use crate::session::preflight::{PreflightCheck, PreflightVerdict};
-use crate::session::screen::VisibleScreen;
+use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
+use crate::session::wall_display::DisplayEvent;
+use crate::session::wizard_screen::VisibleScreen;
 use crate::session::{Event, Phase, Stamped};
 
 /// What stands above the lines.

@@ -12,7 +12,7 @@ use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::{BeliefFilter, Evidence};
 use crate::mind::observation::{Observation, Observed};
-use crate::mind::witness::EstimateWitness;
+use crate::mind::recorded_estimate::EstimateWitness;
 use crate::session::apply::ApplyError;
 use crate::session::{Applied, Event, Session, Stamped, apply};
 

@@ -12,7 +12,7 @@ use crate::communication::{Signal, signals, unavailable};
 use crate::history::wording;
 use crate::kitchen::{AspectId, Kitchen};
 use crate::measures::matching::{CommunicationEvent, CommunicationKind, CommunicationTarget, MatchCounts, WINDOW};
-use crate::measures::wizard::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
+use crate::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
 use crate::mind::BeliefWitness;
 use crate::session::Session;
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
-use crate::measures::wizard::{TrainingCriterion, WizardMeasures};
+use crate::measures::wizard_performance::{TrainingCriterion, WizardMeasures};
 
 /// A wizard's training at one time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -29,8 +29,8 @@ use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::BeliefFilter;
 use crate::mind::observation::{Observation, Observed};
 use crate::session::apply::ApplyError;
-use crate::session::screen::VisibleScreen;
 use crate::session::settings::Condition;
+use crate::session::wizard_screen::VisibleScreen;
 use crate::session::{Applied, Event, Session, SessionSpec, Stamped};
 
 /// Which concepts to compare, and the window.

@@ -7,10 +7,10 @@ use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::Sender;
 use crate::communication::recommendation::aspects_told;
-use crate::measures::wizard::{FalseBeliefPeriod, WizardMeasures, WizardSignal};
+use crate::measures::wizard_performance::{FalseBeliefPeriod, WizardMeasures, WizardSignal};
 use crate::session::event::SignalEnd;
-use crate::session::screen::VisibleScreen;
 use crate::session::settings::ParticipantKind;
+use crate::session::wizard_screen::VisibleScreen;
 use crate::session::{Event, Session, Stamped};
 
 /// The wizard's signals, each with what was on the wizard's screen.

@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 
 use super::clearance::ArmSurroundings;
 use super::kinematics::Arm;
-use super::physics::hand::HandPose;
+use super::physics::hand_body::HandPose;
 use super::physics::{CYCLE_S, CycleForces, PhysicsWorld};
 use super::reach::{ButtonPoses, Unreachable, resting_pose};
 use super::report::PressFailure;

@@ -8,7 +8,7 @@ use nalgebra::Point3;
 use rand::RngExt;
 
 use super::physics::CYCLE_S;
-use super::physics::hand::HandPose;
+use super::physics::hand_body::HandPose;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, Kitchen};

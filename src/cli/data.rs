@@ -11,7 +11,7 @@ use super::output::{OutputFormat, print, progress, put_aside};
 use crate::base::words::count;
 use crate::edge::forget::{self, ParticipantData};
 use crate::run::codes::{self, CodedRecording, CodesSummary};
-use crate::run::review;
+use crate::run::review_console;
 use crate::session::participant_code;
 use crate::session::settings::is_code;
 
@@ -62,7 +62,7 @@ pub(super) fn rate(recording: &Path, rater: &str) -> Result<(), Failure> {
         let help = "a terminal; tomcom codes takes codes from a table";
         return Err(Failure::Wrong(miette::miette!(help = help, "found no terminal to code errors at")));
     }
-    Ok(review::rate(recording, rater)?)
+    Ok(review_console::rate(recording, rater)?)
 }
 
 /// Deletes everything about a participant below a folder.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::rerun::open;
+use super::rerun_messages::open;
 use crate::base::features::Feature;
 use crate::base::time::SessionTime;
 

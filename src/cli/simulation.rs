@@ -3,7 +3,7 @@
 use super::args::SimulateArgs;
 use super::failure::{Failure, wrong_argument};
 use super::output::{print, progress, put_aside};
-use super::rerun::save_all;
+use super::rerun_messages::save_all;
 use crate::base::features::Feature;
 use crate::communication::concept::ConceptName;
 use crate::communication::settings::Shadow;

@@ -15,10 +15,10 @@ use crate::communication::concept::ConceptName;
 use crate::console::playback::SPEEDS;
 use crate::edge::training;
 use crate::measures::matching::WINDOW;
-use crate::measures::wizard::TrainingCriterion;
+use crate::measures::wizard_performance::TrainingCriterion;
 use crate::run::similarity;
 use crate::run::train::{self, TrainingRequest};
-use crate::run::{review, series, simulate};
+use crate::run::{review_console, series, simulate};
 use crate::session::settings::is_code;
 
 /// Compares a wizard's signals with those that assistants would have sent.
@@ -114,7 +114,7 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
             let help = "the folder of one recording";
             return Err(Failure::Wrong(miette::miette!(help = help, "found --follow and {} paths", args.paths.len())));
         };
-        return Ok(review::review(recording, true, Some(&request(args.window)))?);
+        return Ok(review_console::review(recording, true, Some(&request(args.window)))?);
     }
     let windows: Vec<u32> = if args.sweep { similarity::SWEEP.collect() } else { vec![args.window] };
     let bar = progress((args.paths.len() * windows.len()) as u64, "recordings");

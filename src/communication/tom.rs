@@ -12,7 +12,7 @@ use super::recommendation::{Reason, Recommendation, SignalOption, aspects_told};
 use super::signal::{Signal, unavailable};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::mind::witness::rounded;
+use crate::mind::recorded_estimate::rounded;
 
 /// The ToM concept.
 #[derive(Clone, Debug)]

@@ -1,13 +1,13 @@
 //! Coding the errors of a recording: which error one stands at, and what the rater says about it.
 
+use super::console_message::ConsoleCommand;
+use super::console_model::ConsoleModel;
 use super::key_action::RaterKey;
-use super::message::ConsoleCommand;
-use super::model::ConsoleModel;
 use super::notice::NoticeLevel;
 use super::playback::ReplayKey;
 use crate::history::wording;
 use crate::kitchen::Kitchen;
-use crate::measures::coding::Code;
+use crate::measures::cause_codes::Code;
 use crate::session::{Session, TimelineEvent};
 
 /// A press in words: its button, and whether it did anything.

@@ -3,8 +3,8 @@
 
 use crossterm::event::KeyCode;
 
-use super::message::ConsoleCommand;
-use super::model::ConsoleModel;
+use super::console_message::ConsoleCommand;
+use super::console_model::ConsoleModel;
 use super::notice::NoticeLevel;
 use super::sending::send;
 use crate::session::plan::{PhaseSpec, Questionnaire};

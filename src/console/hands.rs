@@ -1,8 +1,8 @@
 //! Manual interventions at the console: keys that correct the kitchen and the robot, and the lists that they open.
 
+use super::console_message::ConsoleCommand;
+use super::console_model::{ConsoleModel, Dialog};
 use super::key_action::ManualAction;
-use super::message::ConsoleCommand;
-use super::model::{ConsoleModel, Dialog};
 use super::note::TextInput;
 use super::notice::NoticeLevel;
 use super::picker::{Picker, PickerAnswer, PickerOutcome, PickerQuestion};
@@ -47,7 +47,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
             model.dialog = Some(Dialog::Note(TextInput::default()));
             None
         }
-        ManualAction::Calibrate => super::calibration::begin(model, session),
+        ManualAction::Calibrate => super::gaze_targets::begin(model, session),
         ManualAction::Redo => redo(model, session),
         ManualAction::Exclude if session.excluded.is_some() => {
             send(model, session, Event::TrialIncluded, NoticeLevel::Done, "the trial is no longer excluded")

@@ -8,7 +8,7 @@ use super::compared::ComparisonKey;
 use super::playback::ReplayKey;
 use crate::communication::Signal;
 use crate::kitchen::{ButtonId, LocationId};
-use crate::measures::coding::CauseKind;
+use crate::measures::cause_codes::CauseKind;
 
 /// Key layer: the wizard's keys, or the buttons of a person who plays the participant at this keyboard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,19 +2,19 @@
 //! Whatever affects participant, robot or analysis becomes an event; everything else stays in the [`ConsoleModel`].
 
 pub mod arrange;
-pub mod calibration;
 pub mod chord;
 pub mod coding;
 pub mod compared;
-pub mod display;
+pub mod console_message;
+pub mod console_model;
+pub mod display_status;
 pub mod form;
+pub mod gaze_targets;
 pub mod hands;
 pub mod key_action;
 pub mod keymap;
 pub mod keys;
 pub mod lesson;
-pub mod message;
-pub mod model;
 pub mod note;
 pub mod notice;
 pub mod panel;
@@ -30,9 +30,9 @@ mod table;
 pub mod update;
 pub mod view;
 
+pub use console_message::{ConsoleCommand, ConsoleMessage};
+pub use console_model::ConsoleModel;
 pub use keymap::KeyMap;
 pub use keys::KeyBindings;
-pub use message::{ConsoleCommand, ConsoleMessage};
-pub use model::ConsoleModel;
 pub use update::update;
 pub use view::view;

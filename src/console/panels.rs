@@ -2,9 +2,9 @@
 //! [`super::screen`] records what the wizard's screen shows.
 
 use super::arrange::{KitchenMap, MapElement};
+use super::console_model::{ConsoleModel, Dialog};
 use super::key_action::KeyLayer;
 use super::key_action::PanelKey;
-use super::model::{ConsoleModel, Dialog};
 use super::notice::NoticeLevel;
 use super::panel::Panel;
 use super::view::dialog::help_pages;

@@ -5,14 +5,14 @@ use core::net::SocketAddr;
 
 use crossterm::event::KeyCode;
 
-use super::display::DisplayHealth;
+use super::console_message::ConsoleCommand;
+use super::console_model::{ConsoleModel, Dialog, RecordingStatus, ViewerStreamStatus};
+use super::display_status::DisplayHealth;
 use super::key_action::KeyAction;
 use super::key_action::ManualAction;
-use super::message::ConsoleCommand;
-use super::model::{ConsoleModel, Dialog, RecordingStatus, ViewerStreamStatus};
 use super::notice::NoticeLevel;
 use crate::session::admit::admit;
-use crate::session::preflight::{PreflightCheck, PreflightVerdict, participant, space};
+use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, participant, space};
 use crate::session::{Event, Session};
 
 /// The key that overrides failed checks and starts the trial.

@@ -1,7 +1,7 @@
 //! A rater's codes of the errors in a recording.
 
 use crate::kitchen::Kitchen;
-use crate::measures::coding::{Code, Codes};
+use crate::measures::cause_codes::{Code, Codes};
 
 /// The codes of one rater for a recording so far.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,11 +1,11 @@
 //! The visible content of the wizard's screen, for the log.
 
+use super::console_model::{ConsoleModel, Dialog};
 use super::form::sheet;
-use super::model::{ConsoleModel, Dialog};
 use super::picker::PickerQuestion;
 use super::view::regions::{LEAST, Regions, ScreenSize};
 use crate::session::Session;
-use crate::session::screen::VisibleScreen;
+use crate::session::wizard_screen::VisibleScreen;
 
 /// The visible content of the screen.
 pub fn screen(session: &Session, model: &ConsoleModel) -> VisibleScreen {

@@ -1,7 +1,7 @@
 //! Sends inputs to the session, or says to the wizard why it takes none.
 
-use super::message::ConsoleCommand;
-use super::model::ConsoleModel;
+use super::console_message::ConsoleCommand;
+use super::console_model::ConsoleModel;
 use super::notice::NoticeLevel;
 use crate::session::admit::{admit, hygiene};
 use crate::session::{Event, Session};

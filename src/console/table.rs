@@ -14,7 +14,7 @@ use super::playback::ReplayKey;
 use crate::communication::{self, Signal};
 use crate::history::landmark::ReplayLandmark;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId};
-use crate::measures::coding::CauseKind;
+use crate::measures::cause_codes::CauseKind;
 use crate::session::settings::MAX_NOTES;
 
 const SIGNALS: &str = "Signals to the participant";

@@ -6,13 +6,13 @@ use super::arrange::KitchenMap;
 use super::chord::KeyChord;
 use super::coding;
 use super::compared::ComparisonKey;
+use super::console_message::{ConsoleCommand, ConsoleMessage};
+use super::console_model::{ConsoleModel, Dialog, PressedKey};
 use super::form::{self, sheet};
 use super::hands;
 use super::key_action::ManualAction;
 use super::key_action::PanelKey;
 use super::key_action::{KeyAction, KeyLayer};
-use super::message::{ConsoleCommand, ConsoleMessage};
-use super::model::{ConsoleModel, Dialog, PressedKey};
 use super::notice::NoticeLevel;
 use super::panels;
 use super::preflight;
@@ -99,7 +99,7 @@ fn pressed(model: &mut ConsoleModel, session: &Session, key: &KeyEvent) -> Optio
             preflight::answer(model, session, chord.code, action, touch == Touch::Press)
         }
         _ if model.dialog == Some(Dialog::Calibration) => {
-            super::calibration::answer(model, session, chord.code, touch == Touch::Press)
+            super::gaze_targets::answer(model, session, chord.code, touch == Touch::Press)
         }
         _ if touch == Touch::Held => {
             if model.dialog.is_none() {

@@ -5,9 +5,9 @@
 //! `sight` computes what the participant may see now, `scene` what stays the same: a whitelist, so that a new field of the session is
 //! invisible until it is added here. The page always gets the whole sight, so a lost message, a second page and a restart are the same case.
 
+pub mod page_language;
 mod scene;
 mod sight;
-pub mod words;
 
 pub use scene::{DisplayScene, scene};
 pub use sight::{DisplayStage, DisplayUpdate, sight};

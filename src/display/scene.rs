@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::words::DisplayWords;
+use super::page_language::DisplayWords;
 use crate::gaze::tags::DisplayTags;
 use crate::kitchen::{Agent, Appearance, ButtonAction, Kitchen, LocationKind};
-use crate::session::display::Names;
 use crate::session::settings::GazeSource;
+use crate::session::wall_display::Names;
 use crate::session::{Session, SessionSpec};
 
 /// Where something is on the display: fractions of its width and height, the origin at the top left.

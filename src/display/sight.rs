@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
-use super::words::DisplayWords;
+use super::page_language::DisplayWords;
 use crate::communication::Signal;
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind, OrderContent};
-use crate::session::calibration::RunningGazeCheck;
-use crate::session::display::Answering;
+use crate::session::accuracy_check::RunningGazeCheck;
 use crate::session::plan::PhaseSpec;
 use crate::session::protocol::ItemAnswer;
+use crate::session::wall_display::Answering;
 use crate::session::{Phase, Session, TimelineEvent};
 
 /// What the participant sees of the session now; always the whole of it.

@@ -19,7 +19,7 @@ use super::terminal::theme;
 use crate::base::features::Feature;
 use crate::console::view::theme::TerminalBackground;
 use crate::session::SessionSpec;
-use crate::session::preflight::{PreflightCheck, PreflightVerdict, space};
+use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, space};
 use crate::session::settings::ConsoleSpec;
 
 /// The console breathes from here on, in columns and rows.

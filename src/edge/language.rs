@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::file_error::{FileResult, missing, read_text};
 use super::parse::{FileKind, ParsedFile, parse};
 use crate::session::SessionSpec;
-use crate::session::display::DisplaySpec;
+use crate::session::wall_display::DisplaySpec;
 
 /// A file with words, by their English originals.
 #[derive(Clone, Debug, PartialEq, Deserialize)]

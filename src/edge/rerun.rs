@@ -4,8 +4,8 @@
 //! The program never connects to a viewer: one that is slow or stopped would hold up the stream, and the file with it.
 //! Viewers connect to the program (`rerun/viewer_server.rs`), and take what is kept for them.
 
+mod blueprint;
 mod kept_messages;
-mod layout;
 mod viewer_server;
 
 use std::io;
@@ -22,13 +22,13 @@ use re_sdk_types::archetypes;
 use re_sdk_types::components::{Color, FillMode, InterpolationMode, MarkerShape, TextLogLevel};
 use re_sdk_types::datatypes::Quaternion;
 
-use self::layout::{APPLICATION, ViewerLayout, ViewerStart};
-pub use self::layout::{StreamLane, TRIAL_TIME};
+use self::blueprint::{APPLICATION, ViewerLayout, ViewerStart};
+pub use self::blueprint::{StreamLane, TRIAL_TIME};
 use self::viewer_server::ViewerServer;
 use crate::arm::link::{CollisionSolid, LinkShape};
 use crate::base::printable::{printable, printable_lines};
 use crate::base::time::SessionTime;
-use crate::scene::shown::{LogLevel, SceneArea, SceneDisc, ScenePoint, SceneSeries};
+use crate::scene::entity_content::{LogLevel, SceneArea, SceneDisc, ScenePoint, SceneSeries};
 use crate::scene::{EntityData, EntityUpdate, SceneUpdate};
 
 /// The version of Rerun that streams are written with; viewers of the same version read them.

@@ -14,7 +14,7 @@ use crate::measures::matching::{
     CommunicationEvent, CommunicationKind, CommunicationTarget, MatchCounts, MatchCriterion, Similarity, matched,
 };
 use crate::measures::sequences::FALSE_BELOW;
-use crate::session::screen::VisibleScreen;
+use crate::session::wizard_screen::VisibleScreen;
 
 /// A P(truth) of at least this counts as sure.
 const SURE: f64 = 0.9;

@@ -7,7 +7,7 @@ use crate::gaze::quality::DropCounts;
 use crate::kitchen::{Agent, ButtonAction, Kitchen, LocationId, OrderContent};
 use crate::robot::moment::ArmPhase;
 use crate::robot::safety::SafetyMode;
-use crate::session::calibration::CalibrationEvent;
+use crate::session::accuracy_check::CalibrationEvent;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::plan::PhaseSpec;
 use crate::session::protocol::ProtocolEvent;

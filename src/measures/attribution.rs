@@ -12,7 +12,7 @@ use crate::kitchen::{
 };
 use crate::mind::ChoiceModel;
 use crate::mind::belief::Belief;
-use crate::mind::decision::DecisionModel;
+use crate::mind::choice_parameters::DecisionModel;
 
 /// Least likelihood ratio of belief to truth for a belief related error.
 pub const LIKELIER: f64 = 3.0;

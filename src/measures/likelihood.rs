@@ -11,7 +11,7 @@ use crate::base::rng::stream;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen, WeightedWorlds, World};
 use crate::mind::ChoiceModel;
-use crate::mind::decision::DecisionModel;
+use crate::mind::choice_parameters::DecisionModel;
 
 /// Number of bootstrap resamples.
 const RESAMPLES: usize = 2000;

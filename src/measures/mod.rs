@@ -8,8 +8,8 @@
 //! - Communication: `median`, [`matching`] of two lanes, [`wizard`]. [`coding`] by people has its agreement from `matching`.
 
 pub mod attribution;
-pub mod beliefs;
-pub mod coding;
+pub mod belief_detection;
+pub mod cause_codes;
 pub mod detection;
 pub mod errors;
 pub mod flags;
@@ -19,7 +19,7 @@ pub mod matching;
 mod median;
 mod press_view;
 pub mod sequences;
-pub mod wizard;
+pub mod wizard_performance;
 
 pub use judged_press::JudgedPress;
 pub use median::median;

@@ -2,7 +2,7 @@
 
 use super::sequences::FALSE_BELOW;
 use crate::kitchen::{AspectId, ButtonId, State};
-use crate::mind::witness::EstimateWitness;
+use crate::mind::recorded_estimate::EstimateWitness;
 
 /// Belief and estimate directly before a press of the human.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,7 +6,7 @@
 //! attribution uses all probabilities. The plain references of filter and planner implement the same model a second time, so
 //! that the tests can compare the two.
 
-use super::decision::DecisionModel;
+use super::choice_parameters::DecisionModel;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, ButtonId, Kitchen, WeightedWorlds};
 

@@ -2,14 +2,14 @@
 
 pub mod belief;
 pub mod choice;
-pub mod decision;
+pub mod choice_parameters;
 pub mod dirichlet;
 pub mod filter;
 pub mod fitting;
 pub mod model;
 pub mod observation;
+pub mod recorded_estimate;
 pub mod reference;
-pub mod witness;
 
 use std::collections::BTreeMap;
 

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::decision::DecisionModel;
+use super::choice_parameters::DecisionModel;
 
 /// All parameters of the human model, and the sample sizes of its inference.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

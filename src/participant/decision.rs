@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 
 use rand::RngExt;
 
-use super::beliefs::ParticipantBeliefs;
 use super::population::chance;
+use super::true_beliefs::ParticipantBeliefs;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;

@@ -2,9 +2,9 @@
 
 use rand::RngExt;
 
-use super::beliefs::wanted_dish;
 use super::population::{chance, normal};
 use super::simulated::{ParticipantAction, SimulatedParticipant};
+use super::true_beliefs::wanted_dish;
 use super::{decision, witness};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;

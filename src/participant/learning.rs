@@ -1,6 +1,6 @@
 //! Belief changes of the simulated participant after its own effective and ineffective presses.
 
-use super::beliefs::ParticipantBeliefs;
+use super::true_beliefs::ParticipantBeliefs;
 use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, LocationId, State};
 
 /// Probability that the participant assigns to the expected result of its own effective press.

@@ -2,10 +2,10 @@
 
 use rand::RngExt;
 
-use super::beliefs::wanted_dish;
 use super::eyes::FixationProgress;
 use super::population::chance;
 use super::simulated::SimulatedParticipant;
+use super::true_beliefs::wanted_dish;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::kitchen::{Agent, AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};

@@ -3,8 +3,8 @@
 
 use rand::RngExt;
 
-use super::beliefs::ParticipantBeliefs;
 use super::population::{Individual, Population, normal};
+use super::true_beliefs::ParticipantBeliefs;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::{ContentId, DishId, Kitchen};

@@ -11,7 +11,6 @@
 
 mod acting;
 mod attention;
-pub mod beliefs;
 mod decision;
 mod eyes;
 mod hand;
@@ -22,6 +21,7 @@ pub mod population;
 mod simulated;
 mod targets;
 mod thinking;
+pub mod true_beliefs;
 mod witness;
 
 pub use simulated::{ParticipantAction, SimulatedParticipant};

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::attention::Attention;
-use super::beliefs::ParticipantBeliefs;
 use super::decision::Intent;
 use super::eyes::Eyes;
 use super::memory::Memory;
 use super::population::{Experience, Individual, Population};
+use super::true_beliefs::ParticipantBeliefs;
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::communication::Signal;

@@ -1,8 +1,8 @@
 //! Interpretation of events by the simulated participant (own presses, robot presses, passing time), and decisions on next presses.
 
-use super::beliefs::wanted_dish;
 use super::population::chance;
 use super::simulated::SimulatedParticipant;
+use super::true_beliefs::wanted_dish;
 use super::{decision, learning};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;

@@ -1,7 +1,7 @@
 //! Record of a participant's beliefs at a press, and of the cause of the press.
 
-use super::beliefs::ParticipantBeliefs;
 use super::decision::good_presses;
+use super::true_beliefs::ParticipantBeliefs;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{AspectId, AspectKind, ButtonId, ContentId, Kitchen, Recipes, State};
 use crate::mind::{AspectBelief, BeliefWitness, WORTH_TELLING};

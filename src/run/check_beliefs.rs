@@ -8,7 +8,7 @@ use super::replay::{Replay, SameKitchen, each_once};
 use crate::analysis::belief_check::{BeliefCheck, PressViews};
 use crate::edge::file_error::FileResult;
 use crate::kitchen::Kitchen;
-use crate::measures::beliefs::TrialView;
+use crate::measures::belief_detection::TrialView;
 use crate::measures::flags::Thresholds;
 
 /// Checks the pooled recordings of one kitchen. `done` is called after each recording.

@@ -9,8 +9,8 @@ use super::error::RunError;
 use super::replay::Replay;
 use crate::base::words::count;
 use crate::edge::file_error::FileResult;
-use crate::edge::log::codes;
-use crate::measures::coding::{Agreement, AgreementTable, Codable, Codes};
+use crate::edge::log::rater_codes;
+use crate::measures::cause_codes::{Agreement, AgreementTable, Codable, Codes};
 use crate::session::settings::{ParticipantKind, is_code};
 
 /// A recording with the codes of its errors.
@@ -43,7 +43,7 @@ impl CodedRecording {
         let folder = replay.log().folder().to_path_buf();
         let codable = Codable::from_presses(kitchen, judged);
         Ok(CodedRecording {
-            codes: codes::read_all(&folder, &codable)?,
+            codes: rater_codes::read_all(&folder, &codable)?,
             codable,
             known: is_known.then(|| Codes::known(kitchen, judged)),
             folder,
@@ -129,11 +129,11 @@ impl CodesSummary {
 /// # Errors
 /// The file cannot be read, a row does not refer to an error of these recordings, or a folder is not writable.
 pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, RunError> {
-    let (text, rows) = codes::read_export(file)?;
+    let (text, rows) = rater_codes::read_export(file)?;
     let mut changed = vec![Vec::new(); recordings.len()];
     let names: Vec<String> = recordings.iter().map(CodedRecording::name).collect();
     for row in &rows {
-        let wrong = |found: String, remedy: &str| codes::wrong_line(file, &text, row.line, found, remedy);
+        let wrong = |found: String, remedy: &str| rater_codes::wrong_line(file, &text, row.line, found, remedy);
         let Some(index) = names.iter().position(|name| *name == row.recording) else {
             let found = format!("the recording \"{}\"", row.recording);
             let remedy = format!("a recording that was named: {}", names.join(", "));
@@ -154,7 +154,7 @@ pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, Run
         raters.sort();
         raters.dedup();
         for rater in raters {
-            codes::write(&one.folder, &rater, &one.codes[&rater])?;
+            rater_codes::write(&one.folder, &rater, &one.codes[&rater])?;
         }
     }
     Ok(rows.len() as u64)
@@ -168,7 +168,7 @@ pub fn export(recordings: &[CodedRecording], file: &Path) -> Result<u64, RunErro
     let mut rows = Vec::new();
     for one in recordings {
         for (rater, codes) in &one.codes {
-            rows.extend(codes.0.iter().map(|(press, code)| codes::CodeRow {
+            rows.extend(codes.0.iter().map(|(press, code)| rater_codes::CodeRow {
                 line: 0,
                 recording: one.name(),
                 rater: rater.clone(),
@@ -177,7 +177,7 @@ pub fn export(recordings: &[CodedRecording], file: &Path) -> Result<u64, RunErro
             }));
         }
     }
-    codes::write_export(file, &rows)?;
+    rater_codes::write_export(file, &rows)?;
     Ok(rows.len() as u64)
 }
 

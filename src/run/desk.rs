@@ -23,7 +23,7 @@ use crate::gaze::surface::SurfaceMap;
 use crate::gaze::tags::{DisplayTags, TagError};
 use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
-use crate::session::calibration::AcceptedGazeCheck;
+use crate::session::accuracy_check::AcceptedGazeCheck;
 use crate::session::settings::{ConsoleSpec, GazeSource};
 
 /// Largest number of tracker messages that are processed together, so that keys are not delayed.

@@ -22,6 +22,8 @@ pub mod headless;
 pub mod leaving;
 #[cfg(feature = "cli")]
 pub mod live;
+#[cfg(all(feature = "cli", feature = "rerun"))]
+pub mod open_viewer;
 #[cfg(feature = "cli")]
 pub mod options;
 #[cfg(feature = "cli")]
@@ -29,15 +31,11 @@ pub mod parallel;
 #[cfg(feature = "cli")]
 pub mod plan;
 #[cfg(feature = "cli")]
-mod question;
-#[cfg(feature = "cli")]
 pub mod replay;
-#[cfg(all(feature = "cli", feature = "rerun"))]
-pub mod rerun;
 #[cfg(feature = "cli")]
 pub mod resume;
 #[cfg(feature = "cli")]
-pub mod review;
+pub mod review_console;
 #[cfg(feature = "cli")]
 pub mod seekable_replay;
 #[cfg(feature = "cli")]
@@ -64,3 +62,5 @@ mod unfinished_recording;
 pub mod verify;
 #[cfg(feature = "cli")]
 mod watch_desk;
+#[cfg(feature = "cli")]
+mod wizard_question;

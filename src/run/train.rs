@@ -16,7 +16,7 @@ use crate::console::playback::SPEEDS;
 use crate::edge::clock::WallTime;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::training;
-use crate::measures::wizard::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
+use crate::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
 use crate::session::settings::{Condition, Visibility};
 
 /// Request of `tomcom train`.

@@ -12,8 +12,8 @@ use crate::analysis::training_record::{JudgedBelief, JudgedRecording, JudgedSign
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::recommendation::aspects_told;
+use crate::console::console_model::Dialog;
 use crate::console::lesson::{TrainingFeedback, TrainingPanel};
-use crate::console::model::Dialog;
 use crate::console::notice::NoticeLevel;
 use crate::console::playback::{Playback, SPEEDS};
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
@@ -21,7 +21,7 @@ use crate::edge::key_file::key_map;
 use crate::edge::terminal::{TerminalScreen, theme};
 use crate::history::wording;
 use crate::kitchen::{Agent, AspectId, Kitchen};
-use crate::measures::wizard::{
+use crate::measures::wizard_performance::{
     FalseBeliefPeriod, SignalVerdict, TrainingCriterion, WizardMeasures, WizardSignal, worths,
 };
 use crate::mind::BeliefWitness;

@@ -3,11 +3,11 @@
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
 use super::colours;
-use super::shown::{EntityData, EntityUpdate, ScenePoint, SceneSeries};
+use super::entity_content::{EntityData, EntityUpdate, ScenePoint, SceneSeries};
 use crate::arm::kinematics::Arm;
 use crate::arm::link::{CollisionSolid, LinkShape};
 use crate::arm::motion::JointMotion;
-use crate::arm::physics::hand::HandPose;
+use crate::arm::physics::hand_body::HandPose;
 use crate::arm::reach::BUTTON_M;
 use crate::arm::reaching::resting_place;
 use crate::base::time::SessionTime;

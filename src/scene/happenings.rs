@@ -2,7 +2,7 @@
 
 use super::EntityUpdate;
 use super::colours::{self, Colour};
-use super::shown::{EntityData, LogLevel, SceneSeries, slug};
+use super::entity_content::{EntityData, LogLevel, SceneSeries, slug};
 use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, signals};

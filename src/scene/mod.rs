@@ -4,11 +4,11 @@
 //! A [`SessionScene`] follows a session event by event, live and from a recording. It does not depend on the viewer.
 
 mod arm;
-mod belief;
+mod belief_entities;
 mod colours;
+pub mod entity_content;
 mod happenings;
-mod places;
-pub mod shown;
+mod place_entities;
 
 use crate::base::time::SessionTime;
 use crate::kitchen::Change;
@@ -16,8 +16,8 @@ use crate::measures::JudgedPress;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::session::{Event, Session, Stamped, apply};
 use arm::ArmScene;
-use belief::BeliefScene;
-pub use shown::{EntityData, EntityUpdate};
+use belief_entities::BeliefScene;
+pub use entity_content::{EntityData, EntityUpdate};
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
 pub const VERSION: u32 = 3;
@@ -71,9 +71,9 @@ impl SessionScene {
     /// Static entities.
     pub fn fixed(&self) -> Vec<EntityUpdate> {
         let kitchen = &self.session.kitchen;
-        let mut rows = places::fixed(kitchen);
+        let mut rows = place_entities::fixed(kitchen);
         rows.extend(self.arm.fixed(kitchen));
-        rows.extend(belief::fixed(kitchen));
+        rows.extend(belief_entities::fixed(kitchen));
         rows.extend(happenings::fixed(&self.session));
         rows
     }
@@ -81,8 +81,8 @@ impl SessionScene {
     /// Entities at the beginning of the session.
     pub fn opening(&mut self) -> SceneUpdate {
         let (kitchen, state) = (self.session.kitchen.clone(), self.session.state);
-        let mut rows: Vec<EntityUpdate> = places::contents(&kitchen, None, state).collect();
-        rows.extend(places::shown_signal(&self.session));
+        let mut rows: Vec<EntityUpdate> = place_entities::contents(&kitchen, None, state).collect();
+        rows.extend(place_entities::shown_signal(&self.session));
         rows.extend(self.arm.opening(&self.session));
         let time = self.session.time;
         SceneUpdate { time, trial: self.session.trial_clock(time), step: self.step(), rows }
@@ -126,13 +126,14 @@ impl SessionScene {
     fn changes(&mut self, stamped: &Stamped, change: &Change, derived: DerivedData<'_>) -> Vec<EntityUpdate> {
         let session = &self.session;
         let changed = change.states().into_iter();
-        let mut rows: Vec<EntityUpdate> =
-            changed.flat_map(|(before, after)| places::contents(&session.kitchen, Some(before), after)).collect();
+        let mut rows: Vec<EntityUpdate> = changed
+            .flat_map(|(before, after)| place_entities::contents(&session.kitchen, Some(before), after))
+            .collect();
         match &stamped.event {
-            Event::Gaze(sample) => rows.push(places::gaze(session, *sample)),
-            Event::SignalShown { .. } | Event::SignalEnded { .. } => rows.extend(places::shown_signal(session)),
+            Event::Gaze(sample) => rows.push(place_entities::gaze(session, *sample)),
+            Event::SignalShown { .. } | Event::SignalEnded { .. } => rows.extend(place_entities::shown_signal(session)),
             Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded => {
-                rows.extend(places::shown_signal(session));
+                rows.extend(place_entities::shown_signal(session));
             }
             Event::Advised(advice) => rows.extend(happenings::advice(advice)),
             Event::Protocol(event) => rows.push(happenings::protocol(event)),

@@ -6,7 +6,7 @@ use super::phase::Phase;
 use super::protocol::{self, ProtocolEvent};
 use super::session_state::Session;
 use super::settings::{ArmKind, Condition, ParticipantKind};
-use super::{calibration, hands, tracker};
+use super::{accuracy_check, interventions, tracker};
 use crate::base::time::SessionTime;
 use crate::communication::{self, Sender, Signal};
 use crate::kitchen::{Agent, LocationKind};
@@ -40,7 +40,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
             refuse_if(!finite, "the gaze sample is not a number")
         }
         Event::Tracker(event) => tracker::admit(event),
-        Event::Calibration(event) => calibration::admit(session, event),
+        Event::Calibration(event) => accuracy_check::admit(session, event),
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => {
             refuse_if(session.spec.robot.arm == ArmKind::Timed, "the robot's arm is timed in this session")
         }
@@ -53,7 +53,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         }
         Event::SignalEnded { .. } => refuse_if(session.shown.is_none(), "no signal is shown"),
         Event::Protocol(event) => protocol::admit(session, event),
-        other => hands::admit(session, other),
+        other => interventions::admit(session, other),
     }
 }
 

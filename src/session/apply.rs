@@ -6,7 +6,7 @@ use super::gaze_samples::take_sample;
 use super::phase::Phase;
 use super::session_state::{Served, Session, ShownSignal};
 use super::timeline_entry::TimelineEvent;
-use super::{calibration, protocol, robot};
+use super::{accuracy_check, protocol, robot_changes};
 use crate::base::time::SessionTime;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
@@ -103,7 +103,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
         Event::FocusRegained => session.note(now, TimelineEvent::Focus(true)),
         Event::Gaze(sample) => take_sample(session, now, *sample),
         Event::Tracker(event) => session.tracker.apply(now, event),
-        Event::Calibration(event) => calibration::apply(session, now, event),
+        Event::Calibration(event) => accuracy_check::apply(session, now, event),
         Event::Press { agent, button, .. } => {
             let button = named.button(*agent, button)?;
             change = press(session, now, *agent, button, &mut effects);
@@ -127,12 +127,12 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
         }
         Event::RobotIdles { reason } => session.robot.idle = Some(*reason),
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => {
-            robot::arm(session, now, &stamped.event);
+            robot_changes::arm(session, now, &stamped.event);
         }
-        Event::RobotStopped => robot::stop(session, now, true),
-        Event::RobotResumed => robot::stop(session, now, false),
-        Event::RobotHeld { .. } => robot::hold(session, now, true),
-        Event::RobotReleased { .. } => robot::hold(session, now, false),
+        Event::RobotStopped => robot_changes::stop(session, now, true),
+        Event::RobotResumed => robot_changes::stop(session, now, false),
+        Event::RobotHeld { .. } => robot_changes::hold(session, now, true),
+        Event::RobotReleased { .. } => robot_changes::hold(session, now, false),
         Event::RobotSkipped { .. } => {
             if let Some((button, ..)) = session.robot.intention {
                 session.note(now, TimelineEvent::RobotSkipped(button));

@@ -5,12 +5,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::display::DisplayEvent;
 use super::gaze_check::CalibrationEvent;
 use super::preflight_check::PreflightCheck;
 use super::protocol_event::ProtocolEvent;
-use super::screen::VisibleScreen;
 use super::tracker::TrackerEvent;
+use super::wall_display::DisplayEvent;
+use super::wizard_screen::VisibleScreen;
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
@@ -18,7 +18,7 @@ use crate::communication::{Sender, Signal};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
 use crate::mind::BeliefWitness;
-use crate::mind::witness::EstimateWitness;
+use crate::mind::recorded_estimate::EstimateWitness;
 use crate::robot::moment::ArmSample;
 use crate::robot::safety::SafetyMode;
 use crate::robot::{AbortReason, IdleReason};

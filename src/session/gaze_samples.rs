@@ -1,6 +1,6 @@
 //! The stream of gaze samples: state changes by a sample, and faults of the stream.
 
-use super::calibration;
+use super::accuracy_check;
 use super::session_state::Session;
 use crate::base::time::SessionTime;
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
@@ -30,7 +30,7 @@ pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
     if status.fault.is_some() {
         return;
     }
-    calibration::gaze(session, sample.taken_ns.unwrap_or(now).min(now), sample);
+    accuracy_check::gaze(session, sample.taken_ns.unwrap_or(now).min(now), sample);
     let sample = session.corrected(sample);
     let status = &mut session.gaze;
     let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);

@@ -14,42 +14,42 @@
 //! - What can happen when, and what it changes: `robot`, [`calibration`], [`gaze_samples`], [`protocol`], `hands`; [`admit`]
 //!   and [`mod@apply`], all of them together. Beside them [`preflight`], and the [`timers`] that [`apply()`] sets.
 
+pub mod accuracy_check;
 pub mod admit;
 pub mod apply;
-pub mod calibration;
 mod condition;
 mod console_settings;
-pub mod display;
 pub mod event;
 mod gaze_check;
 pub mod gaze_samples;
 mod gaze_status;
-mod hands;
 pub mod header;
+mod interventions;
 pub mod orders;
 pub mod participant_code;
 mod participant_settings;
 mod phase;
 pub mod plan;
-pub mod preflight;
 mod preflight_check;
+pub mod preflight_checks;
 pub mod protocol;
 mod protocol_event;
 mod protocol_state;
 pub mod ranges;
-mod reading;
 mod requirements;
-mod robot;
+mod robot_changes;
 mod robot_settings;
 mod robot_status;
-pub mod screen;
+mod session_file;
 mod session_state;
 mod setting_checks;
 pub mod settings;
-pub mod stream;
+pub mod stream_settings;
 mod timeline_entry;
 pub mod timers;
 pub mod tracker;
+pub mod wall_display;
+pub mod wizard_screen;
 
 pub use apply::{Applied, Effect, Timer, apply};
 pub use event::{Event, Stamped};

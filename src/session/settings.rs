@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 
 pub use super::condition::Condition;
 pub use super::console_settings::{ConsoleSpec, MAX_NOTES, ThemeChoice, Visibility};
-use super::display::DisplaySpec;
 pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
 use super::plan::{PlanSpec, StepSpec};
 use super::ranges;
 pub use super::robot_settings::{ArmKind, RobotSpec};
 pub use super::setting_checks::{SettingError, is_code};
-use super::stream::RerunSpec;
+use super::stream_settings::RerunSpec;
 use super::tracker::TrackerSpec;
+use super::wall_display::DisplaySpec;
 use crate::communication::settings::{AssistantSpec, Shadow};
 use crate::mind::model::HumanModel;
 use crate::participant::population::Population;

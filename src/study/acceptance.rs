@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::trial::{Trial, mean};
+use super::trial_statistics::{Trial, mean};
 use crate::session::settings::Condition;
 
 /// Acceptance of the assistance: each participant's mean answer to the items about acceptance after assisted trials, from 0 (none)

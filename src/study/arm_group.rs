@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::robot_tally::RobotSummary;
-use super::trial::Trial;
+use super::trial_statistics::Trial;
 use crate::session::settings::ArmKind;
 
 /// Sums of robot statistics over the trials with one kind of arm.

@@ -7,7 +7,7 @@ use super::figures::{StudyConditionSummary, StudySummary};
 use super::roc::{Roc, RocPoint};
 use super::svg::{PlotAxis, SvgChart, minus};
 use super::tables::trials::HEADLINE;
-use super::trial::{Trial, mean};
+use super::trial_statistics::{Trial, mean};
 use crate::communication::concept::ConceptName;
 use crate::session::settings::Condition;
 

@@ -6,11 +6,11 @@ use super::column::{Column, Table, TableRow};
 use super::tables::actions::ActionRow;
 use super::tables::aspect_beliefs::BeliefRow;
 use super::tables::communications::CommunicationRow;
-use super::tables::concepts::ConceptRow;
+use super::tables::concept_table::ConceptRow;
 use super::tables::gaze_runs::GazeRow;
 use super::tables::participants::ParticipantRow;
 use super::tables::questionnaires::AnswerRow;
-use super::trial::Trial;
+use super::trial_statistics::Trial;
 
 /// Dictionary entry of one table column.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,7 +9,7 @@ use serde::{Serialize, Serializer};
 use super::statistics::{
     Correlation, FTest, Interval, MixedAnova, hedges_g, hodges_lehmann, mixed_anova, pearson, permutation_p,
 };
-use super::trial::Trial;
+use super::trial_statistics::Trial;
 
 /// Confidence level of intervals.
 pub const LEVEL: f64 = 0.95;
@@ -137,7 +137,7 @@ pub fn effect(measure: StudyMeasure, pairs: &[TrialPair], seed: u64) -> Assistan
         high: interval.high / 2.0,
         ..interval
     };
-    let mean = |values: &[f64]| super::trial::mean(values.iter().copied());
+    let mean = |values: &[f64]| super::trial_statistics::mean(values.iter().copied());
     AssistanceEffect {
         measure,
         groups: [with.len(), without.len()],

@@ -11,10 +11,10 @@ use super::facts::Facts;
 use super::roc::{ConceptComparison, Roc, SweptTrial, compare};
 use super::statistics::{Correlation, FTest, Interval, share_interval};
 use super::tables::trials::measures;
-use super::trial::{BeliefBasis, BeliefErrors, Trial, mean, mean_length};
-use crate::measures::coding::{Agreement, AgreementTable, Codes};
+use super::trial_statistics::{BeliefBasis, BeliefErrors, Trial, mean, mean_length};
+use crate::measures::cause_codes::{Agreement, AgreementTable, Codes};
 use crate::measures::matching::{MatchCounts, Similarity};
-use crate::measures::wizard::WizardMeasures;
+use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::event::EndReason;
 use crate::session::settings::{Condition, ParticipantKind};
 

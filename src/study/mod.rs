@@ -29,4 +29,4 @@ pub mod roc;
 pub mod statistics;
 pub mod svg;
 pub mod tables;
-pub mod trial;
+pub mod trial_statistics;

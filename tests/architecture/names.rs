@@ -14,47 +14,6 @@ use crate::sources::{is_documentation, is_for_tests, sources, sources_below};
 const SHARED_FILE_NAMES: [(&str, &str); 2] =
     [("mod.rs", "the root of a folder"), ("settings.rs", "the settings of each room that has any")];
 
-/// Names of files that several rooms still have; the list only gets shorter.
-const FILE_NAMES_STILL_SHARED: [&str; 37] = [
-    "assign.rs",
-    "belief.rs",
-    "beliefs.rs",
-    "calibration.rs",
-    "codes.rs",
-    "coding.rs",
-    "comparison.rs",
-    "concepts.rs",
-    "decision.rs",
-    "display.rs",
-    "gaze.rs",
-    "hand.rs",
-    "hands.rs",
-    "human.rs",
-    "layout.rs",
-    "message.rs",
-    "model.rs",
-    "people.rs",
-    "places.rs",
-    "plan.rs",
-    "preflight.rs",
-    "question.rs",
-    "reading.rs",
-    "recommendation.rs",
-    "rerun.rs",
-    "review.rs",
-    "robot.rs",
-    "screen.rs",
-    "shown.rs",
-    "sight.rs",
-    "simulated.rs",
-    "stream.rs",
-    "surface.rs",
-    "trial.rs",
-    "witness.rs",
-    "wizard.rs",
-    "words.rs",
-];
-
 /// Stands in for a part of the program that a build leaves out, with the same types.
 fn is_stand_in(file: &str) -> bool {
     file.starts_with("without_")
@@ -150,12 +109,8 @@ fn files_of_different_rooms_have_names_of_their_own() {
     let told = |(file, rooms): (&String, &BTreeSet<String>)| {
         format!("{file}: {}", rooms.iter().cloned().collect::<Vec<_>>().join(", "))
     };
-    let is_known = |file: &str| FILE_NAMES_STILL_SHARED.contains(&file);
-    let new: Vec<String> = rooms.iter().filter(|(file, _)| !is_known(file)).map(told).collect();
-    assert!(new.is_empty(), "files of different rooms have the same name:\n{}", new.join("\n"));
-    for name in FILE_NAMES_STILL_SHARED {
-        assert!(rooms.contains_key(name), "{name} is the name of one file by now: take it off the list");
-    }
+    let twice: Vec<String> = rooms.iter().map(told).collect();
+    assert!(twice.is_empty(), "files of different rooms have the same name:\n{}", twice.join("\n"));
 }
 
 /// The compiler warns of what can be reached from outside; this holds for everything that is `pub`, and for every file.

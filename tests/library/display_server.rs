@@ -5,9 +5,9 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpStream};
 use std::time::Duration;
 
 use serde_json::{Value, json};
-use tomcom::display::words::DisplayWords;
+use tomcom::display::page_language::DisplayWords;
 use tomcom::edge::display::Display;
-use tomcom::session::display::DisplaySpec;
+use tomcom::session::wall_display::DisplaySpec;
 
 /// Nothing that is waited for takes longer; that it does not come is the failure.
 const PATIENCE: Duration = Duration::from_secs(30);

@@ -102,7 +102,8 @@ fn record(wizard: &str, recordings: &[&str]) -> String {
     let judged = |name: &&str| {
         format!(
             "{{\"recording\":\"{name}\",\"complete\":true,\"presses\":1,\"signals\":[],\"measures\":{},\"kappa_with_oneself\":null}}",
-            serde_json::to_string(&tomcom::measures::wizard::WizardMeasures::from_signals(&[], None)).expect("JSON")
+            serde_json::to_string(&tomcom::measures::wizard_performance::WizardMeasures::from_signals(&[], None))
+                .expect("JSON")
         )
     };
     let judged: Vec<String> = recordings.iter().map(judged).collect();

@@ -4,7 +4,7 @@
 //! A variable whose maximum lies at a bound, or whose bound is not significantly worse than the maximum, is held at that bound.
 //! It gets one end of a profile likelihood interval instead of a standard error (Venzon and Moolgavkar 1988).
 
-use super::surface::{QuadraticSurface, REACH, points, surface};
+use super::response_surface::{QuadraticSurface, REACH, points, surface};
 
 /// Step size of the first surface.
 const FIRST_STEP: f64 = 0.4;

@@ -7,7 +7,7 @@
 
 pub mod ascent;
 pub mod linear;
-pub mod surface;
+pub mod response_surface;
 
 use serde::Serialize;
 

@@ -6,7 +6,7 @@ use rapier3d::prelude::{
     RigidBodyHandle, Rotation,
 };
 
-use super::hand::single;
+use super::hand_body::single;
 use super::{PhysicsWorld, button};
 use crate::arm::link::{ArmLink, LinkShape};
 use crate::robot::moment::{JOINTS, JointAngles};

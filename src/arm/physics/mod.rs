@@ -7,7 +7,7 @@
 
 mod build;
 mod button;
-pub mod hand;
+pub mod hand_body;
 
 use nalgebra::{Point3, Vector3};
 use rapier3d::prelude::{
@@ -19,7 +19,7 @@ use rapier3d::prelude::{
 use super::kinematics::Arm;
 use crate::robot::moment::{JOINTS, JointAngles};
 use button::PhysicalButton;
-use hand::{HandPose, PhysicalHand, double, single};
+use hand_body::{HandPose, PhysicalHand, double, single};
 
 /// The fixed step of the physics, in seconds.
 pub const STEP_S: f64 = 0.002;
@@ -332,7 +332,7 @@ impl PhysicsWorld {
         let at = on_human - away * (depth_m / 2.0);
         let of_link = self.bodies.get(*self.links.get(link)?)?.velocity_at_point(single(at.coords));
         let closing_m_s = (double(of_link) - hand.velocity_m_s(&self.bodies)).dot(&away);
-        let force_n = depth_m * hand::STIFFNESS_N_M + closing_m_s * hand::FLESH_NS_M;
+        let force_n = depth_m * hand_body::STIFFNESS_N_M + closing_m_s * hand_body::FLESH_NS_M;
         (depth_m > 0.0 && force_n > 0.0).then(|| (link, away * force_n, at))
     }
 

@@ -5,18 +5,18 @@
 //! between baseline and rollout in presses of both agents plus the cost to go at the horizon. A signal that changes none of
 //! a sample's worlds saves exactly nothing in its rollout, which is skipped.
 
-pub mod human;
 mod lattice;
-mod robot;
 mod rollout;
+pub mod rollout_human;
+mod rollout_robot;
 mod sample;
 mod tally;
 
 use std::sync::Arc;
 
 use self::lattice::{Lattice, PER_DECISION};
-use self::robot::RobotPolicy;
 use self::rollout::{BaselineRollout, Rollout, RolloutContext, RolloutDraws, RolloutState};
+use self::rollout_robot::RobotPolicy;
 use self::sample::BeliefSamples;
 use self::tally::PairedDifferences;
 use super::concept::{Concept, DecisionPoint};
@@ -29,7 +29,7 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, WeightedWorlds};
 use crate::mind::ChoiceModel;
 use crate::mind::model::HumanModel;
-use crate::mind::witness::rounded;
+use crate::mind::recorded_estimate::rounded;
 
 /// Number of rollouts after which the planner checks which signals are decided.
 const BATCH: usize = 32;

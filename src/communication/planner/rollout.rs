@@ -5,8 +5,8 @@
 
 use rand::RngExt;
 
-use super::human::choice_weights;
-use super::robot::{self, OngoingRobotPress, RobotChoices, RobotPolicy};
+use super::rollout_human::choice_weights;
+use super::rollout_robot::{self, OngoingRobotPress, RobotChoices, RobotPolicy};
 use crate::base::rng::Stream;
 use crate::communication::settings::RolloutModel;
 use crate::communication::situation::{RobotIntent, Situation};
@@ -211,7 +211,8 @@ impl Rollout<'_> {
             let choices = self.choices(state.kitchen);
             if ongoing.holds(choices) {
                 let before = state.kitchen;
-                state.kitchen = robot::press(self.context.kitchen, before, &self.context.recipes, ongoing.button);
+                state.kitchen =
+                    rollout_robot::press(self.context.kitchen, before, &self.context.recipes, ongoing.button);
                 state.presses += 1;
                 let draw = self.draws[step].predictions[presses % ROBOT_DRAWS];
                 if draw < self.context.foresight {

@@ -8,9 +8,9 @@ use super::picker;
 use super::popup::open;
 use super::theme::{Glyphs, TextRole, Theme};
 use crate::console::chord::KeyChord;
+use crate::console::console_model::{ConsoleModel, Dialog};
 use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer};
 use crate::console::keys::KeyBindings;
-use crate::console::model::{ConsoleModel, Dialog};
 use crate::session::{Phase, Session};
 
 /// Draws the open dialog, if there is one.
@@ -19,7 +19,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
         None => {}
         Some(Dialog::Pick(list)) => picker::draw(brush, screen, session, list),
         Some(Dialog::Preflight) => hands::preflight(brush, screen, session, model),
-        Some(Dialog::Calibration) => super::calibration::draw(brush, screen, session),
+        Some(Dialog::Calibration) => super::gaze_targets::draw(brush, screen, session),
         Some(Dialog::Note(line)) => hands::note(brush, screen, line),
         Some(Dialog::Help) => help(brush, screen, model),
         Some(Dialog::Difference(lines)) => difference(brush, screen, lines),

@@ -3,7 +3,7 @@
 use super::paint::Painter;
 use super::regions::Regions;
 use super::theme::TextRole;
-use crate::console::model::ConsoleModel;
+use crate::console::console_model::ConsoleModel;
 use crate::history::wording;
 use crate::kitchen::Agent;
 use crate::session::{Session, TimelineEvent};

@@ -5,15 +5,15 @@ use ratatui::style::Style;
 use super::paint::{Painter, width};
 use super::regions::Regions;
 use super::theme::TextRole;
-use super::{comparison, timeline};
+use super::{comparison_panel, timeline};
 use crate::communication::Sender;
 use crate::communication::concept::ConceptName;
+use crate::console::console_model::{ConsoleModel, Dialog, Notice};
 use crate::console::form::sheet;
 use crate::console::key_action::ManualAction;
 use crate::console::key_action::PanelKey;
 use crate::console::key_action::RaterKey;
 use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer};
-use crate::console::model::{ConsoleModel, Dialog, Notice};
 use crate::console::notice::NoticeLevel;
 use crate::console::playback::ReplayKey;
 use crate::session::admit::may_send;
@@ -91,7 +91,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
 
 /// Shows the notice in a title line if there is room, so that no key hint is replaced; returns whether it did.
 fn above(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel, notice: &Notice) -> bool {
-    let room = timeline::title_room(brush, regions, session, model).or_else(|| comparison::title_room(regions));
+    let room = timeline::title_room(brush, regions, session, model).or_else(|| comparison_panel::title_room(regions));
     let Some(room) = room.filter(|room| width(&notice.text) + 4 <= room.width) else { return false };
     let style = style_of(brush, notice);
     brush.text(room.x, room.y, room.width, &format!(" {} ", notice.text), style);

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use super::paint::{Painter, fit};
 use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
-use crate::console::model::ConsoleModel;
+use crate::console::console_model::ConsoleModel;
 use crate::gaze::nearest_location;
 use crate::kitchen::LocationId;
 use crate::session::Session;

@@ -5,11 +5,11 @@ use ratatui::layout::Rect;
 use super::paint::{Painter, wrap};
 use super::popup::open;
 use super::theme::TextRole;
+use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
-use crate::console::model::ConsoleModel;
 use crate::console::note::TextInput;
 use crate::console::preflight::{OVERRIDE, all_ok, checks};
-use crate::session::preflight::{PreflightCheck, PreflightVerdict};
+use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use crate::session::{Phase, Session};
 
 const COLUMNS: u16 = 76;

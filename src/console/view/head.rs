@@ -3,7 +3,7 @@
 use super::paint::{Painter, width};
 use super::regions::{ROOMY_COLUMNS, Regions, ScreenSize};
 use super::theme::TextRole;
-use crate::console::model::{ConsoleModel, RecordingStatus, ViewerStreamStatus};
+use crate::console::console_model::{ConsoleModel, RecordingStatus, ViewerStreamStatus};
 use crate::history::wording;
 use crate::robot::safety::SafetyMode;
 use crate::session::settings::{Condition, GazeSource};

@@ -9,8 +9,8 @@ use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::console::arrange::{KitchenMap, MapElement};
+use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
-use crate::console::model::ConsoleModel;
 use crate::history::wording;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
 use crate::session::Session;
@@ -53,7 +53,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         }
     }
     gaze_mark(brush, &plan, area, session, model);
-    super::calibration::target(brush, &plan, area, session);
+    super::gaze_targets::target(brush, &plan, area, session);
 }
 
 fn zones(brush: &mut Painter, plan: &KitchenMap) {

@@ -3,8 +3,8 @@
 use super::paint::{Painter, wrap};
 use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
+use crate::console::console_model::ConsoleModel;
 use crate::console::lesson::{TrainingFeedback, TrainingPanel};
-use crate::console::model::ConsoleModel;
 use crate::console::notice::NoticeLevel;
 
 /// Width of the clock column.

@@ -1,12 +1,12 @@
 //! `view(&Session, &Model, &mut Frame)`: reads, draws, and changes nothing.
 
-pub mod belief;
-mod calibration;
-pub mod comparison;
+pub mod belief_panel;
+pub mod comparison_panel;
 pub mod dialog;
 pub mod events;
 pub mod footer;
 pub mod gaze;
+mod gaze_targets;
 pub mod hands;
 pub mod head;
 pub mod kitchen;
@@ -14,9 +14,9 @@ pub mod lesson;
 pub mod paint;
 pub mod picker;
 mod popup;
-pub mod recommendation;
+pub mod recommendation_panel;
 pub mod regions;
-pub mod robot;
+pub mod robot_panel;
 pub mod sheet;
 pub mod shown;
 pub mod theme;
@@ -24,7 +24,7 @@ pub mod timeline;
 
 use ratatui::Frame;
 
-use super::model::{ConsoleModel, Dialog};
+use super::console_model::{ConsoleModel, Dialog};
 use crate::session::Session;
 use paint::Painter;
 use regions::{LEAST, Regions};
@@ -41,16 +41,16 @@ pub fn view(session: &Session, model: &ConsoleModel, frame: &mut Frame) {
     let regions = Regions::showing((area.width, area.height), session, model);
     head::draw(&mut brush, &regions, session, model);
     kitchen::draw(&mut brush, &regions, session, model);
-    belief::draw(&mut brush, &regions, session, model);
-    recommendation::draw(&mut brush, &regions, session, model);
+    belief_panel::draw(&mut brush, &regions, session, model);
+    recommendation_panel::draw(&mut brush, &regions, session, model);
     gaze::draw_map(&mut brush, &regions, session, model);
     lesson::draw(&mut brush, &regions, model);
     shown::draw(&mut brush, &regions, session, model);
-    robot::draw(&mut brush, &regions, session, model);
+    robot_panel::draw(&mut brush, &regions, session, model);
     gaze::draw(&mut brush, &regions, session, model);
     events::draw(&mut brush, &regions, session, model);
     timeline::draw(&mut brush, &regions, session, model);
-    comparison::draw(&mut brush, &regions, session, model);
+    comparison_panel::draw(&mut brush, &regions, session, model);
     footer::draw(&mut brush, &regions, session, model);
     sheet::draw(&mut brush, area, session, model);
     dialog::draw(&mut brush, area, session, model);

@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use crate::console::compared::ComparisonView;
-use crate::console::model::ConsoleModel;
+use crate::console::console_model::ConsoleModel;
 use crate::console::panel::Panel;
 use crate::session::Session;
 use crate::session::settings::Visibility;

@@ -4,8 +4,8 @@ use super::paint::{Painter, width, wrap};
 use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
 use crate::communication::Signal;
+use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
-use crate::console::model::ConsoleModel;
 use crate::history::wording;
 use crate::session::{Phase, Session, ShownSignal};
 

@@ -8,7 +8,7 @@ use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::console::coding::press;
-use crate::console::model::ConsoleModel;
+use crate::console::console_model::ConsoleModel;
 use crate::kitchen::Agent;
 use crate::session::event::SignalEnd;
 use crate::session::{Phase, Session, TimelineEntry, TimelineEvent};

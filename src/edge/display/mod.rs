@@ -27,7 +27,7 @@ use self::server::serve;
 use self::server_state::ServerState;
 use self::status::DisplayStatus;
 pub use self::status::{ActivePage, DisplayCounts};
-use crate::display::words::DisplayWords;
+use crate::display::page_language::DisplayWords;
 use crate::display::{DisplayScene, DisplayUpdate};
 
 /// Capacity of the queue of page inputs.

@@ -9,7 +9,7 @@ use crate::edge::file_error::FileError;
 use crate::edge::{gaze_file, pupil};
 use crate::gaze::surface::SurfaceMap;
 use crate::session::SessionSpec;
-use crate::session::preflight::{PreflightCheck, PreflightVerdict};
+use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use crate::session::settings::{GazeSource, ParticipantKind};
 use crate::session::tracker::TrackerSpec;
 

@@ -10,7 +10,7 @@ use csv::{ByteRecord, Reader};
 
 use super::subject::{ForgetSubject, NamedPerson};
 use crate::base::words::count;
-use crate::edge::log::codes::EXPORT_COLUMNS;
+use crate::edge::log::rater_codes::EXPORT_COLUMNS;
 use crate::edge::written_tables::{WrittenTables, reader, records};
 use crate::study::column::Table;
 

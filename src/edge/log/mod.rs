@@ -2,12 +2,12 @@
 //! log: a header line, then one event a line; the only source of truth). A recording that was cut is continued by a part
 //! in a folder beside it, whose header names the one before.
 
-pub mod codes;
 mod exclusion;
 mod guarded;
 mod lock;
+pub mod rater_codes;
 mod reader;
-mod simulated;
+mod simulated_log;
 mod writer;
 
 use std::fs;
@@ -18,7 +18,7 @@ use crate::session::Stamped;
 pub use exclusion::{EXCLUSION_NAME, ExclusionError, ExclusionRecord, rule, ruling};
 pub use lock::{LOCK_NAME, LockHolder, RecordingLock};
 pub use reader::{LogEnding, LogLine, LogReader, at_line};
-pub use simulated::{SimulatedLog, check_simulated};
+pub use simulated_log::{SimulatedLog, check_simulated};
 pub use writer::{LogWriter, check_continued, is_written_settings};
 
 /// The name of the log in its folder.

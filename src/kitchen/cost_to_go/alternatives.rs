@@ -2,7 +2,7 @@
 
 use super::moves::{ClearingMove, ClearingMoves};
 use super::needs::TargetNeeds;
-use super::plan::PressPlan;
+use super::partial_plan::PressPlan;
 use super::task::{AssemblyTask, STORAGE};
 
 impl PressPlan<'_> {

@@ -2,7 +2,7 @@
 
 use super::classes::ContentClasses;
 use super::demand::PressDemand;
-use super::plan::{BLOCKED, PressPlan};
+use super::partial_plan::{BLOCKED, PressPlan};
 
 /// Largest number of steps of a plan, a guard against endless loops.
 const MAX_STEPS: usize = 40;

@@ -2,7 +2,7 @@
 
 use super::moves::ClearingMove;
 use super::needs::TargetNeeds;
-use super::plan::PressPlan;
+use super::partial_plan::PressPlan;
 
 impl PressPlan<'_> {
     /// Clears an obstacle to the work on a target by the move that is usually best (one or two presses); returns whether there is one.

@@ -31,7 +31,7 @@ mod ground;
 mod journeys;
 mod moves;
 mod needs;
-mod plan;
+mod partial_plan;
 mod rating;
 mod search;
 mod store;

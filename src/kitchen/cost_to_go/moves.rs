@@ -1,6 +1,6 @@
 //! Moves of a plan that free a hand or a place.
 
-use super::plan::PressPlan;
+use super::partial_plan::PressPlan;
 use super::task::STORAGE;
 
 /// Largest number of alternative moves.

@@ -1,7 +1,7 @@
 //! Requirements of the work on a target, its obstacles, and places for them.
 
 use super::journeys::FreeMask;
-use super::plan::PressPlan;
+use super::partial_plan::PressPlan;
 
 /// Requirements of the work on a target.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@ use super::assign::Assignment;
 use super::classes::{ContentClasses, MAX_TARGETS};
 use super::goal::ServingGoal;
 use super::ground::KitchenTables;
-use super::plan::{BLOCKED, PressPlan};
+use super::partial_plan::{BLOCKED, PressPlan};
 
 /// The assignments for both serving orders, the one with the smaller lower bound first.
 pub struct AssignmentRating {

@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 use super::classes::ContentClasses;
 use super::fidelity::Fidelity;
 use super::goal::ServingGoal;
-use super::plan::{BLOCKED, PressPlan};
+use super::partial_plan::{BLOCKED, PressPlan};
 use super::rating::AssignmentRating;
 use super::store::{CostToGo, UNREACHABLE};
 use super::successors::successors;

@@ -2,7 +2,7 @@
 //! mostly decide.
 
 use super::fidelity::Fidelity;
-use super::plan::BLOCKED;
+use super::partial_plan::BLOCKED;
 use super::rating::AssignmentRating;
 use super::search::{BestFirstSearch, FAR, NEAR};
 use super::store::{CacheSlot, CostToGo, UNREACHABLE};

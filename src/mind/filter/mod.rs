@@ -9,7 +9,7 @@ mod evidence;
 mod exchange;
 mod gamma;
 mod own_press;
-mod reading;
+mod perception;
 mod robot_press;
 mod serving;
 pub mod urn;
@@ -30,7 +30,7 @@ use crate::kitchen::{
 pub use evidence::Evidence;
 use evidence::{EvidenceModel, Sampler};
 use exchange::Exchange;
-use reading::GazeReader;
+use perception::GazeReader;
 use serving::Serving;
 
 /// Update rule of a button: from one location, or from several that jointly determine the effect of the press.

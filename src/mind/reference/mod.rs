@@ -7,15 +7,15 @@
 //! moment matching, and drawn anew. Gaze samples update the explicit beliefs as well; several in a row are projected together,
 //! which is equivalent, since they change first and second moments linearly.
 
-pub mod people;
+pub mod belief_set;
 pub mod person;
-pub mod sight;
+pub mod reading_effect;
 
 use std::sync::Arc;
 
 use rand::RngExt;
 
-use self::people::Particles;
+use self::belief_set::Particles;
 use self::person::Particle;
 use super::dirichlet::DirichletBelief;
 use super::model::HumanModel;

@@ -7,12 +7,12 @@
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma};
 
-use super::sight::LocationReading;
+use super::reading_effect::LocationReading;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{Agent, AspectId, AspectKind, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId};
 use crate::kitchen::{OrderContent, Recipes, State};
-use crate::mind::decision::DecisionModel;
+use crate::mind::choice_parameters::DecisionModel;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::robot::policy;
 

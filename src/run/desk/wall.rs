@@ -1,6 +1,6 @@
 //! The participant's display at the desk.
 
-use crate::display::words::DisplayWords;
+use crate::display::page_language::DisplayWords;
 use crate::edge::display::Display;
 pub(in crate::run) use crate::edge::display::PageInput;
 use crate::run::error::LiveError;

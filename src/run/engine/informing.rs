@@ -2,7 +2,7 @@
 
 use super::Engine;
 use crate::kitchen::Change;
-use crate::session::calibration::RunningGazeCheck;
+use crate::session::accuracy_check::RunningGazeCheck;
 use crate::session::{Event, Stamped};
 
 impl Engine {

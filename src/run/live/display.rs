@@ -3,16 +3,16 @@
 use std::time::Instant;
 
 use crate::base::time::SessionTime;
-use crate::console::display::DisplayHealth;
+use crate::console::display_status::DisplayHealth;
 use crate::console::notice::NoticeLevel;
 use crate::display::{DisplayUpdate, scene, sight};
 use crate::edge::display::{Display, PageScreen};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
 use crate::run::desk::{OperatorDesk, PageInput};
-use crate::session::display::{Answering, DisplayEvent};
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
+use crate::session::wall_display::{Answering, DisplayEvent};
 use crate::session::{Event, Session};
 
 /// The participant's display in a recording.

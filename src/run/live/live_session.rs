@@ -3,14 +3,14 @@
 use std::time::Duration;
 
 use super::display::ParticipantDisplay;
-use super::gaze::{CaptureOrders, GazeInput};
+use super::gaze_events::{CaptureOrders, GazeInput};
 use super::viewing::StreamedSession;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::analysis::watcher::ComparisonFollower;
 use crate::communication::recommendation::Recommendation;
 use crate::console::compared::ComparisonView;
-use crate::console::model::RecordingStatus;
+use crate::console::console_model::RecordingStatus;
 use crate::console::notice::NoticeLevel;
 use crate::console::{ConsoleModel, KeyBindings};
 use crate::edge::clock::{SessionClock, WallTime};
@@ -28,8 +28,8 @@ use crate::run::options::SessionStart;
 use crate::run::unfinished_recording::{PreparedSession, RecordingPlace};
 use crate::run::watch_desk::ComparisonDesk;
 use crate::session::protocol::ProtocolEvent;
-use crate::session::screen::VisibleScreen;
 use crate::session::settings::GazeSource;
+use crate::session::wizard_screen::VisibleScreen;
 use crate::session::{Event, Header, Session};
 
 /// Period of redrawing clocks and ages, while the trial is running and otherwise.

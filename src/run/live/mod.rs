@@ -4,17 +4,17 @@
 //! no press. Before a frame is drawn, its visible content is recorded if it changed. The log is flushed with every event, gaze within
 //! 50 ms. The loop checks four times a second whether the log is still in place, and saves a log whose folder vanished.
 
-mod calibration;
 #[cfg(feature = "display")]
 mod display;
 #[cfg(not(feature = "display"))]
 #[path = "without_display.rs"]
 mod display;
-mod gaze;
+mod gaze_events;
 mod inputs;
 mod live_session;
 mod recording;
 mod showing;
+mod target_timing;
 #[cfg(feature = "rerun")]
 mod viewing;
 #[cfg(not(feature = "rerun"))]

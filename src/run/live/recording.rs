@@ -2,7 +2,7 @@
 
 use super::live_session::Live;
 use super::viewing::StreamedSession;
-use crate::console::model::RecordingStatus;
+use crate::console::console_model::RecordingStatus;
 use crate::console::notice::NoticeLevel;
 use crate::edge::doctor::free_bytes;
 use crate::edge::log::WriteError;

@@ -3,7 +3,7 @@
 use super::live_session::Live;
 use crate::console::screen::screen;
 use crate::run::watch_desk::ComparisonDesk;
-use crate::session::display::DisplayEvent;
+use crate::session::wall_display::DisplayEvent;
 use crate::session::{Event, Phase};
 
 impl Live {

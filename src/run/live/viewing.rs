@@ -3,7 +3,7 @@
 use std::net::SocketAddr;
 
 use crate::base::time::SessionTime;
-use crate::console::model::ViewerStreamStatus;
+use crate::console::console_model::ViewerStreamStatus;
 use crate::edge::log::{LOG_NAME, LogWriter};
 use crate::edge::rerun::{StreamIdentity, uri};
 use crate::edge::rrd::{self, RRD_NAME};

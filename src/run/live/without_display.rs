@@ -1,7 +1,7 @@
 //! A live session in a build without the feature `display`; sessions with a participant at a display have been refused before.
 
 use crate::base::time::SessionTime;
-use crate::console::display::DisplayHealth;
+use crate::console::display_status::DisplayHealth;
 use crate::console::notice::NoticeLevel;
 use crate::run::desk::{OperatorDesk, PageInput};
 use crate::session::{Event, Session};

@@ -2,7 +2,7 @@
 
 use crate::base::features::{Feature, NotBuilt};
 use crate::base::time::SessionTime;
-use crate::console::model::ViewerStreamStatus;
+use crate::console::console_model::ViewerStreamStatus;
 use crate::edge::log::LogWriter;
 use crate::run::engine::Engine;
 use crate::session::{Header, Session, Stamped};

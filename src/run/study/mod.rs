@@ -21,10 +21,10 @@ use crate::study::dictionary::{DictionaryRow, dictionary};
 use crate::study::facts::Facts;
 use crate::study::figures::StudySummary;
 use crate::study::report;
-use crate::study::tables::concepts::{ConceptRow, concepts};
+use crate::study::tables::concept_table::{ConceptRow, concepts};
 use crate::study::tables::participants::{ParticipantRow, participants};
 use crate::study::tables::questionnaires::{AnswerRow, answers};
-use crate::study::trial::{Trial, arrange};
+use crate::study::trial_statistics::{Trial, arrange};
 
 /// Reasons why a study could not be analysed.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]

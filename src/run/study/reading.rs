@@ -12,12 +12,12 @@ use crate::analysis::wizard_log::{WizardLog, clock_at};
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
 use crate::edge::file_error::FileResult;
-use crate::edge::log::{LogReader, at_line, codes};
+use crate::edge::log::{LogReader, at_line, rater_codes};
 use crate::history::comparison::CommunicationContent;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Change, Kitchen};
 use crate::measures::attribution::{Attributor, Cause};
-use crate::measures::coding::{CauseKind, Codable, Codes};
+use crate::measures::cause_codes::{CauseKind, Codable, Codes};
 use crate::measures::matching::{CommunicationEvent, WINDOW};
 use crate::measures::sequences::{Sequence, sequence_errors, sequences, sequences_by_target};
 use crate::measures::{JudgedPress, median};
@@ -31,7 +31,7 @@ use crate::session::settings::{Condition, ParticipantKind};
 use crate::session::{Event, Header, Phase, Session, Stamped, TimelineEvent};
 use crate::study::facts::Facts;
 use crate::study::robot_tally::{RobotSummary, RobotTally};
-use crate::study::trial::{BeliefBasis, BeliefErrors, QuestionnaireAnswer, Trial};
+use crate::study::trial_statistics::{BeliefBasis, BeliefErrors, QuestionnaireAnswer, Trial};
 
 /// Result of analysing one recording.
 #[derive(Debug)]
@@ -241,7 +241,7 @@ fn sent(session: &Session) -> Vec<CommunicationEvent> {
 /// Codes of the first two raters (in the order of names) for a recording; `None` with fewer than two raters.
 fn raters(log: &LogReader, follower: &Follower) -> FileResult<Option<[Codes; 2]>> {
     let codable = Codable::from_presses(&follower.session.kitchen, &follower.judged);
-    let mut all = codes::read_all(log.folder(), &codable)?.into_values();
+    let mut all = rater_codes::read_all(log.folder(), &codable)?.into_values();
     Ok(all.next().zip(all.next()).map(|(one, other)| [one, other]))
 }
 

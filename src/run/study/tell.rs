@@ -5,7 +5,7 @@ use crate::session::event::EndReason;
 use crate::study::effect::AssistanceEffect;
 use crate::study::figures::StudySummary;
 use crate::study::roc::EQUAL_SIGNALS;
-use crate::study::trial::BeliefBasis;
+use crate::study::trial_statistics::BeliefBasis;
 
 /// Summary of a study as lines of text.
 pub fn describe(figures: &StudySummary) -> String {

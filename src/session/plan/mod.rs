@@ -8,12 +8,12 @@
 //! The files from the ground up: `groups`, `plan_spec` (the `[plan]` of a session file), `assign` (who is in which group),
 //! `questionnaire`, `step` (one recording), `planned_study` (all of them), `progress` (how far it is).
 
-mod assign;
 mod groups;
 mod plan_spec;
 mod planned_study;
 mod progress;
 mod questionnaire;
+mod starting_groups;
 mod step;
 
 pub use groups::{StartingGroup, groups};

@@ -10,7 +10,7 @@ use crate::study::charts;
 use crate::study::effect::AssistanceEffect;
 use crate::study::figures::{StudyConditionSummary, StudySummary};
 use crate::study::statistics::FTest;
-use crate::study::trial::Trial;
+use crate::study::trial_statistics::Trial;
 
 /// Section on the effect of assistance: charts, means by condition, and tests.
 pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {

@@ -15,7 +15,7 @@ use self::elements::Captions;
 use super::column::Table;
 use super::facts::Facts;
 use super::figures::StudySummary;
-use super::trial::Trial;
+use super::trial_statistics::Trial;
 
 /// Style sheet of the page.
 const STYLE: &str = include_str!("style.css");

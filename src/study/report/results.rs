@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::elements::{Captions, UNKNOWN, cells, condition, count, nothing, number, p_value, percent, scroll, section};
 use crate::measures::matching::MatchShares;
-use crate::measures::wizard::WizardMeasures;
+use crate::measures::wizard_performance::WizardMeasures;
 use crate::study::figures::StudySummary;
 
 /// Table with this study's results beside the paper's.

@@ -4,12 +4,12 @@ use maud::{Markup, Render, html};
 
 use super::elements::{Captions, PageColumn, UNKNOWN, cells, condition, count, number, p_sentence, percent, section};
 use crate::base::words;
-use crate::measures::coding::Agreement;
+use crate::measures::cause_codes::Agreement;
 use crate::session::event::EndReason;
 use crate::study::column::Table;
 use crate::study::definitions::DEFINITIONS;
 use crate::study::figures::StudySummary;
-use crate::study::trial::{BeliefBasis, Trial};
+use crate::study::trial_statistics::{BeliefBasis, Trial};
 
 /// Section with the study's title and main results.
 pub(super) fn summary(figures: &StudySummary) -> Markup {

@@ -3,8 +3,8 @@
 use crate::kitchen::{Agent, Kitchen, Press};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::{Cause, Target};
-use crate::measures::coding::{CauseKind, Code};
-use crate::mind::witness::rounded;
+use crate::measures::cause_codes::{CauseKind, Code};
+use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{Column, Table, TableCell, TableRow};
 
 /// A recorded press.

@@ -1,7 +1,7 @@
 //! Table of the beliefs about each aspect before each human press.
 
 use crate::mind::AspectBelief;
-use crate::mind::witness::AspectEstimate;
+use crate::mind::recorded_estimate::AspectEstimate;
 use crate::study::column::{Column, Table, TableRow};
 
 /// Estimated and recorded belief about an aspect before a human press.

@@ -2,7 +2,7 @@
 
 use crate::kitchen::Kitchen;
 use crate::measures::matching::{CommunicationEvent, CommunicationKind};
-use crate::mind::witness::rounded;
+use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{Column, Table, TableRow};
 
 /// A sent or hypothetical communication.

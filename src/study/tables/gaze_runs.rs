@@ -2,7 +2,7 @@
 
 use crate::base::time::SessionTime;
 use crate::kitchen::{Kitchen, LocationId};
-use crate::mind::witness::rounded;
+use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{Column, Table, TableRow};
 
 /// A run of gaze samples on one location, or on none.

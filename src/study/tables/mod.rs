@@ -3,7 +3,7 @@
 pub mod actions;
 pub mod aspect_beliefs;
 pub mod communications;
-pub mod concepts;
+pub mod concept_table;
 pub mod gaze_runs;
 pub mod participants;
 pub mod questionnaires;

@@ -3,7 +3,7 @@
 use crate::study::column::{Column, Table, TableRow};
 use crate::study::effect::{StudyMeasure, TrialPair, pairs};
 use crate::study::tables::trials::{HEADLINE, measures};
-use crate::study::trial::Trial;
+use crate::study::trial_statistics::Trial;
 
 /// A participant with its trials, at least one.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! Table of answers to questionnaires.
 
 use crate::study::column::{Column, Table, TableRow};
-use crate::study::trial::{QuestionnaireAnswer, Trial};
+use crate::study::trial_statistics::{QuestionnaireAnswer, Trial};
 
 /// An answer with the trial after which it was given.
 #[derive(Clone, Copy, Debug)]

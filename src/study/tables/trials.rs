@@ -5,7 +5,7 @@ use crate::session::event::EndReason;
 use crate::study::column::{Column, Table, TableCell, TableRow};
 use crate::study::effect::StudyMeasure;
 use crate::study::robot_tally::ArmSummary;
-use crate::study::trial::{BeliefErrors, Trial, mean_length};
+use crate::study::trial_statistics::{BeliefErrors, Trial, mean_length};
 
 /// Main measure of the report.
 pub const HEADLINE: StudyMeasure = StudyMeasure {

@@ -5,7 +5,7 @@ use rand::RngExt;
 use tomcom::arm::controller::{ControlCycle, PhysicalArm};
 use tomcom::arm::kinematics::Arm;
 use tomcom::arm::physics::CYCLE_S;
-use tomcom::arm::physics::hand::HandPose;
+use tomcom::arm::physics::hand_body::HandPose;
 use tomcom::arm::report::PressFailure;
 use tomcom::base::rng::{Stream, stream};
 use tomcom::robot::moment::{ArmPhase, JOINTS, JointAngles};

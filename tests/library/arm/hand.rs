@@ -1,7 +1,7 @@
 //! The human hand in the physics: when it sets out, where it goes, and what it keeps off.
 
 use nalgebra::Point3;
-use tomcom::arm::physics::hand::HandPose;
+use tomcom::arm::physics::hand_body::HandPose;
 use tomcom::arm::reaching::{ReachingBehaviour, ReachingHand};
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;

@@ -14,7 +14,7 @@ use std::sync::LazyLock;
 use rand::RngExt;
 use tomcom::arm::controller::{ControlCycle, PhysicalArm};
 use tomcom::arm::physics::CYCLE_S;
-use tomcom::arm::physics::hand::HandPose;
+use tomcom::arm::physics::hand_body::HandPose;
 use tomcom::arm::report::PressFailure;
 use tomcom::base::rng::Stream;
 use tomcom::edge::files::read_kitchen;

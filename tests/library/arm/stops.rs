@@ -3,7 +3,7 @@
 use nalgebra::Point3;
 use tomcom::arm::clearance::{Capsule, Obstruction};
 use tomcom::arm::kinematics::Arm;
-use tomcom::arm::physics::hand::HandPose;
+use tomcom::arm::physics::hand_body::HandPose;
 use tomcom::arm::reach::Unreachable;
 use tomcom::arm::report::PressFailure;
 use tomcom::kitchen::{Agent, ButtonId};

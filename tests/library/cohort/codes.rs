@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use miette::Diagnostic;
 use tomcom::edge::log::LOG_NAME;
-use tomcom::edge::log::codes::{read_all, write};
-use tomcom::measures::coding::{AgreementTable, CauseKind, Code, Codes};
+use tomcom::edge::log::rater_codes::{read_all, write};
+use tomcom::measures::cause_codes::{AgreementTable, CauseKind, Code, Codes};
 use tomcom::run::codes::{CodedRecording, CodesSummary, export, import};
 use tomcom::run::simulate::Shard;
 use tomcom::run::study::reading::{self, AnalysisScope};

@@ -1,10 +1,10 @@
 //! The check of the gaze with targets, and the wizard's decision about it.
 
 use crossterm::event::KeyCode;
-use tomcom::console::calibration::CalibrationAdvice;
-use tomcom::console::model::Dialog;
+use tomcom::console::console_model::Dialog;
+use tomcom::console::gaze_targets::CalibrationAdvice;
 use tomcom::gaze::calibration::{GazeAccuracy, TargetAccuracy};
-use tomcom::session::calibration::CalibrationEvent;
+use tomcom::session::accuracy_check::CalibrationEvent;
 use tomcom::session::event::Event;
 use tomcom::session::settings::ParticipantKind;
 

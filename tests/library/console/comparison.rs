@@ -8,7 +8,7 @@ use tomcom::communication::Signal;
 use tomcom::communication::concept::ConceptName;
 use tomcom::communication::recommendation::{Recommendation, SignalOption};
 use tomcom::console::compared::ComparisonView;
-use tomcom::console::model::Dialog;
+use tomcom::console::console_model::Dialog;
 use tomcom::console::panel::Panel;
 use tomcom::console::screen::screen;
 use tomcom::console::view::theme::{TerminalBackground, Theme};

@@ -2,7 +2,7 @@
 
 use crossterm::event::KeyCode;
 use tomcom::communication::Sender;
-use tomcom::console::model::Dialog;
+use tomcom::console::console_model::Dialog;
 use tomcom::console::picker::{Picker, PickerQuestion};
 use tomcom::session::event::{EndReason, Event};
 use tomcom::session::settings::ParticipantKind;

@@ -2,8 +2,8 @@
 
 use crossterm::event::{KeyCode, KeyEventKind};
 use tomcom::communication::Sender;
+use tomcom::console::console_model::Dialog;
 use tomcom::console::key_action::{KeyLayer, KeyPlace};
-use tomcom::console::model::Dialog;
 use tomcom::console::picker::{Picker, PickerQuestion};
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyMap};
 use tomcom::kitchen::{Agent, Kitchen, LocationKind};

@@ -22,7 +22,7 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::{Sender, Signal};
-use tomcom::console::model::RecordingStatus;
+use tomcom::console::console_model::RecordingStatus;
 use tomcom::console::screen::screen;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyMap, update, view};

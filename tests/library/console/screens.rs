@@ -2,8 +2,8 @@
 
 use crossterm::event::KeyCode;
 use tomcom::communication::{Sender, Signal};
+use tomcom::console::console_model::{Dialog, RecordingStatus};
 use tomcom::console::key_action::KeyLayer;
-use tomcom::console::model::{Dialog, RecordingStatus};
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::playback::Playback;
 use tomcom::console::screen::screen;

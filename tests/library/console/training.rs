@@ -2,8 +2,8 @@
 
 use crossterm::event::KeyCode;
 use tomcom::base::time::SessionTime;
+use tomcom::console::console_model::Dialog;
 use tomcom::console::lesson::{TrainingFeedback, TrainingPanel};
-use tomcom::console::model::Dialog;
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::playback::Playback;
 use tomcom::session::settings::{ParticipantKind, Visibility};

@@ -2,10 +2,10 @@
 
 use crossterm::event::KeyCode;
 use tomcom::console::ConsoleCommand;
-use tomcom::console::model::Dialog;
+use tomcom::console::console_model::Dialog;
 use tomcom::session::Phase;
 use tomcom::session::event::Event;
-use tomcom::session::preflight::PreflightVerdict;
+use tomcom::session::preflight_checks::PreflightVerdict;
 use tomcom::session::settings::{GazeSource, ParticipantKind};
 
 use super::{SIZES, Stage, input, type_in};

@@ -4,8 +4,8 @@ use tomcom::base::time::SessionTime;
 use tomcom::gaze::GazeSample;
 use tomcom::gaze::calibration::{TARGETS, ViewingGeometry, measure};
 use tomcom::run::engine::Engine;
+use tomcom::session::accuracy_check::{CalibrationEvent, RunningGazeCheck};
 use tomcom::session::admit::is_external;
-use tomcom::session::calibration::{CalibrationEvent, RunningGazeCheck};
 use tomcom::session::{Event, Stamped};
 
 use super::engine;

@@ -13,9 +13,9 @@ use tomcom::kitchen::{Agent, AspectId, Kitchen};
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, Observed};
-use tomcom::mind::reference::people::Particles;
+use tomcom::mind::reference::belief_set::Particles;
 use tomcom::mind::reference::person::Particle;
-use tomcom::mind::reference::sight::GazeFollower;
+use tomcom::mind::reference::reading_effect::GazeFollower;
 
 /// The grid has at most so many nodes, …
 const MOST_NODES: usize = 40_000;

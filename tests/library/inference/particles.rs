@@ -9,7 +9,7 @@ use tomcom::kitchen::Kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, Observed};
-use tomcom::mind::reference::people::Particles;
+use tomcom::mind::reference::belief_set::Particles;
 
 pub struct ParticleFilter {
     pub people: Particles,

@@ -13,7 +13,7 @@ use tomcom::kitchen::cost_to_go::{CostToGo, Fidelity};
 use tomcom::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, Observed};
-use tomcom::mind::reference::people::Particles;
+use tomcom::mind::reference::belief_set::Particles;
 use tomcom::mind::reference::person::pick;
 use tomcom::robot::policy;
 

@@ -4,7 +4,7 @@ use tomcom::kitchen::Agent;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::measures::attribution::{Attributor, Cause};
 use tomcom::measures::errors::PressJudge;
-use tomcom::mind::decision::DecisionModel;
+use tomcom::mind::choice_parameters::DecisionModel;
 
 use super::{at, belief, kitchen, state};
 

@@ -1,7 +1,7 @@
 //! How well an estimate finds false beliefs: areas under the curve, calibration, thresholds.
 
 use tomcom::kitchen::{AspectId, ButtonId, Kitchen};
-use tomcom::measures::beliefs::{Detection, EstimateView, PressView, TrialView};
+use tomcom::measures::belief_detection::{Detection, EstimateView, PressView, TrialView};
 use tomcom::measures::detection::{Calibration, auc};
 use tomcom::measures::flags::Thresholds;
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use tomcom::base::time::SessionTime;
 use tomcom::edge::log::{LOG_NAME, LogReader, SimulatedLog};
 use tomcom::mind::choice::ChoiceModel;
-use tomcom::mind::decision::DecisionModel;
+use tomcom::mind::choice_parameters::DecisionModel;
 use tomcom::robot::moment::ArmSample;
 use tomcom::session::{Event, Stamped};
 

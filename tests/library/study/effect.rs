@@ -6,7 +6,7 @@ use tomcom::study::facts::Facts;
 use tomcom::study::figures::StudySummary;
 use tomcom::study::statistics::{hodges_lehmann, mixed_anova, permutation_p};
 use tomcom::study::tables::trials::HEADLINE;
-use tomcom::study::trial::arrange;
+use tomcom::study::trial_statistics::arrange;
 
 use super::{near, trial, trials};
 

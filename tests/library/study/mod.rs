@@ -9,7 +9,7 @@ use tomcom::base::time::SessionTime;
 use tomcom::session::event::EndReason;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
 use tomcom::study::robot_tally::RobotSummary;
-use tomcom::study::trial::{BeliefBasis, BeliefErrors, Trial, arrange};
+use tomcom::study::trial_statistics::{BeliefBasis, BeliefErrors, Trial, arrange};
 
 fn near(found: f64, wanted: f64) {
     assert!((found - wanted).abs() < 1e-9 * wanted.abs().max(1.0), "{found} instead of {wanted}");

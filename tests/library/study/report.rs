@@ -5,8 +5,8 @@ use std::path::Path;
 
 use tomcom::communication::Sender;
 use tomcom::communication::concept::ConceptName;
-use tomcom::edge::log::codes;
-use tomcom::measures::coding::{Code, Codes};
+use tomcom::edge::log::rater_codes;
+use tomcom::measures::cause_codes::{Code, Codes};
 use tomcom::robot::AbortReason;
 use tomcom::robot::safety::SafetyMode;
 use tomcom::run::codes::CodedRecording;
@@ -21,7 +21,7 @@ use tomcom::study::prevention::PreventionCounts;
 use tomcom::study::report::{self, page_head};
 use tomcom::study::robot_tally::{ArmSummary, RobotTally};
 use tomcom::study::roc::SweptTrial;
-use tomcom::study::trial::{BeliefBasis, QuestionnaireAnswer, Trial};
+use tomcom::study::trial_statistics::{BeliefBasis, QuestionnaireAnswer, Trial};
 
 use super::{at, near, trial, trials};
 
@@ -170,7 +170,7 @@ fn two_raters_say_why_people_erred() {
     let belief = |place: &str| Code::Belief(place.to_string());
     let say = |rater: &str, of: &dyn Fn(usize) -> Code, count: usize| {
         let said = errors.iter().take(count).enumerate().map(|(index, &press)| (press, of(index)));
-        codes::write(&folder, rater, &Codes(said.collect())).expect("a file");
+        rater_codes::write(&folder, rater, &Codes(said.collect())).expect("a file");
     };
     // One of them is not done yet.
     say("anna", &|_| belief("assembly_board"), errors.len());

@@ -11,7 +11,7 @@ use tomcom::study::column::{Column, Table, TableCell, TableRow};
 use tomcom::study::dictionary::{DictionaryRow, columns, dictionary};
 use tomcom::study::tables::participants::participants;
 use tomcom::study::tables::trials::{HEADLINE, measures};
-use tomcom::study::trial::Trial;
+use tomcom::study::trial_statistics::Trial;
 
 /// The columns that other people's scripts may name. Columns are appended; none is renamed, moved or taken away.
 const PUBLISHED: [(Table, &str); 9] = [

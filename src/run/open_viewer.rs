@@ -18,7 +18,7 @@ use crate::edge::stream_head;
 use crate::edge::terminal::asked_to_end;
 use crate::edge::viewer::{self, Viewer};
 use crate::mind::dirichlet::DirichletBelief;
-use crate::scene::shown::slug;
+use crate::scene::entity_content::slug;
 use crate::scene::{DerivedData, SessionScene};
 use crate::session::Stamped;
 

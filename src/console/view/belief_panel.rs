@@ -7,7 +7,7 @@ use super::regions::Regions;
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::communication::recommendation::phrase;
-use crate::console::model::ConsoleModel;
+use crate::console::console_model::ConsoleModel;
 use crate::history::belief_track::{self, AspectSnapshot, BeliefSnapshot};
 use crate::kitchen::{AspectId, AspectKind, Kitchen};
 use crate::session::{Phase, Session};

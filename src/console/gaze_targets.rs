@@ -3,12 +3,12 @@
 
 use crossterm::event::KeyCode;
 
-use super::message::ConsoleCommand;
-use super::model::{ConsoleModel, Dialog};
+use super::console_message::ConsoleCommand;
+use super::console_model::{ConsoleModel, Dialog};
 use super::notice::NoticeLevel;
 use super::sending::send;
 use crate::gaze::calibration::{GazeAccuracy, USABLE_DEG};
-use crate::session::calibration::CalibrationEvent;
+use crate::session::accuracy_check::CalibrationEvent;
 use crate::session::{Event, Session};
 
 /// The key that takes the gaze as it is.

@@ -16,10 +16,10 @@ use crate::console::playback::{Playback, ReplayKey, SPEEDS};
 use crate::console::rater_session::RaterSession;
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::edge::key_file::key_map;
-use crate::edge::log::{LogEnding, codes};
+use crate::edge::log::{LogEnding, rater_codes};
 use crate::edge::terminal::TerminalScreen;
 use crate::history::landmark::ReplayLandmark;
-use crate::measures::coding::Codable;
+use crate::measures::cause_codes::Codable;
 use crate::session::Event;
 
 /// Time per frame for applying events at full speed.
@@ -45,7 +45,7 @@ pub fn review(recording: &Path, follow: bool, compare: Option<&CompareRequest>) 
 pub fn rate(recording: &Path, rater: &str) -> Result<(), ReviewError> {
     let film = SeekableReplay::open(recording)?.blinded();
     let codable = Codable::from_presses(&film.replay.session().kitchen, &film.replay.follower.judged);
-    let codes = codes::read(film.replay.log().folder(), rater, &codable)?;
+    let codes = rater_codes::read(film.replay.log().folder(), rater, &codable)?;
     let coding = RaterSession { rater: rater.to_string(), errors: codable.errors, codes };
     at_desk(film, recording, false, None, Some(coding))
 }
@@ -146,7 +146,7 @@ impl Review {
     /// Saves the rater's codes.
     fn keep(&mut self) {
         let Some(coding) = &self.model.coding else { return };
-        if let Err(error) = codes::write(self.film.replay.log().folder(), &coding.rater, &coding.codes) {
+        if let Err(error) = rater_codes::write(self.film.replay.log().folder(), &coding.rater, &coding.codes) {
             self.model.say(NoticeLevel::Alarm, format!("not kept: {error}"));
         }
     }

@@ -3,7 +3,7 @@
 use crate::study::column::{Column, Table, TableCell, TableRow};
 use crate::study::prevention::PreventionCounts;
 use crate::study::roc::SweptTrial;
-use crate::study::trial::Trial;
+use crate::study::trial_statistics::Trial;
 
 /// A concept with one parameter value in an unassisted trial.
 #[derive(Clone, Copy, Debug)]

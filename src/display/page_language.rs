@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::session::display::DisplaySpec;
+use crate::session::wall_display::DisplaySpec;
 
 const ENGLISH: &str = include_str!("languages/en.toml");
 const GERMAN: &str = include_str!("languages/de.toml");

@@ -9,7 +9,7 @@ use super::WriteError;
 use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult, open_regular};
 use crate::edge::overwrite;
-use crate::measures::coding::{CauseKind, Codable, Code, Codes};
+use crate::measures::cause_codes::{CauseKind, Codable, Code, Codes};
 use crate::session::settings::is_code;
 
 /// The columns of the file; those of an export of several recordings have two more before them.

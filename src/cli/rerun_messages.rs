@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::failure::Failure;
 use super::output::put;
 use crate::base::time::SessionTime;
-use crate::run::rerun::{
+use crate::run::open_viewer::{
     OngoingRecording, RerunError, ReviewOutcome, ReviewRequest, SavedStream, review, running, save, until_asked_to_end,
 };
 

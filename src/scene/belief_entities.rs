@@ -1,13 +1,13 @@
 //! The participant's belief: the estimate, and for simulated participants the recorded belief.
 
 use super::colours;
-use super::shown::{EntityData, EntityUpdate, SceneSeries, slug};
+use super::entity_content::{EntityData, EntityUpdate, SceneSeries, slug};
 use crate::base::time::SessionTime;
 use crate::history::wording;
 use crate::kitchen::{Aspect, AspectId, Kitchen, State};
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::witness::EstimateWitness;
+use crate::mind::recorded_estimate::EstimateWitness;
 use crate::mind::{AspectBelief, BeliefWitness};
 use crate::session::{Event, Session, Stamped};
 

@@ -8,8 +8,8 @@ use super::theme::TextRole;
 use super::timeline::{axis, until};
 use crate::base::time::SessionTime;
 use crate::console::compared::ComparisonKey;
+use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
-use crate::console::model::ConsoleModel;
 use crate::history::comparison::{Communication, CommunicationContent, LaneComparison, UnmatchedCommunication};
 use crate::session::Session;
 

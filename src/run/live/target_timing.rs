@@ -3,7 +3,7 @@
 use super::live_session::Live;
 use crate::base::time::SessionTime;
 use crate::session::Event;
-use crate::session::calibration::{AcceptedGazeCheck, CalibrationEvent, RunningGazeCheck};
+use crate::session::accuracy_check::{AcceptedGazeCheck, CalibrationEvent, RunningGazeCheck};
 use crate::session::settings::GazeSource;
 
 impl Live {

@@ -1,7 +1,7 @@
 //! The participant's display, as far as the wizard has to know: where it is, whether somebody is there, how quick it is.
 
 use crate::session::Session;
-use crate::session::preflight::{PreflightCheck, PreflightVerdict};
+use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use crate::session::settings::ParticipantKind;
 
 /// The participant's display.

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use super::robot_tally::RobotSummary;
 use super::roc::SweptTrial;
-use crate::measures::coding::Codes;
+use crate::measures::cause_codes::Codes;
 use crate::measures::matching::CommunicationEvent;
-use crate::measures::wizard::WizardMeasures;
+use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::event::EndReason;
 use crate::session::settings::{ArmKind, Condition, ParticipantKind};
 

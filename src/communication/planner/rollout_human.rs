@@ -3,7 +3,7 @@
 //! The human's belief is one belief sample, represented by worlds drawn from it; equal worlds are merged, with their number of
 //! draws as weight. Most people hold point-like beliefs, so few distinct worlds remain.
 
-use super::robot::{RobotChoices, RobotPolicy};
+use super::rollout_robot::{RobotChoices, RobotPolicy};
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{
     Agent, AspectId, AspectKind, ButtonAction, ButtonId, ContentId, Fidelity, Kitchen, OrderContent, State,
@@ -83,7 +83,8 @@ impl WeightedWorlds<u32> {
             }
             let first = (draw * f64::from(ways)) as u32;
             let share = |way: u32| count / ways + u32::from(way < count % ways);
-            let after = |way: u32| super::robot::press(kitchen, state, &recipes, choices.nth((first + way) % ways));
+            let after =
+                |way: u32| super::rollout_robot::press(kitchen, state, &recipes, choices.nth((first + way) % ways));
             self.all[index].world.state = after(0);
             self.all[index].weight = share(0);
             for way in (1..ways).filter(|&way| share(way) > 0) {

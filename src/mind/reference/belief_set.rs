@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rand::RngExt;
 
 use super::person::Particle;
-use super::sight::GazeFollower;
+use super::reading_effect::GazeFollower;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;

@@ -6,7 +6,7 @@ use super::paint::Painter;
 use super::popup::open;
 use super::theme::TextRole;
 use crate::console::arrange::KitchenMap;
-use crate::console::calibration::{AS_IT_IS, CORRECTED, CalibrationAdvice, REPEAT};
+use crate::console::gaze_targets::{AS_IT_IS, CORRECTED, CalibrationAdvice, REPEAT};
 use crate::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
 use crate::session::Session;
 

@@ -1,7 +1,7 @@
 //! The kitchen as on the wall display: places with their contents, the present signal, and the gaze.
 
 use super::colours::{self, Colour};
-use super::shown::{EntityData, EntityUpdate, SceneArea, SceneDisc, slug};
+use super::entity_content::{EntityData, EntityUpdate, SceneArea, SceneDisc, slug};
 use crate::communication::Signal;
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 use crate::history::wording;

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use crossterm::event::KeyCode;
 
 use super::compared::ComparisonView;
-use super::display::DisplayHealth;
+use super::display_status::DisplayHealth;
 use super::key_action::KeyLayer;
 use super::keys::KeyBindings;
 use super::lesson::TrainingPanel;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::follower::Follower;
+use super::likelihood::LogLikelihood;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::gaze::MIN_CONFIDENCE;
@@ -15,7 +16,6 @@ use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
 use crate::measures::belief_detection::{Detection, EstimateView, PressView, TrialView};
 use crate::measures::flags::{MOST_FALSE_FLAGS, Thresholds};
-use crate::measures::likelihood::LogLikelihood;
 use crate::mind::belief::Belief;
 use crate::mind::choice_parameters::DecisionModel;
 use crate::session::{Event, Session, Stamped};

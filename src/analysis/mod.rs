@@ -2,16 +2,20 @@
 //! function of events that the caller passes in; files, threads and clocks belong to the caller.
 
 pub mod advisor;
+#[cfg(feature = "cli")]
 pub mod belief_check;
 pub mod compared_recording;
 pub mod comparison_summary;
 pub mod event_lines;
 pub mod exclusion_status;
+#[cfg(feature = "cli")]
 pub mod fitting;
 pub mod follower;
 pub mod gaze_summary;
 pub mod kitchen_summary;
 pub mod lesson_report;
+#[cfg(feature = "cli")]
+pub mod likelihood;
 pub mod planner_accuracy;
 pub mod recording_summary;
 pub mod sweep_row;

@@ -1,4 +1,4 @@
-//! Collects a wizard's signals event by event, for the measures of [`crate::measures::wizard`].
+//! Collects a wizard's signals event by event, for the measures of [`crate::measures::wizard_performance`].
 
 use serde::Serialize;
 

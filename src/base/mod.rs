@@ -2,7 +2,6 @@
 
 pub mod bits;
 pub mod features;
-pub mod minimise;
 pub mod number_range;
 pub mod printable;
 pub mod rng;

@@ -3,9 +3,10 @@
 //! The files from the ground up:
 //!
 //! - A press: [`errors`], [`attribution`] (why), `judged_press` (both); [`sequences`] of errors and episodes of false belief.
-//! - An estimate of beliefs: [`detection`], `press_view` (what was known before a press), [`flags`], [`beliefs`] (all of
-//!   these), [`likelihood`].
-//! - Communication: `median`, [`matching`] of two lanes, [`wizard`]. [`coding`] by people has its agreement from `matching`.
+//! - An estimate of beliefs: [`detection`], `press_view` (what was known before a press), [`flags`],
+//!   [`belief_detection`] (all of these).
+//! - Communication: `median`, [`matching`] of two lanes, [`wizard_performance`]. [`cause_codes`] by people has its
+//!   agreement from `matching`.
 
 pub mod attribution;
 pub mod belief_detection;
@@ -14,7 +15,6 @@ pub mod detection;
 pub mod errors;
 pub mod flags;
 mod judged_press;
-pub mod likelihood;
 pub mod matching;
 mod median;
 mod press_view;

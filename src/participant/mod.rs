@@ -5,7 +5,7 @@
 //!
 //! Modules from the ground up:
 //!
-//! - Components: [`population`] (distribution of traits), [`beliefs`], `memory` (of recipes), `eyes`, `attention`.
+//! - Components: [`population`] (distribution of traits), [`true_beliefs`], `memory` (of recipes), `eyes`, `attention`.
 //! - Consequences of beliefs: `decision` (next presses), `learning` (from own presses), `witness` (for the recording).
 //! - The participant: `simulated` (its data), then its behaviour: `targets`, `looking`, `thinking`, `hand`, `acting` (in time).
 

@@ -3,16 +3,16 @@
 //!
 //! The files from the ground up:
 //!
-//! - Settings: `setting_checks`, `condition`, `participant_settings`, `console_settings`, `robot_settings`, [`display`],
-//!   [`stream`], [`tracker`] (with its events and state), and the specifications in [`plan`]; [`settings`], all of them
-//!   together. On these stand `reading`, `requirements`, [`participant_code`], [`header`], [`orders`], and the studies in
-//!   [`plan`].
-//! - What happens: `gaze_check`, `protocol_event` (with the phases of a plan), `preflight_check`, [`screen`]; [`event`], all of
-//!   them together.
+//! - Settings: `setting_checks`, `condition`, `participant_settings`, `console_settings`, `robot_settings`, [`wall_display`],
+//!   [`stream_settings`], [`tracker`] (with its events and state), and the specifications in [`plan`]; [`settings`], all of
+//!   them together. On these stand `session_file`, `requirements`, [`participant_code`], [`header`], [`orders`], and the
+//!   studies in [`plan`].
+//! - What happens: `gaze_check`, `protocol_event` (with the phases of a plan), `preflight_check`, [`wizard_screen`]; [`event`],
+//!   all of them together.
 //! - The state: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `protocol_state`; `session_state`, all of them
 //!   together.
-//! - What can happen when, and what it changes: `robot`, [`calibration`], [`gaze_samples`], [`protocol`], `hands`; [`admit`]
-//!   and [`mod@apply`], all of them together. Beside them [`preflight`], and the [`timers`] that [`apply()`] sets.
+//! - What can happen when, and what it changes: `robot_changes`, [`accuracy_check`], [`gaze_samples`], [`protocol`],
+//!   `interventions`; [`admit`] and [`mod@apply`], all of them together. Beside them [`preflight_checks`], and the [`timers`] that [`apply()`] sets.
 
 pub mod accuracy_check;
 pub mod admit;

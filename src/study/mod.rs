@@ -6,7 +6,8 @@
 //! simulated participants; for people from two raters' codes if both coded every error, else from the estimate. The summary names
 //! the source (`beliefs_from`).
 //!
-//! - [`trial`] keeps the statistics of each trial; [`figures`] summarizes them with [`effect`], [`roc`] and [`statistics`].
+//! - [`trial_statistics`] keeps the statistics of each trial; [`figures`] summarizes them with [`effect`], [`roc`] and
+//!   [`statistics`].
 //! - [`tables`] declares the tables: the source of a row, and each [column](mod@column) with name, unit, meaning and value. Header lines,
 //!   rows and [`dictionary`] are generated. A measure that is compared between assisted and unassisted trials is declared as such
 //!   in the table of trials ([`tables::trials`]); its columns in the table of participants and its line in the report are

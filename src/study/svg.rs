@@ -35,7 +35,7 @@ impl PlotAxis {
     pub fn between(label: &'static str, low: f64, high: f64) -> PlotAxis {
         let step = round_step((high - low) / 5.0);
         let (first, last) = ((low / step).floor() as i64, (high / step - 1e-9).ceil() as i64);
-        let digits = (-step.log10().floor()).max(0.0) as usize;
+        let digits = digits(step);
         let tick = |number: i64| (number as f64 * step, minus(&format!("{:.digits$}", number as f64 * step)));
         PlotAxis { label, from: first as f64 * step, to: last as f64 * step, ticks: (first..=last).map(tick).collect() }
     }
@@ -52,6 +52,15 @@ fn round_step(step: f64) -> f64 {
     let power = 10f64.powf(step.log10().floor());
     let factor = [1.0, 2.0, 2.5, 5.0].into_iter().find(|factor| factor * power >= step * (1.0 - 1e-9));
     factor.unwrap_or(10.0) * power
+}
+
+/// Number of decimals that show a step and its multiples without rounding.
+fn digits(step: f64) -> usize {
+    let is_exact = |digits: &usize| {
+        let scaled = step * 10f64.powi(*digits as i32);
+        (scaled - scaled.round()).abs() < 1e-6 * scaled
+    };
+    (0..12).find(is_exact).unwrap_or(12)
 }
 
 /// Builder of a chart.
@@ -174,4 +183,21 @@ fn tenths(pixels: f64) -> String {
 /// Replaces hyphens in numbers by minus signs.
 pub fn minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(low: f64, high: f64) -> Vec<String> {
+        PlotAxis::between("", low, high).ticks.into_iter().map(|(_, label)| label).collect()
+    }
+
+    #[test]
+    fn labels_of_ticks_are_not_rounded() {
+        assert_eq!(labels(0.0, 12.5), ["0.0", "2.5", "5.0", "7.5", "10.0", "12.5"]);
+        assert_eq!(labels(0.0, 1.25), ["0.00", "0.25", "0.50", "0.75", "1.00", "1.25"]);
+        assert_eq!(labels(-100.0, 150.0), ["−100", "−50", "0", "50", "100", "150"]);
+        assert_eq!(labels(0.0, 0.005), ["0.000", "0.001", "0.002", "0.003", "0.004", "0.005"]);
+    }
 }

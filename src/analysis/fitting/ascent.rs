@@ -87,7 +87,7 @@ pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]
     let error = |index: usize| {
         let (free, _) = last.as_ref()?;
         let place = free.iter().position(|&other| other == index)?;
-        Some(covariance.as_ref()?[place][place].sqrt() * search.steps[index])
+        Some(covariance.as_ref()?[(place, place)].sqrt() * search.steps[index])
     };
     let errors: Vec<Option<f64>> = (0..count).map(error).collect();
     let limits: Vec<Option<f64>> = (0..count)
@@ -184,7 +184,7 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
     fn wanted_steps(&self, free: &[usize], surface: &QuadraticSurface) -> Vec<f64> {
         let [least, most] = STEP_NATS.map(|nats| nats + STEP_NOISE * surface.noise);
         let wanted = |(place, &index): (usize, &usize)| {
-            let rise = surface.curvature[place][place] / 2.0;
+            let rise = surface.curvature[(place, place)] / 2.0;
             let change = match rise {
                 _ if rise > most || rise > 0.0 && rise < least => ((least * most).sqrt() / rise).sqrt(),
                 _ if rise > 0.0 => 1.0,

@@ -6,7 +6,7 @@
 //! observed information) and from the noise. A parameter whose maximum lies at a bound is not identified; its interval is one-sided.
 
 pub mod ascent;
-pub mod linear;
+pub mod downhill_simplex;
 pub mod response_surface;
 
 use serde::Serialize;

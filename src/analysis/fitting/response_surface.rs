@@ -1,7 +1,7 @@
 //! Quadratic response surfaces: least squares fits to the values of a noisy function over a central composite design (Box and
 //! Wilson 1951), with their minimum and curvature.
 
-use super::linear::inverse;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Range in which a surface is trusted, in steps from its centre.
 pub const REACH: f64 = 1.5;
@@ -14,13 +14,13 @@ pub struct QuadraticSurface {
     /// Value at the centre.
     pub value: f64,
     /// First derivatives at the centre.
-    pub slope: Vec<f64>,
+    pub slope: DVector<f64>,
     /// Second derivatives.
-    pub curvature: Vec<Vec<f64>>,
+    pub curvature: DMatrix<f64>,
     /// Standard deviation of the residuals.
     pub noise: f64,
     /// Covariance of the slope that follows from the residuals.
-    slope_covariance: Vec<Vec<f64>>,
+    slope_covariance: DMatrix<f64>,
 }
 
 /// Number of function values that [`surface`] needs for this number of variables.
@@ -32,46 +32,46 @@ pub fn points(variables: usize) -> usize {
 /// are not finite are ignored; `None` if too few remain.
 pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &[f64]) -> Option<QuadraticSurface> {
     let n = centre.len();
-    let count = 1 + n + n * (n + 1) / 2;
-    let mut squares = vec![vec![0.0; count]; count];
-    let mut sums = vec![0.0; count];
-    let mut values = Vec::new();
+    let (mut rows, mut values) = (Vec::new(), Vec::new());
     for by in design(n) {
         let at: Vec<f64> = (0..n).map(|index| centre[index] + by[index] * steps[index]).collect();
         let value = function(&at);
         if value.is_finite() {
-            let terms = terms(&by);
-            for (row, one) in terms.iter().enumerate() {
-                sums[row] += one * value;
-                squares[row].iter_mut().zip(&terms).for_each(|(sum, other)| *sum += one * other);
-            }
-            values.push((terms, value));
+            rows.extend(terms(&by));
+            values.push(value);
         }
     }
-    let solved = inverse(&squares)?;
-    let found: Vec<f64> = solved.iter().map(|row| product(row, &sums)).collect();
-    let mut curvature = vec![vec![0.0; n]; n];
+    let count = terms(&vec![0.0; n]).len();
+    let design = DMatrix::from_row_iterator(values.len(), count, rows);
+    let values = DVector::from_vec(values);
+    let inverse = inverse(design.tr_mul(&design))?;
+    let found = &inverse * design.tr_mul(&values);
+    let mut curvature = DMatrix::zeros(n, n);
     for (term, (one, other)) in pairs(n).into_iter().enumerate() {
-        curvature[one][other] += found[1 + n + term];
-        curvature[other][one] += found[1 + n + term];
+        curvature[(one, other)] += found[1 + n + term];
+        curvature[(other, one)] += found[1 + n + term];
     }
-    let off: f64 = values.iter().map(|(terms, value)| (value - product(terms, &found)).powi(2)).sum();
-    let variance = off / values.len().saturating_sub(count).max(1) as f64;
-    let of_slope = |row: &Vec<f64>| row[1..=n].iter().map(|one| variance * one).collect();
+    let residuals = values - design * &found;
+    let variance = residuals.norm_squared() / residuals.len().saturating_sub(count).max(1) as f64;
     Some(QuadraticSurface {
         value: found[0],
-        slope: found[1..=n].to_vec(),
+        slope: found.rows(1, n).into_owned(),
         curvature,
         noise: variance.sqrt(),
-        slope_covariance: solved[1..=n].iter().map(of_slope).collect(),
+        slope_covariance: inverse.view((1, 1), (n, n)) * variance,
     })
+}
+
+/// Inverse of a symmetric matrix; `None` if the matrix is not positive definite.
+fn inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
+    Some(Cholesky::<f64, Dyn>::new(matrix)?.inverse())
 }
 
 impl QuadraticSurface {
     /// Value at a distance from the centre, in steps.
     pub fn at(&self, by: &[f64]) -> f64 {
-        let bend: f64 = self.curvature.iter().zip(by).map(|(row, one)| one * product(row, by)).sum();
-        self.value + product(&self.slope, by) + bend / 2.0
+        let by = DVector::from_column_slice(by);
+        self.value + self.slope.dot(&by) + by.dot(&(&self.curvature * &by)) / 2.0
     }
 
     /// Minimum within bounds, in steps from the centre: the best result of coordinate descents from the centre and from the ends of
@@ -94,8 +94,9 @@ impl QuadraticSurface {
     fn descend(&self, mut by: Vec<f64>, low: &[f64], high: &[f64]) -> Vec<f64> {
         for _ in 0..SWEEPS {
             for index in 0..by.len() {
-                let bend = self.curvature[index][index];
-                let slope = self.slope[index] + product(&self.curvature[index], &by) - bend * by[index];
+                let bend = self.curvature[(index, index)];
+                let others: f64 = self.curvature.row(index).iter().zip(&by).map(|(bend, by)| bend * by).sum();
+                let slope = self.slope[index] + others - bend * by[index];
                 let value = |x: f64| slope * x + bend * x * x / 2.0;
                 by[index] = match bend > 0.0 {
                     true => (-slope / bend).clamp(low[index], high[index]),
@@ -109,19 +110,10 @@ impl QuadraticSurface {
 
     /// Covariance of the minimum: the inverse of the curvature (the observed information, if values are negative log likelihoods)
     /// plus the part due to noise. `None` if the surface is not convex.
-    pub fn covariance(&self) -> Option<Vec<Vec<f64>>> {
-        let inverse = inverse(&self.curvature)?;
-        let n = inverse.len();
-        let by_noise = |row: usize, column: usize| -> f64 {
-            let inner = |one: usize| product(&self.slope_covariance[one], &inverse[column]);
-            (0..n).map(|one| inverse[row][one] * inner(one)).sum()
-        };
-        Some((0..n).map(|row| (0..n).map(|column| inverse[row][column] + by_noise(row, column)).collect()).collect())
+    pub fn covariance(&self) -> Option<DMatrix<f64>> {
+        let inverse = inverse(self.curvature.clone())?;
+        Some(&inverse * &self.slope_covariance * &inverse + &inverse)
     }
-}
-
-fn product(one: &[f64], other: &[f64]) -> f64 {
-    one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
 /// Points of the design, in steps from its centre.
@@ -173,9 +165,10 @@ mod tests {
         // Second derivatives: 4, 3, and 1 across.
         let expected = [[3.0 / 11.0, -1.0 / 11.0], [-1.0 / 11.0, 4.0 / 11.0]];
         let covariance = found.covariance().expect("a covariance");
-        for (row, of_row) in covariance.iter().enumerate() {
-            for (column, one) in of_row.iter().enumerate() {
-                assert!((one * steps[row] * steps[column] - expected[row][column]).abs() < 1e-9, "{covariance:?}");
+        for (row, expected) in expected.iter().enumerate() {
+            for (column, expected) in expected.iter().enumerate() {
+                let found = covariance[(row, column)] * steps[row] * steps[column];
+                assert!((found - expected).abs() < 1e-9, "{covariance:?}");
             }
         }
         assert_eq!(points(2), 11);

@@ -12,8 +12,8 @@
 //! - `fidelity`, `classes`, `task`, `journeys` (way of one item), `cache`, `ground` (tables of a kitchen), `goal` (tables of
 //!   a set of targets), `successors` (single presses).
 //! - The lower bound: `demand`, `assign`.
-//! - The upper bound: `plan` (a plan in the making), `needs` and `moves` (room for it), `clear` (the move that mostly is
-//!   best), `alternatives` (all others), `carry_out`.
+//! - The upper bound: `partial_plan` (a plan in the making), `needs` and `moves` (room for it), `clear` (the move that
+//!   mostly is best), `alternatives` (all others), `carry_out`.
 //! - Both: `rating`. What they leave open: `store` (what was found), `search`.
 //! - What is asked: `value` (of one state), `decide` (of all buttons).
 

@@ -5,8 +5,8 @@
 //! texts and items), so that it can be replayed after the plan has changed. Progress follows from the recordings alone; there is no file
 //! with the state of a study. A step that is left early has no end event and can be continued like one that was cut off.
 //!
-//! The files from the ground up: `groups`, `plan_spec` (the `[plan]` of a session file), `assign` (who is in which group),
-//! `questionnaire`, `step` (one recording), `planned_study` (all of them), `progress` (how far it is).
+//! The files from the ground up: `groups`, `plan_spec` (the `[plan]` of a session file), `starting_groups` (who is in which
+//! group), `questionnaire`, `step` (one recording), `planned_study` (all of them), `progress` (how far it is).
 
 mod groups;
 mod plan_spec;

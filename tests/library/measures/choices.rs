@@ -3,12 +3,12 @@
 use std::convert::Infallible;
 
 use tomcom::analysis::follower::Follower;
+use tomcom::analysis::likelihood::LogLikelihood;
 use tomcom::analysis::trial_summary::{BeliefErrorSummary, TrialSummary};
 use tomcom::base::rng::stream;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, WeightedWorlds, World};
 use tomcom::measures::belief_detection::{EstimateView, PressView, TrialView};
-use tomcom::measures::likelihood::LogLikelihood;
 use tomcom::mind::belief::Belief;
 use tomcom::mind::choice_parameters::DecisionModel;
 use tomcom::mind::{BeliefWitness, ChoiceModel};

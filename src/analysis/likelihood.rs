@@ -5,11 +5,11 @@
 use rand::RngExt;
 use serde::Serialize;
 
-use super::press_view::{PressView, TrialView};
-use crate::base::minimise::minimise;
+use super::fitting::downhill_simplex::minimise;
 use crate::base::rng::stream;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen, WeightedWorlds, World};
+use crate::measures::belief_detection::{PressView, TrialView};
 use crate::mind::ChoiceModel;
 use crate::mind::choice_parameters::DecisionModel;
 

@@ -48,7 +48,7 @@ const ONLY_IN: [(&str, &[&str]); 14] = [
     ("tonic_web", &["src/edge/rerun"]),
     ("tower_layer", &["src/edge/rerun"]),
     ("zeromq", &["src/edge"]),
-    ("nalgebra", &["src/arm", "src/scene", "src/edge/rerun.rs"]),
+    ("nalgebra", &["src/analysis/fitting", "src/arm", "src/scene", "src/edge/rerun.rs"]),
     ("urdf_rs", &["src/arm"]),
     ("rapier3d", &["src/arm"]),
     ("maud", &["src/study"]),

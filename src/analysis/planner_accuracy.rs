@@ -39,7 +39,7 @@ pub struct AccuracySummary {
     /// Root mean square error of the benefit, in presses, over the pairs of step and signal whose converged benefit is
     /// beyond 0.3.
     pub benefit_rmse: Option<f64>,
-    /// Number of these pairs.
+    /// Number of pairs of step and signal in `benefit_rmse`.
     pub benefit_pairs: u64,
     /// Time of the plain reference divided by the planner's time, for planning the same steps.
     pub reference_ratio: Option<f64>,
@@ -69,9 +69,9 @@ pub struct RecordedQuestions {
     pub questions: Vec<AdviceRequest>,
 }
 
-/// A step: of which recording, which question, and the benefits that were answered.
+/// A question of a recording, with the benefits that each planner answered.
 #[derive(Clone, Debug, Default)]
-pub struct AccuracyStep {
+pub struct ComparedQuestion {
     recording: usize,
     question: usize,
     took_s: f64,
@@ -96,12 +96,12 @@ impl PlannerBench {
     }
 
     /// This many steps at most, spread evenly over all questions; nothing is answered yet.
-    pub fn spread(&self, most: usize) -> Vec<AccuracyStep> {
+    pub fn spread(&self, most: usize) -> Vec<ComparedQuestion> {
         let all = self.asked.iter().enumerate().flat_map(|(recording, asked)| {
-            let step = move |question| AccuracyStep { recording, question, ..AccuracyStep::default() };
+            let step = move |question| ComparedQuestion { recording, question, ..ComparedQuestion::default() };
             (0..asked.questions.len()).map(step)
         });
-        let all: Vec<AccuracyStep> = all.collect();
+        let all: Vec<ComparedQuestion> = all.collect();
         let chosen = most.min(all.len());
         (0..chosen).map(|index| all[index * all.len() / chosen].clone()).collect()
     }
@@ -110,7 +110,7 @@ impl PlannerBench {
     ///
     /// As in a session: after every press, on one thread, what is remembered helps the next answer. The plain reference
     /// follows at once, so that the machine is as fast for both.
-    pub fn answer(&self, steps: &mut [AccuracyStep], reference_steps: usize, done: impl Fn()) {
+    pub fn answer(&self, steps: &mut [ComparedQuestion], reference_steps: usize, done: impl Fn()) {
         let every = (reference_steps > 0).then(|| steps.len().div_ceil(reference_steps));
         let mut planner = BenchPlanner::default();
         for (index, step) in steps.iter_mut().enumerate() {
@@ -131,23 +131,23 @@ impl PlannerBench {
     }
 
     /// The step with the converged answer. Steps may be answered in any order, by several planners at once.
-    pub fn converge(&self, planner: &mut BenchPlanner, step: &AccuracyStep) -> AccuracyStep {
+    pub fn converge(&self, planner: &mut BenchPlanner, step: &ComparedQuestion) -> ComparedQuestion {
         let (advisor, _) = planner.advisor(self, step.recording, CONVERGED);
-        AccuracyStep { converged: benefits(advisor, self.question(step)), ..step.clone() }
+        ComparedQuestion { converged: benefits(advisor, self.question(step)), ..step.clone() }
     }
 
     /// The figures of steps that were answered and converged.
-    pub fn summary(&self, steps: &[AccuracyStep]) -> AccuracySummary {
+    pub fn summary(&self, steps: &[ComparedQuestion]) -> AccuracySummary {
         let price = self.asked.first().map_or(0.0, |asked| asked.session.spec.assistant.cost_of_communication);
         figures(steps, price)
     }
 
-    fn question(&self, step: &AccuracyStep) -> &AdviceRequest {
+    fn question(&self, step: &ComparedQuestion) -> &AdviceRequest {
         &self.asked[step.recording].questions[step.question]
     }
 
     /// How long the plain reference takes for a step, in seconds, and what it answers.
-    fn plain(&self, step: &AccuracyStep) -> (f64, Vec<ReferenceBenefit>) {
+    fn plain(&self, step: &ComparedQuestion) -> (f64, Vec<ReferenceBenefit>) {
         let session = &self.asked[step.recording].session;
         let (human, assistant) = (session.spec.human.clone(), session.spec.assistant.clone());
         let plain = ReferencePlanner::new(self.kitchen.clone(), human, assistant, session.seed());
@@ -234,7 +234,7 @@ impl DecisionAgreement {
     }
 }
 
-fn figures(steps: &[AccuracyStep], price: f64) -> AccuracySummary {
+fn figures(steps: &[ComparedQuestion], price: f64) -> AccuracySummary {
     let (mut ours, mut plain) = (DecisionAgreement::default(), DecisionAgreement::default());
     let (mut of_errors, mut plain_s, mut ours_s, mut reference_steps) = (0.0, 0.0, 0.0, 0u64);
     for step in steps {

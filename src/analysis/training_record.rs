@@ -68,7 +68,7 @@ pub struct JudgedSignal {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JudgedBelief {
-    /// The state aspect.
+    /// The state aspect about which the belief was false.
     pub aspect: String,
     /// On the trial's clock.
     pub began_ns: SessionTime,

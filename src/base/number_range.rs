@@ -152,10 +152,10 @@ fn collect(value: &toml::Value, path: &str, found: &mut Vec<(String, f64)>) {
     }
 }
 
-/// Whether a file may have all these numbers.
+/// Checks that all these numbers of a settings file lie within their ranges.
 ///
 /// # Errors
-/// The first one that it may not have.
+/// The first number that does not.
 pub fn check_file(ranges: &[NumberRange], numbers: &[(String, f64)]) -> Result<(), OutOfRange> {
     check(ranges, numbers, NumberRange::holds)
 }

@@ -12,7 +12,7 @@ use crate::analysis::watcher::CompareRequest;
 use crate::base::features::Feature;
 use crate::communication::concept::ConceptName;
 use crate::edge::file_error::FileError;
-use crate::run::options::{self, SessionStart, SettingOverrides, TrialSeries};
+use crate::run::options::{self, RemainingTrials, SessionStart, SettingOverrides};
 use crate::run::series::{self, SeriesOutcome};
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 
@@ -110,7 +110,7 @@ pub(super) fn new_session(
         Some(plan) => {
             let participant = options::participant_of_plan(plan, flags.code.as_deref());
             let participant = participant.map_err(wrong_setting)?;
-            Ok(series::operate_series(TrialSeries { files, participant, out, compare })?)
+            Ok(series::operate_series(RemainingTrials { files, participant, out, compare })?)
         }
     }
 }

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use super::parallel;
 use super::replay::{Replay, SameKitchen, each_once};
 use super::timing::monotonic_ns;
-use crate::analysis::planner_accuracy::{AccuracyStep, AccuracySummary, BenchPlanner, PlannerBench, RecordedQuestions};
+use crate::analysis::planner_accuracy::{
+    AccuracySummary, BenchPlanner, ComparedQuestion, PlannerBench, RecordedQuestions,
+};
 use crate::edge::file_error::FileResult;
 
 /// Number of steps to check.
@@ -32,7 +34,7 @@ pub fn measure(recordings: &[PathBuf], extent: AccuracySample, done: impl Fn() +
     let bench = PlannerBench::new(one_kitchen.kitchen()?, asked, monotonic_ns);
     let mut steps = bench.spread(extent.steps);
     bench.answer(&mut steps, extent.reference_steps, &done);
-    let converge = |planner: &mut BenchPlanner, step: &AccuracyStep| bench.converge(planner, step);
+    let converge = |planner: &mut BenchPlanner, step: &ComparedQuestion| bench.converge(planner, step);
     let steps = parallel::each_with(&steps, BenchPlanner::default, converge, done);
     Ok(bench.summary(&steps))
 }

@@ -40,7 +40,7 @@ pub enum SessionStart {
 
 /// The remaining recordings of a participant of a plan.
 #[derive(Clone, Debug)]
-pub struct TrialSeries {
+pub struct RemainingTrials {
     /// The settings with the plan.
     pub files: SessionFiles,
     /// Index of the participant in the plan.

@@ -5,7 +5,7 @@ use super::desk::OperatorDesk;
 use super::error::{LiveError, TerminalError};
 use super::leaving::{LeavingReason, LiveOutcome};
 use super::live;
-use super::options::{SessionStart, TrialSeries};
+use super::options::{RemainingTrials, SessionStart};
 use super::unfinished_recording::PreparedSession;
 use super::wizard_question::ask;
 use crate::analysis::watcher::CompareRequest;
@@ -50,7 +50,7 @@ pub fn operate(beginning: SessionStart, compare: Option<CompareRequest>) -> Resu
 ///
 /// # Errors
 /// Those of [`operate`], and recordings that cannot be read or do not fit the plan.
-pub fn operate_series(series: TrialSeries) -> Result<SeriesOutcome, LiveError> {
+pub fn operate_series(series: RemainingTrials) -> Result<SeriesOutcome, LiveError> {
     in_runtime(async { Planned::new(series)?.run().await })
 }
 
@@ -76,12 +76,12 @@ enum Choice {
 
 /// The series of one participant of a plan. The next step is determined from the recordings each time.
 struct Planned {
-    series: TrialSeries,
+    series: RemainingTrials,
     study: Study,
 }
 
 impl Planned {
-    fn new(series: TrialSeries) -> Result<Planned, LiveError> {
+    fn new(series: RemainingTrials) -> Result<Planned, LiveError> {
         let study = series.files.study().ok_or(LiveError::Plan("a session without a plan".to_string()))?;
         Ok(Planned { series, study })
     }

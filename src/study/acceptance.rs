@@ -11,13 +11,13 @@ use crate::session::settings::Condition;
 /// to 1 (full). Answers to items in which agreement means rejection are reversed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Acceptance {
-    /// Number of participants above 2/3.
+    /// Number of participants whose mean answer is above 2/3.
     pub high: u64,
-    /// Number of participants above 7/12, up to 2/3.
+    /// Number of participants whose mean answer is above 7/12, up to 2/3.
     pub medium: u64,
-    /// Number of participants within 1/12 of the middle (one point of a seven-point scale).
+    /// Number of participants whose mean answer is within 1/12 of the middle (one point of a seven-point scale).
     pub undecided: u64,
-    /// Number of participants below 5/12.
+    /// Number of participants whose mean answer is below 5/12.
     pub low: u64,
     /// Participants without answers to such items.
     pub not_reported: u64,

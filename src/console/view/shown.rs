@@ -9,7 +9,7 @@ use crate::console::key_action::KeyAction;
 use crate::history::wording;
 use crate::session::{Phase, Session, ShownSignal};
 
-/// Draws the signal on the display.
+/// Draws the panel that says which signal the participant sees now.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.shown;
     if area.area() == 0 {

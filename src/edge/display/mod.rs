@@ -38,12 +38,12 @@ pub struct Display {
     address: SocketAddr,
     code: Option<String>,
     inputs: Receiver<PageInput>,
-    screen: PageScreen,
+    screen: PageConnection,
 }
 
 /// Shared handle to the content and the state of the pages.
 #[derive(Clone)]
-pub struct PageScreen {
+pub struct PageConnection {
     scene: watch::Sender<Arc<str>>,
     sight: watch::Sender<Arc<str>>,
     status: Arc<DisplayStatus>,
@@ -61,7 +61,7 @@ impl Display {
         let code = (!listen.is_loopback()).then(code::pairing_code);
         let (send, inputs) = channel(WAITING);
         let status = Arc::new(DisplayStatus::default());
-        let screen = PageScreen {
+        let screen = PageConnection {
             scene: watch::Sender::new(Arc::from("")),
             sight: watch::Sender::new(Arc::from("")),
             status: status.clone(),
@@ -101,7 +101,7 @@ impl Display {
     }
 
     /// Handle to the content of the pages.
-    pub fn screen(&self) -> PageScreen {
+    pub fn screen(&self) -> PageConnection {
         self.screen.clone()
     }
 }
@@ -118,7 +118,7 @@ fn address_outside(any: IpAddr) -> Option<IpAddr> {
     socket.local_addr().ok().map(|address| address.ip())
 }
 
-impl PageScreen {
+impl PageConnection {
     /// Sends a new scene to the pages.
     pub fn build(&self, scene: &DisplayScene) {
         self.scene.send_replace(message::scene(scene));

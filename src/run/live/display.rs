@@ -6,7 +6,7 @@ use crate::base::time::SessionTime;
 use crate::console::display_status::DisplayHealth;
 use crate::console::notice::NoticeLevel;
 use crate::display::{DisplayUpdate, scene, sight};
-use crate::edge::display::{Display, PageScreen};
+use crate::edge::display::{Display, PageConnection};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
 use crate::run::desk::{OperatorDesk, PageInput};
@@ -17,7 +17,7 @@ use crate::session::{Event, Session};
 
 /// The participant's display in a recording.
 pub(super) struct ParticipantDisplay {
-    screen: PageScreen,
+    screen: PageConnection,
     /// Its present content.
     shown: Option<DisplayUpdate>,
 }

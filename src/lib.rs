@@ -78,7 +78,7 @@
 //! for (seconds, what) in events {
 //!     filter.observe(&Observation { time: SessionTime::from_secs_f64(seconds), what }, &mut cost);
 //! }
-//! let state = press.result().ok_or("a press without effect")?;
+//! let state = press.result().ok_or("an ineffective press")?;
 //! let p_truth = filter.belief().p_truth(&kitchen, state, AspectId::of_location(order));
 //! assert!(p_truth < 0.5, "the person does not know the order: {p_truth}");
 //!

@@ -122,7 +122,7 @@ pub struct SceneSeries {
 pub enum LogLevel {
     /// Something happened as it should.
     Info,
-    /// A press without effect, or a signal that was taken back.
+    /// An ineffective press, or a signal that was taken back.
     Warning,
     /// An error of the human.
     Error,

@@ -22,7 +22,7 @@ fn layouts() -> Vec<Kitchen> {
     paths.iter().map(|path| load(&path.display().to_string())).collect()
 }
 
-/// Plays presses given as "human: take rice" from an empty kitchen with these orders; `!` marks a press without effect.
+/// Plays presses given as "human: take rice" from an empty kitchen with these orders; `!` marks an ineffective press.
 fn check(kitchen: &Kitchen, orders: &[&str], presses: &[&str], expected: &[(&str, &str)]) -> State {
     let recipes = kitchen.true_recipes();
     let mut state = kitchen.empty_state();

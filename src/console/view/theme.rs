@@ -66,7 +66,7 @@ pub struct Glyphs {
     pub trail: &'static str,
     /// A press.
     pub press: &'static str,
-    /// A press without effect.
+    /// An ineffective press.
     pub no_effect: &'static str,
     /// A press that was an error.
     pub error: &'static str,

@@ -8,32 +8,39 @@ use tomcom::base::rng::{Stream, stream};
 #[path = "../fuzz/targets/read/mod.rs"]
 mod read;
 
-/// What fuzzing does with the readers, with what it begins with, and with every file cut and changed at many places.
+/// The reader with this name.
+fn reader(name: &str) -> read::Reader {
+    let found = read::READERS.into_iter().find(|(known, _)| *known == name);
+    found.unwrap_or_else(|| panic!("no reader {name}")).1
+}
+
+/// Every settings file cut and changed at many places, and logs with broken bytes.
 #[test]
 fn the_readers_survive_cut_and_changed_files() {
-    let seeds = [
-        (0, "layouts/sushi.toml"),
-        (0, "layouts/burger.toml"),
-        (1, "recipes/sushi.toml"),
-        (2, "sessions/default.toml"),
-        (2, "sessions/study.toml"),
-        (4, "sessions/questionnaires/acceptance.toml"),
+    let files = [
+        ("layout", "layouts/sushi.toml"),
+        ("layout", "layouts/burger.toml"),
+        ("recipes", "recipes/sushi.toml"),
+        ("session", "sessions/default.toml"),
+        ("session", "sessions/study.toml"),
+        ("questionnaire", "sessions/questionnaires/acceptance.toml"),
     ];
-    for (kind, path) in seeds {
+    for (name, path) in files {
+        let read = reader(name);
         let text = fs::read(path).unwrap_or_else(|error| panic!("{path}: {error}"));
         for at in (0..text.len()).step_by(text.len().div_ceil(10)) {
-            let mut changed = [&[kind], &text[..]].concat();
-            read::read(&changed[..=at]);
-            changed[at + 1] = changed[at + 1].wrapping_add(1) | 1;
-            read::read(&changed);
+            let mut changed = text.clone();
+            read(&changed[..at]);
+            changed[at] = changed[at].wrapping_add(1) | 1;
+            read(&changed);
         }
     }
     let log = fs::read("tests/golden/format-1-hand.jsonl").expect("a log");
     let events = log.splitn(2, |byte| *byte == b'\n').nth(1).expect("events after the header");
-    for (kind, text) in [(3, &log[..]), (7, events)] {
+    for (name, text) in [("log", &log[..]), ("events", events)] {
         let text = &text[..text.len().min(60_000)];
         for at in (0..text.len()).step_by(text.len() / 10) {
-            read::read(&[&[kind], &text[..at], b"\xff\x00}", &text[at..]].concat());
+            reader(name)(&[&text[..at], b"\xff\x00}", &text[at..]].concat());
         }
     }
 }
@@ -62,35 +69,38 @@ const PIECES: [&[u8]; 14] = [
     b"\xdf\xff\xff\xff\xff",
 ];
 
-/// An input for one reader: the number of the reader (see `read::read`) and the bytes.
-fn inputs() -> Vec<(u8, Vec<u8>)> {
-    let file = |kind: u8, path: &str| {
-        let bytes = fs::read(path).unwrap_or_else(|error| panic!("{path}: {error}"));
-        (kind, bytes[..bytes.len().min(LONGEST)].to_vec())
+/// A valid input for this reader.
+fn input(reader: &str) -> Vec<u8> {
+    let file = |path: &str| fs::read(path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let log = || file("tests/golden/format-1-hand.jsonl");
+    let mut bytes = match reader {
+        "layout" => file("layouts/sushi.toml"),
+        "recipes" => file("recipes/sushi.toml"),
+        "session" => file("sessions/study.toml"),
+        "questionnaire" => file("sessions/questionnaires/acceptance.toml"),
+        "parameters" => toml::to_string(&tomcom::mind::model::HumanModel::default()).expect("TOML").into_bytes(),
+        "keys" => b"[console]\nhelp = [\"?\", \"f1\"]\n[signals]\nplate = \"l\"\n".to_vec(),
+        "language" => b"\"Press start\" = \"Appuyez\"\n".to_vec(),
+        "log" => log(),
+        "events" => log().splitn(2, |byte| *byte == b'\n').nth(1).expect("events after the header").to_vec(),
+        "exclusion" => b"[[ruling]]\nexcluded = true\nreason = \"fire alarm\"\nat = \"2026-03-14T10:00:00Z\"\n".to_vec(),
+        "rater_codes" => b"press,cause,aspect\n3,belief,cooking_pot\n7,slip,\n".to_vec(),
+        "training" => br#"{"wizard":"W1","at":"2026-03-14T10:00:00Z","minutes":2.5,"criterion":{"hits":0.5,"wrong":0.2},"met":false,"recordings":[]}"#.to_vec(),
+        "table" => b"participant,press,kind\nP07,1,\"slip, seen\"\n".to_vec(),
+        "gaze_export" => file("tests/pupil/gaze_positions_on_surface_wall.csv"),
+        "rerun_head" => b"RRF2\x00\x24\x03\x00\x12\x17P07-1 tomcom-scene-3-whole\x1a\x08".to_vec(),
+        "gaze_line" => br#"{"t": 1.5, "x": 0.5, "y": 0.25, "confidence": 0.9}"#.to_vec(),
+        "pupil_message" => file("tests/pupil/surfaces_wall.msgpack"),
+        "pupil_frames" => b"\x01\x02ab\x02\x00\x00\x00\x00\x00\x00\x00\x03abc".to_vec(),
+        "page_message" => br#"{"kind":"press","number":1,"button":"cut","at":12.5}"#.to_vec(),
+        other => panic!("no input for the reader {other}"),
     };
-    let log = fs::read("tests/golden/format-1-hand.jsonl").expect("a log");
-    let events = log.splitn(2, |byte| *byte == b'\n').nth(1).expect("events after the header");
-    let datum = fs::read("tests/pupil/surfaces_wall.msgpack").expect("a datum of Pupil Capture");
-    let human = toml::to_string(&tomcom::mind::model::HumanModel::default()).expect("TOML");
-    let keys = "[console]\nhelp = [\"?\", \"f1\"]\n[signals]\nplate = \"l\"\n";
-    vec![
-        file(0, "layouts/sushi.toml"),
-        file(1, "recipes/sushi.toml"),
-        file(2, "sessions/study.toml"),
-        (3, log[..log.len().min(LONGEST)].to_vec()),
-        file(4, "sessions/questionnaires/acceptance.toml"),
-        (5, human.into_bytes()),
-        (6, keys.as_bytes().to_vec()),
-        (7, events[..events.len().min(LONGEST)].to_vec()),
-        (8, datum.clone()),
-        (9, datum),
-        (10, b"\x01\x02ab\x02\x00\x00\x00\x00\x00\x00\x00\x03abc".to_vec()),
-        (11, br#"{"t": 1.5, "x": 0.5, "y": 0.25, "confidence": 0.9}"#.to_vec()),
-    ]
+    bytes.truncate(LONGEST);
+    bytes
 }
 
 /// One to eight random changes: a byte set, a range removed, a range repeated, or a special piece put in.
-fn mutate(bytes: &mut Vec<u8>, random: &mut Stream) {
+pub fn mutate(bytes: &mut Vec<u8>, random: &mut Stream) {
     for _ in 0..random.random_range(1..=8) {
         let at = random.random_range(0..=bytes.len());
         let end = (at + random.random_range(0..64)).min(bytes.len());
@@ -112,12 +122,13 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Stream) {
 /// Every reader gets inputs that are changed at random from a valid one.
 #[test]
 fn the_readers_survive_seeded_mutations() {
-    for (kind, input) in inputs() {
+    for (number, (name, read)) in read::READERS.into_iter().enumerate() {
+        let input = input(name);
         for case in 0..CASES {
             let mut bytes = input.clone();
-            mutate(&mut bytes, &mut stream(SEED + u64::from(kind), "mutations", case));
-            let outcome = std::panic::catch_unwind(|| read::read(&[&[kind], &bytes[..]].concat()));
-            assert!(outcome.is_ok(), "reader {kind}, case {case} of seed {SEED}");
+            mutate(&mut bytes, &mut stream(SEED + number as u64, "mutations", case));
+            let outcome = std::panic::catch_unwind(|| read(&bytes));
+            assert!(outcome.is_ok(), "the reader \"{name}\", case {case} of seed {SEED}");
         }
     }
 }

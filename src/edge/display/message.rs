@@ -17,12 +17,16 @@ const MAX_PIXELS: u32 = 100_000;
 /// A message of a page.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub(super) enum FromPage {
-    /// First message: the page's random name (kept when it is reloaded) and its size.
+pub enum FromPage {
+    /// First message.
     Hello {
+        /// The page's random name, which it keeps when it is loaded again.
         page: String,
+        /// Width of the page in pixels.
         width: u32,
+        /// Height of the page in pixels.
         height: u32,
+        /// The pairing code that was entered.
         code: Option<String>,
         /// It watched before: another page takes part, and may come back later than this one.
         #[serde(default)]
@@ -30,43 +34,63 @@ pub(super) enum FromPage {
     },
     /// New size of the page.
     Size {
+        /// Width of the page in pixels.
         width: u32,
+        /// Height of the page in pixels.
         height: u32,
     },
     /// A watching page asks to act.
     TakePart,
-    /// A ping: the page's time in milliseconds, its last round trip time, and whether the page is hidden.
+    /// A ping.
     Ping {
+        /// The page's time in milliseconds.
         t: f64,
+        /// Its last round trip time in milliseconds.
         took: Option<f64>,
+        /// Whether the page is hidden.
         #[serde(default)]
         hidden: bool,
     },
-    /// A press, with its number.
+    /// A press.
     Press {
+        /// The press's number on this page, from 1.
         number: u64,
+        /// The button's name.
         button: String,
+        /// When, in milliseconds on the server's clock.
         at: f64,
     },
+    /// Position of the pointer.
     Pointer {
+        /// Fraction of the display's width.
         x: f64,
+        /// Fraction of the display's height, downwards.
         y: f64,
     },
+    /// Answer to a questionnaire item, or skipping it.
     Answer {
+        /// The item's name.
         item: String,
+        /// The point of the scale, from 1; none: left out.
         rated: Option<u8>,
     },
+    /// Return to a questionnaire item.
     Back {
+        /// The item's name.
         item: String,
     },
+    /// Confirmation of all answers.
     Confirm,
     /// The screen shows the event with this sequence number.
     Drawn {
+        /// Sequence number of the event.
         cue: u64,
+        /// When, in milliseconds on the server's clock.
         at: f64,
     },
-    /// Time from a press to its effect on the screen, in milliseconds.
+    /// A press had its effect on the screen.
     Redrawn {
+        /// Time from the press to the effect, in milliseconds.
         took: f64,
     },
 }
@@ -87,7 +111,7 @@ pub(super) enum ToPage {
 }
 
 /// Parses a message; `None` if it is malformed.
-pub(super) fn read(text: &str) -> Option<FromPage> {
+pub fn read(text: &str) -> Option<FromPage> {
     let message: FromPage = serde_json::from_str(text).ok()?;
     let is_time = |ms: &f64| ms.is_finite() && ms.abs() < 1e13;
     let is_text = |text: &String| !text.is_empty() && text.len() <= MAX_TEXT && !text.chars().any(char::is_control);

@@ -6,7 +6,7 @@
 mod code;
 mod connection;
 mod host_check;
-mod message;
+pub mod message;
 mod page_input;
 mod page_life;
 mod pairing;

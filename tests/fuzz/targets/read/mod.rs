@@ -1,18 +1,23 @@
-//! Everything that reads text which people or other programs wrote: session, layout, recipe, key and parameter files,
-//! questionnaires, logs; and everything that eye trackers send. Whatever it is, the answer is a value or an error that can be shown; never a panic, a hang or
-//! memory without bound.
+//! Everything that reads what people or other programs wrote: session, layout, recipe, key, language and parameter files,
+//! questionnaires, logs and the files beside them; and everything that eye trackers and the participant's page send. Whatever
+//! it is, the answer is a value or an error that can be shown; never a panic, a hang or memory without bound.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
+use tomcom::edge::display::message as page_message;
 use tomcom::edge::file_error::FileResult;
 use tomcom::edge::files::compile_kitchen;
-use tomcom::edge::gaze_json;
 use tomcom::edge::key_file::key_map;
-use tomcom::edge::log::LogReader;
+use tomcom::edge::language::LanguageFile;
+use tomcom::edge::log::{EXCLUSION_NAME, LogReader, rater_codes, ruling};
 use tomcom::edge::parse::parse;
-use tomcom::edge::pupil::message;
+use tomcom::edge::pupil::message as pupil_message;
 use tomcom::edge::pupil::zmtp::FrameAssembler;
+use tomcom::edge::{gaze_file, gaze_json, stream_head, training, written_tables};
+use tomcom::gaze::surface::SurfaceMap;
 use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::measures::cause_codes::Codable;
 use tomcom::mind::model::HumanModel;
 use tomcom::session::SessionSpec;
 use tomcom::session::apply::apply;
@@ -23,43 +28,135 @@ const LAYOUT: &str = include_str!("../../../../layouts/sushi.toml");
 const RECIPES: &str = include_str!("../../../../recipes/sushi.toml");
 const RECORDING: &str = include_str!("../../../golden/format-1-hand.jsonl");
 
-/// Reads data as what its first byte says.
-pub fn read(data: &[u8]) {
-    let Some((kind, rest)) = data.split_first() else { return };
-    let text = || String::from_utf8_lossy(rest).into_owned();
-    match kind % 12 {
-        0 => shown(compile_kitchen((Path::new("layout"), text()), (Path::new("recipes"), RECIPES.to_string())).map(
-            |files| {
-                // A kitchen that is accepted can be worked in.
-                CostToGo::new(files.kitchen.into());
-            },
-        )),
-        1 => {
-            shown(compile_kitchen((Path::new("layout"), LAYOUT.to_string()), (Path::new("recipes"), text())).map(drop))
+/// What reads bytes.
+pub type Reader = fn(&[u8]);
+
+/// The readers with the names that `tests/fuzz/run` takes.
+pub const READERS: [(&str, Reader); 19] = [
+    ("layout", layout),
+    ("recipes", recipes),
+    ("session", session),
+    ("questionnaire", questionnaire),
+    ("parameters", parameters),
+    ("keys", keys),
+    ("language", language),
+    ("log", log),
+    ("events", events),
+    ("exclusion", exclusion),
+    ("rater_codes", codes),
+    ("training", trained),
+    ("table", table),
+    ("gaze_export", gaze_export),
+    ("rerun_head", rerun_head),
+    ("gaze_line", gaze_line),
+    ("pupil_message", pupil),
+    ("pupil_frames", frames),
+    ("page_message", page),
+];
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn layout(bytes: &[u8]) {
+    let kitchen = compile_kitchen((Path::new("layout"), text(bytes)), (Path::new("recipes"), RECIPES.to_string()));
+    shown(kitchen.map(|files| {
+        // A kitchen that is accepted can be worked in.
+        CostToGo::new(files.kitchen.into());
+    }));
+}
+
+fn recipes(bytes: &[u8]) {
+    let kitchen = compile_kitchen((Path::new("layout"), LAYOUT.to_string()), (Path::new("recipes"), text(bytes)));
+    shown(kitchen.map(drop));
+}
+
+fn session(bytes: &[u8]) {
+    shown(parse::<SessionSpec>(Path::new("session"), &text(bytes)).map(|spec| {
+        // A plan that is accepted has a series for its participants.
+        let study = spec.check().ok().and_then(|()| Study::new(&spec, Vec::new()));
+        study.is_none_or(|study| !study.slots(0).is_empty())
+    }));
+}
+
+fn questionnaire(bytes: &[u8]) {
+    shown(parse::<Questionnaire>(Path::new("questionnaire"), &text(bytes)).map(|asked| asked.check().is_ok()));
+}
+
+fn parameters(bytes: &[u8]) {
+    shown(parse::<HumanModel>(Path::new("parameters"), &text(bytes)).map(|model| model.fault().is_none()));
+}
+
+fn keys(bytes: &[u8]) {
+    shown(key_map(Some(&FileText { path: "keys".to_string(), text: text(bytes) })).map(drop));
+}
+
+fn language(bytes: &[u8]) {
+    shown(parse::<LanguageFile>(Path::new("language"), &text(bytes)).map(drop));
+}
+
+/// Reads a log, which has to be a file, and applies its events.
+fn log(bytes: &[u8]) {
+    let path = file("events.jsonl", bytes);
+    shown(LogReader::open(&path).and_then(|mut log| {
+        let mut session = log.session();
+        while let Some(line) = log.next_line()? {
+            if apply(&mut session, &line.stamped).is_err() {
+                break;
+            }
         }
-        2 => shown(parse::<SessionSpec>(Path::new("session"), &text()).map(|spec| {
-            // A plan that is accepted has a series for its participants.
-            let study = spec.check().ok().and_then(|()| Study::new(&spec, Vec::new()));
-            study.is_none_or(|study| !study.slots(0).is_empty())
-        })),
-        3 => replay(rest),
-        4 => shown(parse::<Questionnaire>(Path::new("questionnaire"), &text()).map(|asked| asked.check().is_ok())),
-        5 => shown(parse::<HumanModel>(Path::new("parameters"), &text()).map(|model| model.fault().is_none())),
-        6 => shown(key_map(Some(&FileText { path: "keys".to_string(), text: text() })).map(drop)),
-        8 => {
-            let told = message::read(b"surfaces.wall", rest, "wall");
-            assert!(told.gaze.len() + told.fixations.len() <= 2 * rest.len());
-            assert!(told.gaze.iter().all(|gaze| gaze.norm_pos.iter().all(|value| value.is_finite())));
-        }
-        9 => drop((message::read(b"fixations", rest, "wall"), message::read(b"blinks", rest, "wall"))),
-        10 => frames(rest),
-        11 => drop(gaze_json::parse(rest)),
-        // Broken events after a header that is right.
-        _ => {
-            let header = RECORDING.split_inclusive('\n').next().unwrap_or_default();
-            replay(&[header.as_bytes(), rest].concat());
-        }
-    }
+        Ok(())
+    }));
+}
+
+/// Broken events after a header that is right.
+fn events(bytes: &[u8]) {
+    let header = RECORDING.split_inclusive('\n').next().unwrap_or_default();
+    log(&[header.as_bytes(), bytes].concat());
+}
+
+fn exclusion(bytes: &[u8]) {
+    file(EXCLUSION_NAME, bytes);
+    shown(ruling(&folder()).map(drop));
+}
+
+/// Codes of one rater beside a log, and of several in an export.
+fn codes(bytes: &[u8]) {
+    let path = file("codes-R1.csv", bytes);
+    let codable = Codable { errors: (1..20).collect(), places: vec!["cooking_pot".to_string(), "plate".to_string()] };
+    shown(rater_codes::read(&folder(), "R1", &codable).map(drop));
+    shown(rater_codes::read_export(&path).map(drop));
+}
+
+fn trained(bytes: &[u8]) {
+    file("W1-1.json", bytes);
+    shown(training::read(&folder(), "W1").map(drop));
+}
+
+fn table(bytes: &[u8]) {
+    // An error of reading is shown by whoever asked for the table.
+    let _ = written_tables::records(&file("trials.csv", bytes));
+}
+
+fn gaze_export(bytes: &[u8]) {
+    let map = SurfaceMap::new([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]).expect("the corners of a square");
+    shown(gaze_file::read(&file("gaze.csv", bytes), &map).map(drop));
+}
+
+fn rerun_head(bytes: &[u8]) {
+    let identity = stream_head::identity(&file("recording.rrd", bytes));
+    assert!(identity.expect("a file that can be read").is_none_or(|identity| identity.len() <= bytes.len()));
+}
+
+fn gaze_line(bytes: &[u8]) {
+    drop(gaze_json::parse(bytes));
+}
+
+fn pupil(bytes: &[u8]) {
+    let told = pupil_message::read(b"surfaces.wall", bytes, "wall");
+    assert!(told.gaze.len() + told.fixations.len() <= 2 * bytes.len());
+    assert!(told.gaze.iter().all(|gaze| gaze.norm_pos.iter().all(|value| value.is_finite())));
+    drop((pupil_message::read(b"fixations", bytes, "wall"), pupil_message::read(b"blinks", bytes, "wall")));
 }
 
 /// What a sender of frames may send, in pieces.
@@ -77,6 +174,10 @@ fn frames(bytes: &[u8]) {
     }
 }
 
+fn page(bytes: &[u8]) {
+    drop(page_message::read(&text(bytes)));
+}
+
 /// Errors are told, with their place in the text.
 fn shown<T>(result: FileResult<T>) {
     if let Err(error) = result {
@@ -84,22 +185,19 @@ fn shown<T>(result: FileResult<T>) {
     }
 }
 
-/// Reads a log, which has to be a file, and applies its events.
-fn replay(log: &[u8]) {
-    let path = path();
-    std::fs::write(&path, log).expect("the temporary folder can be written");
-    shown(LogReader::open(&path).and_then(|mut log| {
-        let mut session = log.session();
-        while let Some(line) = log.next_line()? {
-            if apply(&mut session, &line.stamped).is_err() {
-                break;
-            }
-        }
-        Ok(())
-    }));
+/// A file with this content, in the folder of this thread.
+fn file(name: &str, bytes: &[u8]) -> PathBuf {
+    let folder = folder();
+    let path = folder.join(name);
+    // Some file systems wait for the disk where a file is overwritten.
+    let _ = fs::remove_file(&path);
+    fs::create_dir_all(&folder).and_then(|()| fs::write(&path, bytes)).expect("the folder can be written to");
+    path
 }
 
-/// A file of this process.
-fn path() -> PathBuf {
-    std::env::temp_dir().join(format!("tomcom-fuzz-{}.jsonl", std::process::id()))
+/// The folder of this thread, below what is built.
+fn folder() -> PathBuf {
+    let below = option_env!("CARGO_TARGET_TMPDIR").unwrap_or("target/fuzz");
+    let thread = format!("{}-{:?}", std::process::id(), std::thread::current().id());
+    Path::new(below).join("read").join(thread)
 }

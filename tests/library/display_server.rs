@@ -11,11 +11,11 @@ use tomcom::session::wall_display::DisplaySpec;
 
 /// Nothing that is waited for takes longer; that it does not come is the failure.
 const PATIENCE: Duration = Duration::from_secs(30);
-const LOCAL: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
+pub const LOCAL: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 const ALL: IpAddr = IpAddr::V4(Ipv4Addr::UNSPECIFIED);
 
 /// Serves the display; it is there until this is dropped.
-fn serve(listen: IpAddr) -> (Display, SocketAddr) {
+pub fn serve(listen: IpAddr) -> (Display, SocketAddr) {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
     let words = DisplayWords::for_display(&DisplaySpec::default());
     let display = runtime.block_on(Display::open(listen, 0, &words)).expect("a free port");
@@ -47,7 +47,7 @@ fn status(address: SocketAddr, path: &str, headers: &[String]) -> u32 {
 }
 
 /// A page, as far as the server can see.
-struct RawPage(TcpStream);
+pub struct RawPage(TcpStream);
 
 impl RawPage {
     fn open(stream: TcpStream, host: SocketAddr) -> RawPage {
@@ -110,13 +110,13 @@ impl RawPage {
     }
 
     /// Says hello; whether it acts, none: it is not let in.
-    fn joins(&mut self, page: &str) -> Option<bool> {
+    pub fn joins(&mut self, page: &str) -> Option<bool> {
         self.hello(page, None);
         self.hear("role")?["acts"].as_bool()
     }
 }
 
-fn page(address: SocketAddr) -> RawPage {
+pub fn page(address: SocketAddr) -> RawPage {
     RawPage::open(connect(address), address)
 }
 

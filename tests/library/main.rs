@@ -13,6 +13,7 @@ mod gaze;
 mod gaze_senders;
 mod inference;
 mod kitchen;
+mod malformed_requests;
 mod measures;
 mod oracle;
 mod participant;

@@ -21,7 +21,7 @@ use tomcom::scene::{DerivedData, EntityData, EntityUpdate, SceneUpdate, SessionS
 use tomcom::session::Event;
 use tomcom::session::settings::Condition;
 
-const SERVICE: &str = "/rerun.sdk_comms.v1alpha1.MessageProxyService";
+pub const SERVICE: &str = "/rerun.sdk_comms.v1alpha1.MessageProxyService";
 /// What is waited for comes within this time.
 const PATIENCE: Duration = Duration::from_secs(20);
 
@@ -33,7 +33,7 @@ fn moment(step: u64, entities: &[&str]) -> SceneUpdate {
 }
 
 /// A stream for viewers, without a file, at a port that was free.
-fn stream(name: &str) -> RerunStream {
+pub fn stream(name: &str) -> RerunStream {
     let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).and_then(|one| one.local_addr()).expect("a port");
     let identity = StreamIdentity { id: format!("viewers-{name}"), name: name.to_string() };
     let fixed = vec![EntityUpdate::new("fixed/for/ever", EntityData::Value(1.0))];
@@ -41,7 +41,7 @@ fn stream(name: &str) -> RerunStream {
 }
 
 /// Asks for a method of the service; `body` is one message of Protocol Buffers.
-fn ask(server: SocketAddr, method: &str, headers: &[&str], body: &[u8]) -> TcpStream {
+pub fn ask(server: SocketAddr, method: &str, headers: &[&str], body: &[u8]) -> TcpStream {
     let mut viewer = TcpStream::connect(server).expect("the server listens");
     viewer.set_read_timeout(Some(Duration::from_millis(200))).expect("a time-out");
     let mut head = format!("POST {SERVICE}/{method} HTTP/1.1\r\ncontent-type: application/grpc-web+proto\r\n");
@@ -56,7 +56,7 @@ fn ask(server: SocketAddr, method: &str, headers: &[&str], body: &[u8]) -> TcpSt
 }
 
 /// Reads until all of these words have come, or fails.
-fn read_until(viewer: &mut TcpStream, words: &[&str]) -> Vec<u8> {
+pub fn read_until(viewer: &mut TcpStream, words: &[&str]) -> Vec<u8> {
     let (began, mut read, mut piece) = (Instant::now(), Vec::new(), vec![0; 1 << 16]);
     let has = |read: &[u8], word: &str| read.windows(word.len()).any(|window| window == word.as_bytes());
     while !words.iter().all(|word| has(&read, word)) {
@@ -189,7 +189,7 @@ fn resident_mb() -> Option<f64> {
 fn two_hours_of_a_session_stay_below_200_mb() {
     const TIMES_REAL: f64 = 10.0;
     const MOST_MB: f64 = 200.0;
-    let folder = std::env::temp_dir().join(format!("tomcom-two-hours-{}", std::process::id()));
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("two-hours");
     std::fs::create_dir_all(&folder).expect("a folder");
     let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
     let kitchen = Arc::new(files.kitchen.kitchen);

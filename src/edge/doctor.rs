@@ -157,14 +157,18 @@ fn folder(out: &Path) -> PreflightCheck {
         false => format!("{} is not there yet, and {} where it will be", out.display(), there.display()),
     };
     let probe = there.join(format!(".tomcom-doctor-{}", std::process::id()));
-    let tried = fs::create_dir(&probe).map_err(|reason| reason.to_string()).and_then(|()| {
+    let made = fs::create_dir(&probe).map_err(|reason| reason.to_string());
+    let is_own = made.is_ok();
+    let tried = made.and_then(|()| {
         let _lock = RecordingLock::take(&probe).map_err(|error| error.to_string())?;
         let began = Instant::now();
         let mut file = fs::File::create(probe.join("probe")).map_err(|reason| reason.to_string())?;
         let written = file.write_all(&[b'x'; 1 << 16]).and_then(|()| file.sync_all());
         written.map(|()| began.elapsed()).map_err(|reason| reason.to_string())
     });
-    let _ = fs::remove_dir_all(&probe);
+    if is_own {
+        let _ = fs::remove_dir_all(&probe);
+    }
     let remedy = "a folder that can be written to, with --out";
     match tried {
         Ok(took) => {

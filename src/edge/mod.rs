@@ -33,6 +33,7 @@ pub mod rrd;
 #[cfg(feature = "rerun")]
 pub mod stream;
 pub mod stream_head;
+pub mod temporary;
 pub mod terminal;
 pub mod training;
 mod type_error;

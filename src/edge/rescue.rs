@@ -7,15 +7,19 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::file_error::read_regular;
+use super::temporary::new_folder;
 
 /// Prefix of rescue folders in the system's temporary folder.
 pub const RESCUED: &str = "tomcom-rescued-";
 /// The name of the note in the folder of a recording that was saved there.
 pub const RESCUE_NOTE_NAME: &str = "rescued.toml";
 
-/// The folder below which this program saves recordings, in the system's folder for temporary files.
-pub fn rescue_folder(temporary: &Path) -> PathBuf {
-    temporary.join(format!("{RESCUED}{}", std::process::id()))
+/// Makes a folder for a recording in the system's folder for temporary files.
+///
+/// # Errors
+/// It cannot be made.
+pub fn new_rescue_folder() -> io::Result<PathBuf> {
+    new_folder(&std::env::temp_dir(), &format!("{RESCUED}{}", std::process::id()))
 }
 
 /// The note beside a rescued log.

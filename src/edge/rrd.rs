@@ -154,11 +154,11 @@ pub fn state(path: &Path, logs: &[PathBuf]) -> io::Result<RrdState> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::edge::temporary::new_folder;
 
     #[test]
     fn a_file_says_whether_it_is_whole_and_ours_and_its_seal_whether_it_shows_this_log() {
-        let folder = std::env::temp_dir().join(format!("tomcom-rrd-{}", std::process::id()));
-        fs::create_dir_all(&folder).unwrap();
+        let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-rrd-{}", std::process::id())).unwrap();
         let (path, logs) = (folder.join(RRD_NAME), [folder.join("events.jsonl")]);
         let is = |state: RrdState| assert_eq!(super::state(&path, &logs).unwrap(), state);
         fs::write(&logs[0], "the log").unwrap();

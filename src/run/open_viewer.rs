@@ -15,6 +15,7 @@ use crate::edge::rerun::{RerunWriter, StreamIdentity, StreamLane, StreamOutlets,
 use crate::edge::rrd::{self, RRD_NAME, RrdState};
 use crate::edge::stream::{PORTS, is_free};
 use crate::edge::stream_head;
+use crate::edge::temporary::new_file;
 use crate::edge::terminal::asked_to_end;
 use crate::edge::viewer::{self, Viewer};
 use crate::mind::dirichlet::DirichletBelief;
@@ -27,6 +28,10 @@ const SERVER_PORT: u16 = 9878;
 const WEB_PORT: u16 = 9090;
 /// Interval at which a stream that another program writes is looked at.
 const LOOK: Duration = Duration::from_millis(50);
+/// Number of characters that the names of recordings have in the name of a temporary stream file.
+const NAMED: usize = 50;
+/// Ending of the name of a stream that is being written.
+const BEGUN: &str = ".new";
 
 /// Why a recording could not be reviewed.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -250,10 +255,10 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<SavedStream, Reru
                 (Err(WriteError::Unwritable { path, reason, .. }), StreamPlace::BesideLog) => {
                     return Err(RerunError::Unwritable { path, reason });
                 }
-                _ => elsewhere(recordings),
+                _ => elsewhere(recordings)?,
             }
         }
-        (_, several) => elsewhere(several),
+        (_, several) => elsewhere(several)?,
     };
     let sealed = put(recordings, &path)?.and_then(|()| logs.map_or(Ok(()), |logs| rrd::seal(&path, &logs)));
     drop(locked);
@@ -267,7 +272,7 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<SavedStream, Reru
 /// loses nothing.
 fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunError> {
     let mut begun = path.as_os_str().to_os_string();
-    begun.push(".new");
+    begun.push(BEGUN);
     let begun = PathBuf::from(begun);
     if !path.ends_with(RRD_NAME) {
         for path in [path, &begun] {
@@ -289,10 +294,15 @@ fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunError
     }
 }
 
-/// Path of a temporary stream file.
-fn elsewhere(recordings: &[PathBuf]) -> PathBuf {
+/// Makes an empty file for a stream in the system's folder for temporary files, where it is written to; the path of the stream.
+fn elsewhere(recordings: &[PathBuf]) -> Result<PathBuf, RerunError> {
     let names: Vec<String> = recordings.iter().map(|recording| name(recording)).collect();
-    std::env::temp_dir().join(format!("tomcom-{}-{}.rrd", names.join("-and-"), std::process::id()))
+    // A name of a file has at most 255 bytes on most systems.
+    let names: String = names.join("-and-").chars().take(NAMED).collect();
+    let (below, stem) = (std::env::temp_dir(), format!("tomcom-{names}-{}", std::process::id()));
+    let made = new_file(&below, &stem, &format!(".rrd{BEGUN}"));
+    let (begun, _) = made.map_err(|reason| RerunError::Unwritable { path: below.join(stem), reason })?;
+    Ok(begun.with_extension(""))
 }
 
 fn name(recording: &Path) -> String {

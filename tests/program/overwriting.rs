@@ -1,10 +1,20 @@
 //! Commands that write a file or a folder that they are told: what others have written there stays.
 
 use std::fs;
+use std::path::{Path, PathBuf};
 
 use serial_test::serial;
+use tomcom::edge::files::read_session;
+use tomcom::edge::log::LogWriter;
+use tomcom::session::Header;
 
 use crate::forgetting::RecordingsFolder;
+
+/// The header of a trial of the default session.
+fn header() -> Header {
+    let files = read_session(Path::new("sessions/default.toml")).expect("a session");
+    Header::new(files.spec, 0, files.kitchen.layout, files.kitchen.recipes)
+}
 
 #[test]
 #[serial]
@@ -63,4 +73,57 @@ fn what_others_wrote_is_not_overwritten_and_what_tomcom_wrote_is() {
         lab.run(&["simulate", "sessions/default.toml", "--arm", "timed", "--trials", "1", "--out", &out]);
     assert!(code == Some(1) && told.contains("a session.toml that tomcom did not write"), "{told}");
     assert_eq!(lab.text("trials/seed1-S001/session.toml"), "# of somebody else\n");
+}
+
+#[test]
+#[serial]
+fn the_next_part_of_a_recording_overwrites_nothing() {
+    let lab = RecordingsFolder::of_two_people("parts");
+    let (header, recording) = (header(), lab.at("seed1-P01-1"));
+    lab.put("seed1-P01-1-part2/session.toml", "# of somebody else\n");
+    lab.put("seed1-P01-1-part3/recording.rrd", "of somebody else");
+    fs::write(lab.at("seed1-P01-1-part4"), "of somebody else").expect("written");
+    // What a kill before the log leaves behind.
+    lab.put("seed1-P01-1-part5/session.toml", lab.text("seed1-P02-1/session.toml"));
+    lab.put("seed1-P01-1-part5/events.jsonl.new", "{");
+    lab.put("seed1-P01-1-part5/lock", "1\n");
+    let part = LogWriter::create_part(&recording, &header).expect("a part").folder().to_path_buf();
+    assert_eq!(part, lab.at("seed1-P01-1-part5"));
+    assert_eq!(lab.text("seed1-P01-1-part2/session.toml"), "# of somebody else\n");
+    assert_eq!(fs::read_dir(lab.at("seed1-P01-1-part2")).expect("a folder").count(), 1);
+    assert_eq!(lab.text("seed1-P01-1-part4"), "of somebody else");
+    let again = LogWriter::create_part(&recording, &header).expect_err("continued already").to_string();
+    assert!(again.contains("continued already"), "{again}");
+    let next = LogWriter::create_part(&part, &header).expect("the part after it");
+    assert_eq!(next.folder(), lab.at("seed1-P01-1-part6"));
+}
+
+/// Where a recording is saved whose folder is gone, and where nothing can be.
+fn rescued(lab: &RecordingsFolder, root: &str) -> PathBuf {
+    let mut log = LogWriter::create_live(&lab.at(root), "2026-03-14", &header()).expect("a recording");
+    fs::remove_dir_all(lab.at(root)).expect("removed");
+    fs::write(lab.at(root), "").expect("written");
+    let told = log.check().expect_err("it is gone").to_string();
+    told.split_once("is in ").expect("where it was saved").1.into()
+}
+
+#[cfg(unix)]
+#[test]
+#[serial]
+fn a_recording_is_saved_among_the_temporary_files_into_a_folder_of_its_own_that_others_cannot_read() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let lab = RecordingsFolder::of_two_people("planted");
+    let victim = lab.at("victim");
+    fs::create_dir_all(&victim).expect("a folder");
+    let planted = std::env::temp_dir().join(format!("tomcom-rescued-{}", std::process::id()));
+    // An earlier test of this process may have saved something.
+    let _ = fs::remove_dir_all(&planted);
+    symlink(&victim, &planted).expect("a link");
+    let saved = rescued(&lab, "gone");
+    fs::remove_file(&planted).expect("removed");
+    assert_eq!(fs::read_dir(&victim).expect("a folder").count(), 0, "nothing goes where a link of others leads");
+    let folder = saved.parent().expect("a folder");
+    assert_eq!(fs::metadata(folder).expect("a folder").permissions().mode() & 0o777, 0o700);
+    assert!(saved.join("events.jsonl").is_file());
+    fs::remove_dir_all(folder).expect("removed");
 }

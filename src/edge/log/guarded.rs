@@ -5,6 +5,9 @@ use std::fs::File;
 use std::io::{self, Seek, Write};
 use std::path::Path;
 
+#[cfg(unix)]
+use crate::edge::temporary::new_file;
+
 /// Length of the end of the log that every check compares, in bytes (some seconds of gaze).
 const TAIL: u64 = 64 << 10;
 /// Length of the stretch of the rest that every check compares, in bytes; consecutive checks go round the whole log.
@@ -126,18 +129,8 @@ impl GuardedFile {
 /// A file without a name, which only this process can reach.
 #[cfg(unix)]
 fn nameless(folder: &Path) -> io::Result<File> {
-    use std::os::unix::fs::OpenOptionsExt;
-    /// Number of names to try; some may exist.
-    const NAMES: u32 = 100;
-    let mut failed = io::Error::from(io::ErrorKind::AlreadyExists);
-    for n in 0..NAMES {
-        let path = folder.join(format!(".tomcom-{}-{n}", std::process::id()));
-        match File::options().read(true).write(true).create_new(true).mode(0o600).open(&path) {
-            Ok(file) => return std::fs::remove_file(&path).map(|()| file),
-            Err(reason) => failed = reason,
-        }
-    }
-    Err(failed)
+    let (path, file) = new_file(folder, &format!(".tomcom-{}", std::process::id()), "")?;
+    std::fs::remove_file(path).map(|()| file)
 }
 
 /// Not available on this system.
@@ -149,11 +142,12 @@ fn nameless(_folder: &Path) -> io::Result<File> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::edge::temporary::new_folder;
 
     /// Harms a guarded log of this length, and compares the damage that is found, and the saved log.
     fn check(name: &str, bytes: usize, harm: impl FnOnce(&Path), found: Option<&str>) {
-        let folder = std::env::temp_dir().join(format!("tomcom-guarded-{}-{name}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
+        let name_of_folder = format!("tomcom-guarded-{}-{name}", std::process::id());
+        let folder = new_folder(&std::env::temp_dir(), &name_of_folder).unwrap();
         let path = folder.join("log");
         let file = File::options().read(true).write(true).create_new(true).open(&path).unwrap();
         let mut log = GuardedFile::guarded(file, &folder);

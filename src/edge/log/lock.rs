@@ -123,11 +123,11 @@ pub fn is_same(_: &File, path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::edge::temporary::new_folder;
 
     #[test]
     fn a_lock_tells_who_writes_and_where_viewers_look_on_until_it_is_dropped() {
-        let folder = std::env::temp_dir().join(format!("tomcom-lock-{}", std::process::id()));
-        fs::create_dir_all(&folder).unwrap();
+        let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-lock-{}", std::process::id())).unwrap();
         assert_eq!(RecordingLock::holder(&folder), None);
         let mut lock = RecordingLock::take(&folder).unwrap();
         let pid = Some(std::process::id());
@@ -145,8 +145,7 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn a_file_that_a_link_leads_to_is_left_as_it_is() {
-        let folder = std::env::temp_dir().join(format!("tomcom-lock-link-{}", std::process::id()));
-        fs::create_dir_all(&folder).unwrap();
+        let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-lock-link-{}", std::process::id())).unwrap();
         let other = folder.join("notes.txt");
         fs::write(&other, "of somebody else").unwrap();
         std::os::unix::fs::symlink(&other, folder.join(LOCK_NAME)).unwrap();

@@ -8,10 +8,11 @@ use serde::Serialize;
 use serde_json::ser::Formatter;
 
 use super::guarded::GuardedFile;
-use super::lock::{RecordingLock, is_same};
+use super::lock::{LOCK_NAME, RecordingLock, is_same};
 use super::{LOG_NAME, SETTINGS_NAME, WriteError, move_aside};
 use crate::base::time::SessionTime;
-use crate::edge::rescue::{RescueNote, rescue_folder};
+use crate::edge::file_error::read_regular;
+use crate::edge::rescue::{RescueNote, new_rescue_folder};
 use crate::session::{Header, SessionSpec, Stamped};
 
 /// Gaze samples wait at most so long, in session time, before they are handed to the operating system.
@@ -57,7 +58,6 @@ impl LogWriter {
     pub fn create_part(folder: &Path, header: &Header) -> Result<LogWriter, WriteError> {
         check_continued(folder)?;
         let part = next_part(folder);
-        // A part that was killed before it had a log is there already, and continues nothing.
         fs::create_dir_all(&part).map_err(|reason| WriteError::unwritable(&part, reason))?;
         LogWriter::begin(RecordingLock::take(&part)?, part, header, true)
     }
@@ -141,11 +141,11 @@ impl LogWriter {
     fn rescue(&mut self, is_damaged: bool) -> Option<PathBuf> {
         // What cannot be handed over any more was not acknowledged for longer than gaze may wait.
         let _ = self.out.flush();
-        let name = self.folder.file_name()?;
-        let elsewhere = rescue_folder(&std::env::temp_dir()).join(name);
+        let name = self.folder.file_name()?.to_owned();
         if self.save_to(&self.folder.clone(), is_damaged).is_ok() {
             return Some(self.folder.clone());
         }
+        let elsewhere = new_rescue_folder().ok()?.join(name);
         self.save_to(&elsewhere, is_damaged).ok()?;
         // The data is saved; the note only helps to find out later where it belongs.
         let _ = RescueNote { home: self.home.clone() }.write(&elsewhere);
@@ -184,12 +184,33 @@ pub fn check_continued(folder: &Path) -> Result<(), WriteError> {
     }
 }
 
-/// The folder of the part after the one in `folder`.
+/// The folder of the part after the one in `folder`: the first with a log, or that can be written without losing anything.
 fn next_part(folder: &Path) -> PathBuf {
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let numbered = name.rsplit_once(PART).and_then(|(first, n)| Some((first, n.parse::<u64>().ok()?)));
-    let (first, n) = numbered.unwrap_or((&name, 1));
-    folder.with_file_name(format!("{first}{PART}{}", n.saturating_add(1)))
+    let (first, mut n) = numbered.unwrap_or((&name, 1));
+    loop {
+        n = n.saturating_add(1);
+        let part = folder.with_file_name(format!("{first}{PART}{n}"));
+        if part.join(LOG_NAME).exists() || holds_nothing(&part) {
+            return part;
+        }
+    }
+}
+
+/// Whether a folder is not there, or holds no more than a part that was killed before it had a log.
+fn holds_nothing(part: &Path) -> bool {
+    let is_left = |entry: io::Result<fs::DirEntry>| {
+        entry.is_ok_and(|entry| match entry.file_name().to_str() {
+            Some(SETTINGS_NAME) => read_regular(&entry.path()).is_ok_and(|text| is_written_settings(&text)),
+            Some(name) => name == LOCK_NAME || name.strip_suffix(".new") == Some(LOG_NAME),
+            None => false,
+        })
+    };
+    match fs::read_dir(part) {
+        Ok(mut entries) => entries.all(is_left),
+        Err(reason) => reason.kind() == io::ErrorKind::NotFound && fs::symlink_metadata(part).is_err(),
+    }
 }
 
 /// Whether this program wrote these settings into the folder of a recording: it writes all of them and nothing else.

@@ -59,7 +59,7 @@ fn questionnaire() -> toml::Table {
 
 /// A folder for the files of a test, empty.
 fn folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("tomcom-ranges-{name}-{}", std::process::id()));
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ranges").join(name);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(folder.join("sessions")).expect("a folder");
     for copied in ["layouts", "recipes", "sessions/questionnaires"] {

@@ -8,6 +8,9 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// So many pieces of an entity are merged into one.
 const MERGED: usize = 64;
+/// So many of the newest pieces of an entity are not merged yet: a viewer that keeps up has read those that are, and gets none
+/// of them a second time.
+const RECENT: usize = 16;
 
 /// Merges pieces of one entity; the piece with its size in bytes. None: they cannot be merged.
 pub(super) type Merge<M> = fn(&[M]) -> Option<(M, usize)>;
@@ -64,8 +67,8 @@ impl<M: Clone> KeptMessages<M> {
             kept.newest = number;
         }
         kept.unmerged.push(number);
-        if kept.unmerged.len() >= MERGED {
-            let numbers = std::mem::take(&mut kept.unmerged);
+        if kept.unmerged.len() >= MERGED + RECENT {
+            let numbers: Vec<u64> = kept.unmerged.drain(..MERGED).collect();
             self.merge(&numbers, name);
         }
         self.forget();
@@ -161,17 +164,32 @@ mod tests {
     #[test]
     fn pieces_are_merged_and_nobody_misses_one() {
         let mut kept = KeptMessages::new(1 << 20, join);
-        for step in 0..MERGED as u64 {
+        for step in 0..MERGED + RECENT {
             kept.add(format!("{step}"), 100, Some("human/gaze"));
         }
         let merged = (0..MERGED).map(|step| step.to_string()).collect::<Vec<_>>().join("+");
-        assert_eq!(all(&kept), [(MERGED as u64 - 1, merged.clone())]);
-        assert_eq!(kept.bytes(), 10);
-        // Who has read some of them gets the rest, with those again; who has read all gets nothing.
+        let found = all(&kept);
+        assert_eq!((found.len(), &found[0]), (1 + RECENT, &(MERGED as u64 - 1, merged.clone())));
+        assert_eq!(kept.bytes(), 10 + 100 * RECENT);
+        // A viewer that has read some of them gets the rest, with those again; one that has read all gets the next.
         assert_eq!(kept.next(10).map(|(_, message)| message), Some(merged));
-        assert_eq!(kept.next(MERGED as u64), None);
-        kept.add("next".to_string(), 100, Some("human/gaze"));
-        assert_eq!(kept.next(MERGED as u64), Some((MERGED as u64, "next".to_string())));
+        assert_eq!(kept.next(MERGED as u64), Some((MERGED as u64, MERGED.to_string())));
+    }
+
+    #[test]
+    fn a_viewer_that_keeps_up_gets_every_piece_once() {
+        let mut kept = KeptMessages::new(1 << 20, join);
+        let (mut from, mut read) = (0, Vec::new());
+        for step in 0..1000 {
+            kept.add(step.to_string(), 100, Some(["human/gaze", "robot/arm"][step % 2]));
+            // It is a few pieces behind.
+            if step % 10 == 9 {
+                while let Some((number, message)) = kept.next(from) {
+                    (from, read) = (number + 1, [read, vec![message]].concat());
+                }
+            }
+        }
+        assert_eq!(read, (0..1000).map(|step| step.to_string()).collect::<Vec<String>>());
     }
 
     #[test]
@@ -181,6 +199,8 @@ mod tests {
             kept.add(format!("{step}"), 1, Some(["a", "b", "c"][step % 3]));
         }
         assert!(kept.bytes() <= 50, "{}", kept.bytes());
-        assert!(kept.pieces.len() <= 50 && kept.entities.values().all(|entity| entity.unmerged.len() < MERGED));
+        assert!(
+            kept.pieces.len() <= 50 && kept.entities.values().all(|entity| entity.unmerged.len() < MERGED + RECENT)
+        );
     }
 }

@@ -217,6 +217,7 @@ fn a_recording_that_was_saved_elsewhere_is_found_by_where_it_belongs() {
         let to = lab.temporary.join(format!("tomcom-rescued-{}", root.len())).join("2026-03-14-P01-1");
         fs::create_dir_all(to.parent().expect("a folder")).expect("made");
         fs::rename(saved, &to).expect("moved");
+        fs::remove_dir(std::path::Path::new(saved).parent().expect("a folder")).expect("nothing else is in it");
         to
     };
     let (own, other) = (rescue("gone"), rescue("../of-another-study"));

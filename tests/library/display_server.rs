@@ -30,7 +30,7 @@ fn connect(address: SocketAddr) -> TcpStream {
 }
 
 /// Sends a request with these lines of headers; the status of the answer, 0: the connection was closed without one.
-fn status(address: SocketAddr, path: &str, headers: &[String]) -> u32 {
+pub fn status(address: SocketAddr, path: &str, headers: &[String]) -> u32 {
     let mut stream = connect(address);
     let upgrade = match path {
         "/talk" => {

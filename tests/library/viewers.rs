@@ -68,7 +68,7 @@ pub fn read_until(viewer: &mut TcpStream, words: &[&str]) -> Vec<u8> {
     read
 }
 
-fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
+pub fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
     let began = Instant::now();
     while !is_so() {
         assert!(began.elapsed() < PATIENCE, "{what}");

@@ -7,6 +7,8 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 pub const REACH: f64 = 1.5;
 /// Number of coordinate descent sweeps to the minimum.
 const SWEEPS: usize = 60;
+/// Smallest ratio of two pivots of a matrix that is told from a singular one.
+const SINGULAR: f64 = 1e-12;
 
 /// A quadratic surface; variables are in steps from its centre.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,9 +64,11 @@ pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &
     })
 }
 
-/// Inverse of a symmetric matrix; `None` if the matrix is not positive definite.
+/// Inverse of a symmetric matrix; `None` if the matrix is not positive definite beyond rounding.
 fn inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
-    Some(Cholesky::<f64, Dyn>::new(matrix)?.inverse())
+    let decomposed = Cholesky::<f64, Dyn>::new(matrix)?;
+    let pivots = decomposed.l_dirty().diagonal().map(|root| root * root);
+    (pivots.min() > SINGULAR * pivots.max()).then(|| decomposed.inverse())
 }
 
 impl QuadraticSurface {

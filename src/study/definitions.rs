@@ -19,9 +19,10 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
     ),
     (
         "Error sequence",
-        "Belief related errors at most 3 correct presses apart, whatever the aspect; its aspect is the most frequent. By \
-         single aspect they fragment; the report also states the length by single aspect. Length: number of errors. Recovery \
-         time: from the first error to the first correct press after the last.",
+        "Errors of the same false belief, at most 3 correct presses apart; an order and its dish's recipe are one false belief. \
+         Errors about something else in between neither end nor lengthen it. Grouping whatever the aspect is stated second. \
+         Length: number of errors. Recovery time: from the first error to the first correct press after the last. The paper's \
+         3.1 errors per sequence is a number of related errors.",
     ),
     (
         "False belief episode",
@@ -37,16 +38,18 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
          recall, so precision is stated too.",
     ),
     (
-        "Errors prevented, false positives",
-        "Over unassisted trials; the unit is the human press. True positive rate: belief related errors prevented, of all; one \
-         signal that targets the aspect of an episode prevents the rest of its sequence, and replayed signals do not change b. \
-         False positive: a signal about a correctly believed aspect; the rate is the share of presses outside of episodes with \
-         at least one false positive before them. A signal about a false but harmless belief is counted separately. For DEV, a \
-         proposal of k presses counts as k signals and prevents the errors of the next k presses. Swept: cost 0.5 to 2.4, \
-         threshold 0.4 to 0.99, k 1 to 5; cost and threshold also beyond that, so that all concepts reach the compared numbers \
-         of signals. Compared at equal signals per 100 presses of the human (linear interpolation between swept points and no \
-         signals), and as partial area over the false positive rates that all concepts reach, divided by that range; intervals \
-         of 95 % by bootstrap over participants, the area over the common range of each resample.",
+        "Errors prevented, useless signals",
+        "Over unassisted trials; the unit is the human press. Useful: an episode's first signal about its target, if at least one \
+         belief related error of that target follows in the same episode. All other signals are useless: about what is believed \
+         right, about a false but harmless belief, repeated, or after the last error, inside of episodes, too. True positive rate: \
+         belief related errors prevented, of all; a signal prevents the later errors of its own aspect in the same episode, no \
+         others, and replayed signals do not change b. False positive rate: useless signals per human press. For DEV, a proposal \
+         of k presses after an error is one interruption; it spares the errors of the next k presses and is useless if none of \
+         them would have been an error, belief related or not. Swept: cost 0.5 to 2.4, threshold 0.4 to 0.99, k 1 to 5; cost and \
+         threshold also beyond that, so that all concepts reach the compared numbers of signals. Compared at equal interruptions \
+         per 100 presses of the human (linear interpolation between swept points and no signals), and as partial area over the \
+         false positive rates that all concepts reach, divided by that range; intervals of 95 % by bootstrap over participants, \
+         the area over the common range of each resample.",
     ),
     (
         "Assistance effect",

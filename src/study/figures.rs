@@ -100,12 +100,14 @@ pub struct TrialTotals {
     pub belief_related_share: Option<f64>,
     /// 95 % interval of that share.
     pub belief_related_interval: Option<Interval>,
-    /// Number of error sequences.
+    /// Number of sequences of related errors.
     pub sequences: Option<u64>,
-    /// Mean number of errors in a sequence.
+    /// Mean number of errors in a sequence of related errors.
     pub mean_sequence_length: Option<f64>,
-    /// Mean number of errors in a sequence of errors about one aspect alone.
-    pub mean_sequence_length_by_aspect: Option<f64>,
+    /// Number of sequences whatever the aspect.
+    pub sequences_any_aspect: Option<u64>,
+    /// Mean number of errors in a sequence whatever the aspect.
+    pub mean_sequence_length_any_aspect: Option<f64>,
     /// Mean time from a sequence's first error to the first correct press after its last, in seconds.
     pub mean_recovery_s: Option<f64>,
     /// False belief episodes that caused at least one error.
@@ -242,7 +244,7 @@ impl TrialTotals {
         let Some(beliefs) = beliefs.filter(|beliefs| !beliefs.is_empty()) else { return totals };
         let related = beliefs.iter().map(|one| one.errors).sum::<u64>();
         let lengths: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths.iter().copied()).collect();
-        let by_aspect: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths_by_aspect.iter().copied()).collect();
+        let any_aspect: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths_any_aspect.iter().copied()).collect();
         let interval = share_interval(related, errors, super::effect::LEVEL);
         TrialTotals {
             // The least reliable source among the trials.
@@ -252,7 +254,8 @@ impl TrialTotals {
             belief_related_interval: interval,
             sequences: Some(lengths.len() as u64),
             mean_sequence_length: mean_length(&lengths),
-            mean_sequence_length_by_aspect: mean_length(&by_aspect),
+            sequences_any_aspect: Some(any_aspect.len() as u64),
+            mean_sequence_length_any_aspect: mean_length(&any_aspect),
             mean_recovery_s: mean(beliefs.iter().flat_map(|one| one.recovery_s.iter().copied())),
             false_belief_episodes: beliefs.iter().map(|one| one.episodes).sum(),
             ..totals

@@ -105,10 +105,10 @@ pub struct BeliefErrors {
     pub errors: u64,
     /// Number of belief related errors that need two false beliefs as explanation.
     pub of_two: u64,
-    /// Number of errors of each error sequence.
+    /// Number of errors of each sequence of related errors.
     pub lengths: Vec<u32>,
-    /// Number of errors of each sequence of errors about a single aspect.
-    pub lengths_by_aspect: Vec<u32>,
+    /// Number of errors of each sequence whatever the aspect.
+    pub lengths_any_aspect: Vec<u32>,
     /// Seconds from the first error of each sequence to the first correct press after its last error, where there is one.
     pub recovery_s: Vec<f64>,
     /// Number of false belief episodes with at least one error; `None` if beliefs were not recorded.
@@ -164,7 +164,7 @@ impl Trial {
         (self.presses() > 0).then(|| self.errors as f64 / self.presses() as f64)
     }
 
-    /// Mean number of errors per sequence.
+    /// Mean number of errors per sequence of related errors.
     pub fn sequence_length(&self) -> Option<f64> {
         mean_length(&self.beliefs.as_ref()?.lengths)
     }

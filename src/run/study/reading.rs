@@ -19,7 +19,7 @@ use crate::kitchen::{Agent, AspectId, Change, Kitchen};
 use crate::measures::attribution::{Attributor, Cause};
 use crate::measures::cause_codes::{CauseKind, Codable, Codes};
 use crate::measures::matching::{CommunicationEvent, WINDOW};
-use crate::measures::sequences::{Sequence, sequence_errors, sequences, sequences_by_target};
+use crate::measures::sequences::{Sequence, sequences, sequences_any_aspect};
 use crate::measures::{JudgedPress, median};
 use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
@@ -197,10 +197,10 @@ pub fn read(
         trial.lanes = Some([of.clone(), with.clone()]);
     }
     let follower = pass.follower();
-    let errors: Vec<Vec<usize>> = sequence_errors(&judged).into_iter().map(|(_, errors)| errors).collect();
+    let sequences = sequences(&judged);
     let known = PressFacts {
         judged: &judged,
-        sequences: &errors,
+        sequences: &sequences,
         by_estimate: by_estimate.as_deref(),
         raters: raters.as_ref(),
     };
@@ -262,7 +262,7 @@ fn judged(
     let raters = raters.filter(|raters| raters.iter().all(coded));
     for press in judged.iter_mut().filter(|press| press.verdict.error) {
         press.cause = match raters {
-            Some(raters) => agreed(&follower.session, press.seq, raters),
+            Some(raters) => agreed(&follower.session.kitchen, press, raters),
             None => estimated.iter().find(|(seq, _)| *seq == press.seq).map(|(_, cause)| *cause),
         };
     }
@@ -271,19 +271,18 @@ fn judged(
 
 /// The cause of an error by two raters. If both coded a false belief, the target is the first rater's; otherwise the error counts
 /// as not belief related.
-fn agreed(session: &Session, press: u64, [one, other]: &[Codes; 2]) -> Option<Cause> {
-    let (a, b) = (one.0.get(&press)?, other.0.get(&press)?);
+fn agreed(kitchen: &Kitchen, press: &JudgedPress, [one, other]: &[Codes; 2]) -> Option<Cause> {
+    let (a, b) = (one.0.get(&press.seq)?, other.0.get(&press.seq)?);
     if a.kind() != CauseKind::Belief || b.kind() != CauseKind::Belief {
         return Some(Cause::Slip);
     }
-    // The target's location does not depend on the state before the press.
-    let target = a.target(&session.kitchen, session.kitchen.empty_state())?;
+    let target = a.target(kitchen, press.before)?;
     Some(Cause::Belief { gain_nats: f64::NAN, target, with: None })
 }
 
 fn beliefs(follower: &Follower, judged: &[JudgedPress], basis: BeliefBasis) -> BeliefErrors {
     let count = |is: fn(Cause) -> bool| judged.iter().filter_map(|press| press.cause).filter(|&c| is(c)).count() as u64;
-    let lengths = |sequences: &[Sequence]| sequences.iter().map(|sequence| sequence.length).collect();
+    let lengths = |sequences: &[Sequence]| sequences.iter().map(Sequence::length).collect();
     let all = sequences(judged);
     let recovery = |sequence: &Sequence| Some(since(&follower.session, sequence.began, sequence.recovered?));
     BeliefErrors {
@@ -291,7 +290,7 @@ fn beliefs(follower: &Follower, judged: &[JudgedPress], basis: BeliefBasis) -> B
         errors: count(|cause| matches!(cause, Cause::Belief { .. })),
         of_two: count(|cause| matches!(cause, Cause::Belief { with: Some(_), .. })),
         lengths: lengths(&all),
-        lengths_by_aspect: lengths(&sequences_by_target(judged)),
+        lengths_any_aspect: lengths(&sequences_any_aspect(judged)),
         recovery_s: all.iter().filter_map(recovery).collect(),
         episodes: (basis == BeliefBasis::Recorded).then(|| follower.episodes.harmful().count() as u64),
     }

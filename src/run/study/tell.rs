@@ -4,7 +4,7 @@ use crate::base::words::count;
 use crate::session::event::EndReason;
 use crate::study::effect::AssistanceEffect;
 use crate::study::figures::StudySummary;
-use crate::study::roc::EQUAL_SIGNALS;
+use crate::study::roc::{BootstrapInterval, EQUAL_SIGNALS};
 use crate::study::trial_statistics::BeliefBasis;
 
 /// Summary of a study as lines of text.
@@ -27,12 +27,12 @@ pub fn describe(figures: &StudySummary) -> String {
     );
     text += &match (totals.belief_related_errors, totals.sequences) {
         (Some(related), Some(sequences)) => format!(
-            "belief related: {related} ({}), in {} of {} errors each (by single aspect {}), recovery \
+            "belief related: {related} ({}), in {} of {} errors each (whatever the aspect {}), recovery \
              after {} s{}\n",
             percent(totals.belief_related_share),
             count(sequences, "sequence", "sequences"),
             number(totals.mean_sequence_length),
-            number(totals.mean_sequence_length_by_aspect),
+            number(totals.mean_sequence_length_any_aspect),
             number(totals.mean_recovery_s),
             if totals.beliefs_from == Some(BeliefBasis::Estimate) { "; by the assistant's estimate alone" } else { "" },
         ),
@@ -78,10 +78,14 @@ pub fn describe(figures: &StudySummary) -> String {
             heads.join(""),
             "area"
         );
+        let shares =
+            |of: &[BootstrapInterval]| -> String { of.iter().map(|one| format!("{:>6}", number(one.value))).collect() };
         for roc in &figures.roc {
-            let values: Vec<String> =
-                roc.at_equal_signals.iter().map(|one| format!("{:>6}", number(one.value))).collect();
-            text += &format!("  {:<10}{}{:>8}\n", roc.concept.title(), values.join(""), number(roc.auc));
+            text += &format!("  {:<10}{}{:>8}\n", roc.concept.title(), shares(&roc.at_equal_signals), number(roc.auc));
+        }
+        text += "share of useless ones among these signals\n";
+        for roc in &figures.roc {
+            text += &format!("  {:<10}{}\n", roc.concept.title(), shares(&roc.useless_at_equal_signals));
         }
     }
     if let Some(similarity) = &figures.similarity {

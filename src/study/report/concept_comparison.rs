@@ -47,17 +47,23 @@ fn at_equal_signals(captions: &mut Captions, figures: &StudySummary) -> Markup {
         row.push(nothing());
         row
     });
+    let useless = figures.roc.iter().map(|roc| {
+        let mut row = vec![format!("useless signals of {}", roc.concept.title()).render()];
+        row.extend(roc.useless_at_equal_signals.iter().map(|one| banded(one.value, one.low, one.high)));
+        row.push(nothing());
+        row
+    });
     let signals = EQUAL_SIGNALS.iter().map(|signals| format!("at {signals:.0} signals"));
     let heads: Vec<String> =
         std::iter::once("prevented".to_string()).chain(signals).chain(["partial area".to_string()]).collect();
     let caption = format!(
-        "Shares of the belief related errors prevented at equal signals per 100 presses of the human, with intervals of 95 % by \
-         bootstrap over participants ({} in {} unassisted trials). The partial area is over false positive rates from 0 to {}, which \
+        "Shares of the belief related errors prevented at equal interruptions per 100 presses of the human, and shares of useless \
+         ones among the signals, with intervals of 95 % by bootstrap over participants ({} in {} unassisted trials). The partial area is over false positive rates from 0 to {}, which \
          all concepts reach, divided by that range; its interval has the range of those who are drawn. The paper prints no figures \
          here; its ToM-Com lies clearly above ToM and DEV.",
         figures.roc_participants,
         figures.roc_trials,
         number(figures.roc_common_fpr, 3),
     );
-    captions.table(caption, &heads, &concepts.chain(behind).collect::<Vec<_>>())
+    captions.table(caption, &heads, &concepts.chain(behind).chain(useless).collect::<Vec<_>>())
 }

@@ -119,7 +119,7 @@ fn errors() -> Vec<TrialColumn> {
         plain(
             "sequences",
             "sequences",
-            "error sequences: belief related errors at most 3 correct presses apart, of any aspect",
+            "error sequences: errors of the same false belief at most 3 correct presses apart",
             |t| of_beliefs(t, |beliefs| beliefs.lengths.len()),
         ),
         Compared(StudyMeasure {
@@ -131,11 +131,11 @@ fn errors() -> Vec<TrialColumn> {
             digits: 2,
             value: Trial::sequence_length,
         }),
-        plain("sequences_by_aspect", "sequences", "error sequences of errors about the same aspect", |t| {
-            of_beliefs(t, |beliefs| beliefs.lengths_by_aspect.len())
+        plain("sequences_any_aspect", "sequences", "error sequences whatever the aspect of their errors", |t| {
+            of_beliefs(t, |beliefs| beliefs.lengths_any_aspect.len())
         }),
-        plain("sequence_length_by_aspect", "errors", "mean errors per sequence of errors about the same aspect", |t| {
-            t.beliefs.as_ref().and_then(|beliefs| mean_length(&beliefs.lengths_by_aspect)).into()
+        plain("sequence_length_any_aspect", "errors", "mean errors per error sequence whatever the aspect", |t| {
+            t.beliefs.as_ref().and_then(|beliefs| mean_length(&beliefs.lengths_any_aspect)).into()
         }),
         Compared(StudyMeasure {
             name: "recovery_s",

@@ -45,7 +45,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
             basis: BeliefBasis::Recorded,
             errors: related,
             of_two: 0,
-            lengths_by_aspect: lengths.clone(),
+            lengths_any_aspect: lengths.clone(),
             lengths,
             recovery_s: vec![6.0],
             episodes: Some(1),

@@ -25,7 +25,7 @@ const PUBLISHED: [(Table, &str); 9] = [
         Table::Trials,
         "recording participant kind seed group period condition assisted counts left_out ended arm human_presses robot_presses \
          errors races error_rate_human error_rate beliefs_from belief_related_errors sequences sequence_length \
-         sequences_by_aspect sequence_length_by_aspect recovery_s orders order_s presses_per_order press_s signals duration_s \
+         sequences_any_aspect sequence_length_any_aspect recovery_s orders order_s presses_per_order press_s signals duration_s \
          protective_stops faults contacts peak_force_n reduced_s safeguard_s emergency_stops given_up_no_longer_useful \
          given_up_stopped given_up_skipped given_up_driven given_up_out_of_reach given_up_singular given_up_obstructed \
          given_up_hand_in_the_way given_up_no_click given_up_contact given_up_fault wizard_held wizard_skipped wizard_driven \
@@ -34,7 +34,8 @@ const PUBLISHED: [(Table, &str); 9] = [
     (Table::Questionnaires, "recording participant condition questionnaire item about reversed answer points"),
     (
         Table::Concepts,
-        "recording participant concept parameter presses signals related prevented outside false_presses false_inside harmless",
+        "recording participant concept parameter presses signals related prevented outside false_presses false_inside harmless \
+         contents useless",
     ),
     (
         Table::Actions,

@@ -152,7 +152,7 @@ pub fn roc(figures: &StudySummary) -> Option<Markup> {
 }
 
 /// Upper end of the axis for signals per 100 human presses; points beyond it are not drawn.
-const MOST_SIGNALS: f64 = 25.0;
+pub const MOST_SIGNALS: f64 = 25.0;
 
 /// Chart of prevented errors against signals per 100 human presses.
 pub fn equal_signals(figures: &StudySummary) -> Option<Markup> {

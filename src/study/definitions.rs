@@ -30,11 +30,13 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
     ),
     (
         "Similarity of wizard and assistant",
-        "One-to-one matching in time within 3 human presses; strict: same signal and target, lenient: same kind of signal. The \
-         assistant's hypothetical signals follow from its counterfactual estimate, which leaves the wizard's signal out for as \
+        "One-to-one matching in time within 3 human presses, at three levels: same signal and target, same kind of signal, any \
+         signal then. The paper's 74 % (\u{201c}a similar decision \u{2026} in nearby time steps\u{201d}) is not defined further, so all \
+         three stand side by side, each with its chance level. Trials in which the wizard saw the assistant's recommendations are not \
+         part of it and stand beside it. The assistant's hypothetical signals follow from its counterfactual estimate, which leaves the wizard's signal out for as \
          many presses. The assistant does not repeat a hypothetical signal within the window, but may repeat it later. Recall \
          is of the wizard's signals, precision of the assistant's; kappa is per human press over {none, each signal and \
-         target}; the chance level is the mean recall after circular shifts. More frequent signals of an assistant raise \
+         target}; the chance levels are mean recalls after circular shifts. More frequent signals of an assistant raise \
          recall, so precision is stated too.",
     ),
     (
@@ -50,6 +52,26 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
          per 100 presses of the human (linear interpolation between swept points and no signals), and as partial area over the \
          false positive rates that all concepts reach, divided by that range; intervals of 95 % by bootstrap over participants, \
          the area over the common range of each resample.",
+    ),
+    (
+        "Offline and live",
+        "Offline: what a concept's signals would have prevented in unassisted trials. Live: the same concept acting by itself on the \
+         same seeds, compared over the simulated trials that all arms have. A live signal is useful if a twin of the trial with the same random \
+         streams, but without it and all later signals, makes more belief related errors about its target until the end of the episode; \
+         of people nobody knows. Offline figures cannot know how a trial goes on after a \
+         signal.",
+    ),
+    (
+        "Orders",
+        "Time per order: from its appearance to its serving. Additional presses: the summed regret of both agents' presses per \
+         served order, since orders interleave. Experience: the effect of the period on press durations, from the same mixed \
+         ANOVA as the effect of assistance. Where assistance is judged, belief related errors and sequences per 100 human presses \
+         come first; lengths of sequences describe, because an episode that was prevented wholly cannot be seen.",
+    ),
+    (
+        "Causes by kind of aspect",
+        "Belief related errors about an order, a recipe, or another location. An error about an ordered dish counts for the order or \
+         for the recipe by what was believed wrong at the press; where both were, or nobody knows, it counts for neither alone.",
     ),
     (
         "Assistance effect",

@@ -23,6 +23,7 @@ pub mod dictionary;
 pub mod effect;
 pub mod facts;
 pub mod figures;
+pub mod live_arms;
 pub mod prevention;
 pub mod report;
 pub mod robot_tally;

@@ -186,7 +186,7 @@ impl RowCollector {
             self.rows.add(&ActionRow { recording, kitchen, recorded, analysis: known.analysis(recorded.seq) });
         }
         let pairs = match lanes {
-            [(_, of), (_, with)] => Some(matched(of, with, window, MatchCriterion::Strict)),
+            [(_, of), (_, with)] => Some(matched(of, with, window, MatchCriterion::Signal)),
             _ => None,
         };
         for (side, (lane, all)) in lanes.iter().enumerate() {

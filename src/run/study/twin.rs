@@ -121,7 +121,7 @@ fn errors_after(follower: &Follower, time: SessionTime, told: &[AspectId]) -> u6
         let mut aspects = target.aspects(kitchen);
         aspects.any(|aspect| {
             let is_in = |episode: &&Episode| episode.corrected.is_none_or(|end| press.time <= end);
-            open.iter().filter(|episode| episode.aspect == aspect).any(|episode| is_in(episode))
+            open.iter().filter(|episode| episode.aspect == aspect).any(is_in)
         })
     });
     errors.count() as u64

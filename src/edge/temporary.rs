@@ -13,7 +13,7 @@ const NAMES: u32 = 1000;
 /// # Errors
 /// It cannot be made.
 pub fn new_folder(below: &Path, name: &str) -> io::Result<PathBuf> {
-    first_free(below, name, "", |path| make_folder(path)).map(|(path, ())| path)
+    first_free(below, name, "", make_folder).map(|(path, ())| path)
 }
 
 /// Makes the empty file `STEM` with this ending, or else the first of `STEM-2`, `STEM-3`, … that does not exist.
@@ -21,7 +21,7 @@ pub fn new_folder(below: &Path, name: &str) -> io::Result<PathBuf> {
 /// # Errors
 /// It cannot be made.
 pub fn new_file(below: &Path, stem: &str, ending: &str) -> io::Result<(PathBuf, File)> {
-    first_free(below, stem, ending, |path| make_file(path))
+    first_free(below, stem, ending, make_file)
 }
 
 fn first_free<T>(

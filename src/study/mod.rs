@@ -15,6 +15,7 @@
 //! - [`report`] builds the page, with [`charts`].
 
 pub mod acceptance;
+pub mod acting_arm;
 pub mod arm_group;
 pub mod charts;
 pub mod column;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::live_arms::ActingArm;
+use super::acting_arm::ActingArm;
 use super::robot_tally::RobotSummary;
 use super::roc::SweptTrial;
 use crate::measures::cause_codes::Codes;

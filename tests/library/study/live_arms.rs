@@ -2,7 +2,8 @@
 
 use tomcom::communication::concept::ConceptName;
 use tomcom::session::settings::Condition;
-use tomcom::study::live_arms::{ActingArm, live_arms};
+use tomcom::study::acting_arm::ActingArm;
+use tomcom::study::live_arms::live_arms;
 use tomcom::study::trial_statistics::Trial;
 
 use super::{near, trial};

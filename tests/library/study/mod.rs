@@ -11,7 +11,7 @@ use tomcom::communication::concept::ConceptName;
 use tomcom::measures::cause_kinds::CauseKindCounts;
 use tomcom::session::event::EndReason;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
-use tomcom::study::live_arms::ActingArm;
+use tomcom::study::acting_arm::ActingArm;
 use tomcom::study::robot_tally::RobotSummary;
 use tomcom::study::trial_statistics::{BeliefBasis, BeliefErrors, Trial, arrange};
 

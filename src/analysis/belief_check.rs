@@ -15,7 +15,7 @@ use crate::kitchen::{Change, Kitchen, LocationId, Press};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
 use crate::measures::belief_detection::{Detection, EstimateView, PressView, TrialView};
-use crate::measures::flags::{MOST_FALSE_FLAGS, Thresholds};
+use crate::measures::flags::{MOST_FALSE_FLAGS, ThresholdSource, Thresholds};
 use crate::mind::belief::Belief;
 use crate::mind::choice_parameters::DecisionModel;
 use crate::session::{Event, Session, Stamped};
@@ -134,8 +134,16 @@ impl Before {
 pub fn describe(check: &BeliefCheck) -> String {
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.3}"));
     let (found, flags, likely) = (&check.detection, &check.detection.flags, &check.log_likelihood);
-    let thresholds = flags.thresholds.map_or(String::new(), |at| {
-        format!(" (thresholds {:.3} for locations, {:.3} for recipes)", at.locations, at.recipes)
+    let thresholds = flags.thresholds.zip(flags.thresholds_from).map_or(String::new(), |(at, from)| {
+        let [locations, recipes] = [at.locations, at.recipes].map(|threshold| format!("{threshold:.3}"));
+        let from = match from {
+            ThresholdSource::OtherRecordings => "chosen on other recordings".to_string(),
+            ThresholdSource::OtherHalf => {
+                "each half of the recordings judged with those chosen on the other; all give".to_string()
+            }
+            ThresholdSource::SameTrial => "chosen on the same recording, so these rates are too good".to_string(),
+        };
+        format!("\n  thresholds {from}: {locations} for locations, {recipes} for recipes")
     });
     // A single recording has no spread over recordings.
     let interval = likely.gain_interval.filter(|_| check.recordings > 1);
@@ -194,8 +202,8 @@ fn legend(check: &BeliefCheck) -> String {
         "\nROC: how surely the estimate tells an aspect that is believed wrong from one that is not; 1 always, 0.5 no better \
          than chance.\nwrong: the share of the presses before which the aspect was believed wrong.\nflagged: the estimate \
          passes the threshold that catches most, with at most {MOST_FALSE_FLAGS} false flags per 20 presses of the human.\n\
-         calibration error: how far the estimated probabilities are from how often they are right; 0 is \
-         best.\ngain: by how much the estimate predicts presses better than a human who knows everything; above 0 it knows \
+         calibration error: how far the predicted probabilities of a false belief (belief in the truth below 0.5) are from how \
+         often it is false; 0 is best.\ngain: by how much the estimate predicts presses better than a human who knows everything; above 0 it knows \
          something of beliefs (0.1 nats: presses are 10 % likelier).{few}\n"
     )
 }

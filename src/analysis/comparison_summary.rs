@@ -325,17 +325,18 @@ fn describe_pair(pair: &LanePairSummary) -> String {
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let found = &pair.similarity;
     let lead = found.median_lead_s.map_or("-".to_string(), |lead| format!("{lead:+.1} s"));
-    let line = |what: &str, window: &str, chance: &str, level: MatchShares| {
-        let [recall, precision, f1] = [level.recall, level.precision, level.f1].map(number);
+    let line = |what: &str, window: &str, level: MatchShares| {
+        let [recall, chance, precision, f1] =
+            [level.recall, level.chance_recall, level.precision, level.f1].map(number);
         format!("{what:<24}{window:>7}{recall:>8}{chance:>8}{precision:>11}{f1:>6}")
     };
     let what = format!("{}, {}", pair.of, pair.with);
-    let strict = line(&what, &pair.window_actions.to_string(), &number(found.chance_recall), found.strict);
+    let signal = line(&what, &pair.window_actions.to_string(), found.signal);
     let kappa = number(found.kappa);
     let said = format!("{} of {} matched, {} said", found.matched, found.of_n, found.with_n);
     format!(
-        "{strict}{kappa:>7}{lead:>8}  {said}\n{}\n{}\n",
-        line("  the same kind", "", "", found.lenient),
-        line("  the same time", "", "", found.timing)
+        "{signal}{kappa:>7}{lead:>8}  {said}\n{}\n{}\n",
+        line("  the same kind", "", found.kind),
+        line("  the same time", "", found.any)
     )
 }

@@ -6,8 +6,7 @@ use crate::base::words::count;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
 use crate::history::wording::{self, location as said};
-use crate::kitchen::{Agent, Kitchen};
-use crate::measures::attribution::Cause;
+use crate::kitchen::Agent;
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::BeliefWitness;
 use crate::mind::recorded_estimate::{AspectEstimate, EstimateWitness};
@@ -125,23 +124,10 @@ fn verdict(stamped: &Stamped, follower: &Follower) -> String {
     match (&stamped.event, judged) {
         (Event::Press { agent: Agent::Human, .. }, None) => " (does not count)".to_string(),
         (_, Some(press)) if press.verdict.error => {
-            let costs = count(press.verdict.excess.unsigned_abs(), "press", "presses");
-            format!(" (error, costs {costs}{})", because(press.cause, &follower.session.kitchen))
+            format!(" ({})", wording::error(&follower.session.kitchen, press))
         }
         (_, Some(press)) if press.verdict.race => " (race with the robot)".to_string(),
         _ => String::new(),
-    }
-}
-
-/// What an error is put down to.
-fn because(cause: Option<Cause>, kitchen: &Kitchen) -> String {
-    match cause {
-        None => String::new(),
-        Some(Cause::Slip) => "; a slip".to_string(),
-        Some(Cause::Belief { target, with: None, .. }) => format!("; wrong about {}", target.label(kitchen)),
-        Some(Cause::Belief { target, with: Some(other), .. }) => {
-            format!("; wrong about {} and {}", target.label(kitchen), other.label(kitchen))
-        }
     }
 }
 

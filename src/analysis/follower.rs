@@ -210,7 +210,8 @@ impl Follower {
             self.episodes.erred(&kitchen, cause);
         }
         let belief_known = belief.is_some();
-        self.judged.push(JudgedPress { seq: stamped.seq, time: stamped.time, verdict, belief_known, cause });
+        let (seq, time, before) = (stamped.seq, stamped.time, press.before);
+        self.judged.push(JudgedPress { seq, time, before, verdict, belief_known, cause });
     }
 
     /// The number of errors so far.

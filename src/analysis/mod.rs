@@ -16,6 +16,7 @@ pub mod kitchen_summary;
 pub mod lesson_report;
 #[cfg(feature = "cli")]
 pub mod likelihood;
+pub mod order_work;
 pub mod planner_accuracy;
 pub mod recording_summary;
 pub mod sweep_row;

@@ -8,7 +8,7 @@ use super::follower::Follower;
 use crate::base::words::count;
 use crate::kitchen::{Agent, DishId};
 use crate::measures::attribution::Cause;
-use crate::measures::sequences::{Sequence, sequences, sequences_by_target};
+use crate::measures::sequences::{Sequence, sequences, sequences_any_aspect};
 use crate::session::TimelineEvent;
 use crate::session::settings::{Condition, ParticipantKind};
 
@@ -65,10 +65,10 @@ pub struct TrialBeliefErrors {
     pub related: u64,
     /// Belief related errors that no single target explains.
     pub related_to_pairs: u64,
-    /// Error sequences: successive errors, whatever each is about.
+    /// Sequences of related errors.
     pub sequences: Vec<Sequence>,
-    /// Error sequences of errors about the same target alone.
-    pub by_target: Vec<Sequence>,
+    /// Error sequences whatever the aspect.
+    pub any_aspect: Vec<Sequence>,
     /// Number of false belief episodes that caused at least one error.
     pub episodes: u64,
 }
@@ -86,7 +86,7 @@ impl TrialBeliefErrors {
             related: count(|cause| matches!(cause, Cause::Belief { .. })) as u64,
             related_to_pairs: count(|cause| matches!(cause, Cause::Belief { with: Some(_), .. })) as u64,
             sequences: sequences(judged),
-            by_target: sequences_by_target(judged),
+            any_aspect: sequences_any_aspect(judged),
             episodes: follower.episodes.harmful().count() as u64,
         })
     }
@@ -99,16 +99,16 @@ pub struct BeliefErrorSummary {
     pub belief_related_errors: Option<u64>,
     /// Belief related errors that only a pair of false beliefs explains.
     pub errors_of_two_beliefs: Option<u64>,
-    /// Number of error sequences.
+    /// Number of sequences of related errors.
     pub sequences: Option<u64>,
     /// Mean number of errors in a sequence; null also where there is none.
     pub mean_sequence_length: Option<f64>,
     /// Seconds from the first error of a sequence to the first correct press after its last.
     pub mean_recovery_s: Option<f64>,
-    /// Number of sequences if errors about other aspects are left out.
-    pub sequences_by_aspect: Option<u64>,
+    /// Number of error sequences whatever the aspect.
+    pub sequences_any_aspect: Option<u64>,
     /// Mean number of errors in these; null also where there is none.
-    pub mean_sequence_length_by_aspect: Option<f64>,
+    pub mean_sequence_length_any_aspect: Option<f64>,
     /// Number of false belief episodes that caused at least one error.
     pub false_belief_episodes: Option<u64>,
 }
@@ -128,12 +128,12 @@ impl BeliefErrorSummary {
         };
         let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.1}"));
         format!(
-            "belief related: {related} of {errors} errors ({:.0} %), in {} of {} errors each (by \
-             single aspect {}), over after {} s",
+            "belief related: {related} of {errors} errors ({:.0} %), in {} of {} errors each (whatever \
+             the aspect {}), over after {} s",
             100.0 * related as f64 / errors.max(1) as f64,
             count(sequences, "sequence", "sequences"),
             number(self.mean_sequence_length),
-            number(self.mean_sequence_length_by_aspect),
+            number(self.mean_sequence_length_any_aspect),
             number(self.mean_recovery_s),
         )
     }
@@ -210,7 +210,7 @@ struct BeliefSums {
     related_to_pairs: u64,
     lengths: Mean,
     recovery_s: Mean,
-    lengths_by_aspect: Mean,
+    lengths_any_aspect: Mean,
     episodes: u64,
 }
 
@@ -224,12 +224,12 @@ impl BeliefSums {
         self.related_to_pairs += trial.related_to_pairs;
         self.episodes += trial.episodes;
         for sequence in &trial.sequences {
-            self.lengths.add(f64::from(sequence.length));
+            self.lengths.add(f64::from(sequence.length()));
             if let Some(recovered) = sequence.recovered {
                 self.recovery_s.add(recovered.secs_since(sequence.began));
             }
         }
-        trial.by_target.iter().for_each(|sequence| self.lengths_by_aspect.add(f64::from(sequence.length)));
+        trial.any_aspect.iter().for_each(|sequence| self.lengths_any_aspect.add(f64::from(sequence.length())));
     }
 
     fn figures(&self) -> BeliefErrorSummary {
@@ -242,8 +242,8 @@ impl BeliefSums {
             sequences: Some(self.lengths.count),
             mean_sequence_length: self.lengths.mean(),
             mean_recovery_s: self.recovery_s.mean(),
-            sequences_by_aspect: Some(self.lengths_by_aspect.count),
-            mean_sequence_length_by_aspect: self.lengths_by_aspect.mean(),
+            sequences_any_aspect: Some(self.lengths_any_aspect.count),
+            mean_sequence_length_any_aspect: self.lengths_any_aspect.mean(),
             false_belief_episodes: Some(self.episodes),
         }
     }

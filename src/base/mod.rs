@@ -1,7 +1,8 @@
-//! Basics that every room may use: session time, random streams, bit sets, words, printable text.
+//! Basics that every room may use: session time, random streams, bit sets, words, printable text, the beta distribution.
 
 pub mod bits;
 pub mod features;
+pub mod incomplete_beta;
 pub mod number_range;
 pub mod printable;
 pub mod rng;

@@ -64,6 +64,10 @@ pub(super) struct ReplayArgs {
     /// Compare the estimates before each press with the recorded beliefs of simulated participants, and with the presses.
     #[arg(long, conflicts_with_all = ["verify", "follow"])]
     pub(super) check_beliefs: bool,
+    /// With --check-beliefs: choose the thresholds of flags on this recording, of another seed (several: repeat it). Without it
+    /// each half of the recordings is judged with the thresholds of the other half.
+    #[arg(long, value_name = "RECORDING", requires = "check_beliefs")]
+    pub(super) choose_on: Vec<PathBuf>,
     /// Measure computing times of inference and planning.
     #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs"])]
     pub(super) timing: bool,
@@ -80,7 +84,7 @@ pub(super) struct ReplayArgs {
     #[arg(long)]
     pub(super) follow: bool,
     /// Code the errors of the recording as this rater (a code, never a name), without any estimate in view: letters code
-    /// false beliefs, 1 a slip, 2 a race, 3 another cause. Codes are saved beside the log.
+    /// false beliefs, 1 a slip, 2 a race, 3 another cause, 4 mixed up buttons. Codes are saved beside the log.
     #[arg(long, value_name = "CODE", conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy", "format"])]
     pub(super) rater: Option<String>,
     /// Output format.

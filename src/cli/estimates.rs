@@ -12,8 +12,8 @@ use crate::run::{accuracy, check_beliefs, fit};
 
 /// `tomcom replay RECORDING... --check-beliefs`.
 pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
-    let bar = progress(args.recordings.len() as u64, "recordings");
-    let found = check_beliefs::check(&args.recordings, None, || bar.inc(1))?;
+    let bar = progress((args.recordings.len() + args.choose_on.len()) as u64, "recordings");
+    let found = check_beliefs::check(&args.recordings, &args.choose_on, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &found, || belief_check::describe(&found))
 }

@@ -194,7 +194,7 @@ pub fn replay() -> Vec<KeyBinding> {
 }
 
 /// What a rater says about errors; only where they are coded.
-fn codes() -> [KeyBinding; 6] {
+fn codes() -> [KeyBinding; 7] {
     let code =
         |name, key: KeyChord, rate, help, footer| line(name, &[key], KeyAction::Rate(rate), CODING, help, footer);
     let cause = |name, key, kind, help| code(name, KeyChord::char(key), RaterKey::Cause(kind), help, None);
@@ -207,6 +207,7 @@ fn codes() -> [KeyBinding; 6] {
         },
         KeyBinding { footer: Some("race"), ..cause("race", '2', CauseKind::Race, "a race: the robot was quicker") },
         KeyBinding { footer: Some("other"), ..cause("other_cause", '3', CauseKind::Other, "another cause") },
+        cause("mixed_up_buttons", '4', CauseKind::Buttons, "mixed up buttons: another one was wanted"),
         code("clear_code", KeyChord::plain(Delete), RaterKey::Clear, "not coded after all", None),
     ]
 }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::page_language::DisplayWords;
 use crate::gaze::tags::DisplayTags;
-use crate::kitchen::{Agent, Appearance, ButtonAction, Kitchen, LocationKind};
+use crate::kitchen::{Agent, Appearance, ButtonAction, ButtonColour, Kitchen, LocationKind};
 use crate::session::settings::GazeSource;
 use crate::session::wall_display::Names;
 use crate::session::{Session, SessionSpec};
@@ -95,6 +95,10 @@ pub struct DisplayButton {
     pub key: Option<char>,
     /// The number of its gamepad button.
     pub gamepad: Option<u8>,
+    /// The colour of its cap on the table.
+    pub colour: Option<ButtonColour>,
+    /// The name of its area on the table.
+    pub area: Option<String>,
     /// What it does: "take", "use", "process", "trash", "serve".
     pub does: &'static str,
     /// The location that it is at; of a storage, its place in [`DisplayScene::storages`].
@@ -193,7 +197,9 @@ fn knobs(kitchen: &Kitchen, words: &DisplayWords) -> Vec<DisplayButton> {
             "serve" => words.of_name("serve"),
             _ => words.of_name(&button.name),
         };
-        DisplayButton { name: button.name.clone(), label, key: button.key, gamepad: button.gamepad, does, at }
+        let (name, area) = (button.name.clone(), button.area.clone());
+        let &crate::kitchen::Button { key, gamepad, colour, .. } = button;
+        DisplayButton { name, label, key, gamepad, colour, area, does, at }
     };
     kitchen.buttons[Agent::Human.index()].iter().map(knob).collect()
 }

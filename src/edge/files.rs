@@ -37,7 +37,8 @@ pub struct SessionFiles {
 impl SessionFiles {
     /// The study that it plans.
     pub fn study(&self) -> Option<Study> {
-        Study::new(&self.spec, self.questionnaires.clone())
+        let kitchen = [&*self.kitchen.layout.text, &*self.kitchen.recipes.text];
+        Study::new(&self.spec, self.questionnaires.clone(), kitchen)
     }
 }
 

@@ -28,7 +28,7 @@ use self::viewer_server::ViewerServer;
 use crate::arm::link::{CollisionSolid, LinkShape};
 use crate::base::printable::{printable, printable_lines};
 use crate::base::time::SessionTime;
-use crate::scene::entity_content::{LogLevel, SceneArea, SceneDisc, ScenePoint, SceneSeries};
+use crate::scene::entity_content::{LogLevel, MarkShape, SceneArea, SceneDisc, ScenePoint, SceneSeries};
 use crate::scene::{EntityData, EntityUpdate, SceneUpdate};
 
 /// The version of Rerun that streams are written with; viewers of the same version read them.
@@ -259,9 +259,18 @@ fn parts(shown: &EntityData) -> Vec<Part> {
             let line = archetypes::SeriesLines::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
             vec![Box::new(line.with_widths([2.0]).with_interpolation_mode(InterpolationMode::StepAfter))]
         }
-        EntityData::Marks(SceneSeries { name, colour }) => {
+        EntityData::QuietLine(SceneSeries { name, colour }) => {
+            let line = archetypes::SeriesLines::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
+            vec![Box::new(line.with_widths([1.0]).with_interpolation_mode(InterpolationMode::StepAfter))]
+        }
+        EntityData::Marks(SceneSeries { name, colour }, shape) => {
+            let shape = match shape {
+                MarkShape::Cross => MarkerShape::Cross,
+                MarkShape::Circle => MarkerShape::Circle,
+                MarkShape::Diamond => MarkerShape::Diamond,
+            };
             let marks = archetypes::SeriesPoints::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
-            vec![Box::new(marks.with_markers([MarkerShape::Cross]).with_marker_sizes([4.0]))]
+            vec![Box::new(marks.with_markers([shape]).with_marker_sizes([4.0]))]
         }
         EntityData::Words { level, text, colour } => {
             let level = match level {

@@ -144,7 +144,7 @@ impl LaneComparison {
         let pair = |with: &Vec<CommunicationEvent>| {
             let mut tally = MatchCounts::default();
             tally.add(&said[0], with, presses, window);
-            let matched = matched(&said[0], with, window, MatchCriterion::Strict);
+            let matched = matched(&said[0], with, window, MatchCriterion::Signal);
             LanePair { matched, similarity: tally.similarity() }
         };
         let pairs: Vec<LanePair> = said.iter().skip(1).map(pair).collect();

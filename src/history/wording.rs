@@ -5,6 +5,8 @@ use crate::base::words::count;
 use crate::communication::{Sender, Signal};
 use crate::gaze::quality::DropCounts;
 use crate::kitchen::{Agent, ButtonAction, Kitchen, LocationId, OrderContent};
+use crate::measures::JudgedPress;
+use crate::measures::attribution::Cause;
 use crate::robot::moment::ArmPhase;
 use crate::robot::safety::SafetyMode;
 use crate::session::accuracy_check::CalibrationEvent;
@@ -226,4 +228,17 @@ pub fn calibration(event: &CalibrationEvent) -> String {
         }
         CalibrationEvent::Dismissed => "check of the gaze given up".to_string(),
     }
+}
+
+/// A press that was an error: what it costs beside the human's best press, and what it is put down to, where that is known.
+pub fn error(kitchen: &Kitchen, press: &JudgedPress) -> String {
+    let because = match press.cause {
+        None => String::new(),
+        Some(Cause::Slip) => "; a slip".to_string(),
+        Some(Cause::Belief { target, with: None, .. }) => format!("; wrong about {}", target.label(kitchen)),
+        Some(Cause::Belief { target, with: Some(other), .. }) => {
+            format!("; wrong about {} and {}", target.label(kitchen), other.label(kitchen))
+        }
+    };
+    format!("error, costs {}{because}", count(press.verdict.excess.unsigned_abs(), "press", "presses"))
 }

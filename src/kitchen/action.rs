@@ -1,5 +1,7 @@
 //! Buttons: an action of the task is one press of one physical button by one agent.
 
+use serde::{Deserialize, Serialize};
+
 use super::content::ContentId;
 use super::location::LocationId;
 
@@ -43,4 +45,26 @@ pub struct Button {
     pub key: Option<char>,
     /// The number of the human's gamepad button for it.
     pub gamepad: Option<u8>,
+    /// The colour of its cap, which the display shows, too.
+    pub colour: Option<ButtonColour>,
+    /// The name of its area on the table; buttons of one area stand together, as on the display.
+    pub area: Option<String>,
+}
+
+/// Colour of a button's cap: those in which arcade buttons are sold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ButtonColour {
+    /// Red.
+    Red,
+    /// Yellow.
+    Yellow,
+    /// Green.
+    Green,
+    /// Blue.
+    Blue,
+    /// White.
+    White,
+    /// Black.
+    Black,
 }

@@ -3,6 +3,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::action::ButtonColour;
 use super::agent::Agent;
 use super::location::DisplayArea;
 
@@ -98,6 +99,12 @@ pub struct ButtonSpec {
     /// The number of the gamepad's button (W3C Gamepad), 0 the first.
     #[serde(default)]
     pub gamepad: Option<Spanned<u8>>,
+    /// The colour of its cap, which the display shows beside what the button does.
+    #[serde(default)]
+    pub colour: Option<ButtonColour>,
+    /// The name of its area on the table.
+    #[serde(default)]
+    pub area: Option<Spanned<String>>,
 }
 
 /// `[[order]]` of a layout file: a location that shows which dish is wanted.

@@ -31,7 +31,7 @@ pub mod state;
 mod transition_tables;
 pub mod world;
 
-pub use action::{Button, ButtonAction, ButtonId};
+pub use action::{Button, ButtonAction, ButtonColour, ButtonId};
 pub use agent::Agent;
 pub use aspect::{Aspect, AspectId, AspectKind};
 pub use change::{Change, Press};

@@ -5,12 +5,13 @@
 //! participant's own P(truth) is below 0.5. The area under the ROC of a group (locations, recipes) is that of all its pairs
 //! of a press and an aspect in one pot: the score has to tell an aspect that is believed wrong now both from the others and
 //! from itself at other times. The macro-average is the mean of the two groups, so that the many pairs of one do not hide
-//! the other. The mean over single aspects is given beside it; it depends much on aspects that are hardly ever wrong.
+//! the other. Calibration judges the predicted probability of a false belief, which is that of a belief in the truth below one half,
+//! not the expected share of the belief beside the truth. The mean over single aspects is given beside it; it depends much on aspects that are hardly ever wrong.
 
 use serde::Serialize;
 
 use super::detection::{Calibration, auc};
-use super::flags::{Flags, Thresholds};
+use super::flags::{AspectGroups, Flags, Thresholds};
 pub use super::press_view::{EstimateView, PressView, TrialView};
 use crate::kitchen::{AspectKind, Kitchen};
 
@@ -46,7 +47,7 @@ pub struct Detection {
     /// How well episodes are flagged at the chosen thresholds.
     #[serde(flatten)]
     pub flags: Flags,
-    /// The expected calibration error of the predictions within [`CALIBRATED`].
+    /// The expected calibration error of the predicted probabilities of a false belief within [`CALIBRATED`].
     pub ece: Option<f64>,
     /// The predictions in bins, against what was true.
     pub calibration: Calibration,
@@ -56,16 +57,16 @@ pub struct Detection {
 
 impl Detection {
     /// Compares estimates with beliefs. `thresholds` are the probabilities from which an aspect is flagged; with `None` they are
-    /// chosen on these trials (see [`Flags`]).
+    /// chosen on other trials than they are judged on (see [`Flags`]).
     pub fn from_trials(kitchen: &Kitchen, trials: &[TrialView], thresholds: Option<Thresholds>) -> Detection {
         let estimated = |press: &PressView, aspect| press.estimate.as_ref().map(|one| one.p_wrong[aspect]);
         let changed = |press: &PressView, aspect| press.unseen_change.get(aspect).map(|&one| f64::from(u8::from(one)));
-        let locations: Vec<usize> = aspects(kitchen, false);
-        let recipes: Vec<usize> = aspects(kitchen, true);
+        let groups = aspect_groups(kitchen);
         let both: Vec<usize> = (0..kitchen.aspects.len()).collect();
         let pool = |of: &[usize], score: Score| auc(&scored(trials, of, score));
-        let of_groups = [pool(&locations, &estimated), pool(&recipes, &estimated)];
-        let predictions = scored(trials, &both, &estimated);
+        let of_groups = groups.each_ref().map(|group| pool(group, &estimated));
+        let predicted = |press: &PressView, aspect| press.estimate.as_ref().map(|one| one.p_false[aspect]);
+        let predictions = scored(trials, &both, &predicted);
         let calibration = Calibration::from_predictions(predictions, CALIBRATED, CALIBRATION_BINS);
         let aspect = |&index: &usize| {
             let known: Vec<bool> = trials.iter().flatten().filter_map(|press| press.is_wrong(index)).collect();
@@ -76,9 +77,9 @@ impl Detection {
             auc: mean(of_groups.into_iter().flatten()),
             auc_locations: of_groups[0],
             auc_recipes: of_groups[1],
-            auc_baseline: pool(&locations, &changed),
+            auc_baseline: pool(&groups[0], &changed),
             auc_mean_of_aspects: mean(both.iter().filter_map(|&one| pool(&[one], &estimated))),
-            flags: Flags::from_trials(trials, &[locations.clone(), recipes.clone()], thresholds),
+            flags: Flags::from_trials(trials, &groups, thresholds),
             ece: calibration.ece,
             calibration,
             aspects: both.iter().map(aspect).collect(),
@@ -94,6 +95,11 @@ fn scored(trials: &[TrialView], aspects: &[usize], score: Score) -> Vec<(f64, bo
     let one = |press: &PressView, aspect: usize| Some((score(press, aspect)?, press.is_wrong(aspect)?));
     let presses = trials.iter().flatten();
     presses.flat_map(|press| aspects.iter().filter_map(move |&aspect| one(press, aspect))).collect()
+}
+
+/// The aspects of a kitchen by group: locations, recipes.
+pub fn aspect_groups(kitchen: &Kitchen) -> AspectGroups {
+    [aspects(kitchen, false), aspects(kitchen, true)]
 }
 
 /// The indices of the aspects that are recipes, or that are not.

@@ -21,6 +21,8 @@ pub enum Code {
     Race,
     /// Another cause.
     Other,
+    /// Buttons were mixed up: the participant wanted another one.
+    Buttons,
 }
 
 /// Kinds of causes, without the aspect of a false belief.
@@ -35,11 +37,14 @@ pub enum CauseKind {
     Race,
     /// Another cause.
     Other,
+    /// Buttons were mixed up.
+    Buttons,
 }
 
 impl CauseKind {
     /// All kinds of causes, in the order of the keys that code them.
-    pub const ALL: [CauseKind; 4] = [CauseKind::Belief, CauseKind::Slip, CauseKind::Race, CauseKind::Other];
+    pub const ALL: [CauseKind; 5] =
+        [CauseKind::Belief, CauseKind::Slip, CauseKind::Race, CauseKind::Other, CauseKind::Buttons];
 
     /// Name in files.
     pub fn name(self) -> &'static str {
@@ -48,6 +53,7 @@ impl CauseKind {
             CauseKind::Slip => "slip",
             CauseKind::Race => "race",
             CauseKind::Other => "other",
+            CauseKind::Buttons => "buttons",
         }
     }
 
@@ -65,6 +71,7 @@ impl Code {
             (CauseKind::Slip, None) => Some(Code::Slip),
             (CauseKind::Race, None) => Some(Code::Race),
             (CauseKind::Other, None) => Some(Code::Other),
+            (CauseKind::Buttons, None) => Some(Code::Buttons),
             _ => None,
         }
     }
@@ -76,6 +83,7 @@ impl Code {
             Code::Slip => CauseKind::Slip,
             Code::Race => CauseKind::Race,
             Code::Other => CauseKind::Other,
+            Code::Buttons => CauseKind::Buttons,
         }
     }
 
@@ -164,6 +172,15 @@ impl Codes {
     }
 }
 
+/// The codes of the two raters who coded most errors; `None` with fewer than two raters. Where several coded equally many, the first of
+/// them are taken.
+pub fn most_complete(mut raters: Vec<Codes>) -> Option<[Codes; 2]> {
+    // The sort is stable.
+    raters.sort_by_key(|codes| std::cmp::Reverse(codes.0.len()));
+    let mut all = raters.into_iter();
+    all.next().zip(all.next()).map(|(one, other)| [one, other])
+}
+
 /// Contingency table of two raters' codes over the errors that both coded; recordings are added to it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AgreementTable {
@@ -180,7 +197,7 @@ pub struct Agreement {
     pub errors: u64,
     /// Of these, errors about which both say the same kind of cause.
     pub same_cause: u64,
-    /// Cohen's kappa of the cause over {belief, slip, race, other}; null without codes, or if all codes are equal.
+    /// Cohen's kappa of the cause over {belief, slip, race, other, buttons}; null without codes, or if all codes are equal.
     pub kappa_cause: Option<f64>,
     /// Errors that both put down to a false belief.
     pub beliefs: u64,

@@ -3,9 +3,10 @@
 //!
 //! An episode counts if it caused two or more errors; it is caught if its aspect is flagged after it became false and
 //! before the third error (the estimate from before a press is before that press). A false flag is one that is raised on an
-//! aspect that is believed right. There is one threshold for locations and one for recipes. Unless they are given, those
-//! are taken that catch most, with at most [`MOST_FALSE_FLAGS`], and aspects flagged at most [`MOST_WRONGLY_FLAGGED`] of the
-//! time while they are believed right; of equals those with the fewest false flags.
+//! aspect that is believed right. There is one threshold for locations and one for recipes. Those are chosen that catch most, with
+//! at most [`MOST_FALSE_FLAGS`], and aspects flagged at most [`MOST_WRONGLY_FLAGGED`] of the time while they are believed right;
+//! of equals those with the fewest false flags. Thresholds are chosen on other trials than they are judged on: on those that are
+//! named, else by cross-fitting. Then every second trial is judged with the thresholds of the others, and the counts are added.
 
 use serde::Serialize;
 
@@ -33,6 +34,18 @@ pub struct Thresholds {
     pub recipes: f64,
 }
 
+/// The trials on which thresholds were chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ThresholdSource {
+    /// Other recordings, which are not judged.
+    OtherRecordings,
+    /// Every half of the trials is judged with the thresholds of the other half.
+    OtherHalf,
+    /// The one trial that is judged, since there is no other: the rates are too good.
+    SameTrial,
+}
+
 /// Detections and false alarms of flags.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Flags {
@@ -44,9 +57,14 @@ pub struct Flags {
     pub false_flags_per_20_actions: Option<f64>,
     /// Share of (press, aspect) pairs with a right belief that were flagged.
     pub wrongly_flagged: Option<f64>,
-    /// The thresholds at which all this holds.
+    /// The thresholds; with [`ThresholdSource::OtherHalf`] those that all trials together would give.
     pub thresholds: Option<Thresholds>,
+    /// Where the thresholds were chosen.
+    pub thresholds_from: Option<ThresholdSource>,
 }
+
+/// Aspects of locations and those of recipes, each with a threshold of its own.
+pub type AspectGroups = [Vec<usize>; 2];
 
 /// A period of false belief about an aspect, as a range of presses.
 struct Episode {
@@ -66,39 +84,102 @@ struct Outcome {
     right: usize,
 }
 
+/// Counts of flags over trials.
+#[derive(Clone, Copy, Debug, Default)]
+struct FlagCounts {
+    presses: usize,
+    episodes: usize,
+    caught: usize,
+    false_flags: usize,
+    wrongly: usize,
+    right: usize,
+}
+
 impl Flags {
-    /// Evaluates flags on trials. `groups` holds the aspects of locations and those of recipes.
-    pub fn from_trials(trials: &[TrialView], groups: &[Vec<usize>; 2], thresholds: Option<Thresholds>) -> Flags {
-        let presses: Vec<&PressView> = trials.iter().flatten().collect();
-        if presses.is_empty() || presses.iter().any(|press| press.held.is_none() || press.estimate.is_none()) {
+    /// Evaluates flags on trials, with these thresholds of other recordings, or with thresholds that are chosen by cross-fitting.
+    pub fn from_trials(trials: &[TrialView], groups: &AspectGroups, thresholds: Option<Thresholds>) -> Flags {
+        let all: Vec<&TrialView> = trials.iter().collect();
+        if !is_known(&all) {
             return Flags::default();
         }
-        let given = thresholds.map(|given| [given.locations, given.recipes]);
-        let wrongly = given.map_or_else(|| allowed_wrongly(trials, groups), |_| usize::MAX);
-        let (mut episodes, mut outcomes) = (Vec::new(), Vec::new());
-        for (index, group) in groups.iter().enumerate() {
-            let of_group: Vec<Episode> = group.iter().flat_map(|&aspect| harmful(trials, aspect)).collect();
-            let tried = given.map_or_else(|| candidates(trials, group, wrongly), |given| vec![given[index]]);
-            outcomes.push(
-                tried.iter().map(|&one| Outcome::from_threshold(trials, group, &of_group, one)).collect::<Vec<_>>(),
-            );
-            episodes.push(of_group.len());
-        }
-        let false_flags = (MOST_FALSE_FLAGS * presses.len() as f64 / PER_PRESSES) as usize;
-        let allowed = [given.map_or(false_flags, |_| usize::MAX), wrongly];
-        let best = best_pair(&outcomes[0], &outcomes[1], allowed);
-        let Some([location, recipe]) = best else { return Flags::default() };
-        let total = episodes.iter().sum::<usize>();
-        let (wrongly, right) = (location.wrongly + recipe.wrongly, location.right + recipe.right);
-        let false_flags = (location.false_flags + recipe.false_flags) as f64;
+        let half = |parity: usize| -> Vec<&TrialView> { trials.iter().skip(parity).step_by(2).collect() };
+        let halves = [half(0), half(1)];
+        let (counts, from) = match thresholds {
+            Some(given) => (FlagCounts::from_trials(&all, groups, given), ThresholdSource::OtherRecordings),
+            None if halves.iter().all(|half| is_known(half)) => {
+                let counts = [0, 1].map(|one| {
+                    FlagCounts::from_trials(&halves[one], groups, best_thresholds(&halves[1 - one], groups))
+                });
+                (counts[0].plus(counts[1]), ThresholdSource::OtherHalf)
+            }
+            None => (FlagCounts::from_trials(&all, groups, best_thresholds(&all, groups)), ThresholdSource::SameTrial),
+        };
+        let share = |part: usize, all: usize| (all > 0).then(|| part as f64 / all as f64);
         Flags {
-            episodes: Some(total as u64),
-            flagged_before_third_error: (total > 0).then(|| (location.caught + recipe.caught) as f64 / total as f64),
-            false_flags_per_20_actions: Some(PER_PRESSES * false_flags / presses.len() as f64),
-            wrongly_flagged: (right > 0).then(|| wrongly as f64 / right as f64),
-            thresholds: Some(Thresholds { locations: location.threshold, recipes: recipe.threshold }),
+            episodes: Some(counts.episodes as u64),
+            flagged_before_third_error: share(counts.caught, counts.episodes),
+            false_flags_per_20_actions: share(counts.false_flags, counts.presses).map(|rate| PER_PRESSES * rate),
+            wrongly_flagged: share(counts.wrongly, counts.right),
+            thresholds: Some(thresholds.unwrap_or_else(|| best_thresholds(&all, groups))),
+            thresholds_from: Some(from),
         }
     }
+}
+
+impl FlagCounts {
+    fn from_trials(trials: &[&TrialView], groups: &AspectGroups, thresholds: Thresholds) -> FlagCounts {
+        let presses = trials.iter().map(|trial| trial.len()).sum();
+        let mut counts = FlagCounts { presses, ..FlagCounts::default() };
+        for (group, threshold) in groups.iter().zip([thresholds.locations, thresholds.recipes]) {
+            let episodes: Vec<Episode> = group.iter().flat_map(|&aspect| harmful(trials, aspect)).collect();
+            let Outcome { caught, false_flags, wrongly, right, .. } =
+                Outcome::from_threshold(trials, group, &episodes, threshold);
+            let episodes = episodes.len();
+            counts = counts.plus(FlagCounts { presses: 0, episodes, caught, false_flags, wrongly, right });
+        }
+        counts
+    }
+
+    fn plus(self, other: FlagCounts) -> FlagCounts {
+        FlagCounts {
+            presses: self.presses + other.presses,
+            episodes: self.episodes + other.episodes,
+            caught: self.caught + other.caught,
+            false_flags: self.false_flags + other.false_flags,
+            wrongly: self.wrongly + other.wrongly,
+            right: self.right + other.right,
+        }
+    }
+}
+
+/// Whether belief and estimate are known before every press; false without presses.
+fn is_known(trials: &[&TrialView]) -> bool {
+    let mut presses = trials.iter().flat_map(|trial| trial.iter()).peekable();
+    presses.peek().is_some() && presses.all(|press| press.held.is_some() && press.estimate.is_some())
+}
+
+/// The thresholds that these trials give when none are known; `None` if beliefs or estimates are not known.
+pub fn chosen_thresholds(trials: &[TrialView], groups: &AspectGroups) -> Option<Thresholds> {
+    let all: Vec<&TrialView> = trials.iter().collect();
+    is_known(&all).then(|| best_thresholds(&all, groups))
+}
+
+/// The thresholds that catch most episodes within the allowed numbers.
+fn best_thresholds(trials: &[&TrialView], groups: &AspectGroups) -> Thresholds {
+    let presses: usize = trials.iter().map(|trial| trial.len()).sum();
+    let wrongly = allowed_wrongly(trials, groups);
+    let outcomes = groups.each_ref().map(|group| -> Vec<Outcome> {
+        let episodes: Vec<Episode> = group.iter().flat_map(|&aspect| harmful(trials, aspect)).collect();
+        let tried = candidates(trials, group, wrongly).into_iter();
+        tried.map(|one| Outcome::from_threshold(trials, group, &episodes, one)).collect()
+    });
+    let false_flags = (MOST_FALSE_FLAGS * presses as f64 / PER_PRESSES) as usize;
+    let best = best_pair(&outcomes[0], &outcomes[1], [false_flags, wrongly]);
+    // Without a pair within the allowed numbers nothing is flagged.
+    best.map_or(Thresholds { locations: f64::INFINITY, recipes: f64::INFINITY }, |[location, recipe]| Thresholds {
+        locations: location.threshold,
+        recipes: recipe.threshold,
+    })
 }
 
 /// The pair of outcomes with most detections within the allowed numbers of false flags and of wrongly flagged pairs.
@@ -112,13 +193,13 @@ fn best_pair(locations: &[Outcome], recipes: &[Outcome], allowed: [usize; 2]) ->
 }
 
 /// Allowed number of (press, aspect) pairs with a right belief that are flagged.
-fn allowed_wrongly(trials: &[TrialView], groups: &[Vec<usize>; 2]) -> usize {
+fn allowed_wrongly(trials: &[&TrialView], groups: &AspectGroups) -> usize {
     let right = groups.iter().map(|group| while_right(trials, group).count()).sum::<usize>();
     (MOST_WRONGLY_FLAGGED * right as f64) as usize
 }
 
 /// Candidate thresholds, the strictest first: those that flag at most `allowed` pairs with a right belief.
-fn candidates(trials: &[TrialView], group: &[usize], allowed: usize) -> Vec<f64> {
+fn candidates(trials: &[&TrialView], group: &[usize], allowed: usize) -> Vec<f64> {
     let mut right: Vec<f64> = while_right(trials, group).collect();
     right.sort_by(|a, b| b.total_cmp(a));
     let allowed = allowed.min(right.len().saturating_sub(1));
@@ -136,15 +217,15 @@ fn p_wrong(press: &PressView, aspect: usize) -> f64 {
 }
 
 /// Estimated probabilities of a false belief for all (press, aspect) pairs with a right belief.
-fn while_right<'a>(trials: &'a [TrialView], group: &'a [usize]) -> impl Iterator<Item = f64> + 'a {
+fn while_right<'a>(trials: &'a [&'a TrialView], group: &'a [usize]) -> impl Iterator<Item = f64> + 'a {
     let is_right = |press: &PressView, aspect: usize| press.is_wrong(aspect) == Some(false);
-    trials.iter().flatten().flat_map(move |press| {
+    trials.iter().flat_map(|trial| trial.iter()).flat_map(move |press| {
         group.iter().filter(move |&&aspect| is_right(press, aspect)).map(move |&aspect| p_wrong(press, aspect))
     })
 }
 
 /// The episodes of an aspect that count.
-fn harmful(trials: &[TrialView], aspect: usize) -> Vec<Episode> {
+fn harmful(trials: &[&TrialView], aspect: usize) -> Vec<Episode> {
     let mut episodes = Vec::new();
     for (trial, presses) in trials.iter().enumerate() {
         let mut at = 0;
@@ -167,7 +248,7 @@ fn harmful(trials: &[TrialView], aspect: usize) -> Vec<Episode> {
 }
 
 impl Outcome {
-    fn from_threshold(trials: &[TrialView], group: &[usize], episodes: &[Episode], threshold: f64) -> Outcome {
+    fn from_threshold(trials: &[&TrialView], group: &[usize], episodes: &[Episode], threshold: f64) -> Outcome {
         let is_flagged = |press: &PressView, aspect: usize| p_wrong(press, aspect) >= threshold;
         let is_caught = |episode: &&Episode| {
             trials[episode.trial][episode.in_time.clone()].iter().any(|press| is_flagged(press, episode.aspect))
@@ -177,7 +258,7 @@ impl Outcome {
         for presses in trials {
             for &aspect in group {
                 let mut before = false;
-                for press in presses {
+                for press in presses.iter() {
                     let flagged = is_flagged(press, aspect);
                     if press.is_wrong(aspect) == Some(false) {
                         outcome.right += 1;

@@ -3,6 +3,7 @@
 use super::attribution::Cause;
 use super::errors::PressVerdict;
 use crate::base::time::SessionTime;
+use crate::kitchen::State;
 
 /// A judged press of the human. The nth judged press is the nth press of the human on the session's timeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,6 +12,8 @@ pub struct JudgedPress {
     pub seq: u64,
     /// Session time of the press.
     pub time: SessionTime,
+    /// State before the press.
+    pub before: State,
     /// Its regret, and whether it was an error.
     pub verdict: PressVerdict,
     /// Whether the human's belief before the press is known.

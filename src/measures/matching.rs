@@ -2,10 +2,11 @@
 //! and kappa.
 //!
 //! Two communications can match if at most a window of human presses lies between them and their contents agree: the same
-//! signal and target (strict), the same kind of signal (lenient), or any content (timing only). Among all one-to-one matchings,
-//! one with the most pairs is used, and among those one with the fewest presses between the pairs.
+//! signal and target, the same kind of signal, or any content. Among all one-to-one matchings, one with the most pairs is used, and
+//! among those one with the fewest presses between the pairs. The paper's 74 % is the recall of "a similar decision" in "nearby time
+//! steps", which it does not define further; so all three levels stand side by side, each with its chance level.
 //!
-//! Kappa (Cohen 1960) is over human presses and {none, each signal and target}. A strictly matched pair counts as agreement
+//! Kappa (Cohen 1960) is over human presses and {none, each signal and target}. A pair with the same signal and target counts as agreement
 //! at the press of its first lane, as when events are aligned within a tolerance (Quera, Bakeman and Gnisci 2007); all else
 //! counts at its own press. The chance level is the mean over all circular shifts of the second lane by more than the window.
 
@@ -55,20 +56,23 @@ pub struct CommunicationEvent {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatchCriterion {
     /// Signal and target must agree.
-    Strict,
+    Signal,
     /// The kind of signal must agree.
-    Lenient,
+    Kind,
     /// Any content matches.
-    Timing,
+    Any,
 }
 
 impl MatchCriterion {
+    /// All levels, the strictest first.
+    pub const ALL: [MatchCriterion; 3] = [MatchCriterion::Signal, MatchCriterion::Kind, MatchCriterion::Any];
+
     /// Equivalence class of a content under this criterion.
     fn class(self, content: CommunicationTarget) -> Option<CommunicationTarget> {
         match self {
-            MatchCriterion::Strict => Some(content),
-            MatchCriterion::Lenient => Some(CommunicationTarget { target: None, ..content }),
-            MatchCriterion::Timing => None,
+            MatchCriterion::Signal => Some(content),
+            MatchCriterion::Kind => Some(CommunicationTarget { target: None, ..content }),
+            MatchCriterion::Any => None,
         }
     }
 }
@@ -131,10 +135,12 @@ fn aligned(
 pub struct MatchCounts {
     of: u64,
     with: u64,
-    /// Number of pairs: strict, lenient, timing only.
+    /// Number of pairs at each level of [`MatchCriterion::ALL`].
     pairs: [u64; 3],
-    /// Mean number of strict pairs over circular shifts, and number of communications of the first lane in those trials.
-    chance: (f64, u64),
+    /// Mean number of pairs over circular shifts, at each level.
+    chance: [f64; 3],
+    /// Number of communications of the first lane in trials that are long enough for shifts.
+    shifted_of: u64,
     /// Time from the second lane's communication to the first's, in seconds, by pair.
     leads_s: Vec<f64>,
     /// Contingency table of contents per press, first lane by second lane.
@@ -146,16 +152,15 @@ impl MatchCounts {
     pub fn add(&mut self, of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, window: u32) {
         self.of += of.len() as u64;
         self.with += with.len() as u64;
-        let strict = matched(of, with, window, MatchCriterion::Strict);
-        let number = |likeness| matched(of, with, window, likeness).len() as u64;
-        self.pairs[0] += strict.len() as u64;
-        self.pairs[1] += number(MatchCriterion::Lenient);
-        self.pairs[2] += number(MatchCriterion::Timing);
+        let strict = matched(of, with, window, MatchCriterion::Signal);
+        for (pairs, likeness) in self.pairs.iter_mut().zip(MatchCriterion::ALL) {
+            *pairs += matched(of, with, window, likeness).len() as u64;
+        }
         let lead = |&(a, b): &(usize, usize)| of[a].clock.as_secs_f64() - with[b].clock.as_secs_f64();
         self.leads_s.extend(strict.iter().map(lead));
         if let Some(chance) = chance(of, with, presses, window) {
-            self.chance.0 += chance;
-            self.chance.1 += of.len() as u64;
+            self.chance.iter_mut().zip(chance).for_each(|(sum, one)| *sum += one);
+            self.shifted_of += of.len() as u64;
         }
         for (unit, number) in units(of, with, &strict, presses) {
             *self.units.entry(unit).or_default() += number;
@@ -165,21 +170,25 @@ impl MatchCounts {
     /// The similarity over all added trials.
     pub fn similarity(&self) -> Similarity {
         let share = |part: f64, all: u64| (all > 0).then(|| part / all as f64);
-        let level = |pairs: u64| MatchShares {
-            recall: share(pairs as f64, self.of),
-            precision: share(pairs as f64, self.with),
-            f1: share(2.0 * pairs as f64, self.of + self.with),
+        let level = |index: usize| {
+            let pairs = self.pairs[index] as f64;
+            MatchShares {
+                recall: share(pairs, self.of),
+                chance_recall: share(self.chance[index], self.shifted_of),
+                precision: share(pairs, self.with),
+                f1: share(2.0 * pairs, self.of + self.with),
+            }
         };
         Similarity {
-            strict: level(self.pairs[0]),
+            headline: level(0),
             kappa: kappa(&self.units),
             median_lead_s: median(self.leads_s.clone()),
-            chance_recall: share(self.chance.0, self.chance.1),
             of_n: self.of,
             with_n: self.with,
             matched: self.pairs[0],
-            lenient: level(self.pairs[1]),
-            timing: level(self.pairs[2]),
+            signal: level(0),
+            kind: level(1),
+            any: level(2),
         }
     }
 }
@@ -189,6 +198,8 @@ impl MatchCounts {
 pub struct MatchShares {
     /// Share of the first lane's communications that are matched.
     pub recall: Option<f64>,
+    /// Chance level of recall: mean over circular shifts of the second lane.
+    pub chance_recall: Option<f64>,
     /// Share of the second lane's communications that are matched.
     pub precision: Option<f64>,
     /// The harmonic mean of recall and precision.
@@ -198,29 +209,29 @@ pub struct MatchShares {
 /// Similarity of two lanes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Similarity {
-    /// Matches with the same signal and target.
+    /// The level of the same signal and target, whose shares also stand beside the figures of both lanes.
     #[serde(flatten)]
-    pub strict: MatchShares,
+    pub headline: MatchShares,
     /// Cohen's kappa per human press; null where agreement by chance is 1.
     pub kappa: Option<f64>,
     /// Median lead of the second lane over the first, in seconds; negative if it is later.
     pub median_lead_s: Option<f64>,
-    /// Chance level of recall: mean over circular shifts of the second lane.
-    pub chance_recall: Option<f64>,
     /// Number of communications that the first lane sent or recommended.
     pub of_n: u64,
     /// Number of communications that the second lane sent or recommended.
     pub with_n: u64,
-    /// Number of strict pairs.
+    /// Number of pairs with the same signal and target.
     pub matched: u64,
+    /// Matches with the same signal and target.
+    pub signal: MatchShares,
     /// Matches with the same kind of signal.
-    pub lenient: MatchShares,
+    pub kind: MatchShares,
     /// Matches with any content.
-    pub timing: MatchShares,
+    pub any: MatchShares,
 }
 
-/// Mean number of strict pairs over circular shifts of the second lane by more than the window; `None` if the trial is too short.
-fn chance(of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, window: u32) -> Option<f64> {
+/// Mean number of pairs at each level over circular shifts of the second lane by more than the window; `None` if the trial is too short.
+fn chance(of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, window: u32) -> Option<[f64; 3]> {
     // Positions before, between and after the presses.
     let places = presses + 1;
     let shifts = window + 1..places.saturating_sub(window);
@@ -228,10 +239,14 @@ fn chance(of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, 
         let shifted = |said: &CommunicationEvent| CommunicationEvent { press: (said.press + shift) % places, ..*said };
         let mut shifted: Vec<CommunicationEvent> = with.iter().map(shifted).collect();
         shifted.sort_by_key(|said| said.press);
-        matched(of, &shifted, window, MatchCriterion::Strict).len()
+        MatchCriterion::ALL.map(|likeness| matched(of, &shifted, window, likeness).len() as u64)
     };
-    let (count, sum) = shifts.fold((0u32, 0), |(count, sum), shift| (count + 1, sum + pairs(shift)));
-    (count > 0).then(|| sum as f64 / f64::from(count))
+    let (mut count, mut sums) = (0u32, [0u64; 3]);
+    for shift in shifts {
+        count += 1;
+        sums.iter_mut().zip(pairs(shift)).for_each(|(sum, pairs)| *sum += pairs);
+    }
+    (count > 0).then(|| sums.map(|sum| sum as f64 / f64::from(count)))
 }
 
 type Units = BTreeMap<(Option<CommunicationTarget>, Option<CommunicationTarget>), u64>;

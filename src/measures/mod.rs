@@ -2,7 +2,8 @@
 //!
 //! The files from the ground up:
 //!
-//! - A press: [`errors`], [`attribution`] (why), `judged_press` (both); [`sequences`] of errors and episodes of false belief.
+//! - A press: [`errors`], [`attribution`] (why), `judged_press` (both); [`sequences`] of errors and episodes of false belief,
+//!   `cause_kinds` (orders, recipes, places).
 //! - An estimate of beliefs: [`detection`], `press_view` (what was known before a press), [`flags`],
 //!   [`belief_detection`] (all of these).
 //! - Communication: `median`, [`matching`] of two lanes, [`wizard_performance`]. [`cause_codes`] by people has its
@@ -11,6 +12,7 @@
 pub mod attribution;
 pub mod belief_detection;
 pub mod cause_codes;
+pub mod cause_kinds;
 pub mod detection;
 pub mod errors;
 pub mod flags;

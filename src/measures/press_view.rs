@@ -1,6 +1,7 @@
 //! Belief and estimate directly before a press, the unit of the belief check.
 
 use super::sequences::FALSE_BELOW;
+use crate::base::incomplete_beta::regularized_incomplete_beta;
 use crate::kitchen::{AspectId, ButtonId, State};
 use crate::mind::recorded_estimate::EstimateWitness;
 
@@ -24,9 +25,11 @@ pub struct PressView {
 /// An estimate before a press.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimateView {
-    /// For each aspect the expected share of the belief that is not on the truth. People hold point-like beliefs, so this
-    /// is also the probability that the participant's own P(truth) is below 0.5.
+    /// For each aspect the expected share of the belief that is not on the truth: the score of detection and flags.
     pub p_wrong: Vec<f64>,
+    /// For each aspect the probability that the participant's own P(truth) is below [`FALSE_BELOW`], by the marginal of the Dirichlet:
+    /// I_.5(alpha_truth, A - alpha_truth), with A the sum of the alphas. Calibration judges this prediction.
+    pub p_false: Vec<f64>,
     /// The log of the probability of the press, given that one is made, in nats.
     pub log_p: f64,
 }
@@ -35,7 +38,11 @@ impl EstimateView {
     /// The view of a recorded estimate.
     pub fn from_witness(witness: &EstimateWitness) -> EstimateView {
         let p_wrong = witness.aspects.iter().map(|aspect| 1.0 - aspect.p_truth);
-        EstimateView { p_wrong: p_wrong.collect(), log_p: witness.log_p }
+        let p_false = witness.aspects.iter().map(|aspect| {
+            let [of_truth, of_others] = [aspect.p_truth, 1.0 - aspect.p_truth].map(|mean| mean * aspect.precision);
+            regularized_incomplete_beta(FALSE_BELOW, of_truth, of_others)
+        });
+        EstimateView { p_wrong: p_wrong.collect(), p_false: p_false.collect(), log_p: witness.log_p }
     }
 }
 

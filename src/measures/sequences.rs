@@ -1,16 +1,18 @@
 //! Error sequences and false belief episodes.
 //!
-//! An error sequence is made of belief related errors at most 3 correct presses apart, whatever they are about; slips and
-//! races between them are no correct presses. Its target is the most frequent one, its length the number of errors, its
-//! recovery time goes from the first error to the first correct press after the last. A false belief episode lasts from
-//! the moment an aspect became false (P(truth) < 0.5) to its correction, if it caused at least one error.
+//! Errors are related if they are about the same false belief: one location, or one dish, whose order and recipe are one. An
+//! error sequence is made of related errors at most 3 correct presses apart. Errors about something else, slips and races in
+//! between are no correct presses: they neither end nor lengthen it. Sequences whatever the aspect group all belief related
+//! errors; the target of such a sequence is the most frequent one. The length is the number of errors; the recovery time goes
+//! from the first error to the first correct press after the last. A false belief episode lasts from the moment an aspect became
+//! false (P(truth) < 0.5) to its correction, if it caused at least one error.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 use super::attribution::{Cause, Target};
 use super::judged_press::JudgedPress;
 use crate::base::time::SessionTime;
-use crate::kitchen::{AspectId, Kitchen, State};
+use crate::kitchen::{AspectId, DishId, Kitchen, LocationId, State};
 use crate::mind::belief::Belief;
 
 /// Largest number of correct presses between two errors of a sequence.
@@ -23,36 +25,54 @@ pub const FALSE_BELOW: f64 = 0.5;
 pub struct Sequence {
     /// The most frequent target of its errors; of several, the target of the earliest error.
     pub target: Target,
-    /// The number of errors.
-    pub length: u32,
+    /// Its errors, as indices of the human's presses.
+    pub errors: Vec<usize>,
     /// Session time of the first error.
     pub began: SessionTime,
     /// Time of the first correct press after the last error; `None` if the trial ended before.
     pub recovered: Option<SessionTime>,
 }
 
-/// The error sequences of a trial, regardless of their targets.
-pub fn sequences(presses: &[JudgedPress]) -> Vec<Sequence> {
-    grouped(presses, |_| true)
+impl Sequence {
+    /// The number of errors.
+    pub fn length(&self) -> u32 {
+        self.errors.len() as u32
+    }
 }
 
-/// The error sequences of a trial by target, in order of their first errors: the errors of one target are grouped as if there
-/// were no others.
-pub fn sequences_by_target(presses: &[JudgedPress]) -> Vec<Sequence> {
-    let targets: BTreeMap<Target, ()> = presses.iter().filter_map(|press| Some((target_of(press)?, ()))).collect();
-    let mut all: Vec<Sequence> = targets.into_keys().flat_map(|one| grouped(presses, |other| other == one)).collect();
-    all.sort_by_key(|sequence| sequence.began);
+/// What a false belief is about: related errors have the same subject. An error that two false beliefs explain together belongs to
+/// the first of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ErrorSubject {
+    /// The order of a dish or its recipe.
+    Dish(DishId),
+    /// A location, or an order in which no dish is ordered.
+    Place(LocationId),
+}
+
+impl Target {
+    /// The subject of a false belief about this target.
+    pub fn subject(self) -> ErrorSubject {
+        match self {
+            Target::Order(_, Some(dish)) | Target::Recipe(dish) => ErrorSubject::Dish(dish),
+            Target::Order(location, None) | Target::Place(location) => ErrorSubject::Place(location),
+        }
+    }
+}
+
+/// The sequences of related errors of a trial, in order of their first errors.
+pub fn sequences(presses: &[JudgedPress]) -> Vec<Sequence> {
+    let subjects: BTreeSet<ErrorSubject> =
+        presses.iter().filter_map(|press| Some(target_of(press)?.subject())).collect();
+    let of_subject = |subject: ErrorSubject| grouped(presses, move |target| target.subject() == subject);
+    let mut all: Vec<Sequence> = subjects.into_iter().flat_map(of_subject).collect();
+    all.sort_by_key(|sequence| sequence.errors[0]);
     all
 }
 
-/// The error sequences regardless of targets, each with its errors as indices of presses.
-pub fn sequence_errors(presses: &[JudgedPress]) -> Vec<(Sequence, Vec<usize>)> {
-    let mut errors = presses.iter().enumerate().filter(|(_, press)| target_of(press).is_some()).map(|(index, _)| index);
-    let of_one = |sequence: Sequence| {
-        let own: Vec<usize> = errors.by_ref().take(sequence.length as usize).collect();
-        (sequence, own)
-    };
-    sequences(presses).into_iter().map(of_one).collect()
+/// The error sequences of a trial, whatever aspect their errors are about.
+pub fn sequences_any_aspect(presses: &[JudgedPress]) -> Vec<Sequence> {
+    grouped(presses, |_| true)
 }
 
 /// Target of a belief related error.
@@ -65,34 +85,35 @@ fn target_of(press: &JudgedPress) -> Option<Target> {
 
 fn grouped(presses: &[JudgedPress], counts: impl Fn(Target) -> bool) -> Vec<Sequence> {
     let mut done = Vec::new();
-    let mut open: Vec<(SessionTime, Target)> = Vec::new();
+    let mut open: Vec<(usize, Target)> = Vec::new();
     let (mut apart, mut recovered) = (0, None);
-    for press in presses {
+    for (index, press) in presses.iter().enumerate() {
         if let Some(target) = target_of(press).filter(|&target| counts(target)) {
             if apart > MAX_APART {
-                done.extend(closed(&open, recovered));
+                done.extend(closed(presses, &open, recovered));
                 open.clear();
             }
-            open.push((press.time, target));
+            open.push((index, target));
             (apart, recovered) = (0, None);
         } else if !press.verdict.error && !press.verdict.race {
             apart += 1;
             recovered = recovered.or(Some(press.time));
         }
     }
-    done.extend(closed(&open, recovered));
+    done.extend(closed(presses, &open, recovered));
     done
 }
 
-fn closed(errors: &[(SessionTime, Target)], recovered: Option<SessionTime>) -> Option<Sequence> {
-    let (began, mut target) = *errors.first()?;
+fn closed(presses: &[JudgedPress], errors: &[(usize, Target)], recovered: Option<SessionTime>) -> Option<Sequence> {
+    let (first, mut target) = *errors.first()?;
     let frequency = |one: Target| errors.iter().filter(|(_, other)| *other == one).count();
     for &(_, other) in errors {
         if frequency(other) > frequency(target) {
             target = other;
         }
     }
-    Some(Sequence { target, length: errors.len() as u32, began, recovered })
+    let errors = errors.iter().map(|(index, _)| *index).collect();
+    Some(Sequence { target, errors, began: presses[first].time, recovered })
 }
 
 /// A false belief episode.

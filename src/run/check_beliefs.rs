@@ -6,21 +6,28 @@ use std::sync::Arc;
 use super::parallel;
 use super::replay::{Replay, SameKitchen, each_once};
 use crate::analysis::belief_check::{BeliefCheck, PressViews};
-use crate::edge::file_error::FileResult;
+use crate::edge::file_error::{FileError, FileResult};
 use crate::kitchen::Kitchen;
-use crate::measures::belief_detection::TrialView;
-use crate::measures::flags::Thresholds;
+use crate::measures::belief_detection::{TrialView, aspect_groups};
+use crate::measures::flags::chosen_thresholds;
 
-/// Checks the pooled recordings of one kitchen. `done` is called after each recording.
+/// Checks the pooled recordings of one kitchen. The thresholds of flags are chosen on the recordings `choose_on`, which are not
+/// checked, or by cross-fitting if there are none. `done` is called after each recording.
 ///
 /// # Errors
-/// A recording that cannot be read or applied, or one of another kitchen.
-pub fn check(
-    recordings: &[PathBuf],
-    thresholds: Option<Thresholds>,
-    done: impl Fn() + Sync,
-) -> FileResult<BeliefCheck> {
-    let BeliefCheckTrials { kitchen, trials } = views(recordings, done)?;
+/// A recording that cannot be read or applied, or one of another kitchen; a recording that is both checked and chosen on; recordings
+/// to choose on whose beliefs are not known.
+pub fn check(recordings: &[PathBuf], choose_on: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheck> {
+    let all: Vec<PathBuf> = recordings.iter().chain(choose_on).cloned().collect();
+    let BeliefCheckTrials { kitchen, mut trials } = views(&all, done)?;
+    let other = trials.split_off(recordings.len());
+    let thresholds = match choose_on.first() {
+        None => None,
+        Some(first) => Some(chosen_thresholds(&other, &aspect_groups(&kitchen)).ok_or_else(|| {
+            let found = "recordings to choose thresholds on whose participants' beliefs are not known".to_string();
+            FileError::from_finding(first, found, "recordings of simulated participants".to_string())
+        })?),
+    };
     Ok(BeliefCheck::from_trials(&kitchen, &trials, thresholds))
 }
 

@@ -151,6 +151,16 @@ impl Engine {
         InputResult { events: std::mem::take(&mut self.out), refused: taken.err() }
     }
 
+    /// The session with everything that is derived from it.
+    pub fn follower(&self) -> &Follower {
+        &self.follower
+    }
+
+    /// The same engine without the scripted wizard, who sends no further signals.
+    pub fn without_wizard(self) -> Engine {
+        Engine { wizard: None, ..self }
+    }
+
     /// The follower of the session, after its end.
     pub fn into_follower(self) -> Follower {
         self.follower

@@ -8,6 +8,25 @@ use crate::session::{Event, Phase, Stamped};
 /// Delay after which the run resumes an arm that stopped by itself, in seconds, in place of a wizard.
 const LOOKS_S: f64 = 3.0;
 
+/// Takes the place of a wizard beside the robot: resumes an arm that stopped by itself.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Attendant {
+    stopped: Option<SessionTime>,
+}
+
+impl Attendant {
+    /// Raises the next internal event of a running session, and resumes the arm if it has been stopped for a while.
+    pub fn step(&mut self, engine: &mut Engine) -> Vec<Stamped> {
+        let now = engine.next_due().unwrap_or(engine.session().time);
+        let mut events = engine.fire();
+        self.stopped = engine.session().robot.stopped.then(|| self.stopped.unwrap_or(now));
+        if self.stopped.is_some_and(|since| now.secs_since(since) >= LOOKS_S) {
+            events.extend(engine.input(now, Event::RobotResumed).events);
+        }
+        events
+    }
+}
+
 /// Runs a whole session of one trial and passes every event to `record`.
 ///
 /// # Errors
@@ -19,7 +38,7 @@ pub fn run<E>(engine: &mut Engine, mut record: impl FnMut(&Stamped) -> Result<()
         engine.input(SessionTime::ZERO, event).events.iter().try_for_each(&mut record)?;
     }
     engine.input(SessionTime::ZERO, Event::TrialStarted).events.iter().try_for_each(&mut record)?;
-    let mut stopped: Option<SessionTime> = None;
+    let mut attendant = Attendant::default();
     // The end of the trial's time is always pending, so there is a next event until the trial ends.
     while engine.session().phase == Phase::Running {
         for question in engine.take_questions() {
@@ -28,12 +47,7 @@ pub fn run<E>(engine: &mut Engine, mut record: impl FnMut(&Stamped) -> Result<()
                 engine.input(engine.session().time, advice).events.iter().try_for_each(&mut record)?;
             }
         }
-        let now = engine.next_due().unwrap_or(engine.session().time);
-        engine.fire().iter().try_for_each(&mut record)?;
-        stopped = engine.session().robot.stopped.then(|| stopped.unwrap_or(now));
-        if stopped.is_some_and(|since| now.secs_since(since) >= LOOKS_S) {
-            engine.input(now, Event::RobotResumed).events.iter().try_for_each(&mut record)?;
-        }
+        attendant.step(engine).iter().try_for_each(&mut record)?;
     }
     let end = engine.session().time;
     engine.input(end, Event::SessionEnded).events.iter().try_for_each(&mut record)

@@ -2,8 +2,8 @@
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
-use super::colours;
-use super::entity_content::{EntityData, EntityUpdate, ScenePoint, SceneSeries};
+use super::colours::{self, Colour};
+use super::entity_content::{EntityData, EntityUpdate, ScenePoint, SceneSeries, slug};
 use crate::arm::kinematics::Arm;
 use crate::arm::link::{CollisionSolid, LinkShape};
 use crate::arm::motion::JointMotion;
@@ -42,6 +42,16 @@ const FELT: &str = "robot/felt";
 const CONTACT: &str = "robot/contact";
 const HAND: &str = "human/hand/shape";
 
+/// The joints of a UR5 from base to tool, each with the hue of its curve.
+const JOINTS: [(&str, Colour); 6] = [
+    ("base", colours::ROBOT),
+    ("shoulder", colours::HUMAN),
+    ("elbow", colours::ASSISTANT),
+    ("wrist 1", colours::WIZARD),
+    ("wrist 2", colours::SIGNAL),
+    ("wrist 3", colours::FULL),
+];
+
 /// State of the arm's entities.
 #[derive(Clone, Debug)]
 pub struct ArmScene {
@@ -75,6 +85,10 @@ impl ArmScene {
         for (index, link) in self.arm.links.iter().enumerate() {
             let colour = if index % 2 == 0 { colours::JOINT } else { colours::STEEL };
             rows.push(EntityUpdate::new(entity(&link.name), EntityData::Solids(link.solids.clone(), colour)));
+        }
+        for (name, colour) in JOINTS {
+            let series = SceneSeries { name: format!("{name} (degrees)"), colour };
+            rows.push(EntityUpdate::new(joint(name), EntityData::Line(series)));
         }
         if self.motion.is_none() {
             rows.extend(hand_shapes());
@@ -190,10 +204,17 @@ impl ArmScene {
     }
 }
 
-/// Poses of the links.
+/// Poses of the links, and the joint angles.
 fn places(arm: &Arm, joints: &JointAngles) -> Vec<EntityUpdate> {
     let links = arm.links.iter().zip(arm.forward(joints)).skip(1);
-    links.map(|(link, place)| EntityUpdate::new(entity(&link.name), EntityData::Place(place))).collect()
+    let links = links.map(|(link, place)| EntityUpdate::new(entity(&link.name), EntityData::Place(place)));
+    let angles = JOINTS.iter().zip(joints);
+    let angles = angles.map(|((name, _), angle)| EntityUpdate::new(joint(name), EntityData::Value(angle.to_degrees())));
+    links.chain(angles).collect()
+}
+
+fn joint(name: &str) -> String {
+    format!("robot/joints/{}", slug(name))
 }
 
 /// Shapes of hand and forearm as in the physics: the forearm points away from the robot and slightly up.

@@ -1,7 +1,7 @@
 //! The participant's belief: the estimate, and for simulated participants the recorded belief.
 
 use super::colours;
-use super::entity_content::{EntityData, EntityUpdate, SceneSeries, slug};
+use super::entity_content::{EntityData, EntityUpdate, MarkShape, SceneSeries, slug};
 use crate::base::time::SessionTime;
 use crate::history::wording;
 use crate::kitchen::{Aspect, AspectId, Kitchen, State};
@@ -40,6 +40,26 @@ fn held_truly(aspect: &str) -> String {
     format!("human/belief/true/{}", slug(aspect))
 }
 
+/// Marks of the estimate where it is false.
+fn estimated_wrong(aspect: &str) -> String {
+    format!("human/belief/estimated_wrong/{}", slug(aspect))
+}
+
+/// Marks of a simulated participant's belief where it is false.
+fn truly_wrong(aspect: &str) -> String {
+    format!("human/belief/truly_wrong/{}", slug(aspect))
+}
+
+/// A value of P(truth) on its quiet curve, and on its marks if the belief is false.
+fn p_truth_rows(curve: String, marks: String, p_truth: f64) -> impl Iterator<Item = EntityUpdate> {
+    let mark = (p_truth < FALSE_BELOW).then(|| EntityUpdate::new(marks, EntityData::Value(p_truth)));
+    std::iter::once(EntityUpdate::new(curve, EntityData::Value(p_truth))).chain(mark)
+}
+
+fn estimate_rows(aspect: &str, p_truth: f64) -> impl Iterator<Item = EntityUpdate> + use<> {
+    p_truth_rows(estimated(aspect), estimated_wrong(aspect), p_truth)
+}
+
 fn wrong(aspect: &str) -> String {
     format!("human/belief/wrong/{}", slug(aspect))
 }
@@ -49,9 +69,17 @@ pub fn fixed(kitchen: &Kitchen) -> Vec<EntityUpdate> {
     let mut rows = Vec::new();
     for (nth, aspect) in kitchen.aspects.iter().enumerate() {
         let colour = colours::of_aspect(AspectId(nth as u8));
-        let series = SceneSeries { name: wording::location(&aspect.name), colour };
-        rows.push(EntityUpdate::new(estimated(&aspect.name), EntityData::Line(series.clone())));
-        rows.push(EntityUpdate::new(held_truly(&aspect.name), EntityData::Line(series)));
+        let name = wording::location(&aspect.name);
+        // All curves are quiet; where a belief is false, marks in the aspect's colour stand out.
+        let quiet = EntityData::QuietLine(SceneSeries { name: name.clone(), colour: colours::QUIET });
+        rows.push(EntityUpdate::new(estimated(&aspect.name), quiet.clone()));
+        rows.push(EntityUpdate::new(held_truly(&aspect.name), quiet));
+        let marks = |who: &str, shape| EntityData::Marks(SceneSeries { name: format!("{name}, {who}"), colour }, shape);
+        let wrong = [
+            (estimated_wrong(&aspect.name), marks("wrong by the estimate", MarkShape::Circle)),
+            (truly_wrong(&aspect.name), marks("truly wrong", MarkShape::Diamond)),
+        ];
+        rows.extend(wrong.map(|(entity, marks)| EntityUpdate::new(entity, marks)));
     }
     rows
 }
@@ -79,7 +107,7 @@ impl BeliefScene {
     fn before_press(&mut self, session: &Session, witness: &EstimateWitness) -> Vec<EntityUpdate> {
         let aspects = || witness.aspects.iter();
         let mut rows: Vec<EntityUpdate> =
-            aspects().map(|told| EntityUpdate::new(estimated(&told.aspect), EntityData::Value(told.p_truth))).collect();
+            aspects().flat_map(|told| estimate_rows(&told.aspect, told.p_truth)).collect();
         let held: Vec<Held> = aspects().map(|told| Held { believes: &told.believes, p_truth: told.p_truth }).collect();
         if held.len() == session.kitchen.aspects.len() {
             rows.extend(self.in_words(session, &held));
@@ -100,10 +128,8 @@ impl BeliefScene {
                 Held { believes, p_truth: p_truth(index) }
             })
             .collect();
-        let value = |(aspect, held): (&Aspect, &Held)| {
-            EntityUpdate::new(estimated(&aspect.name), EntityData::Value(held.p_truth))
-        };
-        let mut rows: Vec<EntityUpdate> = kitchen.aspects.iter().zip(&held).map(value).collect();
+        let value = |(aspect, held): (&Aspect, &Held)| estimate_rows(&aspect.name, held.p_truth);
+        let mut rows: Vec<EntityUpdate> = kitchen.aspects.iter().zip(&held).flat_map(value).collect();
         rows.extend(self.in_words(session, &held));
         rows
     }
@@ -132,8 +158,8 @@ impl BeliefScene {
 
 /// The recorded belief of a simulated participant.
 fn truly(witness: &BeliefWitness) -> Vec<EntityUpdate> {
-    let value = |told: &AspectBelief| EntityUpdate::new(held_truly(&told.aspect), EntityData::Value(told.p_truth));
-    witness.aspects.iter().map(value).collect()
+    let rows = |told: &AspectBelief| p_truth_rows(held_truly(&told.aspect), truly_wrong(&told.aspect), told.p_truth);
+    witness.aspects.iter().flat_map(rows).collect()
 }
 
 /// Page with the false beliefs (lowest P(truth) first) and the uncertain beliefs.

@@ -48,8 +48,10 @@ pub enum EntityData {
     Value(f64),
     /// The values of a series are drawn as a line.
     Line(SceneSeries),
+    /// The values of a series are drawn as a thin line, for series of which many are drawn at once.
+    QuietLine(SceneSeries),
     /// The values of a series are drawn as marks.
-    Marks(SceneSeries),
+    Marks(SceneSeries, MarkShape),
     /// A line of the log.
     Words {
         /// How much it matters.
@@ -115,6 +117,17 @@ pub struct SceneSeries {
     pub name: String,
     /// The colour of line or marks.
     pub colour: Colour,
+}
+
+/// Shape of the marks of a series.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MarkShape {
+    /// A cross.
+    Cross,
+    /// A filled circle.
+    Circle,
+    /// A diamond.
+    Diamond,
 }
 
 /// Level of a line of the text log.

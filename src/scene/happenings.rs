@@ -2,8 +2,7 @@
 
 use super::EntityUpdate;
 use super::colours::{self, Colour};
-use super::entity_content::{EntityData, LogLevel, SceneSeries, slug};
-use crate::base::words::count;
+use super::entity_content::{EntityData, LogLevel, MarkShape, SceneSeries, slug};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, signals};
 use crate::history::wording;
@@ -42,7 +41,7 @@ pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
     let worth = format!("worth its cost ({}) above this line", assistant.price());
     rows.push(line(COST_LINE.to_string(), worth, colours::SIGNAL));
     let marks = SceneSeries { name: "errors".to_string(), colour: colours::ERROR };
-    rows.push(EntityUpdate::new(ERROR_MARKS, EntityData::Marks(marks)));
+    rows.push(EntityUpdate::new(ERROR_MARKS, EntityData::Marks(marks, MarkShape::Cross)));
     rows
 }
 
@@ -65,8 +64,8 @@ pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<&JudgedPres
             let entity = format!("{}/presses", agent.name());
             match error.filter(|_| agent == Agent::Human) {
                 Some(press) => {
-                    let lost = count(press.verdict.regret.unsigned_abs(), "press", "presses");
-                    say(&entity, LogLevel::Error, format!("{text} (error: loses {lost})"), colours::ERROR)
+                    let text = format!("{text} ({})", wording::error(&session.kitchen, press));
+                    say(&entity, LogLevel::Error, text, colours::ERROR)
                 }
                 None if effective => say(&entity, LogLevel::Info, text, colours::agent_colour(agent)),
                 None => say(&entity, LogLevel::Warning, text, colours::agent_colour(agent)),

@@ -20,7 +20,7 @@ use belief_entities::BeliefScene;
 pub use entity_content::{EntityData, EntityUpdate};
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 
 /// Updates of entities at one time.
 #[derive(Clone, Debug, PartialEq)]

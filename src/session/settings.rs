@@ -154,11 +154,15 @@ pub struct TrialSpec {
     /// Number of served orders that also ends the trial, if set.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub orders: Option<u32>,
+    /// Least time between two presses of a person, in seconds of the trial's clock; earlier presses are recorded and do not count. The
+    /// pace of simulated participants is that of their population.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pace_s: Option<f64>,
 }
 
 impl Default for TrialSpec {
     fn default() -> Self {
-        TrialSpec { condition: Condition::Wizard, presses: 304, seconds: 900.0, orders: None }
+        TrialSpec { condition: Condition::Wizard, presses: 304, seconds: 900.0, orders: None, pace_s: None }
     }
 }
 

@@ -138,8 +138,8 @@ pub fn sequence_lengths(conditions: &[StudyConditionSummary]) -> Option<Markup> 
 pub fn roc(figures: &StudySummary) -> Option<Markup> {
     let points = || figures.roc.iter().flat_map(|roc| &roc.points);
     points().next()?;
-    let x = PlotAxis::over("false positive rate, per press outside of episodes", points().map(|point| point.fpr));
-    let x = PlotAxis::between(x.label, 0.0, x.to.min(1.0));
+    let x = PlotAxis::over("useless signals per press of the human", points().map(|point| point.fpr));
+    let x = PlotAxis::between(x.label, 0.0, x.to);
     let y = PlotAxis::between("belief related errors prevented", 0.0, 1.0);
     let mut chart = SvgChart::new(420.0, 380.0, x, y);
     for roc in &figures.roc {
@@ -152,7 +152,7 @@ pub fn roc(figures: &StudySummary) -> Option<Markup> {
 }
 
 /// Upper end of the axis for signals per 100 human presses; points beyond it are not drawn.
-const MOST_SIGNALS: f64 = 25.0;
+pub const MOST_SIGNALS: f64 = 25.0;
 
 /// Chart of prevented errors against signals per 100 human presses.
 pub fn equal_signals(figures: &StudySummary) -> Option<Markup> {

@@ -19,9 +19,10 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
     ),
     (
         "Error sequence",
-        "Belief related errors at most 3 correct presses apart, whatever the aspect; its aspect is the most frequent. By \
-         single aspect they fragment; the report also states the length by single aspect. Length: number of errors. Recovery \
-         time: from the first error to the first correct press after the last.",
+        "Errors of the same false belief, at most 3 correct presses apart; an order and its dish's recipe are one false belief. \
+         Errors about something else in between neither end nor lengthen it. Grouping whatever the aspect is stated second. \
+         Length: number of errors. Recovery time: from the first error to the first correct press after the last. The paper's \
+         3.1 errors per sequence is a number of related errors.",
     ),
     (
         "False belief episode",
@@ -29,24 +30,48 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
     ),
     (
         "Similarity of wizard and assistant",
-        "One-to-one matching in time within 3 human presses; strict: same signal and target, lenient: same kind of signal. The \
-         assistant's hypothetical signals follow from its counterfactual estimate, which leaves the wizard's signal out for as \
+        "One-to-one matching in time within 3 human presses, at three levels: same signal and target, same kind of signal, any \
+         signal then. The paper's 74 % (\u{201c}a similar decision \u{2026} in nearby time steps\u{201d}) is not defined further, so all \
+         three stand side by side, each with its chance level. Trials in which the wizard saw the assistant's recommendations are not \
+         part of it and stand beside it. The assistant's hypothetical signals follow from its counterfactual estimate, which leaves the wizard's signal out for as \
          many presses. The assistant does not repeat a hypothetical signal within the window, but may repeat it later. Recall \
          is of the wizard's signals, precision of the assistant's; kappa is per human press over {none, each signal and \
-         target}; the chance level is the mean recall after circular shifts. More frequent signals of an assistant raise \
+         target}; the chance levels are mean recalls after circular shifts. More frequent signals of an assistant raise \
          recall, so precision is stated too.",
     ),
     (
-        "Errors prevented, false positives",
-        "Over unassisted trials; the unit is the human press. True positive rate: belief related errors prevented, of all; one \
-         signal that targets the aspect of an episode prevents the rest of its sequence, and replayed signals do not change b. \
-         False positive: a signal about a correctly believed aspect; the rate is the share of presses outside of episodes with \
-         at least one false positive before them. A signal about a false but harmless belief is counted separately. For DEV, a \
-         proposal of k presses counts as k signals and prevents the errors of the next k presses. Swept: cost 0.5 to 2.4, \
-         threshold 0.4 to 0.99, k 1 to 5; cost and threshold also beyond that, so that all concepts reach the compared numbers \
-         of signals. Compared at equal signals per 100 presses of the human (linear interpolation between swept points and no \
-         signals), and as partial area over the false positive rates that all concepts reach, divided by that range; intervals \
-         of 95 % by bootstrap over participants, the area over the common range of each resample.",
+        "Errors prevented, useless signals",
+        "Over unassisted trials; the unit is the human press. Useful: an episode's first signal about its target, if at least one \
+         belief related error of that target follows in the same episode. All other signals are useless: about what is believed \
+         right, about a false but harmless belief, repeated, or after the last error, inside of episodes, too. True positive rate: \
+         belief related errors prevented, of all; a signal prevents the later errors of its own aspect in the same episode, no \
+         others, and replayed signals do not change b. False positive rate: useless signals per human press. For DEV, a proposal \
+         of k presses after an error is one interruption; it spares the errors of the next k presses and is useless if none of \
+         them would have been an error, belief related or not. Swept: cost 0.5 to 2.4, threshold 0.4 to 0.99, k 1 to 5; cost and \
+         threshold also beyond that, so that all concepts reach the compared numbers of signals. Compared at equal interruptions \
+         per 100 presses of the human (linear interpolation between swept points and no signals), and as partial area over the \
+         false positive rates that all concepts reach, divided by that range; intervals of 95 % by bootstrap over participants, \
+         the area over the common range of each resample.",
+    ),
+    (
+        "Offline and live",
+        "Offline: what a concept's signals would have prevented in unassisted trials. Live: the same concept acting by itself on the \
+         same seeds, compared over the simulated trials that all arms have. A live signal is useful if a twin of the trial with the same random \
+         streams, but without it and all later signals, makes more belief related errors about its target until the end of the episode; \
+         of people nobody knows. Offline figures cannot know how a trial goes on after a \
+         signal.",
+    ),
+    (
+        "Orders",
+        "Time per order: from its appearance to its serving. Additional presses: the summed regret of both agents' presses per \
+         served order, since orders interleave. Experience: the effect of the period on press durations, from the same mixed \
+         ANOVA as the effect of assistance. Where assistance is judged, belief related errors and sequences per 100 human presses \
+         come first; lengths of sequences describe, because an episode that was prevented wholly cannot be seen.",
+    ),
+    (
+        "Causes by kind of aspect",
+        "Belief related errors about an order, a recipe, or another location. An error about an ordered dish counts for the order or \
+         for the recipe by what was believed wrong at the press; where both were, or nobody knows, it counts for neither alone.",
     ),
     (
         "Assistance effect",

@@ -2,6 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use serde::Serialize;
+use serde_json::Value;
+
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec, Visibility};
 use crate::session::{Header, Session};
 use crate::wizard::settings::{WizardKind, WizardSpec};
@@ -30,6 +33,10 @@ impl Facts {
         is("shown", format!("{} s", spec.signals.shown_s));
         is("cost", spec.assistant.cost_of_communication.to_string());
         is("tau", spec.human.decision.tau.to_string());
+        is("human model", parameters(&spec.human));
+        if spec.participant.kind == ParticipantKind::Simulated {
+            is("traits", parameters(&spec.participant.population.clone().unwrap_or_default()));
+        }
         is("gaze", gaze_source(spec.participant.gaze).to_string());
         is("participant", participant_kind(spec.participant.kind).to_string());
         if let Some(orders) = spec.trial.orders {
@@ -73,6 +80,30 @@ impl Facts {
     /// Whether a fact has a value.
     pub fn has(&self, key: &str) -> bool {
         self.found.contains_key(key)
+    }
+}
+
+/// Parameters as text, by their names in session files.
+fn parameters(of: &impl Serialize) -> String {
+    let mut all = Vec::new();
+    // Parameters are numbers, lists and tables of them, which serialise.
+    flatten("", &serde_json::to_value(of).unwrap_or_default(), &mut all);
+    all.join(", ")
+}
+
+fn flatten(name: &str, value: &Value, all: &mut Vec<String>) {
+    match value {
+        Value::Object(fields) => match (fields.get("median"), fields.get("sigma")) {
+            (Some(median), Some(sigma)) => all.push(format!("{name} {median} (spread {sigma})")),
+            _ => {
+                for (key, value) in fields {
+                    let name = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
+                    flatten(&name, value, all);
+                }
+            }
+        },
+        Value::Null => {}
+        value => all.push(format!("{name} {value}")),
     }
 }
 

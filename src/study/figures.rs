@@ -8,12 +8,14 @@ use super::acceptance::{Acceptance, ItemSummary, acceptance, items};
 use super::arm_group::{ArmGroup, by_arm};
 use super::effect::{AssistanceEffect, effect, pairs};
 use super::facts::Facts;
+use super::live_arms::{LiveArm, live_arms};
 use super::roc::{ConceptComparison, Roc, SweptTrial, compare};
 use super::statistics::{Correlation, FTest, Interval, share_interval};
 use super::tables::trials::measures;
 use super::trial_statistics::{BeliefBasis, BeliefErrors, Trial, mean, mean_length};
 use crate::measures::cause_codes::{Agreement, AgreementTable, Codes};
-use crate::measures::matching::{MatchCounts, Similarity};
+use crate::measures::cause_kinds::CauseKindCounts;
+use crate::measures::matching::{MatchCounts, Similarity, WINDOW};
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::event::EndReason;
 use crate::session::settings::{Condition, ParticipantKind};
@@ -51,14 +53,19 @@ pub struct StudySummary {
     pub effects: Vec<AssistanceEffect>,
     /// The receiver operating characteristic of each concept.
     pub roc: Vec<Roc>,
+    /// Concepts that acted by themselves on the same simulated trials; empty unless several arms share trials.
+    pub live: Vec<LiveArm>,
     /// Number of participants that the comparison of concepts rests on.
     pub roc_participants: u64,
     /// Number of their unassisted trials.
     pub roc_trials: u64,
     /// The largest false positive rate that all concepts reach.
     pub roc_common_fpr: Option<f64>,
-    /// Similarity of the wizard's signals (first lane) and the assistant's hypothetical ones; null without wizard signals.
+    /// Similarity of the wizard's signals (first lane) and the assistant's hypothetical ones, over trials in which the wizard did not
+    /// see the assistant's recommendations; null without such trials.
     pub similarity: Option<Similarity>,
+    /// The same over trials in which the wizard saw the assistant's recommendations, which are not part of `similarity`; null without.
+    pub similarity_with_advice: Option<Similarity>,
     /// Similarity of wizard and assistant in each trial.
     pub similarity_by_trial: Vec<TrialSimilarity>,
     /// How well wizards did, over all trials with a wizard.
@@ -96,16 +103,24 @@ pub struct TrialTotals {
     pub beliefs_from: Option<BeliefBasis>,
     /// Errors that are put down to a false belief.
     pub belief_related_errors: Option<u64>,
+    /// These errors by kind of aspect.
+    pub belief_related_by_kind: Option<CauseKindCounts>,
     /// Their share of all errors, 0 to 1.
     pub belief_related_share: Option<f64>,
     /// 95 % interval of that share.
     pub belief_related_interval: Option<Interval>,
-    /// Number of error sequences.
+    /// Number of sequences of related errors.
     pub sequences: Option<u64>,
-    /// Mean number of errors in a sequence.
+    /// Mean number of errors in a sequence of related errors.
     pub mean_sequence_length: Option<f64>,
-    /// Mean number of errors in a sequence of errors about one aspect alone.
-    pub mean_sequence_length_by_aspect: Option<f64>,
+    /// Sequences of related errors per 100 presses of the human.
+    pub sequences_per_100: Option<f64>,
+    /// Belief related errors per 100 presses of the human.
+    pub belief_related_per_100: Option<f64>,
+    /// Number of sequences whatever the aspect.
+    pub sequences_any_aspect: Option<u64>,
+    /// Mean number of errors in a sequence whatever the aspect.
+    pub mean_sequence_length_any_aspect: Option<f64>,
     /// Mean time from a sequence's first error to the first correct press after its last, in seconds.
     pub mean_recovery_s: Option<f64>,
     /// False belief episodes that caused at least one error.
@@ -128,8 +143,10 @@ pub struct StudyConditionSummary {
     pub totals: TrialTotals,
     /// Mean errors per trial.
     pub mean_errors: Option<f64>,
-    /// Mean over trials of the median time for an order, in seconds.
+    /// Mean over trials of the median time from an order's appearance to its serving, in seconds.
     pub mean_order_s: Option<f64>,
+    /// Mean over trials of the summed regret of both agents per served order.
+    pub mean_additional_presses_per_order: Option<f64>,
     /// Mean over trials of the median time from press to press of the human, in seconds.
     pub mean_press_s: Option<f64>,
     /// Number of error sequences with 1, 2, 3, … errors.
@@ -141,11 +158,13 @@ pub struct StudyConditionSummary {
 pub struct TrialSimilarity {
     /// The recording's folder.
     pub recording: String,
+    /// Whether the wizard saw the assistant's recommendations.
+    pub wizard_saw_advice: bool,
     /// Number of signals of the wizard.
     pub of_n: u64,
     /// Number of communications of the assistant.
     pub with_n: u64,
-    /// Number of strict pairs.
+    /// Number of pairs with the same signal and target.
     pub matched: u64,
     /// The share of the wizard's signals that have a match.
     pub recall: Option<f64>,
@@ -172,7 +191,8 @@ impl StudySummary {
         let comparison = concepts(&counting);
         let mut participants: Vec<&str> = counting.iter().map(|trial| trial.participant.as_str()).collect();
         participants.dedup();
-        let (similarity, similarity_by_trial) = similarity(&counting);
+        let blind: Vec<&Trial> = counting.iter().copied().filter(|trial| !trial.wizard_saw_advice).collect();
+        let advised: Vec<&Trial> = counting.iter().copied().filter(|trial| trial.wizard_saw_advice).collect();
         let wizards: Vec<&WizardMeasures> = counting.iter().filter_map(|trial| trial.wizard.as_ref()).collect();
         let left_out = trials.iter().filter_map(|trial| {
             let (recording, participant) = (trial.recording.clone(), trial.participant.clone());
@@ -194,12 +214,14 @@ impl StudySummary {
             pearson: effects[0].pearson,
             permutation_p: effects[0].permutation_p,
             effects,
+            live: live_arms(&counting, &comparison.concepts),
             roc: comparison.concepts,
             roc_participants: comparison.participants,
             roc_trials: comparison.trials,
             roc_common_fpr: comparison.common_fpr,
-            similarity,
-            similarity_by_trial,
+            similarity: similarity(&blind),
+            similarity_with_advice: similarity(&advised),
+            similarity_by_trial: counting.iter().filter_map(|trial| similarity_of_trial(trial)).collect(),
             wizard: (!wizards.is_empty()).then(|| WizardMeasures::sum(wizards)),
             acceptance: acceptance(&counting),
             questionnaires: items(&counting),
@@ -242,17 +264,24 @@ impl TrialTotals {
         let Some(beliefs) = beliefs.filter(|beliefs| !beliefs.is_empty()) else { return totals };
         let related = beliefs.iter().map(|one| one.errors).sum::<u64>();
         let lengths: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths.iter().copied()).collect();
-        let by_aspect: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths_by_aspect.iter().copied()).collect();
+        let any_aspect: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths_any_aspect.iter().copied()).collect();
+        let per_100 = |number: u64| (human_actions > 0).then(|| 100.0 * number as f64 / human_actions as f64);
         let interval = share_interval(related, errors, super::effect::LEVEL);
         TrialTotals {
             // The least reliable source among the trials.
             beliefs_from: beliefs.iter().map(|one| one.basis).max(),
             belief_related_errors: Some(related),
+            belief_related_by_kind: Some(
+                beliefs.iter().fold(CauseKindCounts::default(), |sum, one| sum.plus(one.causes)),
+            ),
             belief_related_share: interval.map(|interval| interval.estimate),
             belief_related_interval: interval,
             sequences: Some(lengths.len() as u64),
+            sequences_per_100: per_100(lengths.len() as u64),
+            belief_related_per_100: per_100(related),
             mean_sequence_length: mean_length(&lengths),
-            mean_sequence_length_by_aspect: mean_length(&by_aspect),
+            sequences_any_aspect: Some(any_aspect.len() as u64),
+            mean_sequence_length_any_aspect: mean_length(&any_aspect),
             mean_recovery_s: mean(beliefs.iter().flat_map(|one| one.recovery_s.iter().copied())),
             false_belief_episodes: beliefs.iter().map(|one| one.episodes).sum(),
             ..totals
@@ -272,6 +301,7 @@ fn conditions(trials: &[&Trial]) -> Vec<StudyConditionSummary> {
             totals: TrialTotals::from_trials(&trials),
             mean_errors: mean(trials.iter().map(|trial| trial.errors as f64)),
             mean_order_s: mean(trials.iter().filter_map(|trial| trial.order_s)),
+            mean_additional_presses_per_order: mean(trials.iter().filter_map(|one| one.additional_presses_per_order)),
             mean_press_s: mean(trials.iter().filter_map(|trial| trial.press_s)),
             sequence_lengths,
         })
@@ -296,25 +326,27 @@ fn concepts(trials: &[&Trial]) -> ConceptComparison {
     compare(&participants, tried.len() as u64, SEED)
 }
 
-fn similarity(trials: &[&Trial]) -> (Option<Similarity>, Vec<TrialSimilarity>) {
+/// Similarity over these trials; `None` if the wizard's signals were compared in none of them.
+fn similarity(trials: &[&Trial]) -> Option<Similarity> {
     let mut all = MatchCounts::default();
-    let mut by_trial = Vec::new();
-    for trial in trials {
-        let Some([of, with]) = &trial.lanes else { continue };
-        let mut own = MatchCounts::default();
-        for tally in [&mut all, &mut own] {
-            tally.add(of, with, trial.human_presses as u32, crate::measures::matching::WINDOW);
-        }
-        let found = own.similarity();
-        by_trial.push(TrialSimilarity {
-            recording: trial.recording.clone(),
-            of_n: found.of_n,
-            with_n: found.with_n,
-            matched: found.matched,
-            recall: found.strict.recall,
-        });
+    let compared: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.lanes.is_some()).collect();
+    compared.iter().for_each(|trial| add_lanes(&mut all, trial));
+    (!compared.is_empty()).then(|| all.similarity())
+}
+
+fn add_lanes(tally: &mut MatchCounts, trial: &Trial) {
+    if let Some([of, with]) = &trial.lanes {
+        tally.add(of, with, trial.human_presses as u32, WINDOW);
     }
-    ((!by_trial.is_empty()).then(|| all.similarity()), by_trial)
+}
+
+fn similarity_of_trial(trial: &Trial) -> Option<TrialSimilarity> {
+    trial.lanes.as_ref()?;
+    let mut own = MatchCounts::default();
+    add_lanes(&mut own, trial);
+    let Similarity { of_n, with_n, matched, signal, .. } = own.similarity();
+    let (recording, wizard_saw_advice) = (trial.recording.clone(), trial.wizard_saw_advice);
+    Some(TrialSimilarity { recording, wizard_saw_advice, of_n, with_n, matched, recall: signal.recall })
 }
 
 /// Agreement of the raters over all trials.

@@ -15,6 +15,7 @@
 //! - [`report`] builds the page, with [`charts`].
 
 pub mod acceptance;
+pub mod acting_arm;
 pub mod arm_group;
 pub mod charts;
 pub mod column;
@@ -23,6 +24,7 @@ pub mod dictionary;
 pub mod effect;
 pub mod facts;
 pub mod figures;
+pub mod live_arms;
 pub mod prevention;
 pub mod report;
 pub mod robot_tally;

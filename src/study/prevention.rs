@@ -1,35 +1,37 @@
-//! Errors that signals and proposals would have prevented in an unassisted trial.
+//! Errors that signals and proposals would have prevented in an unassisted trial, and useless signals.
 //!
-//! One signal that targets the aspect of a false belief episode prevents the rest of its error sequence; replayed signals do not
-//! change the belief. A signal about a correctly believed aspect is a false positive; a signal about a false but harmless belief is
-//! counted separately. A proposal of k presses counts as k signals and prevents the errors of the next k presses; those of the k
-//! presses that are outside of episodes are false positives.
+//! A signal is useful if it is the first about the target of a false belief episode and at least one belief related error of that
+//! target follows in the same episode. All other signals are useless: about a right belief, about a false but harmless one, repeated,
+//! or after the last error, inside of episodes as well as outside. A signal prevents the later errors of its own aspect in the same
+//! episode and no others; replayed signals do not change the belief.
+//!
+//! A proposal of k presses is one interruption with k contents. It spares the errors of the next k presses, and is useless if none of
+//! them is an error, belief related or not.
 
 use serde::Serialize;
 
 use crate::base::time::SessionTime;
 use crate::kitchen::AspectId;
 
-/// True errors, false beliefs and error sequences of a trial.
+/// True errors and false beliefs of a trial.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialTruth {
     /// The human's presses, in order.
     pub presses: Vec<PressTruth>,
     /// The times in which an aspect was believed wrong.
     pub spells: Vec<FalseBeliefTruth>,
-    /// The error sequences.
-    pub sequences: Vec<SequenceTruth>,
 }
 
 /// Truth about one human press.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PressTruth {
     /// Session time of the press.
     pub time: SessionTime,
     /// It was an error.
     pub error: bool,
-    /// Whether the press is a belief related error.
-    pub related: bool,
+    /// Aspects of the false belief behind a belief related error; empty for all other presses. An order and the recipe of its dish
+    /// are one target with two aspects.
+    pub aspects: Vec<AspectId>,
 }
 
 /// Period in which the participant held a false belief about one aspect.
@@ -45,15 +47,6 @@ pub struct FalseBeliefTruth {
     pub harmful: bool,
 }
 
-/// Sequence of belief related errors.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SequenceTruth {
-    /// Aspects of the false belief behind the sequence.
-    pub aspects: Vec<AspectId>,
-    /// Time of each error.
-    pub errors: Vec<SessionTime>,
-}
-
 /// A signal that a concept would have sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConceptSignal {
@@ -65,25 +58,40 @@ pub struct ConceptSignal {
     pub aspects: Vec<AspectId>,
 }
 
-/// Counts of prevented errors and false positives of a concept, in one or several trials.
+/// Counts of prevented errors and useless signals of a concept, in one or several trials.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct PreventionCounts {
     /// Number of human presses.
     pub presses: u64,
-    /// Number of signals, or of proposed presses.
+    /// Number of signals or proposals: interruptions.
     pub signals: u64,
+    /// Number of contents: of a signal 1, of a proposal the proposed presses.
+    pub contents: u64,
     /// Number of belief related errors.
     pub related: u64,
     /// Number of belief related errors that were prevented.
     pub prevented: u64,
+    /// Number of useless signals or proposals.
+    pub useless: u64,
     /// Number of human presses outside of false belief episodes.
     pub outside: u64,
-    /// Number of human presses outside of episodes with a false positive signal before them.
+    /// Number of human presses with a useless signal right before them.
     pub false_presses: u64,
-    /// Number of signals about a correctly believed aspect during an episode of another aspect.
+    /// Number of useless signals during an episode.
     pub false_inside: u64,
-    /// Number of signals about a false but harmless belief.
+    /// Number of signals about a false but harmless belief; they are useless, too.
     pub harmless: u64,
+}
+
+/// A concept's rates at one parameter value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PreventionRates {
+    /// False positive rate: useless signals per human press.
+    pub fpr: f64,
+    /// True positive rate: the share of the belief related errors that are prevented.
+    pub tpr: f64,
+    /// Signals or proposals per 100 human presses.
+    pub signals_per_100: f64,
 }
 
 impl PreventionCounts {
@@ -92,8 +100,10 @@ impl PreventionCounts {
         PreventionCounts {
             presses: self.presses + other.presses,
             signals: self.signals + other.signals,
+            contents: self.contents + other.contents,
             related: self.related + other.related,
             prevented: self.prevented + other.prevented,
+            useless: self.useless + other.useless,
             outside: self.outside + other.outside,
             false_presses: self.false_presses + other.false_presses,
             false_inside: self.false_inside + other.false_inside,
@@ -101,101 +111,107 @@ impl PreventionCounts {
         }
     }
 
-    /// False positive rate, true positive rate, and signals per 100 human presses; `None` if a denominator is 0.
-    pub fn point(&self) -> Option<[f64; 3]> {
-        if self.outside == 0 || self.related == 0 {
-            return None;
-        }
-        let (false_positive, true_positive) =
-            (self.false_presses as f64 / self.outside as f64, self.prevented as f64 / self.related as f64);
-        Some([false_positive, true_positive, 100.0 * self.signals as f64 / self.presses as f64])
+    /// The rates; `None` without presses or without belief related errors.
+    pub fn rates(&self) -> Option<PreventionRates> {
+        let presses = self.presses as f64;
+        (self.presses > 0 && self.related > 0).then(|| PreventionRates {
+            fpr: self.useless as f64 / presses,
+            tpr: self.prevented as f64 / self.related as f64,
+            signals_per_100: 100.0 * self.signals as f64 / presses,
+        })
+    }
+
+    /// The share of useless ones among all signals; `None` without signals.
+    pub fn useless_share(&self) -> Option<f64> {
+        (self.signals > 0).then(|| self.useless as f64 / self.signals as f64)
+    }
+}
+
+impl FalseBeliefTruth {
+    fn is_open(&self, time: SessionTime) -> bool {
+        self.began <= time && self.ended.is_none_or(|end| time < end)
+    }
+
+    /// Whether an error is one of this false belief. A press at the time of the correction was decided before it.
+    fn caused(&self, press: &PressTruth) -> bool {
+        let is_inside = self.began <= press.time && self.ended.is_none_or(|end| press.time <= end);
+        is_inside && press.aspects.contains(&self.aspect)
     }
 }
 
 impl TrialTruth {
-    fn open_at(&self, time: SessionTime) -> impl Iterator<Item = &FalseBeliefTruth> {
-        self.spells
-            .iter()
-            .filter(move |false_belief| false_belief.began <= time && false_belief.ended.is_none_or(|end| time < end))
-    }
-
     fn is_in_episode(&self, time: SessionTime) -> bool {
-        self.open_at(time).any(|false_belief| false_belief.harmful)
+        self.spells.iter().any(|false_belief| false_belief.harmful && false_belief.is_open(time))
     }
 
     fn empty_count(&self, signals: u64) -> PreventionCounts {
         PreventionCounts {
             presses: self.presses.len() as u64,
             signals,
-            related: self.presses.iter().filter(|press| press.related).count() as u64,
+            contents: signals,
+            related: self.presses.iter().filter(|press| !press.aspects.is_empty()).count() as u64,
             outside: self.presses.iter().filter(|press| !self.is_in_episode(press.time)).count() as u64,
             ..PreventionCounts::default()
         }
     }
 
-    /// Counts of a concept that sends these signals.
+    /// Counts of a concept that sends these signals, in order of time.
     pub fn count_signals(&self, sent: &[ConceptSignal]) -> PreventionCounts {
         let mut count = self.empty_count(sent.len() as u64);
-        let mut prevented: Vec<Vec<bool>> =
-            self.sequences.iter().map(|sequence| vec![false; sequence.errors.len()]).collect();
+        let mut is_prevented = vec![false; self.presses.len()];
+        let mut is_told = vec![false; self.spells.len()];
         let mut is_false = vec![false; self.presses.len()];
         for signal in sent {
-            let mut wrong = self
-                .open_at(signal.time)
-                .filter(|false_belief| signal.aspects.contains(&false_belief.aspect))
-                .peekable();
-            if wrong.peek().is_none() {
-                match self.presses.get(signal.press) {
-                    Some(press) if self.is_in_episode(press.time) => count.false_inside += 1,
-                    Some(_) => is_false[signal.press] = true,
-                    // A signal after the last press precedes no press.
-                    None => {}
+            let (mut is_useful, mut about) = (false, Vec::new());
+            for (index, false_belief) in self.spells.iter().enumerate() {
+                if !signal.aspects.contains(&false_belief.aspect) || !false_belief.is_open(signal.time) {
+                    continue;
                 }
-                continue;
-            }
-            let mut is_harmful = false;
-            for false_belief in wrong.filter(|false_belief| false_belief.harmful) {
-                is_harmful = true;
-                for (sequence, prevented) in self.sequences.iter().zip(&mut prevented) {
-                    sequence.prevent(false_belief, signal.time, prevented);
+                about.push(false_belief);
+                if std::mem::replace(&mut is_told[index], true) {
+                    continue;
+                }
+                for (press, is_prevented) in self.presses.iter().zip(&mut is_prevented) {
+                    if press.time > signal.time && false_belief.caused(press) {
+                        (is_useful, *is_prevented) = (true, true);
+                    }
                 }
             }
-            count.harmless += u64::from(!is_harmful);
+            count.harmless += u64::from(!about.is_empty() && about.iter().all(|one| !one.harmful));
+            if !is_useful {
+                self.count_useless(&mut count, signal.time);
+                // A signal after the last press precedes no press.
+                is_false.get_mut(signal.press).into_iter().for_each(|press| *press = true);
+            }
         }
-        count.prevented = prevented.iter().flatten().filter(|prevented| **prevented).count() as u64;
-        count.false_presses = is_false.iter().filter(|is_false| **is_false).count() as u64;
-        count
+        let number = |of: &[bool]| of.iter().filter(|one| **one).count() as u64;
+        PreventionCounts { prevented: number(&is_prevented), false_presses: number(&is_false), ..count }
+    }
+
+    fn count_useless(&self, count: &mut PreventionCounts, time: SessionTime) {
+        count.useless += 1;
+        count.false_inside += u64::from(self.is_in_episode(time));
     }
 
     /// Counts of a concept that proposes `k` presses after every error that no proposal prevents.
     pub fn count_proposals(&self, k: usize) -> PreventionCounts {
         let mut count = self.empty_count(0);
-        let mut spared = 0;
-        for press in &self.presses {
-            if spared > 0 {
-                spared -= 1;
-                count.prevented += u64::from(press.related);
-                count.false_presses += u64::from(!self.is_in_episode(press.time));
-            } else if press.error {
-                spared = k;
-                count.signals += k as u64;
+        let mut after = 0;
+        while let Some(press) = self.presses.get(after) {
+            after += 1;
+            if !press.error {
+                continue;
             }
+            let spared = &self.presses[after..self.presses.len().min(after + k)];
+            count.signals += 1;
+            count.contents += k as u64;
+            count.prevented += spared.iter().filter(|press| !press.aspects.is_empty()).count() as u64;
+            if !spared.iter().any(|press| press.error) {
+                self.count_useless(&mut count, press.time);
+                count.false_presses += u64::from(!spared.is_empty());
+            }
+            after += spared.len();
         }
         count
-    }
-}
-
-impl SequenceTruth {
-    /// Marks the errors that a signal about a false belief's aspect prevents: errors after the signal, if their sequence is about
-    /// the aspect and the false belief lasts into the sequence.
-    fn prevent(&self, false_belief: &FalseBeliefTruth, sent: SessionTime, prevented: &mut [bool]) {
-        let (Some(&first), Some(&last)) = (self.errors.first(), self.errors.last()) else { return };
-        let lasts = false_belief.began <= last && false_belief.ended.is_none_or(|end| end > first);
-        if !lasts || !self.aspects.contains(&false_belief.aspect) {
-            return;
-        }
-        for (&error, prevented) in self.errors.iter().zip(prevented) {
-            *prevented |= error > sent;
-        }
     }
 }

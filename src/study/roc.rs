@@ -1,14 +1,14 @@
 //! Receiver operating characteristics of communication concepts in unassisted trials, and their comparison at equal numbers of
 //! signals (paper, "Concept comparisons").
 //!
-//! The unit is the human press. True positive rate: share of belief related errors that are prevented. False positive rate: share
-//! of presses outside of episodes with at least one false positive signal before them. [`super::prevention`] defines prevented
-//! errors and false positive signals.
+//! The unit is the human press. True positive rate: share of belief related errors that are prevented. False positive rate: useless
+//! signals per human press. [`super::prevention`] defines prevented errors and useless signals. Signals are interruptions: a proposal
+//! of k presses is one.
 
 use rand::RngExt;
 use serde::Serialize;
 
-use super::prevention::PreventionCounts;
+use super::prevention::{PreventionCounts, PreventionRates};
 use crate::base::rng::stream;
 use crate::communication::concept::ConceptName;
 
@@ -60,12 +60,16 @@ pub struct SweptTrial {
 pub struct RocPoint {
     /// The value of the concept's parameter.
     pub parameter: f64,
-    /// False positive rate: the share of the presses outside of episodes with a false signal before them.
+    /// False positive rate: useless signals per press of the human.
     pub fpr: f64,
     /// True positive rate: the share of the belief related errors that would have been prevented.
     pub tpr: f64,
     /// Signals per 100 presses of the human.
     pub signals_per_100_actions: f64,
+    /// Useless signals per 100 presses of the human.
+    pub useless_per_100_actions: f64,
+    /// The share of useless ones among all signals; null without signals.
+    pub useless_share: Option<f64>,
     /// What the concept would have done, over all trials.
     #[serde(flatten)]
     pub count: PreventionCounts,
@@ -99,6 +103,8 @@ pub struct Roc {
     pub band: Vec<[f64; 3]>,
     /// True positive rates at [`EQUAL_SIGNALS`].
     pub at_equal_signals: Vec<BootstrapInterval>,
+    /// Share of useless ones among the signals at [`EQUAL_SIGNALS`].
+    pub useless_at_equal_signals: Vec<BootstrapInterval>,
     /// Advantage of the first concept's true positive rate at [`EQUAL_SIGNALS`] over this concept's.
     pub behind_first: Vec<BootstrapInterval>,
 }
@@ -118,8 +124,9 @@ pub struct ConceptComparison {
 
 /// Curves of all concepts for one sample of participants.
 struct Curves {
-    /// For each concept: true positive rate against false positive rate, and against signals per 100 human presses.
-    of: Vec<[Vec<(f64, f64)>; 2]>,
+    /// For each concept: true positive rate against false positive rate, true positive rate against signals per 100 human presses,
+    /// and useless signals against signals, both per 100 human presses.
+    of: Vec<[Vec<(f64, f64)>; 3]>,
 }
 
 /// Sum of each concept's counts over participants; each participant is weighted by its number of draws in `times`.
@@ -139,20 +146,27 @@ fn summed(participants: &[Vec<SweptTrial>], times: &[u32]) -> Vec<SweptTrial> {
 
 impl Curves {
     fn from_counts(sum: &[SweptTrial]) -> Curves {
-        let curve = |concept: ConceptName, x: usize| {
-            let points = sum.iter().filter(|one| one.concept == concept).filter_map(|one| one.count.point());
+        let curve = |concept: ConceptName, point: fn(&PreventionRates) -> (f64, f64)| {
+            let points = sum.iter().filter(|one| one.concept == concept).filter_map(|one| one.count.rates());
             // A concept that sends no signal has the point (0, 0).
-            let mut curve: Vec<(f64, f64)> = points.map(|point| (point[x], point[1])).chain([(0.0, 0.0)]).collect();
+            let mut curve: Vec<(f64, f64)> = points.map(|rates| point(&rates)).chain([(0.0, 0.0)]).collect();
             curve.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
             curve
         };
-        Curves { of: CONCEPTS.iter().map(|&concept| [curve(concept, 0), curve(concept, 2)]).collect() }
+        let curves = |&concept: &ConceptName| {
+            [
+                curve(concept, |rates| (rates.fpr, rates.tpr)),
+                curve(concept, |rates| (rates.signals_per_100, rates.tpr)),
+                curve(concept, |rates| (rates.signals_per_100, 100.0 * rates.fpr)),
+            ]
+        };
+        Curves { of: CONCEPTS.iter().map(curves).collect() }
     }
 
     /// The largest false positive rate that all concepts reach; `None` if a concept has no points.
     fn common(&self) -> Option<f64> {
         let reach = |curve: &Vec<(f64, f64)>| curve.last().map(|last| last.0).filter(|_| curve.len() > 1);
-        let reached: Option<Vec<f64>> = self.of.iter().map(|[curve, _]| reach(curve)).collect();
+        let reached: Option<Vec<f64>> = self.of.iter().map(|[curve, ..]| reach(curve)).collect();
         reached?.into_iter().reduce(f64::min).filter(|&common| common > 0.0)
     }
 
@@ -197,12 +211,21 @@ pub fn compare(participants: &[Vec<SweptTrial>], trials: u64, seed: u64) -> Conc
     let roc = |(index, &concept): (usize, &ConceptName)| {
         let of_concept = sum.iter().filter(|one| one.concept == concept);
         let point = |one: &SweptTrial| {
-            let [fpr, tpr, signals_per_100_actions] = one.count.point()?;
-            Some(RocPoint { parameter: one.parameter, fpr, tpr, signals_per_100_actions, count: one.count })
+            let PreventionRates { fpr, tpr, signals_per_100 } = one.count.rates()?;
+            Some(RocPoint {
+                parameter: one.parameter,
+                fpr,
+                tpr,
+                signals_per_100_actions: signals_per_100,
+                useless_per_100_actions: 100.0 * fpr,
+                useless_share: one.count.useless_share(),
+                count: one.count,
+            })
         };
         // Each resample is integrated over its own common range, because many do not reach the full sample's range.
         let area = banded(&curves, &resampled, |curves| curves.area(index, curves.common()?));
         let at = |signals: f64| move |curves: &Curves| height(&curves.of[index][1], signals);
+        let useless = |signals: f64| move |curves: &Curves| Some(height(&curves.of[index][2], signals)? / signals);
         let behind = |signals: f64| {
             move |curves: &Curves| Some(height(&curves.of[0][1], signals)? - height(&curves.of[index][1], signals)?)
         };
@@ -214,6 +237,7 @@ pub fn compare(participants: &[Vec<SweptTrial>], trials: u64, seed: u64) -> Conc
             points: of_concept.filter_map(point).collect(),
             band: band(&curves, &resampled, index),
             at_equal_signals: EQUAL_SIGNALS.iter().map(|&s| banded(&curves, &resampled, at(s))).collect(),
+            useless_at_equal_signals: EQUAL_SIGNALS.iter().map(|&s| banded(&curves, &resampled, useless(s))).collect(),
             behind_first: EQUAL_SIGNALS.iter().map(|&s| banded(&curves, &resampled, behind(s))).collect(),
         }
     };

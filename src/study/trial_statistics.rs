@@ -2,9 +2,11 @@
 
 use serde::Serialize;
 
+use super::acting_arm::ActingArm;
 use super::robot_tally::RobotSummary;
 use super::roc::SweptTrial;
 use crate::measures::cause_codes::Codes;
+use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::matching::CommunicationEvent;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::event::EndReason;
@@ -31,6 +33,8 @@ pub struct Trial {
     pub is_planned: bool,
     /// Who could send signals.
     pub condition: Condition,
+    /// Who sent the signals by itself; `None` for DEV.
+    pub acting: Option<ActingArm>,
     /// Reason for excluding the trial; `None` if it counts.
     pub left_out: Option<String>,
     /// Reason of the trial's end; `None` if the recording is incomplete.
@@ -51,20 +55,26 @@ pub struct Trial {
     pub beliefs: Option<BeliefErrors>,
     /// Orders served.
     pub orders: u64,
-    /// The median time from one served order to the next, the first from the trial's start, in seconds.
+    /// The median time from the appearance of an order to its serving, in seconds.
     pub order_s: Option<f64>,
     /// Median presses of both agents per order.
     pub presses_per_order: Option<f64>,
+    /// Summed regret of both agents' presses per served order; `None` if no order was served.
+    pub additional_presses_per_order: Option<f64>,
     /// Median seconds between successive human presses.
     pub press_s: Option<f64>,
     /// Number of signals shown.
     pub signals: u64,
+    /// Number of these that were useful, judged by twins of simulated trials; `None` where there are none.
+    pub useful_signals: Option<u64>,
     /// Length of the trial without pauses, in seconds.
     pub seconds: f64,
     /// The answers to questionnaires after the trial.
     pub answers: Vec<QuestionnaireAnswer>,
     /// Measures of the wizard; `None` in other conditions.
     pub wizard: Option<WizardMeasures>,
+    /// Whether a wizard saw the assistant's recommendations, by the settings or from some time on.
+    pub wizard_saw_advice: bool,
     /// In wizard trials: sent communications, and hypothetical ones of the assistant.
     pub lanes: Option<[Vec<CommunicationEvent>; 2]>,
     /// In unassisted trials: prevention counts of the concepts.
@@ -105,10 +115,12 @@ pub struct BeliefErrors {
     pub errors: u64,
     /// Number of belief related errors that need two false beliefs as explanation.
     pub of_two: u64,
-    /// Number of errors of each error sequence.
+    /// Belief related errors by kind of aspect.
+    pub causes: CauseKindCounts,
+    /// Number of errors of each sequence of related errors.
     pub lengths: Vec<u32>,
-    /// Number of errors of each sequence of errors about a single aspect.
-    pub lengths_by_aspect: Vec<u32>,
+    /// Number of errors of each sequence whatever the aspect.
+    pub lengths_any_aspect: Vec<u32>,
     /// Seconds from the first error of each sequence to the first correct press after its last error, where there is one.
     pub recovery_s: Vec<f64>,
     /// Number of false belief episodes with at least one error; `None` if beliefs were not recorded.
@@ -164,7 +176,7 @@ impl Trial {
         (self.presses() > 0).then(|| self.errors as f64 / self.presses() as f64)
     }
 
-    /// Mean number of errors per sequence.
+    /// Mean number of errors per sequence of related errors.
     pub fn sequence_length(&self) -> Option<f64> {
         mean_length(&self.beliefs.as_ref()?.lengths)
     }

@@ -214,10 +214,10 @@ def at(points, x):
 
 def check_concepts(figures, tables):
     counts = tables["concepts"].groupby(["concept", "parameter"], sort=False)[
-        ["presses", "signals", "related", "prevented", "outside", "false_presses"]
+        ["presses", "signals", "related", "prevented", "useless"]
     ].sum()
     points = counts.reset_index().assign(
-        fpr=lambda d: d.false_presses / d.outside, tpr=lambda d: d.prevented / d.related, signals=lambda d: 100 * d.signals / d.presses
+        fpr=lambda d: d.useless / d.presses, tpr=lambda d: d.prevented / d.related, signals=lambda d: 100 * d.signals / d.presses
     )
     common = min(own.fpr.max() for _, own in points.groupby("concept"))
     near("common range", figures["roc_common_fpr"], float(common))
@@ -229,6 +229,9 @@ def check_concepts(figures, tables):
             near("fpr", ours["fpr"], wanted.fpr)
             near("tpr", ours["tpr"], wanted.tpr)
             near("signals", ours["signals_per_100_actions"], wanted.signals)
+            near("useless signals", ours["useless_per_100_actions"], 100 * wanted.useless / wanted.presses)
+            if wanted.signals > 0:
+                near("share of useless signals", ours["useless_share"], 100 * wanted.useless / wanted.presses / wanted.signals)
         roc_curve = np.vstack([[0, 0], curve(own, "fpr")])
         inside = roc_curve[roc_curve[:, 0] < common]
         inside = np.vstack([inside, [common, at(curve(own, "fpr"), common)]])

@@ -149,8 +149,8 @@ fn figures_line(brush: &mut Painter, inside: Rect, y: u16, seen: &LaneComparison
     let found = &seen.pairs[lane - 1].similarity;
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let lead = found.median_lead_s.map_or("-".to_string(), |lead| format!("{lead:+.1} s"));
-    let [recall, precision, f1] = [found.strict.recall, found.strict.precision, found.strict.f1].map(number);
-    let (kappa, chance) = (number(found.kappa), number(found.chance_recall));
+    let [recall, precision, f1] = [found.signal.recall, found.signal.precision, found.signal.f1].map(number);
+    let (kappa, chance) = (number(found.kappa), number(found.signal.chance_recall));
     let text = match inside.width >= ROOMY_COLUMNS - 8 {
         true => format!(
             "recall {recall} (chance {chance})  precision {precision}  F1 {f1}  kappa {kappa}  lead {lead}   \

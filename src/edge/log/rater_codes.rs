@@ -204,7 +204,7 @@ fn said(press: &str, cause: &str, aspect: &str) -> Result<(u64, Code), (String, 
     let number = press.parse();
     let number = number.map_err(|_| (format!("the press \"{press}\""), "the number of the press in its log"))?;
     let kind = CauseKind::named(cause);
-    let kind = kind.ok_or_else(|| (format!("the cause \"{cause}\""), "belief, slip, race or other"))?;
+    let kind = kind.ok_or_else(|| (format!("the cause \"{cause}\""), "belief, slip, race, other or buttons"))?;
     let code = Code::new(kind, Some(aspect).filter(|aspect| !aspect.is_empty()));
     let remedy = "the location that is believed wrong with \"belief\", and none with other causes";
     Ok((number, code.ok_or_else(|| (format!("the cause \"{cause}\" with the aspect \"{aspect}\""), remedy))?))

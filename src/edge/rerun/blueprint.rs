@@ -116,14 +116,14 @@ fn alone(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     let wrong = StateTimelineView::new("Believed wrong")
         .with_origin(path(lane, "human/belief/wrong"))
         .with_contents([path(lane, "human/belief/wrong/**")]);
-    let truly = beliefs(lane, "P(truth), simulated participant", "human/belief/true/**", properties);
-    let beliefs = beliefs(lane, "P(truth), estimate", "human/belief/estimated/**", properties);
-    let beliefs = Tabs::new([beliefs, truly, wrong.into()]);
+    let beliefs = beliefs(lane, "P(truth): false ones marked, circles estimate, diamonds participant", properties);
+    let beliefs = Tabs::new([beliefs, wrong.into()]);
     let safety = StateTimelineView::new("Safety")
         .with_origin(path(lane, "robot/safety"))
         .with_contents([path(lane, "robot/safety/**")]);
     let forces = series(lane, "Force (N), hand (cm)", &["robot/force", "robot/hand_away"], properties);
-    let worth = Tabs::new([benefit(lane, properties), forces, safety.into()]);
+    let joints = series(lane, "Joint angles (degrees)", &["robot/joints/**"], properties);
+    let worth = Tabs::new([benefit(lane, properties), joints, forces, safety.into()]);
     let below = Horizontal::new([beliefs.into(), worth.into()]);
     let side = Vertical::new([believed(lane), happened(lane, properties)]).with_row_shares([2.0, 3.0]);
     let left = Vertical::new([above.into(), below.into()]).with_row_shares([5.0, 3.0]);
@@ -132,7 +132,7 @@ fn alone(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
 
 /// One of several recordings.
 fn beside(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
-    let belief = beliefs(lane, "P(truth)", "human/belief/estimated/**", properties);
+    let belief = beliefs(lane, "P(truth)", properties);
     let below = Horizontal::new([belief, benefit(lane, properties)]);
     let words = Horizontal::new([believed(lane), happened(lane, properties)]);
     Vertical::new([kitchen(lane), below.into(), words.into()]).with_row_shares([5.0, 3.0, 3.0]).into()
@@ -181,8 +181,11 @@ fn series(lane: &StreamLane, name: &str, entities: &[&str], properties: &mut Vec
     with(view, "PlotLegend", &PlotLegend::new().with_visible(false), properties)
 }
 
-fn beliefs(lane: &StreamLane, name: &str, entities: &str, properties: &mut Vec<Property>) -> ContainerLike {
-    let view = series(lane, name, &[entities, "human/errors/**"], properties);
+/// Estimate and, of a simulated participant, true belief: every curve quiet, false beliefs marked in the aspect's colour.
+fn beliefs(lane: &StreamLane, name: &str, properties: &mut Vec<Property>) -> ContainerLike {
+    let curves = ["estimated", "true", "estimated_wrong", "truly_wrong"].map(|of| format!("human/belief/{of}/**"));
+    let entities: Vec<&str> = curves.iter().map(String::as_str).chain(["human/errors/**"]).collect();
+    let view = series(lane, name, &entities, properties);
     with(view, "ScalarAxis", &ScalarAxis::new().with_range(PROBABILITY), properties)
 }
 

@@ -12,6 +12,8 @@ use crate::kitchen::location::{Location, LocationId};
 use crate::kitchen::process::Process;
 use crate::kitchen::recipe::RecipesSpec;
 
+/// Largest length of an area's name, in characters.
+const MAX_AREA: usize = 40;
 /// No gamepad or button box has a button of a higher number.
 const MAX_GAMEPAD: u8 = 63;
 
@@ -91,7 +93,19 @@ fn button(agent: Agent, name: String, action: ButtonAction, spec: &ButtonSpec, o
         }
     };
     let gamepad = gamepad(agent, &name, spec, others)?;
-    Ok(Button { name, action, at_m, key, gamepad })
+    Ok(Button { name, action, at_m, key, gamepad, colour: spec.colour, area: area(spec)? })
+}
+
+/// The name of the button's area on the table.
+fn area(spec: &ButtonSpec) -> Result<Option<String>> {
+    let Some(area) = &spec.area else { return Ok(None) };
+    let name = area.get_ref();
+    let is_name = (1..=MAX_AREA).contains(&name.chars().count()) && name.trim() == name;
+    if !is_name || name.chars().any(char::is_control) {
+        let found = format!("area = {name:?}");
+        return Err(wrong(SpecFile::Layout, area.span(), found, "a name of 1 to 40 characters, such as \"storage\""));
+    }
+    Ok(Some(name.clone()))
 }
 
 /// The gamepad's button, each of the human's once.

@@ -4,6 +4,7 @@ pub mod reading;
 mod rows;
 mod sweep;
 mod tell;
+mod twin;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

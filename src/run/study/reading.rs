@@ -5,8 +5,10 @@ use std::sync::Arc;
 
 use super::rows::{PressFacts, RowCollector};
 use super::sweep::ConceptSweep;
+use super::twin::useful_signals;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::follower::Follower;
+use crate::analysis::order_work::{RegretSum, order_times};
 use crate::analysis::watcher::{CompareRequest, ComparisonFollower};
 use crate::analysis::wizard_log::{WizardLog, clock_at};
 use crate::base::time::SessionTime;
@@ -17,9 +19,10 @@ use crate::history::comparison::CommunicationContent;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Change, Kitchen};
 use crate::measures::attribution::{Attributor, Cause};
-use crate::measures::cause_codes::{CauseKind, Codable, Codes};
+use crate::measures::cause_codes::{CauseKind, Codable, Codes, most_complete};
+use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::matching::{CommunicationEvent, WINDOW};
-use crate::measures::sequences::{Sequence, sequence_errors, sequences, sequences_by_target};
+use crate::measures::sequences::{Sequence, sequences, sequences_any_aspect};
 use crate::measures::{JudgedPress, median};
 use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
@@ -27,11 +30,13 @@ use crate::run::standing::exclusion_status;
 use crate::session::apply::ApplyError;
 use crate::session::plan::PhaseSpec;
 use crate::session::protocol::{ItemAnswer, ProtocolEvent};
-use crate::session::settings::{Condition, ParticipantKind};
+use crate::session::settings::{Condition, ParticipantKind, Visibility};
 use crate::session::{Event, Header, Phase, Session, Stamped, TimelineEvent};
+use crate::study::acting_arm::ActingArm;
 use crate::study::facts::Facts;
 use crate::study::robot_tally::{RobotSummary, RobotTally};
 use crate::study::trial_statistics::{BeliefBasis, BeliefErrors, QuestionnaireAnswer, Trial};
+use crate::wizard::settings::WizardKind;
 
 /// Result of analysing one recording.
 #[derive(Debug)]
@@ -150,6 +155,7 @@ pub fn read(
     let mut rows = RowCollector::new(name);
     let mut hands = WizardLog::default();
     let mut robot = RobotTally::new(header.session.robot.arm);
+    let mut regret = RegretSum::new(CostToGo::new(kitchen.clone()));
     let mut answers = Vec::new();
     let is_simulated = header.session.participant.kind == ParticipantKind::Simulated;
     let mut by_estimate = (!is_simulated).then(|| ByEstimate {
@@ -166,6 +172,7 @@ pub fn read(
             .map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
         let follower = pass.follower();
         hands.note(&line.stamped, &follower.session);
+        regret.note(&kitchen, &change);
         robot.note(&line.stamped.event, follower.session.trial_clock(line.stamped.time), was_on);
         if let Some(by_estimate) = &mut by_estimate {
             by_estimate.note(&line.stamped, &change, follower);
@@ -188,6 +195,10 @@ pub fn read(
     trial.robot = robot.into_figures();
     trial.beliefs = basis.map(|basis| beliefs(follower, &judged, basis));
     trial.answers = answers;
+    if extent.concepts && basis == Some(BeliefBasis::Recorded) && trial.signals > 0 {
+        trial.useful_signals = useful_signals(recording)?;
+    }
+    trial.additional_presses_per_order = regret.per_order(trial.orders);
     trial.wizard = (header.session.trial.condition == Condition::Wizard).then(|| hands.figures(follower).measures);
     if let Pass::Swept(sweeper) = &pass {
         let is_known = basis == Some(BeliefBasis::Recorded);
@@ -197,10 +208,10 @@ pub fn read(
         trial.lanes = Some([of.clone(), with.clone()]);
     }
     let follower = pass.follower();
-    let errors: Vec<Vec<usize>> = sequence_errors(&judged).into_iter().map(|(_, errors)| errors).collect();
+    let sequences = sequences(&judged);
     let known = PressFacts {
         judged: &judged,
-        sequences: &errors,
+        sequences: &sequences,
         by_estimate: by_estimate.as_deref(),
         raters: raters.as_ref(),
     };
@@ -238,11 +249,10 @@ fn sent(session: &Session) -> Vec<CommunicationEvent> {
     sent
 }
 
-/// Codes of the first two raters (in the order of names) for a recording; `None` with fewer than two raters.
+/// Codes of the two raters who coded most errors of a recording; `None` with fewer than two raters.
 fn raters(log: &LogReader, follower: &Follower) -> FileResult<Option<[Codes; 2]>> {
     let codable = Codable::from_presses(&follower.session.kitchen, &follower.judged);
-    let mut all = rater_codes::read_all(log.folder(), &codable)?.into_values();
-    Ok(all.next().zip(all.next()).map(|(one, other)| [one, other]))
+    Ok(most_complete(rater_codes::read_all(log.folder(), &codable)?.into_values().collect()))
 }
 
 /// Human presses with the causes of errors, and the source of the causes: recorded beliefs for simulated participants; for people
@@ -262,7 +272,7 @@ fn judged(
     let raters = raters.filter(|raters| raters.iter().all(coded));
     for press in judged.iter_mut().filter(|press| press.verdict.error) {
         press.cause = match raters {
-            Some(raters) => agreed(&follower.session, press.seq, raters),
+            Some(raters) => agreed(&follower.session.kitchen, press, raters),
             None => estimated.iter().find(|(seq, _)| *seq == press.seq).map(|(_, cause)| *cause),
         };
     }
@@ -271,19 +281,18 @@ fn judged(
 
 /// The cause of an error by two raters. If both coded a false belief, the target is the first rater's; otherwise the error counts
 /// as not belief related.
-fn agreed(session: &Session, press: u64, [one, other]: &[Codes; 2]) -> Option<Cause> {
-    let (a, b) = (one.0.get(&press)?, other.0.get(&press)?);
+fn agreed(kitchen: &Kitchen, press: &JudgedPress, [one, other]: &[Codes; 2]) -> Option<Cause> {
+    let (a, b) = (one.0.get(&press.seq)?, other.0.get(&press.seq)?);
     if a.kind() != CauseKind::Belief || b.kind() != CauseKind::Belief {
         return Some(Cause::Slip);
     }
-    // The target's location does not depend on the state before the press.
-    let target = a.target(&session.kitchen, session.kitchen.empty_state())?;
+    let target = a.target(kitchen, press.before)?;
     Some(Cause::Belief { gain_nats: f64::NAN, target, with: None })
 }
 
 fn beliefs(follower: &Follower, judged: &[JudgedPress], basis: BeliefBasis) -> BeliefErrors {
     let count = |is: fn(Cause) -> bool| judged.iter().filter_map(|press| press.cause).filter(|&c| is(c)).count() as u64;
-    let lengths = |sequences: &[Sequence]| sequences.iter().map(|sequence| sequence.length).collect();
+    let lengths = |sequences: &[Sequence]| sequences.iter().map(Sequence::length).collect();
     let all = sequences(judged);
     let recovery = |sequence: &Sequence| Some(since(&follower.session, sequence.began, sequence.recovered?));
     BeliefErrors {
@@ -291,7 +300,8 @@ fn beliefs(follower: &Follower, judged: &[JudgedPress], basis: BeliefBasis) -> B
         errors: count(|cause| matches!(cause, Cause::Belief { .. })),
         of_two: count(|cause| matches!(cause, Cause::Belief { with: Some(_), .. })),
         lengths: lengths(&all),
-        lengths_by_aspect: lengths(&sequences_by_target(judged)),
+        causes: CauseKindCounts::from_presses(&follower.session.kitchen, judged, &follower.episodes),
+        lengths_any_aspect: lengths(&sequences_any_aspect(judged)),
         recovery_s: all.iter().filter_map(recovery).collect(),
         episodes: (basis == BeliefBasis::Recorded).then(|| follower.episodes.harmful().count() as u64),
     }
@@ -331,7 +341,6 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
     let between = |times: Vec<SessionTime>| -> Vec<f64> {
         times.windows(2).map(|pair| since(session, pair[0], pair[1])).collect()
     };
-    let served = std::iter::once(session.trial_start).chain(session.served.iter().map(|served| served.time));
     let presses = std::iter::once(0).chain(session.served.iter().map(|served| served.presses)).collect::<Vec<u32>>();
     Trial {
         recording: name.to_string(),
@@ -343,6 +352,7 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         period: step.and_then(|step| step.period),
         is_planned: step.is_some(),
         condition: spec.trial.condition,
+        acting: ActingArm::from_settings(spec.trial.condition, spec.assistant.concept, spec.assistant.price()),
         left_out,
         ended: None,
         arm: spec.robot.arm,
@@ -353,17 +363,27 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         races: follower.judged.iter().filter(|press| press.verdict.race).count() as u64,
         beliefs: None,
         orders: session.served.len() as u64,
-        order_s: median(between(served.collect())),
+        order_s: median(order_times(session)),
+        additional_presses_per_order: None,
         presses_per_order: median(presses.windows(2).map(|pair| f64::from(pair[1] - pair[0])).collect()),
         press_s: median(between(follower.judged.iter().map(|press| press.time).collect())),
         signals: sent(session).len() as u64,
         seconds: session.trial_clock(session.time).as_secs_f64(),
         answers: Vec::new(),
         wizard: None,
+        useful_signals: None,
+        wizard_saw_advice: saw_advice(session),
         lanes: None,
         swept: Vec::new(),
         raters: None,
     }
+}
+
+/// Whether a person who was the wizard saw the assistant's recommendations.
+fn saw_advice(session: &Session) -> bool {
+    let spec = &session.spec;
+    let is_person = spec.trial.condition == Condition::Wizard && spec.wizard.kind == WizardKind::Person;
+    is_person && (session.unblinded || spec.console.visibility == Visibility::Recommendation)
 }
 
 /// Seconds between two times of a session, without pauses.

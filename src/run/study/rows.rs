@@ -10,6 +10,7 @@ use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
 use crate::measures::cause_codes::Codes;
 use crate::measures::matching::{CommunicationEvent, MatchCriterion, matched};
+use crate::measures::sequences::Sequence;
 use crate::mind::BeliefWitness;
 use crate::mind::recorded_estimate::EstimateWitness;
 use crate::session::{Event, Session, Stamped};
@@ -49,8 +50,8 @@ impl EventRows {
 pub struct PressFacts<'a> {
     /// The human's presses with their verdicts, in order.
     pub judged: &'a [JudgedPress],
-    /// Error sequences, each as indices of the human's presses.
-    pub sequences: &'a [Vec<usize>],
+    /// The error sequences.
+    pub sequences: &'a [Sequence],
     /// Causes of people's errors by the estimated beliefs, with the log number of the press.
     pub by_estimate: Option<&'a [(u64, Cause)]>,
     /// The codes of two raters, if they coded the trial.
@@ -61,7 +62,7 @@ impl<'a> PressFacts<'a> {
     /// Analysis of the press with this log number; `None` for presses of the robot.
     fn analysis(&self, seq: u64) -> Option<PressAnalysis<'a>> {
         let index = self.judged.binary_search_by_key(&seq, |press| press.seq).ok()?;
-        let sequence = self.sequences.iter().position(|errors| errors.contains(&index));
+        let sequence = self.sequences.iter().position(|one| one.errors.contains(&index));
         let estimated = self.by_estimate.and_then(|causes| causes.iter().find(|(press, _)| *press == seq));
         Some(PressAnalysis {
             judged: &self.judged[index],
@@ -185,7 +186,7 @@ impl RowCollector {
             self.rows.add(&ActionRow { recording, kitchen, recorded, analysis: known.analysis(recorded.seq) });
         }
         let pairs = match lanes {
-            [(_, of), (_, with)] => Some(matched(of, with, window, MatchCriterion::Strict)),
+            [(_, of), (_, with)] => Some(matched(of, with, window, MatchCriterion::Signal)),
             _ => None,
         };
         for (side, (lane, all)) in lanes.iter().enumerate() {

@@ -15,10 +15,10 @@ use crate::communication::tom::TomConcept;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Change};
 use crate::measures::attribution::Cause;
-use crate::measures::sequences::{Episode, Sequence, sequence_errors};
+use crate::measures::sequences::Episode;
 use crate::session::apply::ApplyError;
 use crate::session::{Applied, Event, Session, Stamped};
-use crate::study::prevention::{ConceptSignal, FalseBeliefTruth, PressTruth, SequenceTruth, TrialTruth};
+use crate::study::prevention::{ConceptSignal, FalseBeliefTruth, PressTruth, TrialTruth};
 use crate::study::roc::{CONCEPTS, LEAST_COST, SweptTrial, parameters};
 
 /// A concept with one parameter value, and its hypothetical signals.
@@ -135,13 +135,16 @@ impl ConceptSweep {
     }
 }
 
-/// True errors, false beliefs and error sequences of a replayed session with recorded beliefs.
+/// True errors and false beliefs of a replayed session with recorded beliefs.
 fn truth(follower: &Follower) -> TrialTruth {
     let kitchen = &follower.session.kitchen;
     let press = |press: &crate::measures::JudgedPress| PressTruth {
         time: press.time,
         error: press.verdict.error,
-        related: matches!(press.cause, Some(Cause::Belief { .. })),
+        aspects: match press.cause {
+            Some(Cause::Belief { target, .. }) => target.aspects(kitchen).collect(),
+            _ => Vec::new(),
+        },
     };
     let false_belief = |episode: &Episode| FalseBeliefTruth {
         aspect: episode.aspect,
@@ -149,13 +152,8 @@ fn truth(follower: &Follower) -> TrialTruth {
         ended: episode.corrected,
         harmful: episode.errors > 0,
     };
-    let sequence = |(sequence, errors): (Sequence, Vec<usize>)| SequenceTruth {
-        aspects: sequence.target.aspects(kitchen).collect(),
-        errors: errors.into_iter().map(|index| follower.judged[index].time).collect(),
-    };
     TrialTruth {
         presses: follower.judged.iter().map(press).collect(),
         spells: follower.episodes.all().map(false_belief).collect(),
-        sequences: sequence_errors(&follower.judged).into_iter().map(sequence).collect(),
     }
 }

@@ -1,10 +1,12 @@
 //! Text summary of a study for the terminal.
 
 use crate::base::words::count;
+use crate::measures::matching::{MatchShares, Similarity};
 use crate::session::event::EndReason;
 use crate::study::effect::AssistanceEffect;
 use crate::study::figures::StudySummary;
-use crate::study::roc::EQUAL_SIGNALS;
+use crate::study::live_arms::LiveArm;
+use crate::study::roc::{BootstrapInterval, EQUAL_SIGNALS};
 use crate::study::trial_statistics::BeliefBasis;
 
 /// Summary of a study as lines of text.
@@ -27,12 +29,12 @@ pub fn describe(figures: &StudySummary) -> String {
     );
     text += &match (totals.belief_related_errors, totals.sequences) {
         (Some(related), Some(sequences)) => format!(
-            "belief related: {related} ({}), in {} of {} errors each (by single aspect {}), recovery \
+            "belief related: {related} ({}), in {} of {} errors each (whatever the aspect {}), recovery \
              after {} s{}\n",
             percent(totals.belief_related_share),
             count(sequences, "sequence", "sequences"),
             number(totals.mean_sequence_length),
-            number(totals.mean_sequence_length_by_aspect),
+            number(totals.mean_sequence_length_any_aspect),
             number(totals.mean_recovery_s),
             if totals.beliefs_from == Some(BeliefBasis::Estimate) { "; by the assistant's estimate alone" } else { "" },
         ),
@@ -78,27 +80,70 @@ pub fn describe(figures: &StudySummary) -> String {
             heads.join(""),
             "area"
         );
+        let shares =
+            |of: &[BootstrapInterval]| -> String { of.iter().map(|one| format!("{:>6}", number(one.value))).collect() };
         for roc in &figures.roc {
-            let values: Vec<String> =
-                roc.at_equal_signals.iter().map(|one| format!("{:>6}", number(one.value))).collect();
-            text += &format!("  {:<10}{}{:>8}\n", roc.concept.title(), values.join(""), number(roc.auc));
+            text += &format!("  {:<10}{}{:>8}\n", roc.concept.title(), shares(&roc.at_equal_signals), number(roc.auc));
+        }
+        text += "share of useless ones among these signals\n";
+        for roc in &figures.roc {
+            text += &format!("  {:<10}{}\n", roc.concept.title(), shares(&roc.useless_at_equal_signals));
         }
     }
-    if let Some(similarity) = &figures.similarity {
-        text += &format!(
-            "wizard and ToM-Com: {} of {} signals of the wizard matched (recall {}, by chance {}), precision {}, kappa {}\n",
-            similarity.matched,
-            similarity.of_n,
-            number(similarity.strict.recall),
-            number(similarity.chance_recall),
-            number(similarity.strict.precision),
-            number(similarity.kappa)
-        );
+    text += &of_live(&figures.live);
+    let compared = [
+        ("wizard and ToM-Com", &figures.similarity),
+        ("not part of it, a wizard who saw the recommendations", &figures.similarity_with_advice),
+    ];
+    for (who, found) in compared {
+        text += &found.as_ref().map_or(String::new(), |found| of_similarity(who, found));
     }
     for one in &figures.left_out {
         text += &format!("left out: {}: {}\n", one.recording, one.reason);
     }
     text
+}
+
+/// Concepts that acted by themselves, one a line.
+fn of_live(arms: &[LiveArm]) -> String {
+    let Some(first) = arms.first() else { return String::new() };
+    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
+    let mut text = format!(
+        "acting by themselves on the same {}: belief related errors and signals per 100 presses of the human\n",
+        count(first.trials, "simulated trial", "simulated trials")
+    );
+    for arm in arms {
+        let name = arm.arm.parameter.map_or(arm.arm.concept.to_string(), |at| format!("{} {at}", arm.arm.concept));
+        text += &format!(
+            "  {name:<14}{} errors, {} per sequence, {} orders ({} a minute), {} signals ({} useless); prevented {} (offline {})\n",
+            number(arm.belief_related_per_100),
+            number(arm.mean_sequence_length),
+            arm.orders,
+            number(arm.orders_per_minute),
+            number(arm.interruptions_per_100),
+            number(arm.useless_per_100),
+            number(arm.prevented),
+            number(arm.prevented_offline),
+        );
+    }
+    text
+}
+
+/// Similarity at its three levels; the paper does not say which one its 74 % are.
+fn of_similarity(who: &str, found: &Similarity) -> String {
+    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
+    let level = |level: &MatchShares| format!("{} (by chance {})", number(level.recall), number(level.chance_recall));
+    format!(
+        "{who}: {} of {} signals of the wizard matched, precision {}, kappa {}\n  recall of the same signal {}, of the same kind \
+         {}, of any signal then {}; the paper's 74 % is not defined further\n",
+        found.matched,
+        found.of_n,
+        number(found.signal.precision),
+        number(found.kappa),
+        level(&found.signal),
+        level(&found.kind),
+        level(&found.any),
+    )
 }
 
 fn of_effect(effect: &AssistanceEffect) -> String {

@@ -6,8 +6,9 @@ use super::groups::groups;
 use crate::session::condition::Condition;
 use crate::session::setting_checks::{SettingError, is_code};
 
-/// Largest number of conditions: more would have more orders than a study has participants.
-const MAX_CONDITIONS: usize = 4;
+/// Largest number of conditions: the analysis compares one assisted with one unassisted trial of a participant. With a third condition
+/// it would drop a trial of everybody and pool wizard and assistant.
+const MAX_CONDITIONS: usize = 2;
 
 /// The `[plan]` of a session file: participants, conditions, and the phases around the trials.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -118,7 +119,9 @@ impl PlanSpec {
         let twice = |index: usize| self.conditions[..index].contains(&self.conditions[index]);
         if self.conditions.is_empty() || self.conditions.len() > MAX_CONDITIONS {
             let found = format!("{} conditions", self.conditions.len());
-            return wrong("plan.conditions", found, "one to four conditions, such as [\"none\", \"wizard\"]");
+            let remedy = "one or two conditions, such as [\"none\", \"wizard\"]: the analysis of a study compares two, and would pool \
+                          or drop the others";
+            return wrong("plan.conditions", found, remedy);
         }
         if let Some(index) = (0..self.conditions.len()).find(|&index| twice(index)) {
             let found = format!("the condition \"{}\" twice", self.conditions[index].name());

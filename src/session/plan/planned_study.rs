@@ -8,7 +8,10 @@ use super::questionnaire::Questionnaire;
 use super::step::{Criterion, PhaseSpec, StepSpec};
 use crate::base::rng::mix;
 use crate::session::condition::Condition;
-use crate::session::settings::SessionSpec;
+use crate::session::settings::{ConsoleSpec, ParticipantSpec, SessionSpec};
+use crate::session::stream_settings::RerunSpec;
+use crate::session::tracker::TrackerSpec;
+use crate::session::wall_display::DisplaySpec;
 
 /// A slot in a participant's series: it needs one complete recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -28,7 +31,8 @@ pub struct Study {
     pub questionnaires: Vec<Questionnaire>,
     /// Session settings that all trials share.
     pub session: SessionSpec,
-    /// A checksum of plan, questionnaires and settings: recordings with another one belong to another study.
+    /// A checksum of the plan, its questionnaires, kitchen, and all settings that can change a trial: recordings with another one belong
+    /// to another study.
     pub digest: String,
 }
 
@@ -46,12 +50,14 @@ pub struct WantedRecording {
 }
 
 impl Study {
-    /// The study of a session file, with the questionnaires of its plan in order; `None` without a plan.
-    pub fn new(session: &SessionSpec, questionnaires: Vec<Questionnaire>) -> Option<Study> {
+    /// The study of a session file, with the questionnaires of its plan in order, and the texts of the files of its kitchen; `None`
+    /// without a plan.
+    pub fn new(session: &SessionSpec, questionnaires: Vec<Questionnaire>, kitchen: [&str; 2]) -> Option<Study> {
         let plan = session.plan.clone()?;
         let session = SessionSpec { plan: None, ..session.clone() };
         // All serialised maps have string keys.
-        let text = serde_json::to_string(&(&plan, &questionnaires, &session.trial, session.seed)).unwrap_or_default();
+        let all = (&plan, &questionnaires, kitchen, what_can_change_a_trial(&session));
+        let text = serde_json::to_string(&all).unwrap_or_default();
         let digest = digest(&text);
         Some(Study { plan, questionnaires, session, digest })
     }
@@ -129,6 +135,25 @@ impl Study {
             phases.push(PhaseSpec::Debriefing { steps: self.plan.debriefing.clone() });
         }
         phases
+    }
+}
+
+/// The settings without those that cannot change a trial: addresses, viewers, look and texts of the wizard's console. Who takes part in
+/// a recording, and which device its gaze comes from, is chosen at its start, stands in its header, and is no part of the plan.
+fn what_can_change_a_trial(session: &SessionSpec) -> SessionSpec {
+    let ParticipantSpec { population, .. } = session.participant.clone();
+    let TrackerSpec { surface, corners, distance_m, .. } = session.tracker.clone();
+    let (tracker, display) = (TrackerSpec::default(), DisplaySpec::default());
+    SessionSpec {
+        participant: ParticipantSpec { population, ..ParticipantSpec::default() },
+        tracker: TrackerSpec { surface, corners, distance_m, ..tracker },
+        console: ConsoleSpec { visibility: session.console.visibility, ..ConsoleSpec::default() },
+        display: DisplaySpec { listen: display.listen, port: display.port, ..session.display.clone() },
+        rerun: RerunSpec::default(),
+        // Its parameters stand in `human`, the layout's text beside the settings.
+        human_model: None,
+        layout: String::new(),
+        ..session.clone()
     }
 }
 

@@ -17,12 +17,13 @@ const LONGEST: &str = "no trial is longer than a day";
 /// What 32 bits hold: as much as no limit at all.
 const COUNT: f64 = 4_294_967_295.0;
 
-pub(super) const RANGES: [NumberRange; 32] = [
+pub(super) const RANGES: [NumberRange; 33] = [
     NumberRange::whole("seed", [0.0, 9_007_199_254_740_991.0], "", "every reader of JSON has these numbers exactly")
         .recorded(ANY),
     NumberRange::whole("trial.presses", [1.0, COUNT], "presses", "the largest numbers are as good as no limit"),
     NumberRange::real("trial.seconds", [0.1, DAY_S], SECONDS, LONGEST).recorded(ABOVE_0),
     NumberRange::whole("trial.orders", [1.0, COUNT], "orders", "the largest numbers are as good as no limit"),
+    NumberRange::real("trial.pace_s", [0.1, 60.0], SECONDS, PRESS),
     NumberRange::real("robot.press_s", [0.05, 60.0], SECONDS, PRESS).recorded(ABOVE_0),
     NumberRange::real("robot.press_spread", [0.0, 2.0], "", "with more, presses take anything from no time to minutes"),
     NumberRange::real("signals.shown_s", [0.1, 3_600.0], SECONDS, "less cannot be read, more is a picture on the wall")
@@ -95,7 +96,7 @@ pub(super) const RANGES: [NumberRange; 32] = [
     NumberRange::real("plan.familiarisation.seconds", [0.1, DAY_S], SECONDS, LONGEST).recorded(ABOVE_0),
     NumberRange::whole("plan.familiarisation.orders", [1.0, COUNT], "orders", "0 would be no criterion"),
     NumberRange::real("plan.familiarisation.error_rate", [0.0, 1.0], "", "it is a share of presses"),
-    NumberRange::whole("plan.questionnaire.after", [1.0, 4.0], "", "participants have one to four trials"),
+    NumberRange::whole("plan.questionnaire.after", [1.0, 2.0], "", "participants have one or two trials"),
 ];
 
 pub(super) const POINTS: NumberRange = NumberRange::whole("scale.points", [2.0, 9.0], "points", "each point is a key");

@@ -38,6 +38,7 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
         (scroll(conditions(captions, figures)))
         div class="figures" { (pictures) } "\n"
         (headline.map_or_else(nothing, in_words))
+        (experience(figures))
         h3 { "Tests" } "\n"
         (scroll(tests(captions, figures)))
         @if let Some(effect) = headline { (anova(captions, effect)) }
@@ -46,21 +47,26 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
 }
 
 fn conditions(captions: &mut Captions, figures: &StudySummary) -> Markup {
-    let columns: [PageColumn<StudyConditionSummary>; 11] = [
+    let columns: [PageColumn<StudyConditionSummary>; 15] = [
         ("condition", |one| condition(one.condition).render()),
         ("trials", |one| one.trials.render()),
+        ("errors", |one| one.totals.errors.render()),
         ("errors per trial", |one| number(one.mean_errors, 1).render()),
         ("per press of the human", |one| percent(one.totals.error_rate_human).render()),
         ("per press of both", |one| percent(one.totals.error_rate).render()),
         ("belief related", |one| percent(one.totals.belief_related_share).render()),
+        ("belief related per 100 presses", |one| number(one.totals.belief_related_per_100, 2).render()),
+        ("sequences per 100 presses", |one| number(one.totals.sequences_per_100, 2).render()),
         ("errors per sequence", |one| number(one.totals.mean_sequence_length, 2).render()),
         ("s to recover", |one| number(one.totals.mean_recovery_s, 1).render()),
         ("s per order", |one| number(one.mean_order_s, 1).render()),
+        ("additional presses per order", |one| number(one.mean_additional_presses_per_order, 1).render()),
         ("s per press", |one| number(one.mean_press_s, 2).render()),
         ("signals", |one| one.totals.signals.render()),
     ];
     let caption = "By condition. Shares are of all presses, or errors, of a condition together, so that long trials weigh more; \
-                   errors a trial, seconds for an order and seconds a press are means over trials.";
+                   errors a trial, seconds from an order's appearance to its serving, additional presses (summed regret of both \
+                   agents) and seconds a press are means over trials.";
     captions.table_of_columns(caption, &columns, figures.conditions.iter())
 }
 
@@ -83,9 +89,27 @@ fn in_words(effect: &AssistanceEffect) -> Markup {
     }
 }
 
+/// The effect of the period on press durations, as a sentence.
+fn experience(figures: &StudySummary) -> Markup {
+    let pace = figures.effects.iter().find(|effect| effect.measure.name == "press_s");
+    let Some((effect, test)) = pace.and_then(|effect| Some((effect, effect.by_period.within?))) else {
+        return nothing();
+    };
+    let [faster_second, faster_first] = effect.improvements.map(|seconds| number(seconds, 2));
+    html! {
+        p {
+            "Experience: from the first trial to the second the time between presses falls by " (faster_second) " s (second trial \
+            assisted) and " (faster_first) " s (first trial assisted); period F(" (format!("{:.0},\u{a0}{:.0}", test.df[0], test.df[1]))
+            ")\u{a0}=\u{a0}" (number(Some(test.f), 2)) ", " (p_sentence(Some(test.p))) "; assistance "
+            (p_sentence(effect.assistance().map(|test| test.p))) "."
+        }
+        "\n"
+    }
+}
+
 /// Table of tests, one line per compared measure.
 fn tests(captions: &mut Captions, figures: &StudySummary) -> Markup {
-    let columns: [PageColumn<AssistanceEffect>; 10] = [
+    let columns: [PageColumn<AssistanceEffect>; 12] = [
         ("measure (lower is better)", |effect| effect.measure.title.render()),
         ("participants", |effect| format!("{} + {}", effect.groups[0], effect.groups[1]).render()),
         ("F (interaction)", |effect| number(effect.assistance().map(|test| test.f), 2).render()),
@@ -103,9 +127,12 @@ fn tests(captions: &mut Captions, figures: &StudySummary) -> Markup {
             )
         }),
         ("Hedges\u{2019} g", |effect| number(effect.hedges_g, 2).render()),
+        ("F (period)", |effect| number(effect.by_period.within.map(|test| test.f), 2).render()),
+        ("p of period", |effect| p_value(effect.by_period.within.map(|test| test.p)).render()),
     ];
     let caption = "Tests of what assistance takes away. Participants: assisted in the second trial + in the first. Less by: the \
-                   Hodges-Lehmann estimate with its interval (at least 95 %).";
+                   Hodges-Lehmann estimate with its interval (at least 95 %). Period: the second trial against the first, whatever \
+                   the condition, which is experience.";
     captions.table_of_columns(caption, &columns, figures.effects.iter())
 }
 

@@ -3,8 +3,10 @@
 use maud::{Markup, Render, html};
 
 use super::elements::{Captions, keys, nothing, number, scroll, section, with_interval};
-use crate::study::charts;
+use crate::base::words::count;
+use crate::study::charts::{self, MOST_SIGNALS};
 use crate::study::figures::StudySummary;
+use crate::study::live_arms::LiveArm;
 use crate::study::roc::EQUAL_SIGNALS;
 
 /// Section that compares the concepts by the errors they prevent.
@@ -12,23 +14,91 @@ pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Marku
     let key = keys(&[("tom-com", "ToM-Com"), ("tom", "ToM"), ("dev", "DEV")]);
     let pictures = html! {
         (captions.figure(charts::roc(figures), html! {
-            "Receiver operating characteristics over unassisted trials, bands of 95 %." (key)
+            "Receiver operating characteristics over unassisted trials" (bands(figures)) "." (key)
         }))
         (captions.figure(charts::equal_signals(figures), html! {
             "Errors prevented against number of signals. Each point is one parameter value. A curve may fall, because a value that \
              sends signals earlier may send one before the false belief begins; it prevents nothing and is not repeated for some \
-             time." (key)
+             time." (cut_off(figures)) (key)
         }))
     };
-    if pictures.0.is_empty() {
-        return nothing();
-    }
     let content = html! {
-        div class="figures" { (pictures) } "\n"
-        h3 { "At equal signals per 100 presses of the human" } "\n"
-        (scroll(at_equal_signals(captions, figures)))
+        @if !pictures.0.is_empty() {
+            div class="figures" { (pictures) } "\n"
+            h3 { "At equal signals per 100 presses of the human" } "\n"
+            (scroll(at_equal_signals(captions, figures)))
+        }
+        @if !figures.live.is_empty() {
+            h3 { "Acting by themselves" } "\n"
+            (scroll(live(captions, figures)))
+        }
     };
     section("Which concept prevents more?", content)
+}
+
+/// What the figure shows of confidence bands.
+fn bands(figures: &StudySummary) -> String {
+    let drawn = figures.roc.iter().filter(|roc| !roc.points.is_empty());
+    let without: Vec<&str> = drawn.clone().filter(|roc| roc.band.is_empty()).map(|roc| roc.concept.title()).collect();
+    match without.len() {
+        0 => ", bands of 95 % by bootstrap over participants".to_string(),
+        some if some == drawn.count() => ", without bands: too few participants for a bootstrap".to_string(),
+        _ => format!(
+            ", bands of 95 % by bootstrap over participants; too few participants for a band of {}",
+            without.join(", ")
+        ),
+    }
+}
+
+/// Remark on points beyond the end of the axis.
+fn cut_off(figures: &StudySummary) -> String {
+    let points = figures.roc.iter().flat_map(|roc| &roc.points);
+    match points.filter(|point| point.signals_per_100_actions > MOST_SIGNALS).count() as u64 {
+        0 => String::new(),
+        beyond => format!(" Cut off at {MOST_SIGNALS}: {} beyond it.", count(beyond, "point lies", "points lie")),
+    }
+}
+
+/// Table of the concepts that acted by themselves, with what the analysis of unassisted trials says of them.
+fn live(captions: &mut Captions, figures: &StudySummary) -> Markup {
+    let parameter = |arm: &LiveArm| arm.arm.parameter.map_or(String::new(), |parameter| format!(" {parameter}"));
+    let rows = figures.live.iter().map(|arm| {
+        let values = [
+            number(arm.belief_related_per_100, 2),
+            number(arm.sequences_per_100, 2),
+            number(arm.mean_sequence_length, 2),
+            arm.orders.to_string(),
+            number(arm.orders_per_minute, 2),
+            number(arm.interruptions_per_100, 2),
+            number(arm.useless_per_100, 2),
+            number(arm.prevented, 2),
+            number(arm.prevented_offline, 2),
+            number(arm.interruptions_per_100_offline, 2),
+        ];
+        let name = format!("{}{}", arm.arm.concept, parameter(arm)).render();
+        std::iter::once(name).chain(values.iter().map(Render::render)).collect::<Vec<Markup>>()
+    });
+    let heads = [
+        "concept, parameter",
+        "belief related errors per 100 presses",
+        "sequences per 100 presses",
+        "errors per sequence",
+        "orders",
+        "orders per minute",
+        "signals per 100 presses",
+        "useless",
+        "fewer belief related errors",
+        "prevented, offline",
+        "signals per 100, offline",
+    ];
+    let trials = figures.live.first().map_or(0, |arm| arm.trials);
+    let caption = format!(
+        "Concepts that acted by themselves in the {trials} simulated trials (the same seeds) that every line has. Useless: signals per 100 presses \
+         without which a twin of the trial, with the same random streams, makes no more errors about their target. Fewer belief \
+         related errors: share per press of the human, against no signals. Offline: what the analysis of unassisted trials says for \
+         the same parameter; a replayed signal changes nothing that follows."
+    );
+    captions.table(caption, &heads, &rows.collect::<Vec<_>>())
 }
 
 fn at_equal_signals(captions: &mut Captions, figures: &StudySummary) -> Markup {
@@ -47,17 +117,23 @@ fn at_equal_signals(captions: &mut Captions, figures: &StudySummary) -> Markup {
         row.push(nothing());
         row
     });
+    let useless = figures.roc.iter().map(|roc| {
+        let mut row = vec![format!("useless signals of {}", roc.concept.title()).render()];
+        row.extend(roc.useless_at_equal_signals.iter().map(|one| banded(one.value, one.low, one.high)));
+        row.push(nothing());
+        row
+    });
     let signals = EQUAL_SIGNALS.iter().map(|signals| format!("at {signals:.0} signals"));
     let heads: Vec<String> =
         std::iter::once("prevented".to_string()).chain(signals).chain(["partial area".to_string()]).collect();
     let caption = format!(
-        "Shares of the belief related errors prevented at equal signals per 100 presses of the human, with intervals of 95 % by \
-         bootstrap over participants ({} in {} unassisted trials). The partial area is over false positive rates from 0 to {}, which \
+        "Shares of the belief related errors prevented at equal interruptions per 100 presses of the human, and shares of useless \
+         ones among the signals, with intervals of 95 % by bootstrap over participants ({} in {} unassisted trials). The partial area is over false positive rates from 0 to {}, which \
          all concepts reach, divided by that range; its interval has the range of those who are drawn. The paper prints no figures \
          here; its ToM-Com lies clearly above ToM and DEV.",
         figures.roc_participants,
         figures.roc_trials,
         number(figures.roc_common_fpr, 3),
     );
-    captions.table(caption, &heads, &concepts.chain(behind).collect::<Vec<_>>())
+    captions.table(caption, &heads, &concepts.chain(behind).chain(useless).collect::<Vec<_>>())
 }

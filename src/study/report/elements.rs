@@ -126,7 +126,8 @@ pub(super) fn percent(value: Option<f64>) -> String {
 pub(super) fn p_value(p: Option<f64>) -> String {
     match p {
         None => UNKNOWN.to_string(),
-        Some(p) if p < 0.001 => "< 0.001".to_string(),
+        // A line break after the sign would leave the number alone.
+        Some(p) if p < 0.001 => "<\u{a0}0.001".to_string(),
         Some(p) => format!("{p:.3}"),
     }
 }

@@ -15,6 +15,16 @@ pub(super) fn methods(figures: &StudySummary, facts: &Facts) -> Markup {
     let content = html! {
         p { (conduct(figures, facts)) (wizard(facts)) (versions(facts)) } "\n"
         p { (analysis(figures)) } "\n"
+        @if let Some(parameters) = facts.all("human model") {
+            p class="note" { b { "Parameters of the human model" } " (names as in session files): " (parameters) "." } "\n"
+        }
+        @if let Some(traits) = facts.all("traits") {
+            p class="note" {
+                b { "Traits of simulated participants" } " (medians; spread: standard deviation of the logarithm, of the logit for a \
+                probability): " (traits) "."
+            }
+            "\n"
+        }
     };
     section("Methods", content)
 }

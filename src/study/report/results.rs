@@ -12,7 +12,7 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
     let totals = &figures.totals;
     let row = |what: &str, here: String, paper: &str| cells([&what, &here, &paper]);
     let per_trial = (figures.trials > 0).then(|| totals.actions as f64 / figures.trials as f64);
-    let matched = figures.similarity.as_ref().and_then(|found| found.strict.recall);
+    let matched = figures.similarity.as_ref().and_then(|found| found.signal.recall);
     let rows = [
         row("participants", figures.participants.to_string(), "14"),
         row("trials", figures.trials.to_string(), "28"),
@@ -22,10 +22,16 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
         row("errors per press of both", percent(totals.error_rate), "6.9 %"),
         row("errors per press of the human", percent(totals.error_rate_human), "about 11 to 13 %"),
         row("belief related errors", count(totals.belief_related_errors), "481"),
+        row("of these about orders, recipes, either, places", kinds(figures), UNKNOWN),
         row("share of the errors that are belief related", percent(totals.belief_related_share), "82 %"),
-        row("error sequences", count(totals.sequences), "153"),
+        row("sequences of related errors", count(totals.sequences), "153"),
         row("mean errors per sequence", number(totals.mean_sequence_length, 2), "3.1"),
-        row("mean errors per sequence, by single aspect", number(totals.mean_sequence_length_by_aspect, 2), UNKNOWN),
+        row("error sequences, whatever the aspect", count(totals.sequences_any_aspect), UNKNOWN),
+        row(
+            "mean errors per sequence, whatever the aspect",
+            number(totals.mean_sequence_length_any_aspect, 2),
+            UNKNOWN,
+        ),
         row("mean seconds to recover from a sequence", number(totals.mean_recovery_s, 1), UNKNOWN),
         row("assistance: p of the mixed ANOVA", p_value(figures.anova.map(|test| test.p)), "0.014"),
         row("assistance: Pearson r", number(figures.pearson.map(|found| found.r), 2), "0.64"),
@@ -35,6 +41,14 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
     let caption =
         "All trials together. Paper: Buehler, Adamy and Weisswange (2021); its 6.9 % is per press of both agents.";
     section("Beside the paper", captions.table(caption, &["", "here", "paper"], &rows))
+}
+
+/// Belief related errors about orders, recipes, an order or its recipe, and places.
+fn kinds(figures: &StudySummary) -> String {
+    let found = figures.totals.belief_related_by_kind;
+    found.map_or(UNKNOWN.to_string(), |kinds| {
+        format!("{}, {}, {}, {}", kinds.orders, kinds.recipes, kinds.order_or_recipe, kinds.places)
+    })
 }
 
 /// Section on the similarity of wizard and assistant.
@@ -52,16 +66,19 @@ pub(super) fn similarity(captions: &mut Captions, figures: &StudySummary) -> Mar
 /// Table of the similarity of wizard and assistant; empty without signals.
 fn matches(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let Some(found) = &figures.similarity else { return nothing() };
-    let share = |what: &str, level: &MatchShares, chance: Option<f64>| {
-        let [recall, precision, f1] = [level.recall, level.precision, level.f1].map(|value| number(value, 2));
-        cells([&what, &recall, &number(chance, 2), &precision, &f1])
+    let share = |what: &str, level: &MatchShares| {
+        let shares = [level.recall, level.chance_recall, level.precision, level.f1].map(|value| number(value, 2));
+        let [recall, chance, precision, f1] = &shares;
+        cells([&what, recall, chance, precision, f1])
     };
     let rows = [
-        share("same signal and target", &found.strict, found.chance_recall),
-        share("same kind of signal", &found.lenient, None),
-        share("any signal at about the same time", &found.timing, None),
+        share("same signal and target", &found.signal),
+        share("same kind of signal", &found.kind),
+        share("any signal at about the same time", &found.any),
     ];
-    let caption = "Agreement between the wizard\u{2019}s signals and the hypothetical signals of ToM-Com.";
+    let caption = "Agreement between the wizard\u{2019}s signals and the hypothetical signals of ToM-Com. The paper counts a match \
+                   where \u{201c}a similar decision\u{201d} is taken \u{201c}in nearby time steps\u{201d} and does not define it further, \
+                   so its 74 % may be any of the three levels.";
     let heads = ["within 3 presses of the human", "recall", "by chance", "precision", "F1"];
     html! {
         (captions.table(caption, &heads, &rows))
@@ -72,6 +89,15 @@ fn matches(captions: &mut Captions, figures: &StudySummary) -> Markup {
             span class="note" { "Paper: 74 % of the wizard\u{2019}s communications matched." }
         }
         "\n"
+        @if let Some(seen) = &figures.similarity_with_advice {
+            p {
+                "Not part of this table: trials in which the wizard saw the assistant\u{2019}s recommendations. There "
+                (seen.matched) " of " (seen.of_n) " signals match (recall " (number(seen.signal.recall, 2)) ", by chance "
+                (number(seen.signal.chance_recall, 2)) "; same kind " (number(seen.kind.recall, 2)) ", any signal "
+                (number(seen.any.recall, 2)) ")."
+            }
+            "\n"
+        }
         @if let Some(wizard) = &figures.wizard { (limits(figures, wizard)) }
     }
 }

@@ -11,15 +11,25 @@ use crate::study::definitions::DEFINITIONS;
 use crate::study::figures::StudySummary;
 use crate::study::trial_statistics::{BeliefBasis, Trial};
 
+/// Least number of participants with both trials for which r and p stand among the main results.
+const FEWEST_PARTICIPANTS: usize = 8;
+
 /// Section with the study's title and main results.
 pub(super) fn summary(figures: &StudySummary) -> Markup {
     let totals = &figures.totals;
+    let pairs: usize = figures.effects.first().map_or(0, |effect| effect.groups.iter().sum());
     let effect = match (figures.pearson, &figures.similarity) {
+        (Some(_), _) if pairs < FEWEST_PARTICIPANTS => card(
+            UNKNOWN,
+            &format!(
+                "no r and no p here: {pairs} participants with both trials are fewer than {FEWEST_PARTICIPANTS}, and r would be chance"
+            ),
+        ),
         (Some(pearson), _) => card(
             &format!("r\u{a0}=\u{a0}{}", number(Some(pearson.r), 2)),
             &format!("of assistance and fewer errors ({})", p_sentence(Some(pearson.p))),
         ),
-        (None, Some(found)) => card(&percent(found.strict.recall), "of the wizard's signals have a match"),
+        (None, Some(found)) => card(&percent(found.signal.recall), "of the wizard's signals have a match"),
         (None, None) => card(&words::count(totals.signals, "signal", "signals"), "shown to participants"),
     };
     html! {

@@ -103,7 +103,7 @@ impl TableRow for ActionRow<'_> {
         let cause = "cause of an error: belief or slip; source in the trial's beliefs_from; empty: unknown";
         let second = "second aspect, if only two false beliefs together explain the error";
         let sequence = "number of a belief related error's sequence in the trial, from 1";
-        let rater = "code of the first rater by name: belief (with location), slip, race or other";
+        let rater = "code of the rater who coded most errors: belief (with location), slip, race, other or buttons";
         vec![
             Self::column("recording", "", "as in trials", |row| row.recording.into()),
             Self::column("seq", "", "number of the event in the log", |row| row.recorded.seq.into()),
@@ -156,7 +156,9 @@ impl TableRow for ActionRow<'_> {
                 |row| row.analysis.and_then(|analysis| analysis.by_estimate).map(cause_name).into(),
             ),
             Self::column("rater_1", "", rater, |row| row.code(0)),
-            Self::column("rater_2", "", "code of the second rater by name", |row| row.code(1)),
+            Self::column("rater_2", "", "code of the second of the two raters who coded most errors", |row| {
+                row.code(1)
+            }),
             Self::column("log_p", "nats", "log probability of the human's press under the estimated belief", |row| {
                 row.recorded.log_p.map(rounded).into()
             }),

@@ -25,7 +25,6 @@ impl TableRow for ConceptRow<'_> {
             Self::column(name, unit, meaning, move |row| count(&row.swept.count).into())
         };
         let parameter = "cost of communication in presses (tom-com), threshold (tom), presses proposed (dev)";
-        let inside = "signals about a correctly believed aspect during an episode of another aspect";
         vec![
             Self::column("recording", "", "as in trials; unassisted trials that count", |row| {
                 (&row.trial.recording).into()
@@ -34,20 +33,26 @@ impl TableRow for ConceptRow<'_> {
             Self::column("concept", "", "tom-com, tom or dev", |row| row.swept.concept.name().into()),
             Self::column("parameter", "", parameter, |row| TableCell::Number(row.swept.parameter)),
             count("presses", "presses", "human presses in the trial", |count| count.presses),
-            count("signals", "signals", "hypothetical signals; for dev, proposed presses", |count| count.signals),
+            count("signals", "signals", "hypothetical signals; for dev, proposals", |count| count.signals),
             count("related", "errors", "belief related", |count| count.related),
             count("prevented", "errors", "belief related errors that the signals would have prevented", |count| {
                 count.prevented
             }),
             count("outside", "presses", "human presses outside of false belief episodes", |count| count.outside),
-            count(
-                "false_presses",
-                "presses",
-                "human presses outside of episodes with a false positive signal before them",
-                |count| count.false_presses,
-            ),
-            count("false_inside", "signals", inside, |count| count.false_inside),
+            count("false_presses", "presses", "human presses with a useless signal right before them", |count| {
+                count.false_presses
+            }),
+            count("false_inside", "signals", "useless signals during a false belief episode", |count| {
+                count.false_inside
+            }),
             count("harmless", "signals", "signals about a false belief that led to no error", |count| count.harmless),
+            count("contents", "contents", "as signals; for dev, proposed presses", |count| count.contents),
+            count(
+                "useless",
+                "signals",
+                "signals that are not the first about a false belief with errors to follow",
+                |count| count.useless,
+            ),
         ]
     }
 }

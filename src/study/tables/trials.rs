@@ -1,5 +1,6 @@
 //! Table of trials, and the measures among its columns that are compared between conditions.
 
+use crate::measures::cause_kinds::CauseKindCounts;
 use crate::robot::AbortReason;
 use crate::session::event::EndReason;
 use crate::study::column::{Column, Table, TableCell, TableRow};
@@ -27,13 +28,32 @@ enum TrialColumn {
 
 use TrialColumn::Compared;
 
-/// The compared measures, in column order; the first is [`HEADLINE`].
+/// Number of errors, as the paper compares them. Trials differ in length, so the rate is the headline.
+const NUMBER_OF_ERRORS: StudyMeasure = StudyMeasure {
+    name: "errors",
+    unit: "errors",
+    meaning: "errors of the human, without races",
+    meaning_in: "errors of the human in the {} trial, without races",
+    title: "errors in a trial",
+    digits: 1,
+    value: |trial| Some(trial.errors as f64),
+};
+
+/// The compared measures, in column order; the first is [`HEADLINE`], the last the number of errors.
 pub fn measures() -> Vec<StudyMeasure> {
     let measure = |column: TrialColumn| match column {
         Compared(measure) => Some(measure),
         TrialColumn::Plain(_) => None,
     };
-    declared().filter_map(measure).collect()
+    // Measures are compared by name.
+    let rank = |measure: &StudyMeasure| match measure {
+        one if *one == HEADLINE => 0,
+        one if *one == NUMBER_OF_ERRORS => 2,
+        _ => 1,
+    };
+    let mut measures: Vec<StudyMeasure> = declared().filter_map(measure).collect();
+    measures.sort_by_key(rank);
+    measures
 }
 
 impl TableRow for Trial {
@@ -52,7 +72,14 @@ impl TableRow for Trial {
 
 /// All columns in file order; new columns are appended.
 fn declared() -> impl Iterator<Item = TrialColumn> {
-    kind_of_trial().into_iter().chain(errors()).chain(pace()).chain(robot()).chain(presses_given_up()).chain(by_hand())
+    kind_of_trial()
+        .into_iter()
+        .chain(errors())
+        .chain(pace())
+        .chain(robot())
+        .chain(presses_given_up())
+        .chain(by_hand())
+        .chain(work())
 }
 
 fn plain(
@@ -95,7 +122,7 @@ fn errors() -> Vec<TrialColumn> {
     vec![
         plain("human_presses", "presses", "human presses while the trial ran", |t| t.human_presses.into()),
         plain("robot_presses", "presses", "robot presses while the trial ran", |t| t.robot_presses.into()),
-        plain("errors", "errors", "errors of the human, without races", |t| t.errors.into()),
+        Compared(NUMBER_OF_ERRORS),
         plain("races", "presses", "human presses within 300 ms of a robot change at the same place", |t| {
             t.races.into()
         }),
@@ -119,7 +146,7 @@ fn errors() -> Vec<TrialColumn> {
         plain(
             "sequences",
             "sequences",
-            "error sequences: belief related errors at most 3 correct presses apart, of any aspect",
+            "error sequences: errors of the same false belief at most 3 correct presses apart",
             |t| of_beliefs(t, |beliefs| beliefs.lengths.len()),
         ),
         Compared(StudyMeasure {
@@ -131,12 +158,10 @@ fn errors() -> Vec<TrialColumn> {
             digits: 2,
             value: Trial::sequence_length,
         }),
-        plain("sequences_by_aspect", "sequences", "error sequences of errors about the same aspect", |t| {
-            of_beliefs(t, |beliefs| beliefs.lengths_by_aspect.len())
+        plain("sequences_by_aspect", "sequences", "as sequences, which are by aspect", |t| {
+            of_beliefs(t, |beliefs| beliefs.lengths.len())
         }),
-        plain("sequence_length_by_aspect", "errors", "mean errors per sequence of errors about the same aspect", |t| {
-            t.beliefs.as_ref().and_then(|beliefs| mean_length(&beliefs.lengths_by_aspect)).into()
-        }),
+        plain("sequence_length_by_aspect", "errors", "as sequence_length", |t| t.sequence_length().into()),
         Compared(StudyMeasure {
             name: "recovery_s",
             unit: "s",
@@ -155,8 +180,8 @@ fn pace() -> Vec<TrialColumn> {
         Compared(StudyMeasure {
             name: "order_s",
             unit: "s",
-            meaning: "median time from one served order to the next, the first from the start",
-            meaning_in: "median time for an order in the {} trial",
+            meaning: "median time from an order's appearance to its serving",
+            meaning_in: "median time from an order's appearance to its serving in the {} trial",
             title: "seconds per order",
             digits: 2,
             value: |t| t.order_s,
@@ -252,5 +277,48 @@ fn by_hand() -> Vec<TrialColumn> {
         plain("wizard_corrected", "times", "number of locations that the wizard corrected", |t| {
             t.robot.corrected.into()
         }),
+    ]
+}
+
+/// Sequences whatever the aspect, presses that were lost, and errors by kind of aspect.
+fn work() -> Vec<TrialColumn> {
+    fn cause(name: &'static str, meaning: &'static str, count: fn(&CauseKindCounts) -> u64) -> TrialColumn {
+        TrialColumn::Plain(Trial::column(name, "errors", meaning, move |trial| {
+            trial.beliefs.as_ref().map(|beliefs| count(&beliefs.causes)).into()
+        }))
+    }
+    vec![
+        plain(
+            "useful_signals",
+            "signals",
+            "signals without which a twin of the simulated trial makes more errors about their target; empty: not judged",
+            |t| t.useful_signals.into(),
+        ),
+        plain("useless_signals", "signals", "all other signals; empty: not judged", |t| {
+            t.useful_signals.map(|useful| t.signals - useful).into()
+        }),
+        plain("sequences_any_aspect", "sequences", "error sequences whatever the aspect of their errors", |t| {
+            t.beliefs.as_ref().map(|beliefs| beliefs.lengths_any_aspect.len() as u64).into()
+        }),
+        plain("sequence_length_any_aspect", "errors", "mean errors per error sequence whatever the aspect", |t| {
+            t.beliefs.as_ref().and_then(|beliefs| mean_length(&beliefs.lengths_any_aspect)).into()
+        }),
+        Compared(StudyMeasure {
+            name: "additional_presses_per_order",
+            unit: "presses of both",
+            meaning: "summed regret of both agents' presses per served order",
+            meaning_in: "summed regret of both agents' presses per served order in the {} trial",
+            title: "additional presses of both agents per order",
+            digits: 2,
+            value: |trial| trial.additional_presses_per_order,
+        }),
+        cause("errors_about_orders", "belief related errors about an order", |causes| causes.orders),
+        cause("errors_about_recipes", "belief related errors about a recipe", |causes| causes.recipes),
+        cause(
+            "errors_about_order_or_recipe",
+            "belief related errors about an ordered dish: both order and recipe believed wrong, or unknown which",
+            |causes| causes.order_or_recipe,
+        ),
+        cause("errors_about_places", "belief related errors about another location's content", |causes| causes.places),
     ]
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use miette::Diagnostic;
 use tomcom::edge::log::LOG_NAME;
 use tomcom::edge::log::rater_codes::{read_all, write};
-use tomcom::measures::cause_codes::{AgreementTable, CauseKind, Code, Codes};
+use tomcom::measures::cause_codes::{AgreementTable, CauseKind, Code, Codes, most_complete};
 use tomcom::run::codes::{CodedRecording, CodesSummary, export, import};
 use tomcom::run::simulate::Shard;
 use tomcom::run::study::reading::{self, AnalysisScope};
@@ -74,6 +74,17 @@ fn kappa_is_that_of_known_tables() {
     assert_eq!(coded(&[("slip", "slip", 9)]).agreement().kappa_cause, None, "who always says the same proves nothing");
 }
 
+#[test]
+fn the_two_raters_who_coded_most_errors_are_taken() {
+    let rater = |errors: u64| Codes((0..errors).map(|press| (press, Code::Slip)).collect());
+    let lengths = |raters: &[u64]| {
+        most_complete(raters.iter().copied().map(rater).collect()).map(|two| two.map(|codes| codes.0.len()))
+    };
+    assert_eq!(lengths(&[2, 9, 9]), Some([9, 9]), "the first by name is not complete");
+    assert_eq!(lengths(&[9, 2, 8]), Some([9, 8]));
+    assert_eq!(lengths(&[9]), None);
+}
+
 /// A row of a table that is wrong is named with what would be right, and nothing of the table is taken over.
 fn check_wrong_rows(coded: &mut [CodedRecording], recording: &Path, table: &Path) {
     let name = recording.file_name().expect("a name").to_string_lossy().into_owned();
@@ -83,7 +94,7 @@ fn check_wrong_rows(coded: &mut [CodedRecording], recording: &Path, table: &Path
         (format!("{name},R1,{first},belief,the_moon"), "the aspect \"the_moon\"", "cooking_pot"),
         (format!("{name},R1,{first},belief,"), "the cause \"belief\" with the aspect \"\"", "location"),
         (format!("{name},R1,{first},slip,plate"), "the cause \"slip\" with the aspect \"plate\"", "none"),
-        (format!("{name},R1,{first},hunger,"), "the cause \"hunger\"", "belief, slip, race or other"),
+        (format!("{name},R1,{first},hunger,"), "the cause \"hunger\"", "belief, slip, race, other or buttons"),
         (format!("{name},R1,1,slip,"), "press 1, which was no error", &format!("the nearest: {first}")),
         (format!("{name},R1,first,slip,"), "the press \"first\"", "number"),
         (format!("{name},R3,{second},race,"), &format!("press {second} again, after line 2"), "one line"),

@@ -4,6 +4,7 @@
 mod codes;
 mod job_array;
 mod learning;
+mod twins;
 mod wizard;
 
 use std::fs;

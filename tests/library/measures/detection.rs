@@ -1,9 +1,11 @@
 //! How well an estimate finds false beliefs: areas under the curve, calibration, thresholds.
 
+use tomcom::base::incomplete_beta::regularized_incomplete_beta;
 use tomcom::kitchen::{AspectId, ButtonId, Kitchen};
 use tomcom::measures::belief_detection::{Detection, EstimateView, PressView, TrialView};
 use tomcom::measures::detection::{Calibration, auc};
-use tomcom::measures::flags::Thresholds;
+use tomcom::measures::flags::{ThresholdSource, Thresholds};
+use tomcom::mind::recorded_estimate::{AspectEstimate, EstimateWitness};
 
 use super::{aspect, kitchen};
 
@@ -56,7 +58,7 @@ fn trial(kitchen: &Kitchen, place: AspectId, recipe: AspectId, text: [&str; 4]) 
             state: kitchen.empty_state(),
             button: ButtonId(0),
             held: Some(held),
-            estimate: Some(EstimateView { p_wrong, log_p: -1.0 }),
+            estimate: Some(EstimateView { p_false: p_wrong.clone(), p_wrong, log_p: -1.0 }),
             unseen_change: vec![false; kitchen.locations.len()],
             errs_about,
         }
@@ -129,4 +131,74 @@ fn what_may_be_flagged_wrongly_is_a_share_of_the_time_of_all_aspects_together() 
     // 66 presses and 16 aspects: 1,056 pairs, of which 52 may be flagged wrongly; of the recipes' alone 5 % were 19.
     assert_eq!(of(40).flagged_before_third_error, Some(1.0));
     assert_eq!(of(60).flagged_before_third_error, Some(0.0));
+}
+
+#[test]
+fn thresholds_are_judged_on_the_other_half_of_the_trials() {
+    let kitchen = kitchen("sushi");
+    let (place, recipe) = (aspect(&kitchen, "cooking_pot"), aspect(&kitchen, "recipe of crab maki"));
+    let zero = "0".repeat(64);
+    let one = |estimates: &str| {
+        let quiet = ".".repeat(60);
+        let text = [&format!("{quiet}EEw."), &".".repeat(64), &format!("{}{estimates}", "0".repeat(60)), &zero];
+        trial(&kitchen, place, recipe, text.map(String::as_str))
+    };
+    // The first trial's episode is found from 0.7 on, the second's from 0.2 on; each is judged with the other's threshold.
+    let (high, low) = (one("0700"), one("0200"));
+    let flags = |trials: &[TrialView], given| Detection::from_trials(&kitchen, trials, given).flags;
+    let found = flags(&[high.clone(), low.clone()], None);
+    assert_eq!(found.thresholds_from, Some(ThresholdSource::OtherHalf));
+    let given = |locations| Some(Thresholds { locations, recipes: 1.0 });
+    let single = |trial: &TrialView| {
+        let found = flags(std::slice::from_ref(trial), None);
+        assert_eq!(found.thresholds_from, Some(ThresholdSource::SameTrial));
+        assert_eq!(found.flagged_before_third_error, Some(1.0), "chosen on itself");
+        found.thresholds.expect("thresholds").locations
+    };
+    let (of_high, of_low) = (single(&high), single(&low));
+    let apart = [flags(&[high], given(of_low)), flags(&[low], given(of_high))];
+    assert!(apart.iter().all(|one| one.thresholds_from == Some(ThresholdSource::OtherRecordings)));
+    let caught: f64 = apart.iter().filter_map(|one| one.flagged_before_third_error).sum();
+    assert_eq!(found.flagged_before_third_error, Some(caught / 2.0), "{of_high}, {of_low}");
+    assert_eq!((found.episodes, caught), (Some(2), if of_high > 0.2 { 1.0 } else { 2.0 }));
+}
+
+#[test]
+fn calibration_judges_the_probability_that_the_belief_in_the_truth_is_below_one_half() {
+    // I_.5 by closed forms: symmetric parameters, a = 1 or b = 1, and whole numbers (a sum of binomials).
+    let check = |a: f64, b: f64, wanted: f64| {
+        let found = regularized_incomplete_beta(0.5, a, b);
+        // ln Gamma(10,000) is about 82,000, so its last digits are worth 1e-11.
+        assert!((found - wanted).abs() < 1e-10, "I_.5({a}, {b}) = {found}, not {wanted}");
+    };
+    for symmetric in [0.001, 0.3, 1.0, 7.5, 5000.0] {
+        check(symmetric, symmetric, 0.5);
+    }
+    for exponent in [0.01_f64, 0.5, 2.0, 30.0] {
+        check(exponent, 1.0, 0.5_f64.powf(exponent));
+        check(1.0, exponent, 1.0 - 0.5_f64.powf(exponent));
+    }
+    check(2.0, 3.0, 11.0 / 16.0);
+    check(5.0, 3.0, 29.0 / 128.0);
+    check(0.5, 1.5, 0.5 + 1.0 / std::f64::consts::PI);
+    check(0.0, 2.0, 1.0);
+    check(2.0, 0.0, 0.0);
+    // Somebody who holds one value for certain, the truth with probability 0.7: alphas near 0. The expected belief beside the truth
+    // is 0.3 at every precision; the probability of a false belief is 0.3 only here, and near 0 if the belief itself is 0.7.
+    let witness = |precision: f64| EstimateWitness {
+        press: 1,
+        log_p: -1.0,
+        effective: 64.0,
+        aspects: vec![AspectEstimate {
+            aspect: "cooking_pot".to_string(),
+            believes: "empty".to_string(),
+            p_truth: 0.7,
+            precision,
+            values: [("empty".to_string(), 0.7)].into(),
+        }],
+    };
+    let view = |precision: f64| EstimateView::from_witness(&witness(precision));
+    assert!((view(0.001).p_false[0] - 0.3).abs() < 1e-3, "{:?}", view(0.001));
+    assert!(view(200.0).p_false[0] < 1e-6, "{:?}", view(200.0));
+    assert!((view(200.0).p_wrong[0] - 0.3).abs() < 1e-12);
 }

@@ -48,30 +48,30 @@ fn communications_match_one_to_one_within_the_window() {
     // Of the wizard's three, the recipe is one press early, the highlight too far, the third another target.
     let found = alike("4:q 10:a 20:b", "5:q 14:a 20:a", 30, 3);
     assert_eq!((found.of_n, found.with_n, found.matched), (3, 3, 1));
-    near(found.strict.recall, 1.0 / 3.0, "recall");
-    near(found.lenient.recall, 2.0 / 3.0, "lenient recall");
-    near(found.timing.recall, 2.0 / 3.0, "recall by time");
+    near(found.signal.recall, 1.0 / 3.0, "recall");
+    near(found.kind.recall, 2.0 / 3.0, "recall by kind");
+    near(found.any.recall, 2.0 / 3.0, "recall of any signal");
     near(found.median_lead_s, -2.0, "the assistant came one press, two seconds, later");
-    near(alike("4:q 10:a 20:b", "5:q 14:a 20:a", 30, 4).strict.recall, 2.0 / 3.0, "with a larger window");
+    near(alike("4:q 10:a 20:b", "5:q 14:a 20:a", 30, 4).signal.recall, 2.0 / 3.0, "with a larger window");
     // One communication matches one, however many are near; the nearest, unless another pair would be lost.
     let found = alike("4:q", "2:q 4:q 6:q", 10, 3);
     assert_eq!(found.matched, 1);
-    near(found.strict.precision, 1.0 / 3.0, "precision");
-    near(found.strict.f1, 0.5, "F1");
+    near(found.signal.precision, 1.0 / 3.0, "precision");
+    near(found.signal.f1, 0.5, "F1");
     near(found.median_lead_s, 0.0, "the nearest");
-    assert_eq!(matched(&lane("3:q 6:q"), &lane("5:q 9:q"), 3, MatchCriterion::Strict), [(0, 0), (1, 1)]);
+    assert_eq!(matched(&lane("3:q 6:q"), &lane("5:q 9:q"), 3, MatchCriterion::Signal), [(0, 0), (1, 1)]);
     // Different targets may cross.
-    assert_eq!(matched(&lane("3:q 4:a"), &lane("3:a 4:q"), 1, MatchCriterion::Strict), [(0, 1), (1, 0)]);
+    assert_eq!(matched(&lane("3:q 4:a"), &lane("3:a 4:q"), 1, MatchCriterion::Signal), [(0, 1), (1, 0)]);
 }
 
 #[test]
 fn what_cannot_be_said_of_empty_lanes_is_null() {
     let found = alike("", "3:q", 10, 3);
-    assert_eq!((found.strict.recall, found.strict.f1), (None, Some(0.0)));
-    assert_eq!((found.median_lead_s, found.chance_recall), (None, None));
+    assert_eq!((found.signal.recall, found.signal.f1), (None, Some(0.0)));
+    assert_eq!((found.median_lead_s, found.signal.chance_recall), (None, None));
     let nothing = alike("", "", 10, 3);
-    assert_eq!((nothing.kappa, nothing.strict.f1), (None, None));
-    assert_eq!(alike("2:q", "2:q", 4, 3).chance_recall, None, "too short for a shift by more than the window");
+    assert_eq!((nothing.kappa, nothing.signal.f1), (None, None));
+    assert_eq!(alike("2:q", "2:q", 4, 3).signal.chance_recall, None, "too short for a shift by more than the window");
 }
 
 #[test]
@@ -91,10 +91,16 @@ fn kappa_is_over_presses_and_counts_matched_pairs_as_agreement() {
 #[test]
 fn the_chance_level_is_what_circular_shifts_leave() {
     // Eleven places; the one communication of the second lane meets the first's in one of the ten shifts.
-    near(alike("3:q", "7:q", 10, 0).chance_recall, 0.1, "one place of ten");
+    near(alike("3:q", "7:q", 10, 0).signal.chance_recall, 0.1, "one place of ten");
     // Without a shift by at most one press: eight shifts, of which seven to nine land within one press of press 3.
-    near(alike("3:q", "7:q", 10, 1).chance_recall, 3.0 / 8.0, "three places of eight");
-    near(alike("3:q", "7:w", 10, 1).chance_recall, 0.0, "another target never matches");
+    near(alike("3:q", "7:q", 10, 1).signal.chance_recall, 3.0 / 8.0, "three places of eight");
+    let other = alike("3:q", "7:w", 10, 1);
+    near(other.signal.chance_recall, 0.0, "another target never matches");
+    near(other.kind.chance_recall, 3.0 / 8.0, "another target of the same kind");
+    let highlight = alike("3:q", "7:a", 10, 1);
+    near(highlight.kind.chance_recall, 0.0, "another kind never matches");
+    near(highlight.any.chance_recall, 3.0 / 8.0, "any signal");
+    near(highlight.headline.chance_recall, 0.0, "the headline is the strictest level");
 }
 
 /// The most pairs, and with those the least presses between them, by trying everything.
@@ -103,9 +109,9 @@ fn most(of: &[CommunicationEvent], with: &[CommunicationEvent], window: u32, lik
     let mut best = most(rest, with, window, likeness);
     for (index, other) in with.iter().enumerate() {
         let same = match likeness {
-            MatchCriterion::Strict => first.content == other.content,
-            MatchCriterion::Lenient => first.content.kind == other.content.kind,
-            MatchCriterion::Timing => true,
+            MatchCriterion::Signal => first.content == other.content,
+            MatchCriterion::Kind => first.content.kind == other.content.kind,
+            MatchCriterion::Any => true,
         };
         let apart = first.press.abs_diff(other.press);
         if same && apart <= window {
@@ -138,7 +144,7 @@ fn no_matching_has_more_or_nearer_pairs() {
         let (a, b) = (lane(&of), lane(&with));
         let mut wider = 0;
         for window in 0..6 {
-            for likeness in [MatchCriterion::Strict, MatchCriterion::Lenient, MatchCriterion::Timing] {
+            for likeness in [MatchCriterion::Signal, MatchCriterion::Kind, MatchCriterion::Any] {
                 let pairs = matched(&a, &b, window, likeness);
                 let between: u32 = pairs.iter().map(|&(i, j)| a[i].press.abs_diff(b[j].press)).sum();
                 let wanted = most(&a, &b, window, likeness);
@@ -154,7 +160,7 @@ fn no_matching_has_more_or_nearer_pairs() {
             assert!(found.matched >= wider, "a wider window loses nothing");
             wider = found.matched;
             assert!(found.kappa.is_none_or(|kappa| kappa <= 1.0 + 1e-12));
-            let shares = [found.strict.recall, found.strict.precision, found.strict.f1, found.chance_recall];
+            let shares = [found.signal.recall, found.signal.precision, found.signal.f1, found.signal.chance_recall];
             assert!(shares.iter().flatten().all(|share| (0.0..=1.0 + 1e-12).contains(share)), "{shares:?}");
         }
     }

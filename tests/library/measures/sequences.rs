@@ -1,11 +1,11 @@
 //! Error sequences and false belief episodes.
 
 use tomcom::base::time::SessionTime;
-use tomcom::kitchen::LocationId;
+use tomcom::kitchen::{DishId, LocationId};
 use tomcom::measures::JudgedPress;
 use tomcom::measures::attribution::{Cause, Target};
 use tomcom::measures::errors::PressVerdict;
-use tomcom::measures::sequences::{Episodes, Sequence, sequences, sequences_by_target};
+use tomcom::measures::sequences::{Episodes, Sequence, sequences, sequences_any_aspect};
 
 use super::{at, belief, kitchen, state};
 
@@ -23,9 +23,29 @@ fn presses(text: &str) -> Vec<JudgedPress> {
         };
         let (race, error) = (letter == 'r', cause.is_some());
         let verdict = PressVerdict { regret: i32::from(error), excess: i32::from(error), race, error };
-        JudgedPress { seq: index as u64, time: at(index as f64), verdict, belief_known: true, cause }
+        let before = kitchen("sushi").empty_state();
+        JudgedPress { seq: index as u64, time: at(index as f64), before, verdict, belief_known: true, cause }
     };
     text.chars().enumerate().map(press).collect()
+}
+
+#[test]
+fn an_order_and_its_recipe_are_one_false_belief() {
+    let (order, tuna, salmon) = (LocationId(0), DishId(0), DishId(1));
+    let targets = [
+        Target::Order(order, Some(tuna)),
+        Target::Order(order, Some(salmon)),
+        Target::Recipe(tuna),
+        Target::Order(LocationId(1), Some(tuna)),
+    ];
+    let mut all = presses("AAAA");
+    for (press, target) in all.iter_mut().zip(targets) {
+        press.cause = Some(Cause::Belief { gain_nats: 2.0, target, with: None });
+    }
+    let found = sequences(&all);
+    // The salmon that comes in place of the tuna is another false belief.
+    let errors: Vec<&[usize]> = found.iter().map(|one| one.errors.as_slice()).collect();
+    assert_eq!(errors, [&[0, 2, 3][..], &[1]]);
 }
 
 /// Sequences as target, length, beginning and recovery in seconds (-1: none).
@@ -33,16 +53,16 @@ fn told(sequences: &[Sequence]) -> Vec<(char, u32, i32, i32)> {
     let tell = |one: &Sequence| {
         let Target::Place(LocationId(place)) = one.target else { panic!("a place") };
         let recovered = one.recovered.map_or(-1, |time| time.as_secs_f64() as i32);
-        (char::from(b'A' + place), one.length, one.began.as_secs_f64() as i32, recovered)
+        (char::from(b'A' + place), one.length(), one.began.as_secs_f64() as i32, recovered)
     };
     sequences.iter().map(tell).collect()
 }
 
 #[test]
 fn a_sequence_ends_where_more_than_three_presses_are_right() {
-    let check = |text: &str, expected: &[(char, u32, i32, i32)], by_target: &[(char, u32, i32, i32)]| {
-        assert_eq!(told(&sequences(&presses(text))), expected, "{text}");
-        assert_eq!(told(&sequences_by_target(&presses(text))), by_target, "{text} by target");
+    let check = |text: &str, any_aspect: &[(char, u32, i32, i32)], related: &[(char, u32, i32, i32)]| {
+        assert_eq!(told(&sequences(&presses(text))), related, "{text}");
+        assert_eq!(told(&sequences_any_aspect(&presses(text))), any_aspect, "{text}, whatever the aspect");
     };
     check("", &[], &[]);
     check("..s.r.s", &[], &[]);
@@ -54,7 +74,7 @@ fn a_sequence_ends_where_more_than_three_presses_are_right() {
     // Whatever the errors are about; the most frequent target names the sequence, of equals the first.
     check("AB.BA.B...", &[('B', 5, 0, 7)], &[('A', 2, 0, 5), ('B', 3, 1, 7)]);
     check("BA.AB", &[('B', 4, 0, -1)], &[('B', 2, 0, -1), ('A', 2, 1, -1)]);
-    // By single targets they fragment: an error about something else is no correct press, but keeps nothing together.
+    // An error about something else is no correct press, but keeps nothing together.
     check("A..B..A.", &[('A', 3, 0, 7)], &[('A', 1, 0, 1), ('B', 1, 3, 4), ('A', 1, 6, 7)]);
 }
 

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use tomcom::edge::files::read_session;
+use tomcom::edge::files::{SessionFiles, read_session};
 use tomcom::kitchen::DishId;
 use tomcom::session::orders::OrderList;
 use tomcom::session::plan::{Item, Participants, Study, WantedRecording};
+use tomcom::session::settings::{ArmKind, ParticipantKind, ThemeChoice, Visibility};
 
 use super::{folder, study};
 
@@ -106,5 +107,35 @@ fn the_trials_of_a_participant_ask_for_the_same_dishes_in_another_order() {
             assert_eq!(block.iter().map(|dish| dish.index()).collect::<Vec<_>>(), (0..menu).collect::<Vec<_>>());
         }
         assert!(differ > 25, "of 28 pairs only {differ} differ");
+    }
+}
+
+#[test]
+fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
+    let digest = |change: fn(&mut SessionFiles)| study(change).digest;
+    let original = digest(|_| ());
+    let others: [(&str, fn(&mut SessionFiles)); 10] = [
+        ("presses", |files| files.spec.trial.presses += 1),
+        ("arm", |files| files.spec.robot.arm = ArmKind::Timed),
+        ("signals", |files| files.spec.signals.shown_s += 1.0),
+        ("cost", |files| files.spec.assistant.cost_of_communication += 0.1),
+        ("what the wizard sees", |files| files.spec.console.visibility = Visibility::Recommendation),
+        ("human model", |files| files.spec.human.decision.tau += 0.1),
+        ("display", |files| files.spec.display.intention = true),
+        ("seed", |files| files.spec.seed += 1),
+        ("layout", |files| files.kitchen.layout.text.push('\n')),
+        ("recipes", |files| files.kitchen.recipes.text.push('\n')),
+    ];
+    for (what, change) in others {
+        assert_ne!(digest(change), original, "{what}");
+    }
+    let same: [(&str, fn(&mut SessionFiles)); 4] = [
+        ("port", |files| files.spec.display.port += 1),
+        ("viewer", |files| files.spec.rerun.live = !files.spec.rerun.live),
+        ("theme", |files| files.spec.console.theme = ThemeChoice::Light),
+        ("who takes part", |files| files.spec.participant.kind = ParticipantKind::Keyboard),
+    ];
+    for (what, change) in same {
+        assert_eq!(digest(change), original, "{what}");
     }
 }

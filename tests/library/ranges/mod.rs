@@ -19,6 +19,7 @@ fn every_setting() -> toml::Table {
         layout = "../layouts/sushi.toml"
         [trial]
         orders = 3
+        pace_s = 2.0
         [tracker]
         corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
         [participant.population]

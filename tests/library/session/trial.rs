@@ -163,3 +163,15 @@ fn signals_of_the_wizard_keep_apart_and_a_new_one_replaces_the_shown_one() {
     assert!(refused(&mut engine, 2.3, highlight("plate")).contains("too soon"));
     check(&mut engine, &[(3.0, highlight("plate")), (4.0, highlight("counter"))]);
 }
+
+#[test]
+fn presses_faster_than_the_sessions_pace_are_recorded_and_do_not_count() {
+    let mut engine = engine(|spec| spec.trial.pace_s = Some(8.0));
+    check(&mut engine, &[(0.0, Event::TrialStarted), (1.0, press("take rice")), (8.9, press("counter"))]);
+    assert_eq!(engine.session().presses[Agent::Human.index()], 1, "7.9 s after the first");
+    // A pause is no time to get ready in.
+    check(&mut engine, &[(8.95, Event::TrialPaused), (20.0, Event::TrialResumed), (20.01, press("counter"))]);
+    assert_eq!(engine.session().presses[Agent::Human.index()], 1, "7.96 s on the trial's clock");
+    let kinds = check(&mut engine, &[(20.1, press("counter")), (20.2, press("take rice"))]);
+    assert_eq!(engine.session().presses[Agent::Human.index()], 2, "{kinds:?}");
+}

@@ -1,13 +1,17 @@
 //! The study: statistics, what concepts would have prevented, tables and report.
 
 mod effect;
+mod live_arms;
 mod prevention;
 mod report;
 mod tables;
 
 use tomcom::base::time::SessionTime;
+use tomcom::communication::concept::ConceptName;
+use tomcom::measures::cause_kinds::CauseKindCounts;
 use tomcom::session::event::EndReason;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
+use tomcom::study::acting_arm::ActingArm;
 use tomcom::study::robot_tally::RobotSummary;
 use tomcom::study::trial_statistics::{BeliefBasis, BeliefErrors, Trial, arrange};
 
@@ -33,6 +37,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         period: Some(period),
         is_planned: true,
         condition,
+        acting: ActingArm::from_settings(condition, ConceptName::TomCom, 1.5),
         left_out: None,
         ended: Some(EndReason::Presses),
         arm: ArmKind::Timed,
@@ -45,7 +50,8 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
             basis: BeliefBasis::Recorded,
             errors: related,
             of_two: 0,
-            lengths_by_aspect: lengths.clone(),
+            causes: CauseKindCounts { places: related, ..CauseKindCounts::default() },
+            lengths_any_aspect: lengths.clone(),
             lengths,
             recovery_s: vec![6.0],
             episodes: Some(1),
@@ -53,11 +59,14 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         orders: 12,
         order_s: Some(20.0),
         presses_per_order: Some(19.0),
+        additional_presses_per_order: Some(2.5),
         press_s: Some(1.8),
         signals: 0,
+        useful_signals: None,
         seconds: 400.0,
         answers: Vec::new(),
         wizard: None,
+        wizard_saw_advice: false,
         lanes: None,
         swept: Vec::new(),
         raters: None,

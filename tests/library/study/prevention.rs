@@ -1,72 +1,109 @@
-//! Errors that communications would have prevented, and concepts compared.
+//! Errors that communications would have prevented, useless signals, and concepts compared.
 
 use tomcom::communication::concept::ConceptName;
 use tomcom::kitchen::AspectId;
-use tomcom::study::prevention::{
-    ConceptSignal, FalseBeliefTruth, PressTruth, PreventionCounts, SequenceTruth, TrialTruth,
-};
+use tomcom::study::prevention::{ConceptSignal, FalseBeliefTruth, PressTruth, PreventionCounts, TrialTruth};
 use tomcom::study::roc::{SweptTrial, compare};
 
 use super::{at, near};
 
-/// Errors at presses 3, 4, 5 of ten, a second apart, because of an aspect that is false from 2.5 to 7.5 s.
+/// Ten presses, a second apart. Aspect 0 is believed wrong from 2.5 to 7.5 s and causes the errors at presses 3, 4 and 6; aspect 1
+/// is believed wrong from 3.5 s to 5.5 s and causes the error at press 5; aspect 2 is believed wrong from 8.5 s and does no harm.
+/// Press 9 is a slip.
 fn truth() -> TrialTruth {
-    let (harmful, harmless) = (AspectId(0), AspectId(1));
-    let error = |index: usize| (3..=5).contains(&index);
+    let about = |index: usize| match index {
+        3 | 4 | 6 => vec![AspectId(0)],
+        5 => vec![AspectId(1)],
+        _ => Vec::new(),
+    };
+    let press = |index: usize| {
+        let aspects = about(index);
+        PressTruth { time: at(index as f64), error: index == 9 || !aspects.is_empty(), aspects }
+    };
+    let spell = |aspect: u8, began: f64, ended: Option<f64>| FalseBeliefTruth {
+        aspect: AspectId(aspect),
+        began: at(began),
+        ended: ended.map(at),
+        harmful: aspect < 2,
+    };
     TrialTruth {
-        presses: (0..10)
-            .map(|i| PressTruth { time: at(i as f64), error: error(i) || i == 9, related: error(i) })
-            .collect(),
-        spells: vec![
-            FalseBeliefTruth { aspect: harmful, began: at(2.5), ended: Some(at(7.5)), harmful: true },
-            FalseBeliefTruth { aspect: harmless, began: at(8.5), ended: None, harmful: false },
-        ],
-        sequences: vec![SequenceTruth { aspects: vec![harmful], errors: vec![at(3.0), at(4.0), at(5.0)] }],
+        presses: (0..10).map(press).collect(),
+        spells: vec![spell(0, 2.5, Some(7.5)), spell(1, 3.5, Some(5.5)), spell(2, 8.5, None)],
     }
 }
 
-fn sent(seconds: f64, aspect: u8) -> ConceptSignal {
-    ConceptSignal { time: at(seconds), press: seconds as usize + 1, aspects: vec![AspectId(aspect)] }
+fn sent(seconds: f64, aspects: &[u8]) -> ConceptSignal {
+    let aspects = aspects.iter().map(|&aspect| AspectId(aspect)).collect();
+    ConceptSignal { time: at(seconds), press: seconds as usize + 1, aspects }
+}
+
+/// Counts of signals: prevented errors, useless signals, of these inside of episodes, presses right after one, harmless ones.
+fn counted(sent: &[ConceptSignal]) -> [u64; 5] {
+    let count = truth().count_signals(sent);
+    assert_eq!((count.signals, count.contents), (sent.len() as u64, sent.len() as u64));
+    [count.prevented, count.useless, count.false_inside, count.false_presses, count.harmless]
 }
 
 #[test]
-fn a_signal_prevents_the_rest_of_its_sequence() {
-    let truth = truth();
-    let silent = truth.count_signals(&[]);
-    let outside = 5;
-    assert_eq!(silent, PreventionCounts { presses: 10, related: 3, outside, ..PreventionCounts::default() });
-    let counted = |sent: &[ConceptSignal]| truth.count_signals(sent);
-    // Before the first error the whole sequence, after it the rest, after the last nothing.
-    assert_eq!(counted(&[sent(2.6, 0)]).prevented, 3);
-    assert_eq!(counted(&[sent(3.0, 0)]).prevented, 2);
-    assert_eq!(counted(&[sent(3.0, 0), sent(4.0, 0)]).prevented, 2);
-    assert_eq!(counted(&[sent(6.0, 0)]).prevented, 0);
-    // Before the belief was false it is a false positive and prevents nothing.
-    let early = counted(&[sent(0.5, 0)]);
-    assert_eq!((early.prevented, early.false_presses, early.signals), (0, 1, 1));
-    // About something else that is believed right, during an episode.
-    let beside = counted(&[sent(4.0, 2)]);
-    assert_eq!((beside.prevented, beside.false_presses, beside.false_inside), (0, 0, 1));
-    // About what is wrong and does no harm.
-    let harmless = counted(&[sent(8.6, 1)]);
-    assert_eq!((harmless.harmless, harmless.false_presses), (1, 0));
-    // Two false signals before the same press are one false press.
-    assert_eq!(counted(&[sent(0.2, 0), sent(0.4, 1)]).false_presses, 1);
+fn a_signal_prevents_the_later_errors_of_its_own_aspect_and_no_others() {
+    let silent = PreventionCounts { presses: 10, related: 4, outside: 5, ..PreventionCounts::default() };
+    assert_eq!(truth().count_signals(&[]), silent);
+    // Before the first error all three of aspect 0, and not the one of aspect 1 in between.
+    assert_eq!(counted(&[sent(2.6, &[0])]), [3, 0, 0, 0, 0]);
+    assert_eq!(counted(&[sent(3.0, &[0])]), [2, 0, 0, 0, 0]);
+    assert_eq!(counted(&[sent(5.2, &[0])]), [1, 0, 0, 0, 0]);
+    assert_eq!(counted(&[sent(3.6, &[1])]), [1, 0, 0, 0, 0]);
+    // A signal about an order and its recipe tells both aspects.
+    assert_eq!(counted(&[sent(3.6, &[0, 1])]), [3, 0, 0, 0, 0]);
 }
 
 #[test]
-fn a_proposal_spares_the_errors_of_the_next_presses() {
-    let counts: Vec<[u64; 3]> = (1..=3)
+fn a_signal_is_useful_only_as_the_first_about_an_episode_with_an_error_to_follow() {
+    // Repeated.
+    assert_eq!(counted(&[sent(3.0, &[0]), sent(4.0, &[0])]), [2, 1, 1, 1, 0]);
+    // First about aspect 1, though aspect 0 was told before.
+    assert_eq!(counted(&[sent(3.0, &[0]), sent(4.0, &[0, 1])]), [3, 0, 0, 0, 0]);
+    // After the last error, but while the belief is still false.
+    assert_eq!(counted(&[sent(6.5, &[0])]), [0, 1, 1, 1, 0]);
+    // Before the belief was false, outside of episodes.
+    assert_eq!(counted(&[sent(0.5, &[0])]), [0, 1, 0, 1, 0]);
+    // Afterwards; the belief is right again.
+    assert_eq!(counted(&[sent(8.2, &[0])]), [0, 1, 0, 1, 0]);
+    // About something that is believed right, during an episode.
+    assert_eq!(counted(&[sent(4.0, &[3])]), [0, 1, 1, 1, 0]);
+    // About what is believed wrong and does no harm; after the last press no press follows.
+    assert_eq!(counted(&[sent(8.6, &[2])]), [0, 1, 0, 1, 1]);
+    assert_eq!(counted(&[sent(9.6, &[2])]), [0, 1, 0, 0, 1]);
+    // Two useless signals before the same press are two signals and one press.
+    assert_eq!(counted(&[sent(0.2, &[0]), sent(0.4, &[1])]), [0, 2, 0, 1, 0]);
+    let count = truth().count_signals(&[sent(3.0, &[0]), sent(4.0, &[0])]);
+    let rates = count.rates().expect("presses and errors");
+    assert_eq!((rates.fpr, rates.tpr, rates.signals_per_100), (0.1, 0.5, 20.0));
+    assert_eq!(count.useless_share(), Some(0.5));
+    assert_eq!(truth().count_signals(&[]).useless_share(), None, "no signals, no share");
+}
+
+#[test]
+fn a_proposal_is_one_interruption_and_useless_if_no_press_that_it_spares_is_an_error() {
+    let counts: Vec<[u64; 4]> = (1..=3)
         .map(|k| truth().count_proposals(k))
-        .map(|count| [count.signals, count.prevented, count.false_presses])
+        .map(|count| [count.signals, count.contents, count.prevented, count.useless])
         .collect();
-    // Of one press: at 3 (sparing 4), at 5 (sparing 6), at 9. Press 8 is outside of episodes, but nothing is proposed for it.
-    assert_eq!(counts, [[3, 1, 0], [4, 2, 0], [6, 2, 0]]);
+    // k = 1: at 3 (sparing 4), at 5 (sparing 6), at 9, which no press follows. k = 2: at 3 (4, 5), at 6 (7, 8: no error), at 9.
+    // k = 3: at 3 (4, 5, 6), at 9.
+    assert_eq!(counts, [[3, 3, 2, 1], [3, 6, 2, 2], [2, 6, 3, 1]]);
+    // A spared slip is no false positive.
+    let slips = TrialTruth {
+        presses: [true, true, false].map(|error| PressTruth { time: at(0.0), error, aspects: Vec::new() }).to_vec(),
+        spells: Vec::new(),
+    };
+    let count = slips.count_proposals(1);
+    assert_eq!((count.signals, count.prevented, count.useless), (1, 0, 0));
 }
 
 #[test]
 fn concepts_are_compared_where_they_say_equally_much() {
-    let swept = |concept, parameter, signals, prevented, false_presses| SweptTrial {
+    let swept = |concept, parameter, signals, prevented, useless| SweptTrial {
         concept,
         parameter,
         count: PreventionCounts {
@@ -74,17 +111,16 @@ fn concepts_are_compared_where_they_say_equally_much() {
             signals,
             related: 10,
             prevented,
-            outside: 50,
-            false_presses,
+            useless,
             ..PreventionCounts::default()
         },
     };
     let participant = vec![
-        swept(ConceptName::TomCom, 1.0, 4, 5, 1),
-        swept(ConceptName::TomCom, 0.5, 8, 7, 5),
-        swept(ConceptName::Tom, 0.9, 8, 4, 5),
-        swept(ConceptName::Tom, 0.4, 16, 6, 10),
-        swept(ConceptName::Dev, 1.0, 10, 2, 10),
+        swept(ConceptName::TomCom, 1.0, 4, 5, 2),
+        swept(ConceptName::TomCom, 0.5, 8, 7, 10),
+        swept(ConceptName::Tom, 0.9, 8, 4, 10),
+        swept(ConceptName::Tom, 0.4, 16, 6, 20),
+        swept(ConceptName::Dev, 1.0, 10, 2, 20),
     ];
     let found = compare(&[participant.clone(), participant], 2, 1);
     near(found.common_fpr.expect("a range"), 0.1);
@@ -96,6 +132,12 @@ fn concepts_are_compared_where_they_say_equally_much() {
         near(found, wanted);
     }
     for (found, wanted) in at_equal(2).into_iter().zip([0.04, 0.08, 0.12, 0.16]) {
+        near(found, wanted);
+    }
+    // Useless shares: a half at 4 signals, from there to 10 of 8; the share of the straight line.
+    let useless: Vec<f64> =
+        found.concepts[0].useless_at_equal_signals.iter().map(|one| one.value.expect("a share")).collect();
+    for (found, wanted) in useless.into_iter().zip([0.5, 0.5, 1.0, 1.25]) {
         near(found, wanted);
     }
     // From (0, 0) over (0.02, 0.5) to (0.1, 0.7).

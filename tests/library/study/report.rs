@@ -67,6 +67,24 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
     assert!(!page.contains("simulated participants</title>"));
 }
 
+/// With fewer than eight participants r and p stand in the tables only, and the card says why.
+#[test]
+fn few_participants_have_no_r_among_the_main_results() {
+    let card = |participants: usize| {
+        let errors: Vec<[u64; 2]> =
+            (0..participants as u64 / 2).map(|index| [24 + index, 12 + index * index]).collect();
+        let trials = trials(&errors, &errors);
+        let summary = StudySummary::from_trials(&trials, &Facts::default(), 0);
+        let page = report::page(&summary, &trials, &Facts::default(), &Table::ALL);
+        assert!(!page.contains("&lt; 0.001"), "p < 0.001 is not broken over two lines");
+        page.split("class=\"card\"").nth(4).expect("four cards").split("</div>").next().expect("a card").to_string()
+    };
+    let few = card(6);
+    assert!(few.contains("6 participants with both trials are fewer than 8") && !few.contains("r\u{a0}="), "{few}");
+    let enough = card(8);
+    assert!(enough.contains("r\u{a0}=") && !enough.contains("fewer than"), "{enough}");
+}
+
 /// Of an arm in the physics: slowed from 2 to 5 s, touched twice, stopped by the second contact, resumed, stopped by hand.
 #[test]
 fn what_the_robot_did_is_counted_while_the_trial_is_on() {

@@ -19,7 +19,8 @@ const PUBLISHED: [(Table, &str); 9] = [
         Table::Participants,
         "participant kind group trials trials_counted assisted_second error_rate_human_1 error_rate_human_2 error_rate_1 \
          error_rate_2 sequence_length_1 sequence_length_2 recovery_s_1 recovery_s_2 order_s_1 order_s_2 presses_per_order_1 \
-         presses_per_order_2 press_s_1 press_s_2",
+         presses_per_order_2 press_s_1 press_s_2 additional_presses_per_order_1 additional_presses_per_order_2 errors_1 \
+         errors_2",
     ),
     (
         Table::Trials,
@@ -29,12 +30,14 @@ const PUBLISHED: [(Table, &str); 9] = [
          protective_stops faults contacts peak_force_n reduced_s safeguard_s emergency_stops given_up_no_longer_useful \
          given_up_stopped given_up_skipped given_up_driven given_up_out_of_reach given_up_singular given_up_obstructed \
          given_up_hand_in_the_way given_up_no_click given_up_contact given_up_fault wizard_held wizard_skipped wizard_driven \
-         wizard_corrected",
+         wizard_corrected useful_signals useless_signals sequences_any_aspect sequence_length_any_aspect additional_presses_per_order errors_about_orders \
+         errors_about_recipes errors_about_order_or_recipe errors_about_places",
     ),
     (Table::Questionnaires, "recording participant condition questionnaire item about reversed answer points"),
     (
         Table::Concepts,
-        "recording participant concept parameter presses signals related prevented outside false_presses false_inside harmless",
+        "recording participant concept parameter presses signals related prevented outside false_presses false_inside harmless \
+         contents useless",
     ),
     (
         Table::Actions,
@@ -76,6 +79,7 @@ fn pair() -> [Trial; 2] {
         left_out: None,
         order_s: Some(20.0),
         presses_per_order: Some(16.5),
+        additional_presses_per_order: Some(1.5),
         ..analysis("pair").trial
     };
     let first = Trial {

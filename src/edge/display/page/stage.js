@@ -81,7 +81,11 @@ const Stage = (() => {
   }
 
   function key(knob) {
-    return scene.keys && knob && knob.key ? text("kbd", "key", knob.key.toUpperCase()) : "";
+    const named = scene.keys && knob && knob.key;
+    if (!knob || (!named && !knob.colour)) return "";
+    const badge = text("kbd", named ? "key" : "key cap", named ? knob.key.toUpperCase() : "");
+    if (knob.colour) badge.dataset.colour = knob.colour;
+    return badge;
   }
 
   function knobOf(does, at) {

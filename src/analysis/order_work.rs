@@ -1,0 +1,60 @@
+//! What the orders of a trial took: time from appearance to serving, and presses beyond the least number.
+
+use std::collections::BTreeMap;
+
+use super::wizard_log::clock_at;
+use crate::base::time::SessionTime;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Change, Kitchen, LocationId};
+use crate::session::{Session, TimelineEvent};
+
+/// Seconds from the appearance of each served order to its serving, on the trial's clock.
+pub fn order_times(session: &Session) -> Vec<f64> {
+    let mut shown: BTreeMap<LocationId, SessionTime> = BTreeMap::new();
+    let mut times = Vec::new();
+    for entry in &session.timeline {
+        match entry.what {
+            TimelineEvent::OrderShown { order } => {
+                shown.insert(order, entry.time);
+            }
+            TimelineEvent::Served { order } => {
+                let since = shown.remove(&order);
+                times.extend(since.map(|since| clock_at(session, entry.time).secs_since(clock_at(session, since))));
+            }
+            _ => {}
+        }
+    }
+    times
+}
+
+/// Running sum of the regret of both agents' presses: the presses that were lost.
+#[derive(Clone, Debug)]
+pub struct RegretSum {
+    cost: CostToGo,
+    lost: i64,
+}
+
+impl RegretSum {
+    /// A sum before the first press.
+    pub fn new(cost: CostToGo) -> RegretSum {
+        RegretSum { cost, lost: 0 }
+    }
+
+    /// Adds the press of a change that was just applied; other changes have no regret.
+    pub fn note(&mut self, kitchen: &Kitchen, change: &Change) {
+        let Change::Press { press, .. } = change else { return };
+        let recipes = kitchen.true_recipes();
+        self.lost += match press.before == press.after {
+            true => 1,
+            false => {
+                let mut cost = |state| i64::from(self.cost.all_orders(state, &recipes));
+                1 + cost(press.after) - cost(press.before)
+            }
+        };
+    }
+
+    /// The sum per served order; `None` if no order was served.
+    pub fn per_order(&self, served: u64) -> Option<f64> {
+        (served > 0).then(|| self.lost as f64 / served as f64)
+    }
+}

@@ -1,0 +1,61 @@
+//! Belief related errors by the kind of aspect that was believed wrong, as the paper discusses them: orders, recipes, places.
+
+use serde::Serialize;
+
+use super::attribution::{Cause, Target};
+use super::judged_press::JudgedPress;
+use super::sequences::Episodes;
+use crate::kitchen::{AspectId, Kitchen};
+
+/// Numbers of belief related errors by kind of aspect.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct CauseKindCounts {
+    /// Errors about an order.
+    pub orders: u64,
+    /// Errors about a recipe.
+    pub recipes: u64,
+    /// Errors about an ordered dish of which both order and recipe were believed wrong, or nobody knows which of them.
+    pub order_or_recipe: u64,
+    /// Errors about the content of any other location.
+    pub places: u64,
+}
+
+impl CauseKindCounts {
+    /// Counts of these presses. `episodes` tells which of an order and its recipe was believed wrong at the time of an error.
+    pub fn from_presses(kitchen: &Kitchen, presses: &[JudgedPress], episodes: &Episodes) -> CauseKindCounts {
+        let mut counts = CauseKindCounts::default();
+        for press in presses {
+            let Some(Cause::Belief { target, .. }) = press.cause else { continue };
+            let is_false = |aspect: AspectId| {
+                let is_open = |end| press.time <= end;
+                episodes.all().any(|episode| {
+                    episode.aspect == aspect && episode.began <= press.time && episode.corrected.is_none_or(is_open)
+                })
+            };
+            let count = match target {
+                Target::Place(_) => &mut counts.places,
+                Target::Recipe(_) => &mut counts.recipes,
+                Target::Order(_, None) => &mut counts.orders,
+                Target::Order(location, Some(dish)) => {
+                    match (is_false(AspectId::of_location(location)), is_false(kitchen.aspect_of_dish(dish))) {
+                        (true, false) => &mut counts.orders,
+                        (false, true) => &mut counts.recipes,
+                        _ => &mut counts.order_or_recipe,
+                    }
+                }
+            };
+            *count += 1;
+        }
+        counts
+    }
+
+    /// Sum of two counts.
+    pub fn plus(self, other: CauseKindCounts) -> CauseKindCounts {
+        CauseKindCounts {
+            orders: self.orders + other.orders,
+            recipes: self.recipes + other.recipes,
+            order_or_recipe: self.order_or_recipe + other.order_or_recipe,
+            places: self.places + other.places,
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! Usefulness of the signals of a simulated trial, judged by twins.
+//!
+//! The trial is run again from its recording. At every signal the run is copied, and the copy goes on with the same random streams
+//! and without this or any later signal, until the false beliefs that the signal is about have ended. The signal is useful if the
+//! copy makes more belief related errors about them than the trial did until they ended there.
+
+use std::collections::VecDeque;
+use std::path::Path;
+
+use crate::analysis::follower::Follower;
+use crate::base::time::SessionTime;
+use crate::communication::Signal;
+use crate::communication::recommendation::aspects_told;
+use crate::edge::file_error::FileResult;
+use crate::edge::log::{LogReader, event_line};
+use crate::kitchen::AspectId;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::measures::attribution::Cause;
+use crate::measures::sequences::Episode;
+use crate::run::engine::Engine;
+use crate::run::headless::Attendant;
+use crate::session::admit::is_external;
+use crate::session::settings::Condition;
+use crate::session::{Event, Phase, Stamped};
+
+/// A signal of the trial, and what its twin did.
+struct TwinResult {
+    time: SessionTime,
+    told: Vec<AspectId>,
+    /// Belief related errors of the twin about what the signal told.
+    errors: u64,
+}
+
+/// Number of useful signals of a recorded trial of a simulated participant; `None` if the trial cannot be run again: participants
+/// decide otherwise since the program's version that recorded it, or this build lacks the arm.
+///
+/// # Errors
+/// The recording cannot be read.
+pub(super) fn useful_signals(recording: &Path) -> FileResult<Option<u64>> {
+    let mut log = LogReader::open(recording)?;
+    let (kitchen, header) = (log.kitchen.clone(), log.header.clone());
+    if header.session.require_built().is_err() {
+        return Ok(None);
+    }
+    let cost = CostToGo::new(kitchen.clone());
+    let mut again = Engine::new(kitchen, header.session, header.trial, cost);
+    let (mut produced, mut twins) = (VecDeque::new(), Vec::new());
+    while let Some(line) = log.next_line()? {
+        if produced.is_empty() {
+            produced.extend(run_to(&mut again, &line.stamped, &mut twins));
+        }
+        let same = produced.pop_front().is_some_and(|one: Stamped| event_line(&one) == line.text);
+        if !same {
+            return Ok(None);
+        }
+    }
+    let trial = again.into_follower();
+    let is_useful = |one: &&TwinResult| one.errors > errors_after(&trial, one.time, &one.told);
+    Ok(Some(twins.iter().filter(is_useful).count() as u64))
+}
+
+/// Runs the session up to a recorded event, and a twin for every signal on the way. Recommendations are taken from the recording.
+fn run_to(again: &mut Engine, recorded: &Stamped, twins: &mut Vec<TwinResult>) -> Vec<Stamped> {
+    let is_signal = match &recorded.event {
+        Event::SignalShown { .. } => true,
+        Event::Advised(advice) => advice.best.is_some() && again.session().spec.trial.condition == Condition::Assistant,
+        _ => false,
+    };
+    let before = is_signal.then(|| again.clone());
+    let mut events = Vec::new();
+    if is_external(again.session(), &recorded.event) {
+        events = again.input(recorded.time, recorded.event.clone()).events;
+    } else {
+        // A participant can act without an event.
+        while events.is_empty() && again.next_due().is_some_and(|due| due <= recorded.time) {
+            events = again.fire();
+        }
+    }
+    let _ = again.take_questions();
+    let shown = events.iter().find_map(|stamped| match &stamped.event {
+        Event::SignalShown { signal, .. } => Some((stamped.time, signal)),
+        _ => None,
+    });
+    if let (Some(before), Some((time, signal))) = (before, shown) {
+        twins.push(twin(before.without_wizard(), time, signal));
+    }
+    events
+}
+
+/// Runs a twin without further signals until the false beliefs that a signal at `time` is about have ended.
+fn twin(mut engine: Engine, time: SessionTime, signal: &Signal) -> TwinResult {
+    let session = engine.session();
+    let told = aspects_told(&session.kitchen, session.state, signal);
+    let presses = engine.judged().len();
+    let mut attendant = Attendant::default();
+    while engine.session().phase == Phase::Running {
+        attendant.step(&mut engine);
+        let _ = engine.take_questions();
+        // What a participant believes is recorded before its presses.
+        let is_over = open_at(engine.follower(), time, &told).all(|episode| episode.corrected.is_some());
+        if is_over && engine.judged().len() > presses {
+            break;
+        }
+    }
+    let errors = errors_after(engine.follower(), time, &told);
+    TwinResult { time, told, errors }
+}
+
+/// Periods of false belief about these aspects that were open at a time.
+fn open_at<'a>(follower: &'a Follower, time: SessionTime, told: &'a [AspectId]) -> impl Iterator<Item = &'a Episode> {
+    let is_open = move |episode: &&Episode| episode.began <= time && episode.corrected.is_none_or(|end| end > time);
+    follower.episodes.all().filter(|episode| told.contains(&episode.aspect)).filter(is_open)
+}
+
+/// Belief related errors after a time about aspects in `told` that were believed wrong at that time, until the beliefs were right.
+fn errors_after(follower: &Follower, time: SessionTime, told: &[AspectId]) -> u64 {
+    let kitchen = &follower.session.kitchen;
+    let open: Vec<&Episode> = open_at(follower, time, told).collect();
+    let errors = follower.judged.iter().filter(|press| {
+        let Some(Cause::Belief { target, .. }) = press.cause.filter(|_| press.time > time) else { return false };
+        let mut aspects = target.aspects(kitchen);
+        aspects.any(|aspect| {
+            let is_in = |episode: &&Episode| episode.corrected.is_none_or(|end| press.time <= end);
+            open.iter().filter(|episode| episode.aspect == aspect).any(is_in)
+        })
+    });
+    errors.count() as u64
+}

@@ -1,0 +1,119 @@
+//! Concepts that acted by themselves in simulated trials, beside each other and beside what the analysis of unassisted trials says
+//! of them (offline).
+//!
+//! Arms are compared over the trials that all of them have: the same seed, participant and period. In such trials orders,
+//! participants and random streams are the same, so the differences are within a trial. Offline, a signal changes nothing that
+//! follows; live, the trial goes on differently after it, so the two columns differ.
+
+use std::collections::BTreeSet;
+
+use serde::Serialize;
+
+use super::acting_arm::ActingArm;
+use super::roc::Roc;
+use super::trial_statistics::{Trial, mean_length};
+use crate::session::settings::ParticipantKind;
+
+/// An arm of simulated trials over the trials that all arms have.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LiveArm {
+    /// Who sent the signals.
+    #[serde(flatten)]
+    pub arm: ActingArm,
+    /// Number of trials.
+    pub trials: u64,
+    /// Belief related errors per 100 presses of the human.
+    pub belief_related_per_100: Option<f64>,
+    /// Sequences of related errors per 100 presses of the human.
+    pub sequences_per_100: Option<f64>,
+    /// Mean number of errors in a sequence.
+    pub mean_sequence_length: Option<f64>,
+    /// Orders served.
+    pub orders: u64,
+    /// Orders served per minute.
+    pub orders_per_minute: Option<f64>,
+    /// Signals per 100 presses of the human.
+    pub interruptions_per_100: Option<f64>,
+    /// Useless signals per 100 presses of the human, judged by twins without the signal; null where a trial was not judged.
+    pub useless_per_100: Option<f64>,
+    /// The share of useless ones among the signals; null without signals, or where a trial was not judged.
+    pub useless_share: Option<f64>,
+    /// The share by which belief related errors per press are fewer than in the arm without signals; null without that arm.
+    pub prevented: Option<f64>,
+    /// The share that the analysis of unassisted trials says would be prevented with the same parameter; null where it was not swept.
+    pub prevented_offline: Option<f64>,
+    /// Signals per 100 presses by that analysis.
+    pub interruptions_per_100_offline: Option<f64>,
+}
+
+/// Identifies a simulated trial in every arm.
+type TrialKey = (u64, String, Option<u32>);
+
+fn key(trial: &Trial) -> TrialKey {
+    (trial.seed, trial.participant.clone(), trial.period)
+}
+
+/// The arms over the trials that all of them have; empty unless at least two arms share trials.
+pub fn live_arms(trials: &[&Trial], roc: &[Roc]) -> Vec<LiveArm> {
+    let simulated = |trial: &&Trial| trial.kind == ParticipantKind::Simulated && trial.beliefs.is_some();
+    let mut groups: Vec<(ActingArm, Vec<&Trial>)> = Vec::new();
+    for trial in trials.iter().copied().filter(simulated) {
+        let Some(arm) = trial.acting else { continue };
+        match groups.iter_mut().find(|(other, _)| *other == arm) {
+            Some((_, group)) => group.push(trial),
+            None => groups.push((arm, vec![trial])),
+        }
+    }
+    groups.sort_by(|(a, _), (b, _)| a.rank().0.cmp(&b.rank().0).then(a.rank().1.total_cmp(&b.rank().1)));
+    let sets = groups.iter().map(|(_, group)| group.iter().map(|trial| key(trial)).collect::<BTreeSet<TrialKey>>());
+    let shared = sets.reduce(|a, b| a.intersection(&b).cloned().collect()).unwrap_or_default();
+    if groups.len() < 2 || shared.is_empty() {
+        return Vec::new();
+    }
+    groups.iter_mut().for_each(|(_, group)| group.retain(|trial| shared.contains(&key(trial))));
+    let mut arms: Vec<LiveArm> = groups.iter().map(|(arm, group)| LiveArm::from_trials(*arm, group)).collect();
+    let without = arms.iter().find(|arm| arm.arm.concept == "none").and_then(|arm| arm.belief_related_per_100);
+    for arm in arms.iter_mut().filter(|arm| arm.arm.concept != "none") {
+        let rates = arm.belief_related_per_100.zip(without).filter(|(_, without)| *without > 0.0);
+        arm.prevented = rates.map(|(with, without)| 1.0 - with / without);
+        let points = roc.iter().filter(|roc| roc.concept.name() == arm.arm.concept).flat_map(|roc| &roc.points);
+        let is_same = |parameter: f64| arm.arm.parameter.is_some_and(|own| (own - parameter).abs() < 1e-9);
+        let point = points.into_iter().find(|point| is_same(point.parameter));
+        arm.prevented_offline = point.map(|point| point.tpr);
+        arm.interruptions_per_100_offline = point.map(|point| point.signals_per_100_actions);
+    }
+    arms
+}
+
+impl LiveArm {
+    fn from_trials(arm: ActingArm, trials: &[&Trial]) -> LiveArm {
+        let sum = |of: fn(&Trial) -> u64| trials.iter().map(|trial| of(trial)).sum::<u64>();
+        let beliefs = || trials.iter().filter_map(|trial| trial.beliefs.as_ref());
+        let lengths: Vec<u32> = beliefs().flat_map(|one| one.lengths.iter().copied()).collect();
+        let (presses, orders) = (sum(|trial| trial.human_presses), sum(|trial| trial.orders));
+        let per_100 = |number: u64| (presses > 0).then(|| 100.0 * number as f64 / presses as f64);
+        let signals = sum(|trial| trial.signals);
+        let share_of = Some(signals).filter(|&signals| signals > 0);
+        let judged = trials.iter().map(|trial| match trial.signals {
+            0 => Some(0),
+            signals => trial.useful_signals.map(|useful| signals - useful),
+        });
+        let useless: Option<u64> = judged.sum();
+        let seconds: f64 = trials.iter().map(|trial| trial.seconds).sum();
+        LiveArm {
+            arm,
+            trials: trials.len() as u64,
+            belief_related_per_100: per_100(beliefs().map(|one| one.errors).sum()),
+            sequences_per_100: per_100(lengths.len() as u64),
+            mean_sequence_length: mean_length(&lengths),
+            orders,
+            orders_per_minute: (seconds > 0.0).then(|| 60.0 * orders as f64 / seconds),
+            interruptions_per_100: per_100(signals),
+            useless_per_100: useless.and_then(per_100),
+            useless_share: useless.zip(share_of).map(|(useless, signals)| useless as f64 / signals as f64),
+            prevented: None,
+            prevented_offline: None,
+            interruptions_per_100_offline: None,
+        }
+    }
+}

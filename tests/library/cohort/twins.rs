@@ -1,0 +1,44 @@
+//! Signals that were sent to simulated participants, judged by twins of the trial without them.
+
+use std::fs;
+use std::path::Path;
+
+use tomcom::communication::concept::ConceptName;
+use tomcom::edge::files::read_session;
+use tomcom::edge::log::LOG_NAME;
+use tomcom::run::simulate::Shard;
+use tomcom::run::study::reading::{self, AnalysisScope};
+use tomcom::session::settings::{ArmKind, Condition};
+use tomcom::study::trial_statistics::Trial;
+
+use super::{folder, run};
+
+fn analysed(recording: &Path) -> Trial {
+    let scope = AnalysisScope { concepts: true, events: false };
+    let (_, analysis) = reading::read(recording, "one", scope).expect("readable").expect("no practice");
+    analysis.trial
+}
+
+/// ToM sends many signals: some of them prevent errors, others are about beliefs that do no harm.
+#[test]
+fn signals_of_simulated_trials_are_useful_or_useless_and_those_of_trials_that_come_out_otherwise_unknown() {
+    let mut files = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    files.spec.trial.condition = Condition::Assistant;
+    files.spec.trial.presses = 200;
+    files.spec.assistant.concept = ConceptName::Tom;
+    files.spec.robot.arm = ArmKind::Timed;
+    files.spec.seed = 21;
+    let figures = run(&files, 3, Shard::WHOLE, &folder("twins"));
+    let trials: Vec<Trial> = figures.recordings.iter().map(|recording| analysed(Path::new(recording))).collect();
+    let useful: u64 = trials.iter().map(|trial| trial.useful_signals.expect("it comes out the same again")).sum();
+    let signals: u64 = trials.iter().map(|trial| trial.signals).sum();
+    assert_eq!(signals, figures.signals);
+    assert!(0 < useful && useful < signals, "{useful} of {signals} useful");
+
+    // Another participant presses otherwise, as after a change of the program.
+    let recording = Path::new(&figures.recordings[0]);
+    let log = recording.join(LOG_NAME);
+    let text = fs::read_to_string(&log).expect("a log");
+    fs::write(&log, text.replacen("\"seed\":21", "\"seed\":22", 1)).expect("written");
+    assert_eq!(analysed(recording).useful_signals, None);
+}

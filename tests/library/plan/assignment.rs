@@ -11,6 +11,9 @@ use tomcom::session::settings::{ArmKind, ParticipantKind, ThemeChoice, Visibilit
 
 use super::{folder, study};
 
+/// A change of a session's files, with its name.
+type NamedChange = (&'static str, fn(&mut SessionFiles));
+
 /// The same questionnaire in another language: only words differ, so that answers are analysed together.
 #[test]
 fn a_session_asks_in_its_own_language() {
@@ -114,7 +117,7 @@ fn the_trials_of_a_participant_ask_for_the_same_dishes_in_another_order() {
 fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
     let digest = |change: fn(&mut SessionFiles)| study(change).digest;
     let original = digest(|_| ());
-    let others: [(&str, fn(&mut SessionFiles)); 10] = [
+    let others: [NamedChange; 10] = [
         ("presses", |files| files.spec.trial.presses += 1),
         ("arm", |files| files.spec.robot.arm = ArmKind::Timed),
         ("signals", |files| files.spec.signals.shown_s += 1.0),
@@ -129,7 +132,7 @@ fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
     for (what, change) in others {
         assert_ne!(digest(change), original, "{what}");
     }
-    let same: [(&str, fn(&mut SessionFiles)); 4] = [
+    let same: [NamedChange; 4] = [
         ("port", |files| files.spec.display.port += 1),
         ("viewer", |files| files.spec.rerun.live = !files.spec.rerun.live),
         ("theme", |files| files.spec.console.theme = ThemeChoice::Light),

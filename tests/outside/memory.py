@@ -66,7 +66,7 @@ def main():
     parser.add_argument("--minutes", type=float, default=20)
     parser.add_argument("--hz", type=int, default=120, help="gaze samples a second")
     parser.add_argument("--most", type=float, default=200, help="MB that may be resident")
-    parser.add_argument("--growth", type=float, default=6, help="MB a minute that it may grow by in the second half")
+    parser.add_argument("--growth", type=float, default=6, help="MB a minute that it may grow by in the second half of 10 minutes or more")
     arguments = parser.parse_args()
     run(RERUN, "analytics", "disable")
     folder = arguments.folder / f"memory-{os.getpid()}"
@@ -75,7 +75,9 @@ def main():
     growth = (resident[-1] - resident[half]) / (minutes[-1] - minutes[half])
     print(f"gaze at {arguments.hz} Hz, {arguments.minutes} minutes: at most {max(resident):.0f} MB resident, in the second half {growth:.1f} MB more a minute")
     assert max(resident) <= arguments.most, f"more than {arguments.most} MB"
-    assert growth <= arguments.growth, f"it grows by more than {arguments.growth} MB a minute"
+    # Within the first minutes the messages that are kept for viewers fill up to their bound.
+    if arguments.minutes >= 10:
+        assert growth <= arguments.growth, f"it grows by more than {arguments.growth} MB a minute"
     run(RERUN, "rrd", "verify", recording / "recording.rrd")
     # The viewer that read has what the file has but for the gaze, of which viewers get less; it was ended with the session.
     gaze = {name: len(rows_of(stream)["human/gaze"]) for name, stream in (("file", recording / "recording.rrd"), ("read", folder / "reads.rrd"))}

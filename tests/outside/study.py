@@ -9,6 +9,7 @@ and kappa (scikit-learn). With groups of equal size, with missing trials and une
 
 import json
 import math
+import re
 import shutil
 import subprocess
 import sys
@@ -79,18 +80,27 @@ def check_tables(tables):
     assert (tables["gaze"].duration_s >= 0).all()
 
 
+def subject(aspect):
+    """What a false belief is about: an order and the recipe of its dish are one."""
+    return re.sub(r"^recipe of | of order \d+$", "", aspect)
+
+
 def sequences(human):
-    """Lengths of error sequences, from the presses of a trial: belief related errors at most 3 correct presses apart."""
-    lengths, apart = [], None
+    """Lengths of error sequences, from the presses of a trial, in order of their first errors: belief related errors about the same
+    thing, at most 3 correct presses apart; what else goes wrong in between counts for nothing."""
+    found, open_ones, correct = [], {}, 0
     for press in human.itertuples():
         if press.cause == "belief":
-            if apart is None or apart > 3:
-                lengths.append(0)
-            lengths[-1] += 1
-            apart = 0
-        elif not press.error and not press.race and apart is not None:
-            apart += 1
-    return lengths
+            about = subject(press.aspect)
+            last = open_ones.get(about)
+            if last is None or correct - last[1] > 3:
+                found.append(0)
+                last = (len(found) - 1, correct)
+            found[last[0]] += 1
+            open_ones[about] = (last[0], correct)
+        elif not press.error and not press.race:
+            correct += 1
+    return found
 
 
 def check_trials(figures, tables):

@@ -73,7 +73,7 @@ pub(super) fn rate(recording: &Path, rater: &str) -> Result<(), Failure> {
 #[derive(Debug, Args)]
 #[command(after_help = "Session files stay, and so does what other programs have written, such as an eye tracker.\n\
                   A code that begins with - stands behind --: tomcom forget --in sessions -- -7\n\
-                  Exit code 0: all of it is deleted. 1: there was nothing, or something is left. 2: wrong arguments.\n\
+                  Exit code 0: all of it below the folder is deleted. 1: there was nothing, or something is left. 2: wrong arguments.\n\
                   Example: tomcom forget P07 --in sessions\nMore: docs/recordings.md, docs/security.md")]
 pub(super) struct ForgetArgs {
     /// The code of the participant.

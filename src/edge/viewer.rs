@@ -73,7 +73,8 @@ pub fn has_screen() -> bool {
 pub fn open(viewer: &Path, file: &Path, at_ns: Option<u64>) -> io::Result<()> {
     let port = free_port(SocketAddr::from((Ipv4Addr::LOCALHOST, PORT)))?.port();
     let mut command = Command::new(viewer);
-    command.arg(file).args(["--port", &port.to_string()]);
+    // Its own default is every address of this computer.
+    command.arg(file).args(["--bind", "127.0.0.1", "--port", &port.to_string()]);
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
     let Some(at_ns) = at_ns else { return Ok(()) };
     let began = Instant::now();

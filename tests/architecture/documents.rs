@@ -2,10 +2,8 @@
 
 use std::path::Path;
 
-use syn::visit::Visit;
-use syn::{ItemEnum, ItemStruct, ItemTrait, ItemType, Visibility};
-
 use crate::imports::Imports;
+use crate::names::named_types;
 use crate::sources::{Source, sources};
 
 /// Documents that have to be read in one go, with the most bytes that they may have.
@@ -72,41 +70,5 @@ fn exists(path: &str, sources: &[Source], imports: &Imports) -> bool {
     let names: Vec<String> = path.split("::").map(str::to_string).collect();
     let Some((file, rest)) = imports.place(&names) else { return false };
     let source = sources.iter().find(|source| source.path == file).expect("a source file");
-    matches!(&rest[..], [name] if defines(source, name))
-}
-
-/// Looks for a public type by its name.
-struct TypeSearch<'a> {
-    name: &'a str,
-    found: bool,
-}
-
-fn defines(source: &Source, name: &str) -> bool {
-    let mut search = TypeSearch { name, found: false };
-    search.visit_file(&source.parsed);
-    search.found
-}
-
-impl TypeSearch<'_> {
-    fn look(&mut self, visibility: &Visibility, name: &syn::Ident) {
-        self.found |= matches!(visibility, Visibility::Public(_)) && name == self.name;
-    }
-}
-
-impl<'ast> Visit<'ast> for TypeSearch<'_> {
-    fn visit_item_struct(&mut self, item: &'ast ItemStruct) {
-        self.look(&item.vis, &item.ident);
-    }
-
-    fn visit_item_enum(&mut self, item: &'ast ItemEnum) {
-        self.look(&item.vis, &item.ident);
-    }
-
-    fn visit_item_trait(&mut self, item: &'ast ItemTrait) {
-        self.look(&item.vis, &item.ident);
-    }
-
-    fn visit_item_type(&mut self, item: &'ast ItemType) {
-        self.look(&item.vis, &item.ident);
-    }
+    matches!(&rest[..], [name] if named_types(source).iter().any(|found| found.is_public && found.name == *name))
 }

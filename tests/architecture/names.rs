@@ -8,7 +8,7 @@ use syn::{
     Signature, TraitItem, Visibility,
 };
 
-use crate::sources::{is_documentation, is_for_tests, sources, sources_below};
+use crate::sources::{Source, is_documentation, is_for_tests, sources, sources_below};
 
 /// Names of files that several rooms have on purpose, and why.
 const SHARED_FILE_NAMES: [(&str, &str); 2] =
@@ -24,10 +24,9 @@ fn public_types_have_names_of_their_own() {
     let mut types: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for source in sources() {
         let file = source.path.file_name().expect("a file").to_string_lossy().into_owned();
-        let mut found = PublicTypes::default();
-        found.visit_file(&source.parsed);
-        assert!(found.names.len() == found.names.iter().collect::<BTreeSet<_>>().len(), "{}", source.path.display());
-        for name in found.names.into_iter().filter(|_| !is_stand_in(&file)) {
+        let names: Vec<String> = named_types(&source).into_iter().map(|found| found.name).collect();
+        assert!(names.len() == names.iter().collect::<BTreeSet<_>>().len(), "{}", source.path.display());
+        for name in names.into_iter().filter(|_| !is_stand_in(&file)) {
             types.entry(name).or_default().insert(source.path.display().to_string());
         }
     }
@@ -36,21 +35,31 @@ fn public_types_have_names_of_their_own() {
     }
 }
 
-/// The types of a file that other files can name.
-#[derive(Default)]
-struct PublicTypes {
-    names: Vec<String>,
+/// A type that other files can name.
+pub struct NamedType {
+    pub name: String,
+    /// Other crates can name it, too, where its modules are public.
+    pub is_public: bool,
 }
 
-impl PublicTypes {
+/// The types of a file that other files can name, without those of its tests.
+pub fn named_types(source: &Source) -> Vec<NamedType> {
+    let mut found = NamedTypes(Vec::new());
+    found.visit_file(&source.parsed);
+    found.0
+}
+
+struct NamedTypes(Vec<NamedType>);
+
+impl NamedTypes {
     fn note(&mut self, visibility: &Visibility, name: &syn::Ident) {
         if !matches!(visibility, Visibility::Inherited) {
-            self.names.push(name.to_string());
+            self.0.push(NamedType { name: name.to_string(), is_public: matches!(visibility, Visibility::Public(_)) });
         }
     }
 }
 
-impl<'ast> Visit<'ast> for PublicTypes {
+impl<'ast> Visit<'ast> for NamedTypes {
     fn visit_item_mod(&mut self, item: &'ast ItemMod) {
         if !item.attrs.iter().any(is_for_tests) {
             syn::visit::visit_item_mod(self, item);

@@ -104,15 +104,16 @@ impl Flags {
         }
         let half = |parity: usize| -> Vec<&TrialView> { trials.iter().skip(parity).step_by(2).collect() };
         let halves = [half(0), half(1)];
+        let of_all = thresholds.unwrap_or_else(|| best_thresholds(&all, groups));
         let (counts, from) = match thresholds {
-            Some(given) => (FlagCounts::from_trials(&all, groups, given), ThresholdSource::OtherRecordings),
+            Some(_) => (FlagCounts::from_trials(&all, groups, of_all), ThresholdSource::OtherRecordings),
             None if halves.iter().all(|half| is_known(half)) => {
                 let counts = [0, 1].map(|one| {
                     FlagCounts::from_trials(&halves[one], groups, best_thresholds(&halves[1 - one], groups))
                 });
                 (counts[0].plus(counts[1]), ThresholdSource::OtherHalf)
             }
-            None => (FlagCounts::from_trials(&all, groups, best_thresholds(&all, groups)), ThresholdSource::SameTrial),
+            None => (FlagCounts::from_trials(&all, groups, of_all), ThresholdSource::SameTrial),
         };
         let share = |part: usize, all: usize| (all > 0).then(|| part as f64 / all as f64);
         Flags {
@@ -120,7 +121,7 @@ impl Flags {
             flagged_before_third_error: share(counts.caught, counts.episodes),
             false_flags_per_20_actions: share(counts.false_flags, counts.presses).map(|rate| PER_PRESSES * rate),
             wrongly_flagged: share(counts.wrongly, counts.right),
-            thresholds: Some(thresholds.unwrap_or_else(|| best_thresholds(&all, groups))),
+            thresholds: Some(of_all),
             thresholds_from: Some(from),
         }
     }

@@ -7,7 +7,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 pub const REACH: f64 = 1.5;
 /// Number of coordinate descent sweeps to the minimum.
 const SWEEPS: usize = 60;
-/// Smallest ratio of two pivots of a matrix that is told from a singular one.
+/// A matrix counts as singular if its smallest pivot is at most this share of its largest.
 const SINGULAR: f64 = 1e-12;
 
 /// A quadratic surface; variables are in steps from its centre.

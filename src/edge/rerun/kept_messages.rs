@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// So many pieces of an entity are merged into one.
 const MERGED: usize = 64;
-/// So many of the newest pieces of an entity are not merged yet: a viewer that keeps up has read those that are, and gets none
-/// of them a second time.
+/// Number of an entity's newest pieces that are left unmerged. A viewer that keeps up has read all older ones, so it gets none of
+/// them a second time as part of a merged piece.
 const RECENT: usize = 16;
 
 /// Merges pieces of one entity; the piece with its size in bytes. None: they cannot be merged.

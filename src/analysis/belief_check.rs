@@ -75,7 +75,7 @@ impl PressViews {
         if let (Some(judged), Some(press)) = (judged, change.human_press()) {
             let estimated = follower.estimated.as_ref().filter(|one| one.press == stamped.seq);
             let estimate = estimated.map(|one| EstimateView::from_witness(&one.witness(kitchen)));
-            let view = self.before.press(kitchen, &press, &judged, self.held.take());
+            let view = self.before.press(kitchen, &press, &judged, stamped.time, self.held.take());
             self.trial.push(PressView { estimate, ..view });
         }
         self.before.notice(&follower.session, &stamped.event, change);
@@ -89,6 +89,8 @@ struct Before {
     unseen_change: [bool; MAX_LOCATIONS],
     /// For each location, the time since which the gaze has been in its area without a change there.
     looks_since: [Option<SessionTime>; MAX_LOCATIONS],
+    /// For each location, the time of the last change, if it was made by somebody other than the human.
+    others_changed: [Option<SessionTime>; MAX_LOCATIONS],
 }
 
 impl Before {
@@ -101,6 +103,7 @@ impl Before {
             if change.states().is_some_and(|(before, after)| before.code(location) != after.code(location)) {
                 self.unseen_change[index] = !is_own;
                 self.looks_since[index] = None;
+                self.others_changed[index] = (!is_own).then_some(session.time);
             }
             if is_look {
                 let is_there = session.gaze.looked_at[index] == Some(session.time);
@@ -112,13 +115,22 @@ impl Before {
     }
 
     /// The view of the next press.
-    fn press(&self, kitchen: &Kitchen, press: &Press, judged: &JudgedPress, held: Option<Vec<f64>>) -> PressView {
+    fn press(
+        &self,
+        kitchen: &Kitchen,
+        press: &Press,
+        judged: &JudgedPress,
+        now: SessionTime,
+        held: Option<Vec<f64>>,
+    ) -> PressView {
+        let since_s = |at: &Option<SessionTime>| at.map(|at| now.secs_since(at));
         let mut press = PressView {
             state: press.before,
             button: press.button,
             held,
             estimate: None,
             unseen_change: self.unseen_change[..kitchen.locations.len()].to_vec(),
+            since_change_s: self.others_changed[..kitchen.locations.len()].iter().map(since_s).collect(),
             errs_about: Vec::new(),
         };
         if let Some(Cause::Belief { target, with, .. }) = judged.cause {
@@ -155,7 +167,7 @@ pub fn describe(check: &BeliefCheck) -> String {
     let mut text = format!(
         "{}, {} of the human\n\
          what is believed wrong, area under the ROC: {} in the mean (locations {}, where knowing only what changed unseen \
-         gives {}; recipes {})\n\
+         gives {}, and how long ago others changed it {}; recipes {})\n\
          false belief episodes of two or more errors flagged before the third: {} of {}, {} false flags per 20 presses, \
          wrongly flagged {} of the time{thresholds}\n\
          expected calibration error between 0.05 and 0.95: {}\n\
@@ -166,6 +178,7 @@ pub fn describe(check: &BeliefCheck) -> String {
         number(found.auc),
         number(found.auc_locations),
         number(found.auc_baseline),
+        number(found.auc_recency),
         number(found.auc_recipes),
         number(flags.flagged_before_third_error),
         flags.episodes.map_or("-".to_string(), |episodes| episodes.to_string()),

@@ -14,6 +14,7 @@ use crate::mind::filter::{BeliefFilter, Evidence};
 use crate::mind::observation::{Observation, Observed};
 use crate::mind::recorded_estimate::EstimateWitness;
 use crate::session::apply::ApplyError;
+use crate::session::tracker::TrackerEvent;
 use crate::session::{Applied, Event, Session, Stamped, apply};
 
 /// A session with its judged presses, false belief episodes and belief estimate.
@@ -137,6 +138,9 @@ impl Follower {
         let Some(what) = self.observed(stamped, change) else { return };
         let observation = Observation { time: stamped.time, what };
         let human_press = change.human_press();
+        if human_press.is_some() {
+            self.filter.advance(stamped.time, &mut self.cost);
+        }
         let belief = human_press.map(|_| self.filter.belief().clone());
         let began = self.timing.as_ref().map(|timing| (timing.now_ns)());
         self.filter.observe(&observation, &mut self.cost);
@@ -184,6 +188,10 @@ impl Follower {
             Event::Gaze(sample) => {
                 let taken = sample.taken_ns.map_or(stamped.time, |taken| taken.min(stamped.time));
                 Some(Observed::Gaze { sample: self.session.corrected(*sample), taken })
+            }
+            Event::Tracker(TrackerEvent::DisplayLost) => Some(Observed::DisplayInView(false)),
+            Event::Tracker(TrackerEvent::DisplayFound | TrackerEvent::Lost { .. }) => {
+                Some(Observed::DisplayInView(true))
             }
             Event::SignalShown { .. } => Some(Observed::Told { location: self.session.shown.as_ref()?.location }),
             _ => None,

@@ -201,6 +201,12 @@ pub(super) enum FitParameter {
     HalfLife,
     /// Share of the robot's unseen presses whose consequences the human infers.
     Foresight,
+    /// Looks a second at what the next press needs, where gaze is unknown.
+    Looks,
+    /// Looks a second at other places, where gaze is unknown.
+    OtherLooks,
+    /// Share of the changes by others that draw the eye, where gaze is unknown.
+    Capture,
 }
 
 impl FitParameter {
@@ -214,6 +220,9 @@ impl FitParameter {
             FitParameter::Reading => Parameter::ReadingRateHz,
             FitParameter::HalfLife => Parameter::RecipeHalfLifeS,
             FitParameter::Foresight => Parameter::Foresight,
+            FitParameter::Looks => Parameter::LooksHz,
+            FitParameter::OtherLooks => Parameter::OtherLooksHz,
+            FitParameter::Capture => Parameter::Capture,
         }
     }
 }

@@ -19,10 +19,11 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         Feature::Rerun.require()?;
     }
     let mut files = files::read_session(&args.session)?;
-    if files.spec.participant.kind != ParticipantKind::Simulated || files.spec.participant.gaze != GazeSource::Simulated
-    {
+    let is_simulated = files.spec.participant.kind == ParticipantKind::Simulated;
+    if !is_simulated || !matches!(files.spec.participant.gaze, GazeSource::Simulated | GazeSource::None) {
         let found = "a session whose participant or gaze is not simulated".to_string();
-        return Err(wrong_argument(&args.session, found, "kind = \"simulated\" and gaze = \"simulated\""));
+        let remedy = "kind = \"simulated\", and gaze = \"simulated\" or \"none\"";
+        return Err(wrong_argument(&args.session, found, remedy));
     }
     files.spec.seed = args.seed.unwrap_or(files.spec.seed);
     if !args.sweep.is_empty() {

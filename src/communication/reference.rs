@@ -17,7 +17,7 @@ use super::signal::{Signal, unavailable};
 use super::situation::RobotIntent;
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
-use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, LocationId, State};
+use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, State};
 use crate::mind::model::HumanModel;
 use crate::mind::reference::person::{Particle, pick, press_chances};
 use crate::robot::policy;
@@ -64,7 +64,8 @@ impl Future {
 
 impl ReferencePlanner {
     /// A planner for a human model. Its random stream is seeded by `seed` and the number of presses so far.
-    pub fn new(kitchen: Arc<Kitchen>, human: HumanModel, spec: AssistantSpec, seed: u64) -> ReferencePlanner {
+    pub fn new(kitchen: Arc<Kitchen>, mut human: HumanModel, spec: AssistantSpec, seed: u64) -> ReferencePlanner {
+        human.looking = spec.rollout.looking(&human.looking);
         ReferencePlanner { kitchen, human, spec, seed }
     }
 
@@ -102,7 +103,7 @@ impl ReferencePlanner {
         let mut random = self.chance("plain belief", presses, rollout, 0);
         let mut person = Particle::draw(&self.kitchen, situation.belief, &mut random);
         let first_s = random.random::<f64>() * self.spec.rollout.human_press_s;
-        let sees = random.random::<f64>() < self.spec.rollout.capture;
+        let sees = random.random::<f64>() < self.human.looking.capture;
         for aspect in signal.map_or(Vec::new(), |signal| aspects_told(&self.kitchen, situation.state, signal)) {
             person.settle(aspect, self.kitchen.true_value(situation.state, aspect));
         }
@@ -148,7 +149,7 @@ impl ReferencePlanner {
                 if random.random::<f64>() < self.human.transition.foresight {
                     future.person.robot_pressed(kitchen, cost, self.spec.rollout.states, random);
                 }
-                if random.random::<f64>() < self.spec.rollout.capture {
+                if random.random::<f64>() < self.human.looking.capture {
                     let now = future.state;
                     future.see(kitchen, |place| before.code(place) != now.code(place));
                 }
@@ -160,17 +161,14 @@ impl ReferencePlanner {
     fn decide(&self, cost: &mut CostToGo, future: &mut Future, random: &mut Stream) {
         let kitchen = &self.kitchen;
         let chance = |rate_hz: f64| 1.0 - (-rate_hz * self.spec.rollout.human_press_s).exp();
-        let looks = chance(self.spec.rollout.looks_hz);
-        let other_looks = chance(self.spec.rollout.other_looks_hz);
+        let looks = chance(self.human.looking.looks_hz);
+        let other_looks = chance(self.human.looking.other_looks_hz);
         let draw = random.random::<f64>();
         let glances: Vec<f64> = kitchen.locations.iter().map(|_| random.random()).collect();
         future.see(kitchen, |place| glances[place.index()] < other_looks);
         let mut deed = self.deed(cost, &future.person, draw, random);
         if let Some(button) = deed {
-            // The robot may be bringing the item that the human wants to fetch.
-            let fetches = matches!(kitchen.button(Agent::Human, button).action, ButtonAction::Take(_));
-            let robots_hand = fetches.then_some(kitchen.hands[Agent::Robot.index()]);
-            let places = kitchen.involved(Agent::Human, button).into_iter().chain(robots_hand);
+            let places = kitchen.watched(button).into_iter();
             let seen: Vec<LocationId> = places.filter(|place| glances[place.index()] < looks).collect();
             future.see(kitchen, |place| seen.contains(&place));
             if !seen.is_empty() {

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::concept_name::ConceptName;
+use crate::mind::model::LookingModel;
 
 /// Settings of the assistant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -59,15 +60,15 @@ pub struct RolloutModel {
     pub states: usize,
     /// Time between presses of the human, in seconds.
     pub human_press_s: f64,
-    /// Looks a second at each place that the next press needs; before something is fetched, also at the robot's hand, which
-    /// may be bringing it. Measured on unassisted simulated participants: 1.1 and 0.7.
-    pub looks_hz: f64,
-    /// Looks a second at each other place; none, as long as nobody has measured them. Unassisted simulated participants look
-    /// 0.25 to 0.4 times a second at what has changed more than a second ago and was not seen since.
-    pub other_looks_hz: f64,
-    /// Share of the changes by others that draw the eye at once; none, as long as nobody has measured it. Of simulated
-    /// participants, beyond those looks: 0.3 at the robot's hand and at places, 0.4 at orders.
-    pub capture: f64,
+    /// Looks a second in rollouts, where they are not to be those of the human model: see [`LookingModel`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub looks_hz: Option<f64>,
+    /// The same at places that the next press does not need.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other_looks_hz: Option<f64>,
+    /// The same of the share of changes by others that draw the eye at once.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub capture: Option<f64>,
     /// Rollouts of a signal end when the standard error of its benefit is at most this, in presses, or at most twice this if the net
     /// benefit differs from zero by three standard errors.
     pub enough_error: f64,
@@ -82,11 +83,23 @@ impl Default for RolloutModel {
             rollouts: 256,
             states: 32,
             human_press_s: 2.0,
-            looks_hz: 1.0,
-            other_looks_hz: 0.0,
-            capture: 0.0,
+            looks_hz: None,
+            other_looks_hz: None,
+            capture: None,
             enough_error: 0.08,
             least_rollouts: 32,
+        }
+    }
+}
+
+impl RolloutModel {
+    /// Where the human looks in rollouts: as its model says, or as the settings of the rollouts say.
+    pub fn looking(&self, human: &LookingModel) -> LookingModel {
+        LookingModel {
+            looks_hz: self.looks_hz.unwrap_or(human.looks_hz),
+            other_looks_hz: self.other_looks_hz.unwrap_or(human.other_looks_hz),
+            capture: self.capture.unwrap_or(human.capture),
+            ..human.clone()
         }
     }
 }

@@ -40,6 +40,14 @@ impl Kitchen {
         }
     }
 
+    /// The locations that the human looks at before a press: those that it involves and, before fetching an item, the robot's
+    /// hand, which may be bringing it.
+    pub fn watched(&self, button: ButtonId) -> Vec<LocationId> {
+        let fetches = matches!(self.button(Agent::Human, button).action, ButtonAction::Take(_));
+        let robots_hand = fetches.then_some(self.hands[Agent::Robot.index()]);
+        self.involved(Agent::Human, button).into_iter().chain(robots_hand).collect()
+    }
+
     /// The state after `agent` presses `button`; `None` if the action is not available, when the press has no effect.
     #[inline]
     pub fn press(&self, state: State, recipes: &Recipes, agent: Agent, button: ButtonId) -> Option<State> {

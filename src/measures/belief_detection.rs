@@ -42,6 +42,9 @@ pub struct Detection {
     pub auc_recipes: Option<f64>,
     /// Area of the baseline on locations, which knows only whether somebody else changed a location since the human last looked at it.
     pub auc_baseline: Option<f64>,
+    /// Area of the baseline on locations, which knows only how long ago somebody else last changed a location: without gaze
+    /// there is no better one.
+    pub auc_recency: Option<f64>,
     /// Mean of the areas of single aspects.
     pub auc_mean_of_aspects: Option<f64>,
     /// How well episodes are flagged at the chosen thresholds.
@@ -62,6 +65,9 @@ impl Detection {
         let estimated = |press: &PressView, aspect| press.estimate.as_ref().map(|one| one.p_wrong[aspect]);
         let changed = |press: &PressView, aspect| press.unseen_change.get(aspect).map(|&one| f64::from(u8::from(one)));
         let groups = aspect_groups(kitchen);
+        let recent = |press: &PressView, aspect: usize| {
+            press.since_change_s.get(aspect).map(|since_s| since_s.map_or(0.0, |since_s: f64| 1.0 / (1.0 + since_s)))
+        };
         let both: Vec<usize> = (0..kitchen.aspects.len()).collect();
         let pool = |of: &[usize], score: Score| auc(&scored(trials, of, score));
         let of_groups = groups.each_ref().map(|group| pool(group, &estimated));
@@ -78,6 +84,7 @@ impl Detection {
             auc_locations: of_groups[0],
             auc_recipes: of_groups[1],
             auc_baseline: pool(&groups[0], &changed),
+            auc_recency: pool(&groups[0], &recent),
             auc_mean_of_aspects: mean(both.iter().filter_map(|&one| pool(&[one], &estimated))),
             flags: Flags::from_trials(trials, &groups, thresholds),
             ece: calibration.ece,

@@ -18,6 +18,9 @@ pub struct PressView {
     pub estimate: Option<EstimateView>,
     /// For each location, whether somebody else changed it since the human last looked at it: the input of the baseline.
     pub unseen_change: Vec<bool>,
+    /// For each location, the time since somebody other than the human last changed it, in seconds; `None` if the human changed it
+    /// later, or nobody did.
+    pub since_change_s: Vec<Option<f64>>,
     /// The false aspects to which the press is attributed, if it was an error.
     pub errs_about: Vec<AspectId>,
 }

@@ -154,6 +154,23 @@ impl ChoiceModel {
         pressed / total + self.anywhere
     }
 
+    /// p(a | b) of every button, given that one is pressed, from the same sums as [`ChoiceModel::press_likelihood`].
+    pub fn press_probabilities(&self, sums: &[u32]) -> [f64; MAX_BUTTONS] {
+        let weights = self.weights.last().map_or(&[][..], Vec::as_slice);
+        let least = sums.iter().copied().min().unwrap_or(0);
+        let mut intended = [0.0; MAX_BUTTONS];
+        for (weight, &sum) in intended.iter_mut().zip(sums) {
+            *weight = weights.get((sum - least) as usize).copied().unwrap_or(0.0);
+        }
+        let total: f64 = intended.iter().sum();
+        let mut pressed = [0.0; MAX_BUTTONS];
+        for (button, from) in self.slips_from.iter().enumerate() {
+            let slipped: f64 = from.iter().map(|&(from, chance)| chance * intended[from]).sum();
+            pressed[button] = ((1.0 - self.parameters.lapse) * intended[button] + slipped) / total + self.anywhere;
+        }
+        pressed
+    }
+
     /// The weights of all choices. `here` is the cost to go of the present state and `sums[x]` that after button x, both in presses
     /// and summed over `draws` drawn worlds. Needs a model from [`ChoiceModel::up_to_draws`].
     #[inline]

@@ -29,6 +29,12 @@ pub enum Parameter {
     RecipeHalfLifeS,
     /// Share of the robot's unseen presses whose consequences the human infers.
     Foresight,
+    /// Looks a second at what the next press needs.
+    LooksHz,
+    /// Looks a second at other places.
+    OtherLooksHz,
+    /// Share of the changes by others that draw the eye.
+    Capture,
 }
 
 impl Parameter {
@@ -45,6 +51,9 @@ impl Parameter {
             Parameter::ReadingRateHz => "reading_rate_hz",
             Parameter::RecipeHalfLifeS => "recipe_half_life_s",
             Parameter::Foresight => "foresight",
+            Parameter::LooksHz => "looks_hz",
+            Parameter::OtherLooksHz => "other_looks_hz",
+            Parameter::Capture => "capture",
         }
     }
 
@@ -52,9 +61,9 @@ impl Parameter {
     pub fn unit(self) -> &'static str {
         match self {
             Parameter::Tau => "1/press",
-            Parameter::Lapse | Parameter::Foresight => "share",
+            Parameter::Lapse | Parameter::Foresight | Parameter::Capture => "share",
             Parameter::RadiusDeg => "deg",
-            Parameter::ReadingRateHz => "1/s",
+            Parameter::ReadingRateHz | Parameter::LooksHz | Parameter::OtherLooksHz => "1/s",
             Parameter::RecipeHalfLifeS => "s",
         }
     }
@@ -68,6 +77,9 @@ impl Parameter {
             Parameter::ReadingRateHz => model.perception.reading_rate_hz,
             Parameter::RecipeHalfLifeS => model.transition.recipe_half_life_s,
             Parameter::Foresight => model.transition.foresight,
+            Parameter::LooksHz => model.looking.looks_hz,
+            Parameter::OtherLooksHz => model.looking.other_looks_hz,
+            Parameter::Capture => model.looking.capture,
         }
     }
 
@@ -80,6 +92,9 @@ impl Parameter {
             Parameter::ReadingRateHz => model.perception.reading_rate_hz = value,
             Parameter::RecipeHalfLifeS => model.transition.recipe_half_life_s = value,
             Parameter::Foresight => model.transition.foresight = value,
+            Parameter::LooksHz => model.looking.looks_hz = value,
+            Parameter::OtherLooksHz => model.looking.other_looks_hz = value,
+            Parameter::Capture => model.looking.capture = value,
         }
     }
 
@@ -92,7 +107,8 @@ impl Parameter {
             Parameter::RadiusDeg => [0.25, 16.0],
             Parameter::ReadingRateHz => [0.2, 100.0],
             Parameter::RecipeHalfLifeS => [5.0, 20_000.0],
-            Parameter::Foresight => [0.001, 0.999],
+            Parameter::Foresight | Parameter::Capture => [0.001, 0.999],
+            Parameter::LooksHz | Parameter::OtherLooksHz => [0.01, 20.0],
         }
     }
 
@@ -100,7 +116,7 @@ impl Parameter {
     /// ln(1 / (1 / tau + 0.1)) for tau, since the likelihood changes less and less as tau grows.
     pub fn to_scale(self, value: f64) -> f64 {
         match self {
-            Parameter::Lapse | Parameter::Foresight => {
+            Parameter::Lapse | Parameter::Foresight | Parameter::Capture => {
                 let p = value.clamp(1e-4, 1.0 - 1e-4);
                 (p / (1.0 - p)).ln()
             }
@@ -112,7 +128,7 @@ impl Parameter {
     /// The inverse of [`Parameter::to_scale`].
     pub fn from_scale(self, scaled: f64) -> f64 {
         match self {
-            Parameter::Lapse | Parameter::Foresight => 1.0 / (1.0 + (-scaled).exp()),
+            Parameter::Lapse | Parameter::Foresight | Parameter::Capture => 1.0 / (1.0 + (-scaled).exp()),
             Parameter::Tau => 1.0 / ((-scaled).exp() - STRICT),
             _ => scaled.exp(),
         }
@@ -121,7 +137,7 @@ impl Parameter {
     /// Standard error of a value from its standard error on the scale of the fit (delta method).
     pub fn error_of(self, value: f64, scaled_error: f64) -> f64 {
         let slope = match self {
-            Parameter::Lapse | Parameter::Foresight => value * (1.0 - value),
+            Parameter::Lapse | Parameter::Foresight | Parameter::Capture => value * (1.0 - value),
             Parameter::Tau => value * (1.0 + STRICT * value),
             _ => value,
         };

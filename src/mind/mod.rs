@@ -6,6 +6,7 @@ pub mod choice_parameters;
 pub mod dirichlet;
 pub mod filter;
 pub mod fitting;
+pub mod gaze_presence;
 pub mod model;
 pub mod observation;
 pub mod recorded_estimate;

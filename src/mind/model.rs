@@ -15,6 +15,8 @@ pub struct HumanModel {
     pub prior: PriorModel,
     /// What gaze reads.
     pub perception: PerceptionModel,
+    /// Where people look while nobody sees where.
+    pub looking: LookingModel,
     /// How beliefs change between observations.
     pub transition: TransitionModel,
     /// How presses follow from beliefs.
@@ -53,6 +55,9 @@ impl Default for PriorModel {
     }
 }
 
+/// Range of confidence over which a sample turns from unknown to known.
+pub const CONFIDENCE_RAMP: f64 = 0.4;
+
 /// Perception as a reading process: a location near the gaze is read at a rate that falls with its distance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -67,7 +72,7 @@ pub struct PerceptionModel {
     pub look_alike: f64,
     /// Probability that a reading gives any other wrong content.
     pub anything: f64,
-    /// Samples with a lower confidence are not used.
+    /// Confidence at which half of a sample's time counts as known; the share rises linearly over [`CONFIDENCE_RAMP`].
     pub min_confidence: f64,
     /// Length of the history of displayed states, in seconds; samples taken earlier are not used.
     pub history_s: f64,
@@ -99,9 +104,40 @@ impl PerceptionModel {
         self.viewing_distance_m * self.radius_deg.to_radians().tan()
     }
 
+    /// Share of a sample's time in which the gaze is known: v = clamp((c - 0.4) / 0.4) with `min_confidence` = 0.6. 0 for NaN.
+    pub fn known_share(&self, confidence: f64) -> f64 {
+        let share = (confidence - self.min_confidence) / CONFIDENCE_RAMP + 0.5;
+        if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) }
+    }
+
     /// The rate of reading as a function of distance and confidence.
     pub fn reading_rate(&self) -> ReadingRate {
         ReadingRate { full_hz: self.reading_rate_hz, spread_m2: 2.0 * self.radius_m() * self.radius_m() }
+    }
+}
+
+/// Plausible looking: where people look, in rates. Inference uses it while the gaze is unknown, the planner in its rollouts.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LookingModel {
+    /// Looks a second at each place that the next press needs; before something is fetched, also at the robot's hand, which
+    /// may be bringing it. Measured on unassisted simulated participants: 1.1 and 0.7.
+    pub looks_hz: f64,
+    /// Looks a second at each other place. Unassisted simulated participants look 0.25 to 0.4 times a second at what has
+    /// changed more than a second ago and was not seen since.
+    pub other_looks_hz: f64,
+    /// Share of the changes by others that draw the eye at once. Of simulated participants, beyond those looks: 0.3 at the
+    /// robot's hand and at places, 0.4 at orders.
+    pub capture: f64,
+    /// Looks a second at each place while the tracker does not find the display in its view, so that the head is turned away.
+    pub display_lost_looks_hz: f64,
+    /// Time without known gaze that counts as a blink, in seconds: nothing is read in it, and it is not unknown.
+    pub blink_s: f64,
+}
+
+impl Default for LookingModel {
+    fn default() -> Self {
+        LookingModel { looks_hz: 1.0, other_looks_hz: 0.25, capture: 0.35, display_lost_looks_hz: 0.05, blink_s: 0.3 }
     }
 }
 

@@ -28,6 +28,8 @@ pub enum Observed {
         /// When the tracker took it, in session time.
         taken: SessionTime,
     },
+    /// The tracker finds the display in its view, or no longer.
+    DisplayInView(bool),
     /// An agent pressed a button.
     Pressed(Press),
     /// The display changes without a press, for instance because an order appears or disappears.

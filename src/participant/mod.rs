@@ -13,6 +13,7 @@ mod acting;
 mod attention;
 mod decision;
 mod eyes;
+pub mod gaze_gaps;
 mod hand;
 mod learning;
 mod looking;

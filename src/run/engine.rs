@@ -16,7 +16,7 @@ mod robot;
 
 use std::sync::Arc;
 
-use self::agents::{simulated_participant, trial_robot};
+use self::agents::{gaze_gaps, simulated_participant, trial_robot};
 use crate::analysis::advisor::{AdviceRequest, Advisor, changes_task};
 use crate::analysis::follower::Follower;
 use crate::arm::worker::Robot;
@@ -27,6 +27,7 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen};
 use crate::measures::JudgedPress;
 use crate::mind::dirichlet::DirichletBelief;
+use crate::participant::gaze_gaps::GazeGaps;
 use crate::participant::{ParticipantAction, SimulatedParticipant};
 use crate::session::admit::{admit, hygiene};
 use crate::session::apply::ApplyError;
@@ -46,6 +47,8 @@ pub struct Engine {
     orders: OrderList,
     robot: Robot,
     participant: Option<SimulatedParticipant>,
+    /// Drop-outs of the simulated tracker, if the session has any.
+    gaps: Option<GazeGaps>,
     /// The scripted wizard, if there is one.
     wizard: Option<ScriptedWizard>,
     next_seq: u64,
@@ -87,13 +90,14 @@ impl Engine {
         let robot = trial_robot(&kitchen, &spec, trial);
         let participant = (spec.participant.kind == ParticipantKind::Simulated)
             .then(|| simulated_participant(kitchen.clone(), &spec, trial));
+        let gaps = gaze_gaps(&spec, trial);
         let wizard = spec.scripts_wizard().then(|| {
             ScriptedWizard::new(kitchen.clone(), spec.wizard.clone(), spec.signals.own_hand, spec.seed, trial)
         });
         let follower = Follower::new(Session::new(kitchen, spec, trial), cost);
         let timers = TimerQueue::default();
         let (out, questions) = (Vec::new(), Vec::new());
-        Engine { follower, timers, orders, robot, participant, wizard, next_seq: 0, out, to_ask: None, questions }
+        Engine { follower, timers, orders, robot, participant, gaps, wizard, next_seq: 0, out, to_ask: None, questions }
     }
 
     /// The advisor of this session; its recommendations return as [`Event::Advised`].
@@ -204,7 +208,9 @@ impl Engine {
         let deed = self.participant.as_mut().and_then(|one| one.act(now, state, &mut self.follower.cost));
         match deed {
             Some(ParticipantAction::Gaze(sample)) if self.session().spec.participant.simulates_gaze() => {
-                self.record_own(now, Event::Gaze(sample));
+                if !self.gaps.as_mut().is_some_and(|gaps| gaps.swallows(now)) {
+                    self.record_own(now, Event::Gaze(sample));
+                }
             }
             // With an external tracker, the simulated gaze is not used.
             Some(ParticipantAction::Gaze(_)) | None => {}

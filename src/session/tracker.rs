@@ -29,12 +29,36 @@ pub struct TrackerSpec {
     pub file: Option<String>,
     /// Distance from the participant's eyes to the wall display, in metres.
     pub distance_m: f64,
+    /// Drop-outs of the simulated tracker; none by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gaps: Option<GazeGapSpec>,
+}
+
+/// Drop-outs of the simulated tracker: stretches of time without any sample.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GazeGapSpec {
+    /// Mean time from the end of a drop-out to the beginning of the next one, in seconds.
+    pub every_s: f64,
+    /// Shortest and longest drop-out, in seconds. Lengths are even on a logarithmic scale.
+    pub shortest_s: f64,
+    /// See `shortest_s`.
+    pub longest_s: f64,
 }
 
 impl Default for TrackerSpec {
     fn default() -> Self {
         let (address, surface) = ("127.0.0.1".to_string(), "wall".to_string());
-        TrackerSpec { address, port: 50020, surface, corners: None, record: true, file: None, distance_m: 2.0 }
+        TrackerSpec {
+            address,
+            port: 50020,
+            surface,
+            corners: None,
+            record: true,
+            file: None,
+            distance_m: 2.0,
+            gaps: None,
+        }
     }
 }
 
@@ -44,6 +68,12 @@ impl TrackerSpec {
     }
 
     pub(super) fn check(&self, gaze: GazeSource) -> Result<(), SettingError> {
+        if let Some(GazeGapSpec { shortest_s, longest_s, .. }) = self.gaps
+            && shortest_s > longest_s
+        {
+            let found = format!("shortest_s = {shortest_s}, longest_s = {longest_s}");
+            return Err(SettingError::new("tracker.gaps", found, "a longest drop-out of at least the shortest one"));
+        }
         let is_name =
             |text: &str| (1..=100).contains(&text.len()) && !text.chars().any(|c| c.is_control() || c.is_whitespace());
         for (key, text) in [("address", &self.address), ("surface", &self.surface)] {

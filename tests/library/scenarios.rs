@@ -260,7 +260,7 @@ fn what_will_be_seen_anyway_is_not_worth_saying() {
     let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
     let benefit = |other_looks_hz: f64, capture: f64, changed: &[AspectId]| {
         let mut spec = AssistantSpec::default();
-        (spec.rollout.other_looks_hz, spec.rollout.capture) = (other_looks_hz, capture);
+        (spec.rollout.other_looks_hz, spec.rollout.capture) = (Some(other_looks_hz), Some(capture));
         let mut planner = Planner::new(kitchen.clone(), &HumanModel::default(), spec, 1);
         let situation =
             Situation { state, belief: &belief, changed, robot: scenario.outlook(&kitchen), robot_press_s: 2.4 };

@@ -26,9 +26,9 @@ use super::signal::{Signal, unavailable};
 use super::situation::Situation;
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, WeightedWorlds};
+use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, WeightedWorlds};
 use crate::mind::ChoiceModel;
-use crate::mind::model::HumanModel;
+use crate::mind::model::{HumanModel, LookingModel};
 use crate::mind::recorded_estimate::rounded;
 
 /// Number of rollouts after which the planner checks which signals are decided.
@@ -42,6 +42,8 @@ pub struct Planner {
     seed: u64,
     choice: ChoiceModel,
     foresight: f64,
+    /// Where the human looks in a rollout.
+    looking: LookingModel,
     involved: Vec<Vec<AspectId>>,
     /// By button of the human, the aspects that it looks at before a press: the locations involved and, before fetching an item, the
     /// robot's hand, which may be bringing it.
@@ -70,12 +72,11 @@ impl Planner {
     pub fn new(kitchen: Arc<Kitchen>, human: &HumanModel, spec: AssistantSpec, seed: u64) -> Planner {
         let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
         let aspects = |button| kitchen.involved(Agent::Human, button).into_iter().map(AspectId::of_location);
-        let of_robot = AspectId::of_location(kitchen.hands[Agent::Robot.index()]);
-        let fetches = |button| matches!(kitchen.button(Agent::Human, button).action, ButtonAction::Take(_));
-        let watched = |button| aspects(button).chain(fetches(button).then_some(of_robot)).collect();
+        let watched = |button| kitchen.watched(button).into_iter().map(AspectId::of_location).collect();
         Planner {
             choice: ChoiceModel::up_to_draws(&kitchen, &human.decision, spec.rollout.states),
             foresight: human.transition.foresight,
+            looking: spec.rollout.looking(&human.looking),
             involved: buttons.clone().map(|button| aspects(button).collect()).collect(),
             watched: buttons.map(watched).collect(),
             policy: RobotPolicy::default(),
@@ -116,7 +117,7 @@ impl Planner {
         self.samples.draw(&self.kitchen, situation.state, number, random, &mut self.believed);
         let [first, sees, firsts @ ..] = lattice.point(number);
         let first_s = first * model.human_press_s;
-        let sees = sees < model.capture;
+        let sees = sees < self.looking.capture;
         self.draws.clear();
         self.draws.extend((0..model.horizon).map(|_| RolloutDraws::draw(random)));
         for (draws, first) in self.draws.iter_mut().zip(firsts.chunks_exact(PER_DECISION)) {
@@ -131,8 +132,9 @@ impl Planner {
             model,
             robot_press_s: situation.robot_press_s,
             foresight: self.foresight,
-            looks: -(-model.looks_hz * model.human_press_s).exp_m1(),
-            other_looks: -(-model.other_looks_hz * model.human_press_s).exp_m1(),
+            looks: -(-self.looking.looks_hz * model.human_press_s).exp_m1(),
+            other_looks: -(-self.looking.other_looks_hz * model.human_press_s).exp_m1(),
+            capture: self.looking.capture,
         };
         let mut rollout = Rollout { context: &context, cost, policy: &mut self.policy, draws: &self.draws, first_s };
         let mut is_baseline_known = false;

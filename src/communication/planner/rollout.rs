@@ -69,6 +69,8 @@ pub struct RolloutContext<'a> {
     pub looks: f64,
     /// Probability that any other location is looked at before a decision.
     pub other_looks: f64,
+    /// Share of the changes by others that draw the eye at once.
+    pub capture: f64,
     /// Probability that the human infers the consequences of a robot press.
     pub foresight: f64,
 }
@@ -219,7 +221,7 @@ impl Rollout<'_> {
                     let draw = draw / self.context.foresight;
                     state.worlds.robot_pressed(self.context.kitchen, self.cost, self.policy, draw);
                 }
-                if self.draws[step].captures[presses % ROBOT_DRAWS] < self.context.model.capture {
+                if self.draws[step].captures[presses % ROBOT_DRAWS] < self.context.capture {
                     state.see_changes(self.context.kitchen, before);
                 }
                 presses += 1;

@@ -92,6 +92,12 @@ impl DistinctWorlds {
         any
     }
 
+    /// A world by its index.
+    #[inline]
+    pub fn world(&self, index: u32) -> World {
+        self.known[index as usize].world
+    }
+
     /// Number of distinct worlds.
     pub fn len(&self) -> usize {
         self.known.len()

@@ -5,21 +5,25 @@
 //! the weights w_j, collapsed by its mean and second moment. As a control variate, the moments under equal weights are
 //! subtracted and the prior's exact moments are added, so that an uninformative press leaves the estimate unchanged.
 
+use rand::RngExt;
+
 use crate::base::bits::ones;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, OrderContent, World};
 use crate::mind::choice::ChoiceModel;
-use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
+use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::model::InferenceModel;
 
 use super::distinct::DistinctWorlds;
+use super::look_news::{LookNews, SampleLooks, UnseenLooks};
+use super::moments::Moments;
 use super::urn::Urn;
 
 /// Share of a recipe's first draws spread evenly over its variants (importance sampling): improbable ones need samples.
 const SPREAD: f64 = 0.4;
 /// Marks an aspect that is not drawn because the decision does not depend on it.
-const UNDRAWN: u8 = u8::MAX;
+pub const UNDRAWN: u8 = u8::MAX;
 
 /// Likelihood of a press and quality of the samples behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,41 +39,46 @@ pub struct Evidence {
 /// Draws and weighs belief samples; its buffers are reused from press to press.
 #[derive(Clone, Debug, Default)]
 pub struct Sampler {
-    urns: Vec<Urn>,
+    pub(super) urns: Vec<Urn>,
     /// `[order][value]`: bit set of the recipe aspects on which the decision depends if the order has this value.
-    wants: Vec<Vec<u32>>,
+    pub(super) wants: Vec<Vec<u32>>,
     /// `[aspect * batch size + sample]`: the first draws of the present batch of samples.
     proposed: Vec<u8>,
     /// `[sample * aspects + aspect]`: value of the first draw.
-    firsts: Vec<u8>,
+    pub(super) firsts: Vec<u8>,
     /// All draws of those aspects of which a sample has several values, in consecutive rows of length `states`.
     rows: Vec<u8>,
-    samples: Vec<Sample>,
+    pub(super) samples: Vec<Sample>,
     /// Importance weight of a first draw by aspect and value; empty where first draws come from the mean.
     counts: Vec<Vec<f64>>,
     /// Weight of each belief sample before and after multiplication with its likelihood p(a | belief).
-    priors: Vec<f64>,
+    pub(super) priors: Vec<f64>,
     posteriors: Vec<f64>,
-    worlds: DistinctWorlds,
+    pub(super) worlds: DistinctWorlds,
     /// The distinct worlds of each belief sample, in consecutive ranges.
-    runs: Vec<Run>,
+    pub(super) runs: Vec<Run>,
     /// The distinct draws of one belief sample.
     alike: Vec<Alike>,
     /// The values of the mixed aspects, by draw.
     keys: Vec<Key>,
     /// Posterior weight of each world.
     world_weights: Vec<f64>,
+    /// What each belief sample has learned from looks that nobody saw, where there were such looks.
+    pub(super) looks: Vec<SampleLooks>,
+    pub(super) news: Vec<LookNews>,
+    /// Systematic sampling of readings: by location, sum of the probabilities so far.
+    pub(super) read_sums: Vec<f64>,
 }
 
 /// A belief sample.
 #[derive(Clone, Copy, Debug)]
-struct Sample {
+pub(super) struct Sample {
     /// Bit set of the aspects of which the sample has several values (mixed aspects).
     mixed: u32,
     /// Start of their rows in [`Sampler::rows`].
     rows: usize,
     /// Range of its runs in [`Sampler::runs`].
-    runs: [usize; 2],
+    pub(super) runs: [usize; 2],
 }
 
 impl Sample {
@@ -82,10 +91,10 @@ impl Sample {
 
 /// The draws of one belief sample that give the same world: index of the first, and their number.
 #[derive(Clone, Copy, Debug)]
-struct Run {
-    world: u32,
+pub(super) struct Run {
+    pub(super) world: u32,
     first: u32,
-    draws: u32,
+    pub(super) draws: u32,
 }
 
 /// The values of up to 32 aspects, one byte each.
@@ -109,6 +118,8 @@ pub struct EvidenceModel<'a> {
     pub choice: &'a ChoiceModel,
     /// How finely the belief is inferred.
     pub inference: &'a InferenceModel,
+    /// By button of the human, the bit set of locations that it looks at before the press.
+    pub watched: &'a [u32],
 }
 
 impl Sampler {
@@ -117,33 +128,30 @@ impl Sampler {
         Sampler { wants: kitchen.orders.iter().map(|&order| wants(kitchen, order)).collect(), ..Sampler::default() }
     }
 
-    /// Updates the estimate by the likelihood of a press of the human.
+    /// Updates the estimate by the likelihood of a press of the human, and by the looks that nobody saw before it.
     pub fn weigh(
         &mut self,
         model: &EvidenceModel,
         cost: &mut CostToGo,
         belief: &mut DirichletBelief,
         button: ButtonId,
+        looks: Option<&UnseenLooks>,
         random: &mut Stream,
     ) -> Evidence {
         let states = model.inference.states;
-        self.urns.resize(belief.aspects.len(), Urn::default());
-        self.counts.clear();
-        for ((urn, dirichlet), aspect) in self.urns.iter_mut().zip(&belief.aspects).zip(&model.kitchen.aspects) {
-            urn.fill(dirichlet, states, random);
-            let is_recipe = matches!(aspect.kind, AspectKind::Recipe(_));
-            self.counts.push(if is_recipe { urn.spread(SPREAD) } else { Vec::new() });
-        }
+        self.begin(model, belief, looks.is_some(), random);
         let mut wanted = model.inference.beliefs;
-        self.firsts.clear();
-        self.rows.clear();
-        self.samples.clear();
-        self.runs.clear();
-        self.priors.clear();
-        self.posteriors.clear();
-        self.worlds.clear(states * wanted.max(model.inference.max_beliefs));
         loop {
-            self.draw(model, cost, button, wanted, random);
+            let old = self.samples.len();
+            self.draw(model, cost, wanted, random);
+            if let Some(looks) = looks {
+                self.look(model, looks, old, random);
+                self.worlds.rate(cost, wanted * states);
+            }
+            self.weigh_samples(model, button, old);
+            while self.rate_again(cost, states) {
+                self.weigh_samples(model, button, 0);
+            }
             let evidence = self.evidence();
             let can_double = wanted * 2 <= model.inference.max_beliefs;
             if evidence.effective >= model.inference.min_effective || !can_double {
@@ -154,15 +162,34 @@ impl Sampler {
         }
     }
 
-    /// Draws belief samples until there are `wanted`, and weighs them.
-    fn draw(
-        &mut self,
-        model: &EvidenceModel,
-        cost: &mut CostToGo,
-        button: ButtonId,
-        wanted: usize,
-        random: &mut Stream,
-    ) {
+    /// Prepares urns and buffers for samples of this belief.
+    pub(super) fn begin(&mut self, model: &EvidenceModel, belief: &DirichletBelief, looks: bool, random: &mut Stream) {
+        let InferenceModel { states, beliefs, max_beliefs, .. } = *model.inference;
+        self.urns.resize(belief.aspects.len(), Urn::default());
+        self.counts.clear();
+        for ((urn, dirichlet), aspect) in self.urns.iter_mut().zip(&belief.aspects).zip(&model.kitchen.aspects) {
+            urn.fill(dirichlet, states, random);
+            let is_recipe = matches!(aspect.kind, AspectKind::Recipe(_));
+            self.counts.push(if is_recipe { urn.spread(SPREAD) } else { Vec::new() });
+        }
+        self.firsts.clear();
+        self.rows.clear();
+        self.samples.clear();
+        self.runs.clear();
+        self.priors.clear();
+        self.posteriors.clear();
+        self.looks.clear();
+        self.news.clear();
+        self.read_sums.clear();
+        if looks {
+            self.read_sums.extend(model.kitchen.locations.iter().map(|_| random.random::<f64>()));
+        }
+        // A look gives a belief sample other worlds.
+        self.worlds.clear(states * beliefs.max(max_beliefs) * (1 + usize::from(looks)));
+    }
+
+    /// Draws belief samples until there are `wanted`.
+    pub(super) fn draw(&mut self, model: &EvidenceModel, cost: &mut CostToGo, wanted: usize, random: &mut Stream) {
         let (kitchen, states) = (model.kitchen, model.inference.states);
         let (aspects, old) = (self.urns.len(), self.samples.len());
         let new = wanted - old;
@@ -178,10 +205,6 @@ impl Sampler {
             self.samples.push(Sample { mixed, rows, runs: [begin, self.runs.len()] });
         }
         self.worlds.rate(cost, wanted * states);
-        self.weigh_samples(model, button, old);
-        while self.rate_again(cost, states) {
-            self.weigh_samples(model, button, 0);
-        }
     }
 
     /// Draws the values of sample number `sample` in a batch of `new`; returns the bit set of its mixed aspects.
@@ -257,17 +280,27 @@ impl Sampler {
 
     /// Multiplies the weights of the belief samples from index `from` on by p(a | belief).
     fn weigh_samples(&mut self, model: &EvidenceModel, button: ButtonId, from: usize) {
-        let buttons = model.kitchen.buttons[Agent::Human.index()].len();
         self.posteriors.truncate(from);
         for (sample, prior) in self.samples.iter().zip(&self.priors).skip(from) {
             let mut sums = [0u32; MAX_BUTTONS];
-            for run in self.runs_of(sample) {
-                let after = self.worlds.after(run.world);
-                sums.iter_mut().zip(after).for_each(|(sum, &after)| *sum += run.draws * u32::from(after));
-            }
-            let likelihood = model.choice.press_likelihood(&sums[..buttons], button);
+            let likelihood = model.choice.press_likelihood(self.sum_costs(sample, &mut sums, model), button);
             self.posteriors.push(prior * likelihood);
         }
+    }
+
+    /// Cost to go after each button of the human, summed over the draws of a belief sample.
+    #[inline]
+    pub(super) fn sum_costs<'a>(
+        &self,
+        sample: &Sample,
+        sums: &'a mut [u32; MAX_BUTTONS],
+        model: &EvidenceModel,
+    ) -> &'a [u32] {
+        for run in self.runs_of(sample) {
+            let after = self.worlds.after(run.world);
+            sums.iter_mut().zip(after).for_each(|(sum, &after)| *sum += run.draws * u32::from(after));
+        }
+        &sums[..model.kitchen.buttons[Agent::Human.index()].len()]
     }
 
     /// The distinct worlds of one belief sample.
@@ -300,9 +333,12 @@ impl Sampler {
         let (before, total): (f64, f64) = (self.priors.iter().sum(), self.posteriors.iter().sum());
         let mut all: Vec<Moments> = belief.aspects.iter().map(Moments::from_prior).collect();
         let samples = self.samples.iter().zip(self.firsts.chunks_exact(all.len()));
-        for ((sample, firsts), (after, prior)) in samples.zip(self.posteriors.iter().zip(&self.priors)) {
-            let weight = after / total - prior / before;
+        let weights = self.posteriors.iter().zip(&self.priors);
+        for (index, ((sample, firsts), (after, prior))) in samples.zip(weights).enumerate() {
+            let (after, prior) = (after / total, prior / before);
+            let (changed, news) = self.news_of(index);
             for (aspect, (moments, &first)) in all.iter_mut().zip(firsts).enumerate() {
+                let weight = if changed >> aspect & 1 == 0 { after - prior } else { -prior };
                 if sample.mixed >> aspect & 1 == 0 {
                     moments.add_later(first, weight);
                     continue;
@@ -310,6 +346,12 @@ impl Sampler {
                 let row = &self.rows[sample.row(aspect, states)..];
                 let runs = self.runs_of(sample).iter();
                 moments.add(runs.map(|run| (row[run.first as usize], run.draws)), states, weight);
+            }
+            for news in news {
+                match news.is_read {
+                    true => all[news.aspect].add_certain(news.value, after),
+                    false => all[news.aspect].add_later(news.value, after),
+                }
             }
         }
         let collapsed = all.into_iter().zip(&self.urns).map(|(moments, urn)| moments.collapsed(states, urn.stand_in()));
@@ -324,97 +366,4 @@ fn wants(kitchen: &Kitchen, order: LocationId) -> Vec<u32> {
         OrderContent::None | OrderContent::Served => 0,
     };
     kitchen.aspects[order.index()].values.iter().map(wanted).collect()
-}
-
-/// Mean and second moment of a mixture of Dirichlets that share one prior, accumulated as changes to the prior's moments.
-struct Moments<'a> {
-    prior: &'a Dirichlet,
-    mean: Vec<f64>,
-    second: f64,
-    square: f64,
-    /// Weight of the prior's mean, added at the end.
-    share: f64,
-    /// Total weight of the belief samples all of whose draws have the same value, by value; the last entry is for samples in
-    /// which the aspect was not drawn.
-    pure: Vec<f64>,
-    /// Distinct values of one belief sample with their counts.
-    counts: Vec<(u8, u32)>,
-}
-
-impl Moments<'_> {
-    fn from_prior(prior: &Dirichlet) -> Moments<'_> {
-        let mean = prior.mean().to_vec();
-        let square = mean.iter().map(|m| m * m).sum();
-        let pure = vec![0.0; mean.len() + 1];
-        Moments { prior, mean, second: prior.second(), square, share: 0.0, pure, counts: Vec::new() }
-    }
-
-    /// Adds Dir(alpha + counts of the drawn values) with this weight; `draws` is the number of draws. All weights sum to 0.
-    fn add(&mut self, drawn: impl Iterator<Item = (u8, u32)>, draws: usize, weight: f64) {
-        self.counts.clear();
-        for (value, times) in drawn {
-            match self.counts.iter_mut().find(|(other, _)| *other == value) {
-                Some((_, count)) => *count += times,
-                None => self.counts.push((value, times)),
-            }
-        }
-        let (precision, prior) = (self.prior.precision(), self.prior.mean());
-        let size = precision + draws as f64;
-        let (mut cross, mut squares) = (0.0, 0.0);
-        for &(value, count) in &self.counts {
-            let (value, count) = (usize::from(value), f64::from(count));
-            self.mean[value] += weight * count / size;
-            cross += prior[value] * count;
-            squares += count * count;
-        }
-        self.add_moments(weight, size, cross, squares);
-    }
-
-    /// Adds a sample whose draws all have one value (or were not drawn): such samples are summed first and added at the end.
-    #[inline]
-    fn add_later(&mut self, value: u8, weight: f64) {
-        let last = self.pure.len() - 1;
-        self.pure[usize::from(value).min(last)] += weight;
-    }
-
-    fn add_pure(&mut self, value: usize, draws: usize, weight: f64) {
-        if value == self.mean.len() {
-            self.share += weight;
-            self.second += weight * self.prior.second();
-            return;
-        }
-        let draws = draws as f64;
-        let size = self.prior.precision() + draws;
-        self.mean[value] += weight * draws / size;
-        self.add_moments(weight, size, self.prior.mean()[value] * draws, draws * draws);
-    }
-
-    fn add_moments(&mut self, weight: f64, size: f64, cross: f64, squares: f64) {
-        let precision = self.prior.precision();
-        // The part from the prior's alphas. It cancels where all samples have the same number of draws.
-        self.share += weight * precision / size;
-        let second = precision * precision * self.square + 2.0 * precision * cross + squares + size;
-        self.second += weight * second / (size * (size + 1.0));
-    }
-
-    /// The Dirichlet with the accumulated moments. A gain of the value that represents the tail belongs to that value alone; a loss
-    /// is shared by the whole tail in proportion.
-    fn collapsed(mut self, draws: usize, stand_in: Option<usize>) -> Dirichlet {
-        for value in 0..self.pure.len() {
-            if self.pure[value] != 0.0 {
-                self.add_pure(value, draws, self.pure[value]);
-            }
-        }
-        let prior = self.prior.mean();
-        self.mean.iter_mut().zip(prior).for_each(|(mean, p)| *mean += self.share * p);
-        if let Some(value) = stand_in
-            && self.mean[value] < prior[value]
-        {
-            let tail = || (0..prior.len()).filter(|&value| Urn::is_tail(prior, value));
-            let of_tail: f64 = tail().map(|value| prior[value]).sum();
-            let left = (1.0 + (self.mean[value] - prior[value]) / of_tail).max(0.0);
-            tail().for_each(|value| self.mean[value] = left * prior[value]);
-        }
-        Dirichlet::of_moments(self.mean, self.second)
-    }
 }

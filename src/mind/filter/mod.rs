@@ -1,27 +1,33 @@
 //! Inference of the human's belief, event by event: a product of Dirichlets over the state aspects (paper, section
 //! "Inference of the human belief").
 //!
-//! Closed forms are used for reading, forgetting, signals, and own presses that involve one location. Samples are used for the
-//! likelihood of a press, for own presses that involve several locations, and for presses of the robot.
+//! Closed forms are used for reading, unknown gaze, forgetting, signals, and own presses that involve one location. Samples are
+//! used for the likelihood of a press, for own presses that involve several locations, and for presses of the robot.
 
 mod distinct;
 mod evidence;
 mod exchange;
 mod gamma;
+mod look_news;
+mod moments;
 mod own_press;
 mod perception;
 mod robot_press;
 mod serving;
+mod unknown_gaze;
+mod unseen_looks;
 pub mod urn;
 
 use std::sync::Arc;
 
 use super::choice::ChoiceModel;
 use super::dirichlet::{Dirichlet, DirichletBelief};
-use super::model::HumanModel;
+use super::gaze_presence::GazePresence;
+use super::model::{HumanModel, LookingModel};
 use super::observation::{Observation, Observed};
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
+use crate::gaze::GazeSample;
 use crate::kitchen::State;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{
@@ -30,8 +36,10 @@ use crate::kitchen::{
 pub use evidence::Evidence;
 use evidence::{EvidenceModel, Sampler};
 use exchange::Exchange;
+use look_news::UnseenLooks;
 use perception::GazeReader;
 use serving::Serving;
+use unknown_gaze::UnknownStretch;
 
 /// Update rule of a button: from one location, or from several that jointly determine the effect of the press.
 #[derive(Clone, Debug)]
@@ -51,6 +59,13 @@ pub struct BeliefFilter {
     /// The prior to which recipe beliefs decay.
     prior: DirichletBelief,
     reader: GazeReader,
+    presence: GazePresence,
+    /// The chance that the next press needs each location, once it has been computed after the last event.
+    needs: Option<Vec<f64>>,
+    /// Unknown time since the last event or known gaze, if there was any.
+    stretch: Option<UnknownStretch>,
+    /// By button of the human, the bit set of locations that it looks at before the press.
+    watched: Vec<u32>,
     choice: ChoiceModel,
     /// Update rule of each button of the human, by [`ButtonId`].
     lessons: Vec<Lesson>,
@@ -77,6 +92,10 @@ impl BeliefFilter {
         let lessons = kitchen.buttons[Agent::Human.index()].iter().map(|button| lesson(button.action)).collect();
         BeliefFilter {
             reader: GazeReader::new(&kitchen, &model.perception),
+            presence: GazePresence::new(&model),
+            needs: None,
+            stretch: None,
+            watched: unknown_gaze::watched(&kitchen),
             choice: ChoiceModel::for_draws(&kitchen, &model.decision, model.inference.states),
             belief: prior.clone(),
             sampler: Sampler::new(&kitchen),
@@ -107,20 +126,32 @@ impl BeliefFilter {
         let now = observation.time;
         if let Observed::Gaze { sample, taken } = observation.what {
             if self.forgot.is_some() {
-                self.reader.read(&self.kitchen, &self.model.perception, &mut self.belief, &sample, taken);
+                self.take_sample(&sample, taken, cost);
             }
+            return;
+        }
+        self.advance(now, cost);
+        if let Observed::DisplayInView(is_in_view) = observation.what {
+            self.presence.display_in_view = is_in_view;
             return;
         }
         self.forget(now);
         self.reader.settle();
-        match observation.what {
+        self.update(now, &observation.what, cost);
+        (self.needs, self.stretch) = (None, None);
+    }
+
+    /// Updates the estimate with an event.
+    fn update(&mut self, now: SessionTime, what: &Observed, cost: &mut CostToGo) {
+        match *what {
             Observed::Started { state } => {
                 self.prior = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);
                 self.belief.clone_from(&self.prior);
                 self.forgot = Some(now);
+                self.presence.rest(now);
                 self.show(now, state);
             }
-            Observed::Gaze { .. } => {}
+            Observed::Gaze { .. } | Observed::DisplayInView(_) => {}
             Observed::Pressed(press) => {
                 self.presses += 1;
                 let mut random = stream(self.seed, "belief", self.presses);
@@ -129,21 +160,115 @@ impl BeliefFilter {
                     Agent::Robot => {
                         let (draws, foresight) = (self.model.inference.predictions, self.model.transition.foresight);
                         robot_press::predict(&self.kitchen, cost, &mut self.belief, draws, foresight, &mut random);
+                        self.see_changes(now, press.after);
                     }
                 }
                 self.show(now, press.after);
             }
             Observed::Displayed { state } => {
                 self.expect_cleared(state);
+                self.see_changes(now, state);
                 self.show(now, state);
             }
             Observed::Told { location } => self.told(location),
             Observed::Paused => self.forgot = None,
             Observed::Resumed => {
                 self.forgot = Some(now);
-                self.reader.rest();
+                self.presence.rest(now);
             }
         }
+    }
+
+    /// Accounts for unknown gaze up to `now`. The estimate before a press includes it; [`BeliefFilter::observe`] does the same
+    /// first, so calling it changes no later estimate.
+    pub fn advance(&mut self, now: SessionTime, cost: &mut CostToGo) {
+        if self.forgot.is_some() {
+            let unknown_s = self.presence.pass(now);
+            self.pass_unknown(unknown_s, cost);
+        }
+    }
+
+    /// Updates the belief with a gaze sample, and with the unknown time before it.
+    fn take_sample(&mut self, sample: &GazeSample, taken: SessionTime, cost: &mut CostToGo) {
+        let known = self.model.perception.known_share(sample.confidence);
+        let time = self.presence.sample(sample, known, taken);
+        self.pass_unknown(time.unknown_before_s, cost);
+        if time.known > 0.0 {
+            self.stretch = None;
+            let known_s = time.known * time.covers_s;
+            self.reader.read(&self.kitchen, &self.model.perception, &mut self.belief, sample, taken, known_s);
+            self.pass_unknown((1.0 - time.known) * time.covers_s, cost);
+        }
+    }
+
+    /// Marginalises over looks in `seconds` of unknown gaze.
+    fn pass_unknown(&mut self, seconds: f64, cost: &mut CostToGo) {
+        if seconds <= 0.0 {
+            return;
+        }
+        let LookingModel { looks_hz, other_looks_hz, display_lost_looks_hz, .. } = self.model.looking;
+        let [base, extra] = match self.presence.display_in_view {
+            true => [other_looks_hz, looks_hz - other_looks_hz].map(|hz| hz * seconds),
+            false => [display_lost_looks_hz * seconds, 0.0],
+        };
+        let locations = self.kitchen.locations.len();
+        if self.needs.is_none() {
+            self.needs = Some(self.needs_now(cost));
+        }
+        let needs = self.needs.as_deref().unwrap_or_default();
+        let stretch = self.stretch.get_or_insert_with(|| UnknownStretch {
+            before: self.belief.aspects[..locations].to_vec(),
+            hazards: vec![[0.0; 2]; locations],
+        });
+        self.reader.settle();
+        for (index, need) in needs.iter().enumerate() {
+            stretch.hazards[index][0] += base;
+            stretch.hazards[index][1] += extra;
+            let reading = self.reader.reading(&self.kitchen, LocationId(index as u8), self.shown);
+            let looked = -(-(base + extra * need)).exp_m1();
+            if looked > 0.0 && !reading.is_empty() {
+                self.belief.aspects[index].learn(looked, reading.iter().copied());
+            }
+        }
+    }
+
+    /// The chance that the next press needs each location, under the present belief.
+    fn needs_now(&mut self, cost: &mut CostToGo) -> Vec<f64> {
+        let mut random = stream(self.seed, "needs", self.presses);
+        let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
+        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched };
+        self.sampler.needs(&model, cost, &self.belief, &mut random)
+    }
+
+    /// Changes by others draw the eye, where the gaze is unknown.
+    fn see_changes(&mut self, now: SessionTime, after: State) {
+        let unknown = if self.forgot.is_some() { self.presence.unknown_share(now) } else { 0.0 };
+        let seen = self.model.looking.capture * unknown;
+        if seen <= 0.0 || !self.presence.display_in_view {
+            return;
+        }
+        for index in 0..self.kitchen.locations.len() {
+            let location = LocationId(index as u8);
+            let reading = self.reader.reading(&self.kitchen, location, after);
+            if self.shown.code(location) != after.code(location) && !reading.is_empty() {
+                self.belief.aspects[index].learn(seen, reading.iter().copied());
+            }
+        }
+    }
+
+    /// Updates the belief by the likelihood of a press, with the looks of the unknown time before it.
+    fn weigh_press(&mut self, button: ButtonId, cost: &mut CostToGo, random: &mut Stream) -> Evidence {
+        let stretch = self.stretch.take();
+        let looks = stretch.as_ref().map(|stretch| {
+            let reading = |index| self.reader.reading(&self.kitchen, LocationId(index as u8), self.shown);
+            UnseenLooks { hazards: &stretch.hazards, readings: (0..stretch.hazards.len()).map(reading).collect() }
+        });
+        if let Some(stretch) = &stretch {
+            self.belief.aspects[..stretch.before.len()].clone_from_slice(&stretch.before);
+        }
+        let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
+        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched };
+        self.sampler.weigh(&model, cost, &mut self.belief, button, looks.as_ref(), random)
     }
 
     fn show(&mut self, now: SessionTime, state: State) {
@@ -164,8 +289,7 @@ impl BeliefFilter {
     }
 
     fn human_pressed(&mut self, button: ButtonId, effective: bool, cost: &mut CostToGo, random: &mut Stream) {
-        let model = EvidenceModel { kitchen: &self.kitchen, choice: &self.choice, inference: &self.model.inference };
-        self.evidence = Some(self.sampler.weigh(&model, cost, &mut self.belief, button, random));
+        self.evidence = Some(self.weigh_press(button, cost, random));
         let draws = self.model.inference.beliefs;
         match &self.lessons[button.index()] {
             Lesson::Alone => {

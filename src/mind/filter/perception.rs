@@ -52,8 +52,6 @@ pub struct GazeReader {
     looks: Vec<Look>,
     /// Recent states of the display, each with the time since which it was shown.
     shown: VecDeque<(SessionTime, State)>,
-    /// Time at which the last sample was taken, whether it was usable or not.
-    last: Option<SessionTime>,
 }
 
 impl GazeReader {
@@ -65,7 +63,7 @@ impl GazeReader {
         };
         let confusions: Vec<_> = (0..kitchen.locations.len()).map(of_location).collect();
         let looks = vec![Look { unread: 1.0, survived: 1.0, code: 0, last: SessionTime::ZERO }; confusions.len()];
-        GazeReader { confusions, rate: model.reading_rate(), looks, shown: VecDeque::new(), last: None }
+        GazeReader { confusions, rate: model.reading_rate(), looks, shown: VecDeque::new() }
     }
 
     /// Notes that the display shows `state` from `now` on.
@@ -84,9 +82,10 @@ impl GazeReader {
         }
     }
 
-    /// Notes a pause: the next sample does not cover the time since the previous one.
-    pub fn rest(&mut self) {
-        self.last = None;
+    /// Distribution of the value read at a location while the display shows `state`; empty if it has no value there.
+    pub fn reading(&self, kitchen: &Kitchen, location: LocationId, state: State) -> &[f64] {
+        let value = kitchen.aspects[location.index()].index_of(state.code(location));
+        value.map_or(&[], |value| &self.confusions[location.index()][value])
     }
 
     /// State of the display at `time`; `None` if that lies before the kept history.
@@ -94,7 +93,7 @@ impl GazeReader {
         self.shown.iter().rev().find(|(since, _)| *since <= time).map(|(_, state)| *state)
     }
 
-    /// Updates the belief with a sample taken at session time `taken`.
+    /// Updates the belief with a sample taken at session time `taken`, in whose time the gaze is known for `known_s` seconds.
     pub fn read(
         &mut self,
         kitchen: &Kitchen,
@@ -102,12 +101,11 @@ impl GazeReader {
         belief: &mut DirichletBelief,
         sample: &GazeSample,
         taken: SessionTime,
+        known_s: f64,
     ) {
-        let covers_s = self.last.map_or(model.max_sample_s, |last| taken.secs_since(last)).min(model.max_sample_s);
-        self.last = Some(self.last.map_or(taken, |last| last.max(taken)));
-        let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
         // NaN fails these comparisons.
-        let is_usable = on_display && sample.confidence >= model.min_confidence && covers_s > 0.0;
+        let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
+        let is_usable = on_display && known_s > 0.0;
         let Some(state) = self.shown_at(taken).filter(|_| is_usable) else { return };
         let (full_hz, confidence) = (model.reading_rate_hz, sample.confidence.min(1.0));
         for (index, look) in self.looks.iter_mut().enumerate() {
@@ -121,7 +119,7 @@ impl GazeReader {
             if rate_hz >= ELSEWHERE * full_hz * confidence {
                 look.last = taken;
             }
-            let read = look.read(-(-rate_hz * covers_s).exp_m1());
+            let read = look.read(-(-rate_hz * known_s).exp_m1());
             if read < NEGLIGIBLE {
                 continue;
             }

@@ -6,12 +6,15 @@ use std::sync::Arc;
 use rand::RngExt;
 
 use super::person::Particle;
+use super::plausible_looks::{self, PlausibleLooks};
 use super::reading_effect::GazeFollower;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
+use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
+use crate::mind::gaze_presence::GazePresence;
 use crate::mind::model::HumanModel;
 use crate::mind::observation::{Observation, Observed};
 
@@ -27,6 +30,9 @@ pub struct Particles {
     /// The explicit beliefs.
     pub of: Vec<Particle>,
     sight: GazeFollower,
+    presence: GazePresence,
+    /// What each belief looks at while the gaze is unknown, once it has been computed after the last event.
+    unseen: Option<PlausibleLooks>,
     shown: State,
     /// Time up to which forgetting has been applied; `None` while the trial is paused.
     forgot: Option<SessionTime>,
@@ -37,8 +43,8 @@ impl Particles {
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel) -> Particles {
         let shown = kitchen.empty_state();
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
-        let (doubt, sight) = (prior.clone(), GazeFollower::default());
-        Particles { kitchen, model, prior, doubt, of: Vec::new(), sight, shown, forgot: None }
+        let (doubt, sight, presence) = (prior.clone(), GazeFollower::default(), GazePresence::new(&model));
+        Particles { kitchen, model, prior, doubt, of: Vec::new(), sight, presence, unseen: None, shown, forgot: None }
     }
 
     /// Starts the trial in `state` with `count` beliefs drawn from the prior.
@@ -47,7 +53,56 @@ impl Particles {
         self.doubt.clone_from(&self.prior);
         self.of = (0..count).map(|_| Particle::draw(&self.kitchen, &self.prior, random)).collect();
         self.forgot = Some(now);
+        self.presence.rest(now);
+        self.unseen = None;
         self.show(now, state);
+    }
+
+    /// Replaces all beliefs.
+    pub fn replace(&mut self, people: Vec<Particle>) {
+        (self.of, self.unseen) = (people, None);
+    }
+
+    /// Lets every belief look, as it needs to, in the unknown time up to `now`.
+    pub fn advance(&mut self, now: SessionTime, cost: &mut CostToGo, random: &mut Stream) {
+        if self.forgot.is_some() {
+            let seconds = self.presence.pass(now);
+            self.look_unseen(seconds, cost, random);
+        }
+    }
+
+    fn look_unseen(&mut self, seconds: f64, cost: &mut CostToGo, random: &mut Stream) {
+        if seconds <= 0.0 {
+            return;
+        }
+        let (kitchen, model) = (&self.kitchen, &self.model);
+        let looking = &model.looking;
+        let rates_hz = match self.presence.display_in_view {
+            true => [looking.other_looks_hz, looking.looks_hz],
+            false => [looking.display_lost_looks_hz; 2],
+        };
+        let unseen = self.unseen.get_or_insert_with(|| PlausibleLooks::before(kitchen, model, &self.of, cost, random));
+        unseen.look(kitchen, model, &mut self.of, self.shown, rates_hz.map(|hz| hz * seconds), random);
+    }
+
+    fn gaze(&mut self, sample: &GazeSample, taken: SessionTime, cost: &mut CostToGo, random: &mut Stream) {
+        let perception = &self.model.perception;
+        let time = self.presence.sample(sample, perception.known_share(sample.confidence), taken);
+        self.look_unseen(time.unknown_before_s, cost, random);
+        let known_s = time.known * time.covers_s;
+        let glances = self.sight.glances(&self.kitchen, &self.model.perception, sample, taken, known_s);
+        self.of.iter_mut().for_each(|person| person.look(&glances, random));
+        if time.known > 0.0 {
+            self.look_unseen((1.0 - time.known) * time.covers_s, cost, random);
+        }
+    }
+
+    /// A change by others draws the eye, where the gaze is unknown.
+    fn see_changes(&mut self, now: SessionTime, after: State, random: &mut Stream) {
+        if self.forgot.is_some() && self.presence.display_in_view {
+            let seen = self.model.looking.capture * self.presence.unknown_share(now);
+            plausible_looks::see_changes(&self.kitchen, &self.model, &mut self.of, [self.shown, after], seen, random);
+        }
     }
 
     /// Updates every belief with an event. Returns p(a | b) of each belief for a press of the human, else 1.
@@ -55,15 +110,20 @@ impl Particles {
         let now = observation.time;
         if let Observed::Gaze { sample, taken } = observation.what {
             if self.forgot.is_some() {
-                let glances = self.sight.glances(&self.kitchen, &self.model.perception, &sample, taken);
-                self.of.iter_mut().for_each(|person| person.look(&glances, random));
+                self.gaze(&sample, taken, cost, random);
             }
             return vec![1.0; self.of.len()];
         }
+        self.advance(now, cost, random);
+        if let Observed::DisplayInView(is_in_view) = observation.what {
+            self.presence.display_in_view = is_in_view;
+            return vec![1.0; self.of.len()];
+        }
         self.forget(now, random);
+        self.unseen = None;
         match observation.what {
             Observed::Started { state } => self.start(now, state, self.of.len(), random),
-            Observed::Gaze { .. } => {}
+            Observed::Gaze { .. } | Observed::DisplayInView(_) => {}
             Observed::Pressed(press) => {
                 let weights = match press.agent {
                     Agent::Human => Some(self.human_pressed(press.button, press.effective, cost, random)),
@@ -71,6 +131,7 @@ impl Particles {
                 };
                 if press.agent == Agent::Robot {
                     self.robot_pressed(cost, random);
+                    self.see_changes(now, press.after, random);
                 }
                 self.show(now, press.after);
                 if let Some(weights) = weights {
@@ -79,13 +140,14 @@ impl Particles {
             }
             Observed::Displayed { state } => {
                 self.expect_cleared(state);
+                self.see_changes(now, state, random);
                 self.show(now, state);
             }
             Observed::Told { location } => self.told(location, random),
             Observed::Paused => self.forgot = None,
             Observed::Resumed => {
                 self.forgot = Some(now);
-                self.sight.rest();
+                self.presence.rest(now);
             }
         }
         vec![1.0; self.of.len()]

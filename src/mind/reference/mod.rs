@@ -1,6 +1,6 @@
 //! The reference filter: inference of the human's belief implemented directly from the equations, without optimisation, for
-//! tests and benchmarks. It shares with [`super::filter`] only the parameters, the kitchen's rules, the robot's policy and the
-//! cost to go.
+//! tests and benchmarks. It shares with [`super::filter`] only the parameters, the kitchen's rules, the robot's policy, the cost to
+//! go, and the accounting of known and unknown gaze time.
 //!
 //! A set of explicit beliefs is drawn from the Dirichlets, every component by a gamma variate. Each event updates every belief
 //! by the human model ([`person`]); a press of the human weighs them by p(a | b). Then they are projected onto Dirichlets by
@@ -9,6 +9,7 @@
 
 pub mod belief_set;
 pub mod person;
+pub mod plausible_looks;
 pub mod reading_effect;
 
 use std::sync::Arc;
@@ -108,6 +109,7 @@ impl ReferenceFilter {
             person.read = read.iter().map(|&share| random.random::<f64>() < share).collect();
             person
         };
-        self.people.of = (0..self.beliefs).map(|_| person(random)).collect();
+        let people = (0..self.beliefs).map(|_| person(random)).collect();
+        self.people.replace(people);
     }
 }

@@ -28,7 +28,6 @@ pub struct GazeFollower {
     shown: Vec<(SessionTime, State)>,
     /// By location, the displayed code of the present look, and the time of its last sample.
     looks: Vec<(u8, SessionTime)>,
-    last: Option<SessionTime>,
 }
 
 impl GazeFollower {
@@ -37,23 +36,17 @@ impl GazeFollower {
         self.shown.push((now, state));
     }
 
-    /// Notes a pause.
-    pub fn rest(&mut self) {
-        self.last = None;
-    }
-
-    /// The effect of a sample taken at session time `taken`, by location.
+    /// The effect of a sample taken at session time `taken`, by location; in its time the gaze is known for `known_s` seconds.
     pub fn glances(
         &mut self,
         kitchen: &Kitchen,
         model: &PerceptionModel,
         sample: &GazeSample,
         taken: SessionTime,
+        known_s: f64,
     ) -> Vec<LocationReading> {
-        let covers_s = self.last.map_or(model.max_sample_s, |last| taken.secs_since(last)).min(model.max_sample_s);
-        self.last = Some(self.last.map_or(taken, |last| last.max(taken)));
         let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
-        if !on_display || sample.confidence.is_nan() || sample.confidence < model.min_confidence || covers_s <= 0.0 {
+        if !on_display || known_s <= 0.0 {
             return Vec::new();
         }
         let Some(state) = self.shown_at(taken, model.history_s) else { return Vec::new() };
@@ -72,7 +65,7 @@ impl GazeFollower {
                 *last = taken;
             }
             let Some(value) = kitchen.aspects[index].index_of(code) else { continue };
-            let chance = 1.0 - (-rate_hz * covers_s).exp();
+            let chance = 1.0 - (-rate_hz * known_s).exp();
             glances.push(LocationReading {
                 location,
                 begins,
@@ -94,7 +87,7 @@ impl GazeFollower {
 }
 
 /// The confusion matrix's row for a value of a location.
-fn reading(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, value: usize) -> Vec<f64> {
+pub fn reading(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, value: usize) -> Vec<f64> {
     let aspect = &kitchen.aspects[location.index()];
     let alike: Vec<bool> =
         aspect.values.iter().map(|&other| is_alike(kitchen, location, aspect.values[value], other)).collect();

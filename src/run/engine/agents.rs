@@ -9,13 +9,16 @@ use crate::arm::reaching::ReachingBehaviour;
 use crate::arm::worker::Robot;
 #[cfg(not(feature = "physics"))]
 use crate::base::features::{Feature, NotBuilt};
+use crate::base::rng::stream;
 use crate::kitchen::Kitchen;
 use crate::participant::SimulatedParticipant;
+use crate::participant::gaze_gaps::GazeGaps;
 use crate::participant::population::Experience;
 use crate::session::SessionSpec;
 use crate::session::settings::ArmKind;
 #[cfg(feature = "physics")]
 use crate::session::settings::ParticipantKind;
+use crate::session::tracker::GazeGapSpec;
 
 /// The simulated participant of a trial. In a plan the same person has several trials and learns from the earlier ones.
 pub(super) fn simulated_participant(kitchen: Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> SimulatedParticipant {
@@ -25,6 +28,12 @@ pub(super) fn simulated_participant(kitchen: Arc<Kitchen>, spec: &SessionSpec, t
     let presses = f64::from(trials) * f64::from(spec.trial.presses) / 2.0;
     let population = spec.participant.population.clone().unwrap_or_default();
     SimulatedParticipant::new(kitchen, &population, spec.seed, person, trial, Experience { trials, presses })
+}
+
+/// The drop-outs of the simulated tracker in a trial.
+pub(super) fn gaze_gaps(spec: &SessionSpec, trial: u64) -> Option<GazeGaps> {
+    let GazeGapSpec { every_s, shortest_s, longest_s } = *spec.tracker.gaps.as_ref()?;
+    Some(GazeGaps::new(every_s, [shortest_s, longest_s], stream(spec.seed, "tracker's gaps", trial)))
 }
 
 /// The robot of a trial.

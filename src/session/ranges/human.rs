@@ -6,13 +6,16 @@ use crate::base::number_range::{ABOVE_0, INSIDE_0_AND_1, NOT_NEGATIVE, NumberRan
 const TO_65536: [f64; 2] = [1.0, 65_536.0];
 /// The angle whose tangent is the radius was below 45 degrees.
 const BELOW_45: [f64; 2] = [ABOVE_0[0], 44.999_999];
+/// Of looks a second.
+const LOOKS: [f64; 2] = [0.0, 100.0];
+const FEW_LOOKS: &str = "eyes look at a few places a second";
 const CHANCE: &str = "it is a probability";
 /// Of what may be neither impossible nor certain.
 const UNSURE: &str = "certainty could not be corrected by any observation";
 const PRECISION: &str = "less is no belief, more a certain one";
 const DRAWS: &str = "more take seconds to minutes a press";
 
-pub(super) const RANGES: [NumberRange; 27] = [
+pub(super) const RANGES: [NumberRange; 32] = [
     NumberRange::real("human.prior.location_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
     NumberRange::real("human.prior.location_precision", [0.01, 10_000.0], "", PRECISION).recorded(ABOVE_0),
     NumberRange::real("human.prior.recipe_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
@@ -53,6 +56,11 @@ pub(super) const RANGES: [NumberRange; 27] = [
         "a look takes a tenth of a second to some seconds",
     )
     .recorded(ABOVE_0),
+    NumberRange::real("human.looking.looks_hz", LOOKS, "per second", FEW_LOOKS),
+    NumberRange::real("human.looking.other_looks_hz", LOOKS, "per second", FEW_LOOKS),
+    NumberRange::real("human.looking.capture", [0.0, 1.0], "", CHANCE),
+    NumberRange::real("human.looking.display_lost_looks_hz", LOOKS, "per second", FEW_LOOKS),
+    NumberRange::real("human.looking.blink_s", [0.0, 60.0], "s", "a blink takes some tenths of a second"),
     NumberRange::real(
         "human.transition.recipe_half_life_s",
         [1.0, 1_000_000.0],

@@ -11,7 +11,8 @@ use tomcom::base::rng::stream;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, Kitchen};
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
-use tomcom::mind::model::HumanModel;
+use tomcom::mind::gaze_presence::GazePresence;
+use tomcom::mind::model::{HumanModel, LookingModel};
 use tomcom::mind::observation::{Observation, Observed};
 use tomcom::mind::reference::belief_set::Particles;
 use tomcom::mind::reference::person::Particle;
@@ -38,6 +39,7 @@ pub struct GridFilter {
     /// On the grid, everybody thinks every press of the robot through.
     people: Particles,
     sight: GazeFollower,
+    presence: GazePresence,
     looks: Vec<Look>,
     pub belief: DirichletBelief,
     /// The largest grid so far.
@@ -48,11 +50,15 @@ impl GridFilter {
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel) -> GridFilter {
         let mut thoughtful = model.clone();
         thoughtful.transition.foresight = 1.0;
+        // The grid reads gaze itself, and there is no time without gaze.
+        let none = LookingModel { looks_hz: 0.0, other_looks_hz: 0.0, capture: 0.0, ..LookingModel::default() };
+        thoughtful.looking = none;
         let people = Particles::new(kitchen.clone(), thoughtful);
         let belief = people.prior.clone();
         let places = belief.aspects.iter().take(kitchen.locations.len());
         let looks = places.map(|of| Look { before: of.clone(), unread: 1.0, survived: 1.0 }).collect();
-        GridFilter { kitchen, people, model, sight: GazeFollower::default(), looks, belief, nodes: 0 }
+        let (sight, presence) = (GazeFollower::default(), GazePresence::new(&model));
+        GridFilter { kitchen, people, model, sight, presence, looks, belief, nodes: 0 }
     }
 
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
@@ -61,7 +67,10 @@ impl GridFilter {
         let now = observation.time;
         match observation.what {
             Observed::Gaze { sample, taken } => {
-                let glances = self.sight.glances(&self.kitchen, &self.model.perception, &sample, taken);
+                let perception = &self.model.perception;
+                let time = self.presence.sample(&sample, perception.known_share(sample.confidence), taken);
+                let known_s = time.known * time.covers_s;
+                let glances = self.sight.glances(&self.kitchen, perception, &sample, taken, known_s);
                 for glance in glances {
                     let look = &mut self.looks[glance.location.index()];
                     let of = &mut self.belief.aspects[AspectId::of_location(glance.location).index()];

@@ -9,4 +9,5 @@ mod laws;
 mod observed;
 mod particles;
 mod recorded;
+mod unknown_gaze;
 mod world;

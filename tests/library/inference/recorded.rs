@@ -23,9 +23,20 @@ fn mean_distance(one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
 
 #[test]
 fn the_fast_filter_and_the_reference_agree_on_recorded_steps() {
+    agree(|_| true);
+}
+
+#[test]
+fn they_agree_without_gaze() {
+    agree(|what| !matches!(what, Observed::Gaze { .. }));
+}
+
+/// Holds the two against each other on recorded steps, as far as they are `kept`.
+fn agree(kept: impl Fn(&Observed) -> bool) {
     for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
         let kitchen = kitchen(layout);
-        let observations = recorded(&kitchen, 21, 45);
+        let mut observations = recorded(&kitchen, 21, 45);
+        observations.retain(|observation| kept(&observation.what));
         let mut cost = CostToGo::new(kitchen.clone());
         // Many samples, so that the two are compared and not their chances.
         let mut model = HumanModel::default();

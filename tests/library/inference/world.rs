@@ -84,7 +84,7 @@ impl World {
     }
 
     /// What happens next; the human presses what `choose` says.
-    pub fn next(&mut self, choose: impl FnOnce(&mut CostToGo) -> ButtonId) -> Observation {
+    pub fn next(&mut self, choose: impl FnOnce(f64, &mut CostToGo) -> ButtonId) -> Observation {
         let change = self.changes.iter().map(|(at, _, _)| *at).fold(f64::INFINITY, f64::min);
         let [human, robot] = self.press_at;
         let now = change.min(human).min(robot).min(self.gaze_at).min(self.signal_at);
@@ -94,7 +94,7 @@ impl World {
             _ if now == change => self.change(now),
             _ if now == human => {
                 self.press_at[0] = now + self.between(PRESS_S);
-                let button = choose(&mut self.cost);
+                let button = choose(now, &mut self.cost);
                 self.press(now, Agent::Human, button)
             }
             _ => {
@@ -186,8 +186,9 @@ impl Human {
         Human { people, model: model.clone(), chance: stream(seed, "human of the model", index) }
     }
 
-    /// What it presses next.
-    pub fn choose(&mut self, kitchen: &Kitchen, cost: &mut CostToGo) -> ButtonId {
+    /// What it presses at this time, after the looks of the time in which nobody saw its gaze.
+    pub fn choose(&mut self, kitchen: &Kitchen, now: f64, cost: &mut CostToGo) -> ButtonId {
+        self.people.advance(SessionTime::from_secs_f64(now), cost, &mut self.chance);
         let (decision, states) = (&self.model.decision, self.model.inference.states);
         let chances = self.people.of[0].press_chances(kitchen, cost, decision, states, &mut self.chance);
         ButtonId(pick(&chances, &mut self.chance) as u8)
@@ -222,7 +223,7 @@ pub fn live(
         if left == 0 {
             return;
         }
-        observation = world.next(|cost| human.choose(&kitchen, cost));
+        observation = world.next(|now, cost| human.choose(&kitchen, now, cost));
     }
 }
 

@@ -166,6 +166,7 @@ fn a_human_who_knows_everything_is_fitted_to_the_presses() {
             log_p,
         }),
         unseen_change: vec![false; kitchen.locations.len()],
+        since_change_s: vec![None; kitchen.locations.len()],
         errs_about: Vec::new(),
     };
     // The wise press nine times of ten.

@@ -60,6 +60,7 @@ fn trial(kitchen: &Kitchen, place: AspectId, recipe: AspectId, text: [&str; 4]) 
             held: Some(held),
             estimate: Some(EstimateView { p_false: p_wrong.clone(), p_wrong, log_p: -1.0 }),
             unseen_change: vec![false; kitchen.locations.len()],
+            since_change_s: vec![None; kitchen.locations.len()],
             errs_about,
         }
     };
@@ -116,6 +117,7 @@ fn thresholds_are_chosen_that_catch_most_within_what_is_allowed() {
     assert!((found.auc_mean_of_aspects.expect("an area") - of_pot).abs() < 1e-12, "{found:?}");
     assert_eq!((found.auc, found.auc_recipes), (found.auc_locations, None));
     assert_eq!(found.auc_baseline, Some(0.5), "nothing ever changed unseen");
+    assert_eq!(found.auc_recency, Some(0.5), "nobody else ever changed anything");
 }
 
 #[test]

@@ -60,7 +60,7 @@ fn simulate_records_what_replay_verifies() {
     let paths: Vec<&str> = recordings.iter().filter_map(Value::as_str).collect();
     let checked = figures(&[&["replay"], &paths[..], &["--check-beliefs", "--format", "json"]].concat(), 0);
     assert_eq!((&checked["recordings"], &checked["human_actions"]), (&Value::from(2), &found["human_actions"]));
-    for key in ["auc", "auc_locations", "auc_recipes", "auc_baseline"] {
+    for key in ["auc", "auc_locations", "auc_recipes", "auc_baseline", "auc_recency"] {
         assert!(checked[key].as_f64().is_some_and(|area| area > 0.5), "{key} in {checked}");
     }
     assert!(checked["log_likelihood"]["informed"].as_f64() > checked["log_likelihood"]["uniform"].as_f64());

@@ -1,0 +1,29 @@
+//! The update by time in which the gaze is unknown: perception is marginalised over plausible looking, in closed form.
+//!
+//! In a time dt location i is looked at with hazard h_i = dt (l0 + (ln - l0) n_i): l0 and ln are the rates of looks at a place
+//! that the next press does not need, and at one that it needs (those of the looking model); n_i is the chance that the next
+//! press needs it, computed once after each event, and only where gaze is unknown. The aspect learns the displayed content,
+//! confused as in any reading, with probability 1 - exp(-h_i). Hazards add up, so it makes no difference how a gap is divided. A
+//! press of the human draws the looks since the last event anew, see [`super::unseen_looks`].
+
+use crate::kitchen::{Agent, ButtonId, Kitchen};
+use crate::mind::dirichlet::Dirichlet;
+
+/// Unknown time since the last event or known gaze.
+#[derive(Clone, Debug)]
+pub struct UnknownStretch {
+    /// Beliefs about the locations at its beginning.
+    pub before: Vec<Dirichlet>,
+    /// By location: expected looks without need, and the further ones where the next press needs it for certain.
+    pub hazards: Vec<[f64; 2]>,
+}
+
+/// By button of the human, the bit set of locations that it looks at before the press, without its own hand.
+pub fn watched(kitchen: &Kitchen) -> Vec<u32> {
+    let own_hand = kitchen.hands[Agent::Human.index()];
+    let bits = |button| {
+        let places = kitchen.watched(ButtonId(button as u8)).into_iter().filter(|&place| place != own_hand);
+        places.fold(0, |bits, place| bits | 1 << place.index())
+    };
+    (0..kitchen.buttons[Agent::Human.index()].len()).map(bits).collect()
+}

@@ -1,0 +1,108 @@
+//! Looks that nobody saw, drawn for each belief sample: while the gaze is unknown, a person looks at what its own next press
+//! needs. So what is pressed tells what was looked at: an error is evidence of not having looked.
+//!
+//! For belief sample j the need of location i is n_ij = sum over buttons of p(a | b_j) [i is looked at before a]. The sample has
+//! read the location with probability 1 - exp(-h_ij), where h_ij is linear in n_ij; it then holds what was read for certain.
+
+use crate::base::bits::ones;
+use crate::base::rng::Stream;
+use crate::kitchen::AspectId;
+use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
+use crate::kitchen::state::MAX_LOCATIONS;
+use crate::mind::dirichlet::DirichletBelief;
+use rand::RngExt;
+
+use super::evidence::{EvidenceModel, Sampler, UNDRAWN};
+use super::look_news::{LookNews, SampleLooks, UnseenLooks};
+
+impl Sampler {
+    /// The chance that the human looks at each location before its next press, over belief samples.
+    pub fn needs(
+        &mut self,
+        model: &EvidenceModel,
+        cost: &mut CostToGo,
+        belief: &DirichletBelief,
+        random: &mut Stream,
+    ) -> Vec<f64> {
+        self.begin(model, belief, false, random);
+        self.draw(model, cost, model.inference.beliefs, random);
+        let mut sums = [0.0; MAX_LOCATIONS];
+        for index in 0..self.samples.len() {
+            let needs = self.needs_of(model, index);
+            sums.iter_mut().zip(needs).for_each(|(sum, need)| *sum += self.priors[index] * need);
+        }
+        let total: f64 = self.priors.iter().sum();
+        sums[..model.kitchen.locations.len()].iter().map(|sum| sum / total).collect()
+    }
+
+    /// The same for one belief sample.
+    fn needs_of(&self, model: &EvidenceModel, sample: usize) -> [f64; MAX_LOCATIONS] {
+        let mut sums = [0u32; MAX_BUTTONS];
+        let mut needs = [0.0; MAX_LOCATIONS];
+        let pressed = model.choice.press_probabilities(self.sum_costs(&self.samples[sample], &mut sums, model));
+        for (p, &watched) in pressed.iter().zip(model.watched) {
+            ones(watched).for_each(|location| needs[location] += p);
+        }
+        needs
+    }
+
+    /// Draws the looks of the belief samples from index `from` on, and moves them to the worlds that they then believe in.
+    pub fn look(&mut self, model: &EvidenceModel, looks: &UnseenLooks, from: usize, random: &mut Stream) {
+        let aspects = self.urns.len();
+        for index in from..self.samples.len() {
+            let begin = self.news.len();
+            let needs = self.needs_of(model, index);
+            for (location, (&[base, extra], reading)) in looks.hazards.iter().zip(&looks.readings).enumerate() {
+                let before = self.read_sums[location];
+                self.read_sums[location] -= (-(base + extra * needs[location])).exp_m1();
+                // Systematic sampling: over all samples the number of readings differs from its expectation by less than 1.
+                if self.read_sums[location].floor() > before.floor() && !reading.is_empty() {
+                    let value = value_at(reading, random.random::<f64>());
+                    self.news.push(LookNews { aspect: location, value, is_read: true });
+                }
+            }
+            let wanted = self.news[begin..]
+                .iter()
+                .filter_map(|news| self.wants.get(news.aspect).map(|wants| wants[usize::from(news.value)]));
+            let wanted = wanted.fold(0, |all, wants| all | wants);
+            for aspect in ones(wanted).filter(|aspect| self.firsts[index * aspects + aspect] == UNDRAWN) {
+                let value = self.urns[aspect].draw(random);
+                self.news.push(LookNews { aspect, value, is_read: false });
+            }
+            let news = [begin, self.news.len()];
+            let changed = self.news[begin..].iter().fold(0, |changed, news| changed | 1 << news.aspect);
+            self.looks.push(SampleLooks { changed, news });
+            if changed != 0 {
+                self.believe_news(model, index, news);
+            }
+        }
+    }
+
+    /// Replaces the worlds of a belief sample by those with the values that it has learned.
+    fn believe_news(&mut self, model: &EvidenceModel, sample: usize, [begin, end]: [usize; 2]) {
+        let [first, last] = self.samples[sample].runs;
+        for run in &mut self.runs[first..last] {
+            let mut world = self.worlds.world(run.world);
+            for news in &self.news[begin..end] {
+                world.set_value(model.kitchen, AspectId(news.aspect as u8), usize::from(news.value));
+            }
+            run.world = self.worlds.count(world, run.draws);
+        }
+    }
+
+    /// What a belief sample has learned from looks, if looks were drawn.
+    pub fn news_of(&self, sample: usize) -> (u32, &[LookNews]) {
+        let looks = self.looks.get(sample).copied().unwrap_or_default();
+        (looks.changed, &self.news[looks.news[0]..looks.news[1]])
+    }
+}
+
+/// The value at a point, from 0 to 1, of the cumulative distribution.
+fn value_at(distribution: &[f64], point: f64) -> u8 {
+    let mut left = point;
+    let reached = distribution.iter().position(|p| {
+        left -= p;
+        left < 0.0
+    });
+    reached.unwrap_or(distribution.len() - 1) as u8
+}

@@ -5,7 +5,7 @@ use crate::communication::repeats::Repeats;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Change, Kitchen, Press, State};
 use crate::measures::JudgedPress;
-use crate::measures::attribution::Attributor;
+use crate::measures::attribution::{Attributor, Cause};
 use crate::measures::errors::PressJudge;
 use crate::measures::sequences::Episodes;
 use crate::mind::belief::Belief;
@@ -37,6 +37,8 @@ pub struct Follower {
     attributor: Attributor,
     /// Recorded belief of the participant before its next press.
     belief: Option<Belief>,
+    /// Cause that the participant recorded for its next press, should it be an error.
+    told_cause: Option<Cause>,
     /// Whether errors are attributed to causes.
     finds_causes: bool,
     /// The estimate before the last counted press of the human.
@@ -89,7 +91,7 @@ impl Follower {
         let attributor = Attributor::new(spec.human.decision.clone(), seed);
         let filter = BeliefFilter::new(kitchen, spec.human.clone(), seed);
         let (judged, episodes) = (Vec::new(), Episodes::default());
-        let (timing, belief, estimated, finds_causes) = (None, None, None, true);
+        let (timing, belief, told_cause, estimated, finds_causes) = (None, None, None, None, true);
         let repeats = Repeats::default();
         Follower {
             session,
@@ -102,6 +104,7 @@ impl Follower {
             judge,
             attributor,
             belief,
+            told_cause,
             finds_causes,
             estimated,
         }
@@ -117,6 +120,7 @@ impl Follower {
             (Event::ParticipantBelieves(witness), _) if self.finds_causes => {
                 let session = &self.session;
                 self.belief = Belief::of_witness(&session.kitchen, session.state, witness);
+                self.told_cause = Cause::recorded(&session.kitchen, session.state, witness);
                 if let Some(belief) = &self.belief {
                     let (now, changed_at) = (stamped.time, &session.changed_at);
                     self.episodes.believed(&session.kitchen, now, session.state, belief, changed_at);
@@ -209,11 +213,10 @@ impl Follower {
         let number = self.session.all_presses();
         let verdict = self.judge.human_pressed(&mut self.cost, stamped.time, press);
         // The participant's belief is recorded before every press and belongs to this press only.
-        let belief = self.belief.take();
-        let cause = belief
-            .as_ref()
-            .filter(|_| verdict.error)
-            .map(|belief| self.attributor.cause(&kitchen, &mut self.cost, belief, press, number));
+        let (belief, told) = (self.belief.take(), self.told_cause.take());
+        let cause = belief.as_ref().filter(|_| verdict.error).map(|belief| {
+            told.unwrap_or_else(|| self.attributor.cause(&kitchen, &mut self.cost, belief, press, number))
+        });
         if let Some(cause) = cause {
             self.episodes.erred(&kitchen, cause);
         }

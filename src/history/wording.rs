@@ -235,6 +235,7 @@ pub fn error(kitchen: &Kitchen, press: &JudgedPress) -> String {
     let because = match press.cause {
         None => String::new(),
         Some(Cause::Slip) => "; a slip".to_string(),
+        Some(Cause::Planning) => "; an error of planning".to_string(),
         Some(Cause::Belief { target, with: None, .. }) => format!("; wrong about {}", target.label(kitchen)),
         Some(Cause::Belief { target, with: Some(other), .. }) => {
             format!("; wrong about {} and {}", target.label(kitchen), other.label(kitchen))

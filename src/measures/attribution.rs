@@ -3,16 +3,17 @@
 //! An error is belief related if log p(a | b) - log p(a | truth) >= ln 3, with b from before the press and p of the human
 //! model. It is put down to the target whose replacement by the truth lowers p(a | b) most. A single target explains the
 //! error if the press would not be belief related any more; where none does, the best pair is named. Whatever is not
-//! belief related is a slip.
+//! belief related is a slip. Simulated participants do not decide by that model: they record the cause themselves, by repeating
+//! their decision with the truth, and errors of planning are told from slips.
 
 use crate::base::rng::stream;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{
     AspectId, ButtonId, DishId, Kitchen, LocationId, LocationKind, OrderContent, Press, State, WeightedWorlds, World,
 };
-use crate::mind::ChoiceModel;
 use crate::mind::belief::Belief;
 use crate::mind::choice_parameters::DecisionModel;
+use crate::mind::{BeliefWitness, ChoiceModel, PressOrigin};
 
 /// Least likelihood ratio of belief to truth for a belief related error.
 pub const LIKELIER: f64 = 3.0;
@@ -33,11 +34,13 @@ pub enum Target {
 /// Cause of an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
-    /// A slip: the press is not likelier under the belief than under the truth.
+    /// A slip: the press is not likelier under the belief than under the truth, or by a simulated participant's own record.
     Slip,
+    /// An error of planning: a simulated participant would have pressed the same with true beliefs.
+    Planning,
     /// A false belief made the press likelier than the truth would have.
     Belief {
-        /// log p(a | b) - log p(a | truth), in nats.
+        /// log p(a | b) - log p(a | truth), in nats; infinite where a simulated participant told the cause, no number where raters did.
         gain_nats: f64,
         /// What was believed wrong.
         target: Target,
@@ -80,6 +83,22 @@ impl Target {
             Target::Order(location, None) | Target::Place(location) => kitchen.location(location).label(),
             Target::Recipe(dish) => format!("recipe of {}", kitchen.dish(dish).name),
         }
+    }
+}
+
+impl Cause {
+    /// The cause that a simulated participant recorded before its press in `state`; `None` if it recorded none.
+    pub fn recorded(kitchen: &Kitchen, state: State, witness: &BeliefWitness) -> Option<Cause> {
+        match witness.origin? {
+            PressOrigin::Plan => return Some(Cause::Planning),
+            PressOrigin::Slip => return Some(Cause::Slip),
+            PressOrigin::Belief => {}
+        }
+        let is_told = |target: &Target| {
+            target.aspects(kitchen).any(|aspect| witness.targets.contains(&kitchen.aspects[aspect.index()].name))
+        };
+        let mut told = Target::all(kitchen, state).into_iter().filter(is_told);
+        Some(Cause::Belief { gain_nats: f64::INFINITY, target: told.next()?, with: told.next() })
     }
 }
 

@@ -155,6 +155,7 @@ impl Codes {
         let code = |press: &JudgedPress| {
             Some(match press.cause? {
                 Cause::Slip => Code::Slip,
+                Cause::Planning => Code::Other,
                 Cause::Belief { target: Target::Order(location, _) | Target::Place(location), .. } => {
                     Code::Belief(kitchen.location(location).name.clone())
                 }

@@ -24,6 +24,24 @@ pub struct BeliefWitness {
     pub aspects: Vec<AspectBelief>,
     /// Reason for its next press: "as believed", "slip to the neighbouring button", …
     pub cause: String,
+    /// Where its next press comes from, by its own decision repeated with the truth; `None` in recordings before version 0.2.0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub origin: Option<PressOrigin>,
+    /// Names of the aspects whose replacement by the truth changes a press that comes from a false belief.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub targets: Vec<String>,
+}
+
+/// Where a press of a simulated participant comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PressOrigin {
+    /// From its plan: with the truth it would press the same.
+    Plan,
+    /// From a false belief: with the truth it would press something else.
+    Belief,
+    /// It pressed something else than it decided to.
+    Slip,
 }
 
 /// A participant's belief about one aspect.

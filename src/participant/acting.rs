@@ -1,13 +1,12 @@
 //! Timed behaviour of the simulated participant: actions that are due, and reactions to events of the session.
 
-use rand::RngExt;
-
-use super::population::chance;
 use super::simulated::{ParticipantAction, SimulatedParticipant};
+use super::true_beliefs::ParticipantBeliefs;
 use crate::base::time::SessionTime;
-use crate::communication::Signal;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, LocationId, Press, State};
+use crate::kitchen::{Agent, Press, State, World};
+
+/// Probability of the truth for those who know everything.
+const SURE: f64 = 0.99;
 
 impl SimulatedParticipant {
     /// Starts the trial; the participant sees that the kitchen is empty.
@@ -22,22 +21,34 @@ impl SimulatedParticipant {
     }
 
     /// Performs the next due action. `state` is the true state; only fixated locations and the recorded P(truth) are taken from it.
-    pub fn act(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<ParticipantAction> {
+    pub fn act(&mut self, now: SessionTime, state: State) -> Option<ParticipantAction> {
         if !self.is_started {
             return None;
         }
+        if self.population.all_knowing {
+            self.know(state);
+        }
         if now >= self.press_at && self.press_at <= self.eyes.due() {
-            return self.move_hand(now, state, cost);
+            return self.move_hand(now, state);
         }
         if now < self.eyes.due() {
             return None;
         }
         self.read_signal(now, state);
         self.look(now, state);
-        if self.rethink {
-            self.think(now, cost);
+        if self.rethink && !self.is_reading_signal(now) {
+            self.think(now);
         }
         Some(ParticipantAction::Gaze(self.eyes.sample(now)))
+    }
+
+    /// Takes the truth for known: the most probable world is the true one.
+    fn know(&mut self, state: State) {
+        let kitchen = self.kitchen.clone();
+        if self.beliefs.point(&kitchen) != World::with_true_recipes(&kitchen, state) {
+            self.beliefs = ParticipantBeliefs::of_state(&kitchen, state, SURE);
+            self.rethink = true;
+        }
     }
 
     /// Reacts to a press. The participant notices that the robot pressed, but not which button.
@@ -55,18 +66,5 @@ impl SimulatedParticipant {
                 }
             }
         }
-    }
-
-    /// Reacts to a signal: the participant probably notices it and looks at it after a short delay.
-    pub fn on_signal(&mut self, now: SessionTime, location: LocationId, signal: &Signal, _state: State) {
-        let [least, most] = self.population.signal_after_s;
-        let after_s = least + (most - least) * self.mind.random::<f64>();
-        let is_noticed = chance(&mut self.mind, self.person.notices_signal);
-        self.signal = is_noticed.then(|| (now + SessionTime::from_secs_f64(after_s), location, signal.clone()));
-    }
-
-    /// Removes the signal; the participant cannot read it any more.
-    pub fn on_signal_end(&mut self, _now: SessionTime) {
-        self.signal = None;
     }
 }

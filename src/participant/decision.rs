@@ -1,22 +1,26 @@
-//! Decisions of the simulated participant: a sub-goal for the believed state, which is pursued for some seconds.
+//! Decisions of the simulated participant: which order it works on, and which press comes next, for a world that it believes.
+//!
+//! A decision is a function of what is believed: repeated with the truth and the same lapses, it tells whether a press came from a
+//! false belief.
 
 use std::collections::VecDeque;
 
-use rand::RngExt;
-
-use super::population::chance;
-use super::true_beliefs::ParticipantBeliefs;
-use crate::base::rng::Stream;
+use super::goals::{Goals, Prospect};
+use super::habits::{Habits, Lapses};
+use super::knowledge::TaskKnowledge;
+use super::planning::{Chaining, ProposedPress};
 use crate::base::time::SessionTime;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, Recipes, State};
+use crate::kitchen::{Agent, ButtonAction, ButtonId, ContentId, Kitchen, LocationId, LocationKind, State, World};
 
-/// Maximum number of presses planned ahead; a plan ends earlier where the hand becomes empty.
-const FORESIGHT: usize = 5;
-/// Probability to choose the order with the lowest cost to go; otherwise the order is random.
-const PREFERS_NEARER: f64 = 0.75;
-/// Probability to consider only presses that reduce the cost to go of the order in progress.
-const STAYS_WITH_ORDER: f64 = 0.85;
+/// Number of presses after which a plan is made anew even if all goes well; the eyes look ahead in the plan.
+const PLANNED_PRESSES: usize = 2;
+/// Worth of what is there already when an order is chosen: of the finished dish, of each part on the board, of each other part.
+const FINISHED_WORTH: usize = 100;
+const BASE_WORTH: usize = 10;
+const PART_WORTH: usize = 2;
+
+/// Share of the desperate decisions in which the robot is still waited for.
+const HOPES: f64 = 0.5;
 
 /// Current plan of the simulated participant.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,120 +29,222 @@ pub struct Intent {
     pub plan: VecDeque<ButtonId>,
     /// The order that the participant works on, and the time until which it stays with this order.
     pub order: Option<(LocationId, SessionTime)>,
-    /// The last press that was tried without a plan; it is not undone immediately.
-    pub tried: Option<ButtonId>,
+    /// The stack that the participant served last.
+    pub last_dish: Option<ContentId>,
+    /// What goes wrong until the next press.
+    pub lapses: Lapses,
 }
 
-/// A button and the state that the participant believes to result from pressing it.
-type Step = (ButtonId, State);
+impl Intent {
+    /// Forgets what was to be done next.
+    pub fn lose(&mut self) {
+        self.plan.clear();
+        self.order = None;
+    }
+}
 
-/// Plans the next presses; the plan stays empty if no press is useful.
-pub fn think(
-    kitchen: &Kitchen,
-    cost: &mut CostToGo,
-    beliefs: &ParticipantBeliefs,
-    intent: &mut Intent,
-    commit_until: SessionTime,
-    now: SessionTime,
-    random: &mut Stream,
-) {
-    let (state, recipes) = beliefs.point(kitchen);
-    let mut good = good_presses(kitchen, cost, state, &recipes);
-    if let Some(tried) = intent.tried
-        && good.len() > 1
-    {
-        good.retain(|(button, _)| *button != tried);
-    }
-    if let Some(planned) = intent.plan.front()
-        && good.iter().any(|(button, _)| button == planned)
-    {
-        return;
-    }
-    intent.plan.clear();
-    if good.is_empty() {
-        return;
-    }
-    let is_wanted = |order: LocationId| kitchen.wanted(state).any(|(wanted, _)| wanted == order);
-    intent.order = intent.order.filter(|&(order, until)| now < until && is_wanted(order));
-    if intent.order.is_none() {
-        intent.order = choose_order(kitchen, cost, state, &recipes, random).map(|order| (order, commit_until));
-    }
-    let mut choices: Vec<Step> = good.clone();
-    if let Some((order, _)) = intent.order
-        && chance(random, STAYS_WITH_ORDER)
-    {
-        let here = cost.order(state, &recipes, order);
-        choices.retain(|(_, next)| cost.order(*next, &recipes, order) < here);
-    }
-    let mut choices = if choices.is_empty() { good } else { choices };
-    // An item is not picked up if no press would be useful afterwards.
-    let goes_on = |cost: &mut CostToGo, next: State| {
-        kitchen.wanted(next).next().is_none() || !good_presses(kitchen, cost, next, &recipes).is_empty()
-    };
-    let going_on: Vec<Step> = choices.iter().copied().filter(|(_, next)| goes_on(cost, *next)).collect();
-    if !going_on.is_empty() {
-        choices = going_on;
-    }
-    let (button, mut state) = choices[random.random_range(0..choices.len())];
-    intent.plan.push_back(button);
-    let hand = kitchen.hands[Agent::Human.index()];
-    while intent.plan.len() < FORESIGHT && !state.content(hand).is_empty() {
-        let good = good_presses(kitchen, cost, state, &recipes);
-        if good.is_empty() {
-            break;
+/// How long nothing has gone on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Urgency {
+    /// The robot is waited for.
+    Calm,
+    /// Detours are made.
+    Impatient,
+    /// The robot is no longer waited for, and anything is tried.
+    Desperate,
+}
+
+/// A decision on the next presses, but for the world in which it is made.
+#[derive(Clone, Debug)]
+pub struct Decision<'a> {
+    /// The kitchen.
+    pub kitchen: &'a Kitchen,
+    /// What the participant knows of it.
+    pub knowledge: &'a TaskKnowledge,
+    /// The participant's habits.
+    pub habits: &'a Habits,
+    /// Number of own presses that are thought through.
+    pub depth: usize,
+    /// The order in progress.
+    pub in_progress: Option<LocationId>,
+    /// The stack that was served last.
+    pub last_dish: Option<ContentId>,
+    /// What goes wrong in this decision.
+    pub lapses: Lapses,
+    /// How long nothing has gone on.
+    pub urgency: Urgency,
+}
+
+/// What a decision came to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Resolution {
+    /// The order that is worked on.
+    pub order: Option<LocationId>,
+    /// The next presses; none: the participant waits.
+    pub plan: VecDeque<ButtonId>,
+}
+
+/// A press with what the participant foresees after it.
+struct Foreseen {
+    /// Presses from the first one on.
+    path: VecDeque<ButtonId>,
+    /// Number of detours among the presses that are thought through.
+    detours: u32,
+    /// Whether the press fills the empty hand.
+    fills_hand: bool,
+    /// Whether the press itself is a detour.
+    is_detour: bool,
+}
+
+impl Decision<'_> {
+    /// Decides in a world that is held for true.
+    pub fn resolve(&self, world: &World) -> Resolution {
+        let presses = |button: ButtonId| self.kitchen.press(world.state, &world.recipes, Agent::Human, button);
+        if let Some(button) = self.lapses.insists_on.filter(|&button| presses(button).is_some()) {
+            return Resolution { order: self.in_progress, plan: VecDeque::from([button]) };
         }
-        let (button, next) = good[random.random_range(0..good.len())];
-        intent.plan.push_back(button);
-        state = next;
+        let prospect = Prospect {
+            kitchen: self.kitchen,
+            knowledge: self.knowledge,
+            recipes: &world.recipes,
+            forgets_parked: self.lapses.forgets_parked,
+            skips_check: self.lapses.skips_check,
+            waits_for_robot: self.urgency < Urgency::Desperate || self.lapses.whim < HOPES,
+        };
+        let habits = self.habits.with_last(self.last_dish.filter(|_| self.lapses.follows_habit));
+        let orders = self.orders(&prospect, world.state);
+        // An order that cannot be gone on with now gives way to the next.
+        for &order in &orders {
+            if let Some(plan) = self.choose(&prospect, world.state, order, &habits) {
+                return Resolution { order: Some(order), plan };
+            }
+        }
+        let is_desperate = self.urgency == Urgency::Desperate && !orders.is_empty();
+        let plan = is_desperate.then(|| self.try_something(world)).flatten().into_iter().collect();
+        Resolution { order: orders.first().copied(), plan }
+    }
+
+    /// The orders: the one in progress first, then those for which most is there already; equal ones in any order.
+    fn orders(&self, prospect: &Prospect, state: State) -> Vec<LocationId> {
+        let worth = |order: LocationId| {
+            let goals = Goals::in_state(prospect, state, order);
+            let goal = &goals.orders[0];
+            let base =
+                if goal.has_base { self.kitchen.content(state.content(self.kitchen.board)).items.len() } else { 0 };
+            let parts = goal.needs.iter().filter(|need| need.source.is_some()).count();
+            let ready =
+                goal.needs.iter().filter(|need| need.source.is_some_and(|one| one.content == need.part)).count();
+            FINISHED_WORTH * usize::from(goal.finished.is_some()) + BASE_WORTH * base + PART_WORTH * (parts + ready)
+        };
+        let mut orders: Vec<(bool, usize, LocationId)> = self
+            .kitchen
+            .wanted(state)
+            .map(|(order, _)| (Some(order) == self.in_progress, worth(order), order))
+            .collect();
+        let turn = (self.lapses.whim * orders.len() as f64) as usize;
+        let turn = turn.min(orders.len());
+        orders.rotate_left(turn);
+        // The sort is stable: of equal orders the one that came first by whim.
+        orders.sort_by_key(|&(in_progress, worth, _)| std::cmp::Reverse((in_progress, worth)));
+        orders.into_iter().map(|(_, _, order)| order).collect()
+    }
+
+    /// The press with the fewest foreseen detours; the first of equal ones.
+    fn choose(
+        &self,
+        prospect: &Prospect,
+        state: State,
+        order: LocationId,
+        habits: &Habits,
+    ) -> Option<VecDeque<ButtonId>> {
+        let chaining = Chaining::new(prospect, state, order);
+        let mut proposals = chaining.proposals(habits);
+        if self.lapses.takes_along
+            && let Some(index) = proposals.iter().position(|press| self.is_quick(press))
+        {
+            let quick = proposals.remove(index);
+            proposals.insert(0, quick);
+        }
+        if self.urgency == Urgency::Calm {
+            proposals.retain(|press| !press.is_detour);
+        }
+        let mut best: Option<Foreseen> = None;
+        for press in proposals {
+            let Some(foreseen) = self.foresee(prospect, state, order, habits, press) else { continue };
+            if best.as_ref().is_none_or(|one| foreseen.detours < one.detours) {
+                best = Some(foreseen);
+            }
+            if self.lapses.skips_check || best.as_ref().is_some_and(|one| one.detours == 0) {
+                break;
+            }
+        }
+        let best = best?;
+        // A hand that would stay full is left empty, but for making room: the robot may make room meanwhile.
+        let is_trap = best.fills_hand && best.detours > 0 && !best.is_detour && !self.lapses.skips_check;
+        (!is_trap).then_some(best.path)
+    }
+
+    /// Processing and serving are at hand: they take one press and no room.
+    fn is_quick(&self, press: &ProposedPress) -> bool {
+        let action = self.kitchen.button(Agent::Human, press.button).action;
+        matches!(action, ButtonAction::Process(_) | ButtonAction::Serve(_))
+    }
+
+    /// Thinks a press and the own next ones through; nothing if the press would have no effect.
+    fn foresee(
+        &self,
+        prospect: &Prospect,
+        state: State,
+        order: LocationId,
+        habits: &Habits,
+        press: ProposedPress,
+    ) -> Option<Foreseen> {
+        let act = |state: State, button: ButtonId| self.kitchen.press(state, prospect.recipes, Agent::Human, button);
+        let hand = self.kitchen.hands[Agent::Human.index()];
+        let mut after = act(state, press.button)?;
+        let fills_hand = state.content(hand).is_empty() && !after.content(hand).is_empty();
+        let (path, is_detour) = (VecDeque::from([press.button]), press.is_detour);
+        let mut foreseen = Foreseen { path, detours: u32::from(is_detour), fills_hand, is_detour };
+        let depth = if self.lapses.skips_check { PLANNED_PRESSES } else { self.depth.max(PLANNED_PRESSES) };
+        for _ in 1..depth {
+            let chaining = Chaining::new(prospect, after, order);
+            let proposals = chaining.proposals(habits);
+            let forward = proposals.iter().find(|next| !next.is_detour);
+            let Some(next) = forward.or(proposals.first()) else { break };
+            let Some(then) = act(after, next.button) else { break };
+            foreseen.detours += u32::from(next.is_detour);
+            if foreseen.path.len() < PLANNED_PRESSES && !next.is_detour {
+                foreseen.path.push_back(next.button);
+            }
+            after = then;
+        }
+        Some(foreseen)
+    }
+
+    /// A press that might set things going: the hand is emptied, else something is taken away from a place.
+    fn try_something(&self, world: &World) -> Option<ButtonId> {
+        let presses = effective_presses(self.kitchen, world);
+        let is_trash = |button: ButtonId| self.kitchen.button(Agent::Human, button).action == ButtonAction::Trash;
+        if let Some((trash, _)) = presses.iter().find(|(button, _)| is_trash(*button)) {
+            return Some(*trash);
+        }
+        let clears = |button: ButtonId| match self.kitchen.button(Agent::Human, button).action {
+            ButtonAction::Use(place) => self.kitchen.location(place).kind == LocationKind::Place,
+            _ => false,
+        };
+        let clearing: Vec<ButtonId> = presses.iter().map(|(button, _)| *button).filter(|&one| clears(one)).collect();
+        let all: Vec<ButtonId> = presses.iter().map(|(button, _)| *button).collect();
+        let choices = if clearing.is_empty() { all } else { clearing };
+        let index = (self.lapses.whim * choices.len() as f64) as usize;
+        choices.get(index).copied()
     }
 }
 
-fn choose_order(
-    kitchen: &Kitchen,
-    cost: &mut CostToGo,
-    state: State,
-    recipes: &Recipes,
-    random: &mut Stream,
-) -> Option<LocationId> {
-    let mut wanted: Vec<LocationId> = kitchen.wanted(state).map(|(order, _)| order).collect();
-    wanted.sort_by_key(|&order| cost.order(state, recipes, order));
-    let nearest = *wanted.first()?;
-    match chance(random, PREFERS_NEARER) {
-        true => Some(nearest),
-        false => Some(wanted[random.random_range(0..wanted.len())]),
-    }
-}
-
-/// Human presses that reduce the cost to go, given `state` and `recipes`.
-pub fn good_presses(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes) -> Vec<Step> {
-    let here = cost.all_orders(state, recipes);
-    let mut good = effective_presses(kitchen, state, recipes);
-    good.retain(|(_, next)| cost.all_orders(*next, recipes) < here);
-    good
-}
-
-/// Human presses that change the state, given `state` and `recipes`.
-pub fn effective_presses(kitchen: &Kitchen, state: State, recipes: &Recipes) -> Vec<Step> {
+/// Human presses that change the state of a world, with the states after them.
+pub fn effective_presses(kitchen: &Kitchen, world: &World) -> Vec<(ButtonId, State)> {
     let step = |index: usize| {
         let button = ButtonId(index as u8);
-        Some((button, kitchen.press(state, recipes, Agent::Human, button)?))
+        Some((button, kitchen.press(world.state, &world.recipes, Agent::Human, button)?))
     };
     (0..kitchen.buttons[Agent::Human.index()].len()).filter_map(step).collect()
-}
-
-/// Chooses the press that increases the cost to go least when no press reduces it; discarding an item is the last resort.
-pub fn try_something(
-    kitchen: &Kitchen,
-    cost: &mut CostToGo,
-    state: State,
-    recipes: &Recipes,
-    random: &mut Stream,
-) -> Option<ButtonId> {
-    let mut presses = effective_presses(kitchen, state, recipes);
-    if presses.len() > 1 {
-        presses.retain(|(button, _)| kitchen.button(Agent::Human, *button).action != ButtonAction::Trash);
-    }
-    let least = presses.iter().map(|(_, next)| cost.all_orders(*next, recipes)).min()?;
-    presses.retain(|(_, next)| cost.all_orders(*next, recipes) == least);
-    Some(presses[random.random_range(0..presses.len())].0)
 }

@@ -136,6 +136,12 @@ impl Eyes {
         self.ends = self.ends.max(read);
     }
 
+    /// Keeps the present fixation until `until`; it reads nothing more.
+    pub fn rest_until(&mut self, until: SessionTime) {
+        self.reads = None;
+        self.ends = self.ends.max(until);
+    }
+
     /// Whether the saccade has ended.
     pub fn has_landed(&self, now: SessionTime) -> bool {
         now >= self.lands && !self.is_closed(now)

@@ -2,13 +2,13 @@
 
 use rand::RngExt;
 
+use super::decision::{Urgency, effective_presses};
 use super::population::{chance, normal};
 use super::simulated::{ParticipantAction, SimulatedParticipant};
 use super::true_beliefs::wanted_dish;
-use super::{decision, witness};
+use super::witness::{self, PressReason};
 use crate::base::time::SessionTime;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, DishId, LocationId, State};
+use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, DishId, LocationId, State, World};
 
 /// Certainty about a location below which the participant looks at it before using it.
 const UNSURE_BELOW: f64 = 0.6;
@@ -28,15 +28,9 @@ const STANDSTILL_TRUST: f64 = 0.4;
 
 impl SimulatedParticipant {
     /// Presses the planned button, or waits while no press is planned.
-    pub(super) fn move_hand(
-        &mut self,
-        now: SessionTime,
-        state: State,
-        cost: &mut CostToGo,
-    ) -> Option<ParticipantAction> {
-        let kitchen = self.kitchen.clone();
-        self.think(now, cost);
-        let Some(&button) = self.intent.plan.front() else { return self.wait(now, state, cost) };
+    pub(super) fn move_hand(&mut self, now: SessionTime, state: State) -> Option<ParticipantAction> {
+        self.think(now);
+        let Some(&button) = self.intent.plan.front() else { return self.wait(now, state) };
         if self.looks_first < MOST_LOOKS_FIRST
             && let Some(place) = self.worth_a_look(now, button)
         {
@@ -45,14 +39,16 @@ impl SimulatedParticipant {
             self.press_at = now + SessionTime::from_secs_f64(LOOK_FIRST_S);
             return None;
         }
+        let (pressed, slip) = self.slip(button);
+        let reason = slip.map_or_else(|| self.reason(Urgency::Calm, state, button), PressReason::slip);
         self.intent.plan.pop_front();
-        self.intent.tried = None;
-        let (pressed, cause) = self.slip(button);
-        let cause = match cause {
-            Some(cause) => cause,
-            None => witness::cause(&kitchen, cost, &self.beliefs, state, button),
-        };
-        Some(self.press(now, state, pressed, cause))
+        Some(self.press(now, state, pressed, reason))
+    }
+
+    /// Why the decision came to this button: it is repeated with the truth.
+    fn reason(&self, urgency: Urgency, state: State, button: ButtonId) -> PressReason {
+        let (believed, truth) = (self.beliefs.point(&self.kitchen), World::with_true_recipes(&self.kitchen, state));
+        PressReason::decided(&self.decision(urgency), &believed, &truth, button)
     }
 
     /// The location to look at before a press: the participant is unsure of it, or cautious and has not read it for a while.
@@ -73,12 +69,12 @@ impl SimulatedParticipant {
         old.filter(|_| self.looks_first == 0 && chance(&mut self.hand, self.person.makes_sure))
     }
 
-    fn press(&mut self, now: SessionTime, state: State, button: ButtonId, cause: String) -> ParticipantAction {
+    fn press(&mut self, now: SessionTime, state: State, button: ButtonId, reason: PressReason) -> ParticipantAction {
         self.presses += 1;
         self.looks_first = 0;
         self.idle_since = None;
         self.press_at = now + self.reaction();
-        ParticipantAction::Press { button, belief: witness::witness(&self.kitchen, &self.beliefs, state, cause) }
+        ParticipantAction::Press { button, belief: witness::witness(&self.kitchen, &self.beliefs, state, reason) }
     }
 
     /// Samples a slip: the button pressed instead of the intended one, and its description.
@@ -97,8 +93,7 @@ impl SimulatedParticipant {
             (Some(other), _) => (other, format!("slip: took the look-alike, meant {}", name(button))),
             (None, Some(other)) => (other, format!("slip: hit the neighbouring button, meant {}", name(button))),
             (None, None) if is_thoughtless => {
-                let (state, recipes) = self.beliefs.point(&kitchen);
-                let possible = decision::effective_presses(&kitchen, state, &recipes);
+                let possible = effective_presses(&kitchen, &self.beliefs.point(&kitchen));
                 match possible.is_empty() {
                     true => return (button, None),
                     false => {
@@ -116,7 +111,7 @@ impl SimulatedParticipant {
     }
 
     /// Waits while no press is useful: looks around, then doubts its recipes, and at last tries a press.
-    fn wait(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<ParticipantAction> {
+    fn wait(&mut self, now: SessionTime, state: State) -> Option<ParticipantAction> {
         let kitchen = self.kitchen.clone();
         let since = *self.idle_since.get_or_insert(now);
         let idle_s = now.secs_since(since);
@@ -132,6 +127,11 @@ impl SimulatedParticipant {
         for &location in stale.iter().take(3) {
             self.attention.later(location);
         }
+        if standstill_s >= self.person.patience_s
+            && let Some(action) = self.press_urgently(now, state, Urgency::Impatient)
+        {
+            return Some(action);
+        }
         if idle_s < self.person.patience_s * PATIENCE_FACTOR && standstill_s < self.person.patience_s {
             return None;
         }
@@ -145,12 +145,16 @@ impl SimulatedParticipant {
             }
             return None;
         }
-        let (believed, recipes) = self.beliefs.point(&kitchen);
-        kitchen.wanted(believed).next()?;
-        let button = decision::try_something(&kitchen, cost, believed, &recipes, &mut self.mind)?;
+        self.press_urgently(now, state, Urgency::Desperate)
+    }
+
+    /// Decides again without patience, and presses at once.
+    fn press_urgently(&mut self, now: SessionTime, state: State, urgency: Urgency) -> Option<ParticipantAction> {
+        let plan = self.decision(urgency).resolve(&self.beliefs.point(&self.kitchen)).plan;
+        let button = *plan.front()?;
         self.meant = None;
-        self.intent.tried = Some(button);
-        Some(self.press(now, state, button, "tries something, as nothing goes on".to_string()))
+        let reason = self.reason(urgency, state, button);
+        Some(self.press(now, state, button, reason))
     }
 
     /// Time from one press to the next: log-normal, shorter with practice.

@@ -1,7 +1,7 @@
 //! Belief changes of the simulated participant after its own effective and ineffective presses.
 
 use super::true_beliefs::ParticipantBeliefs;
-use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, LocationId, State};
+use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, LocationId, State, World};
 
 /// Probability that the participant assigns to the expected result of its own effective press.
 const ACTED_CERTAINTY: f64 = 0.97;
@@ -12,7 +12,7 @@ const CONTRADICTED_FACTOR: f64 = 0.04;
 
 /// Updates the beliefs after a press that was effective or not. Returns true if the effect contradicted the beliefs.
 pub fn learn(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: ButtonId, effective: bool) -> bool {
-    let (state, recipes) = beliefs.point(kitchen);
+    let World { state, recipes } = beliefs.point(kitchen);
     let expected = kitchen.press(state, &recipes, Agent::Human, button);
     match (expected, effective) {
         (Some(next), true) => carry_out(kitchen, beliefs, button, next),
@@ -43,7 +43,7 @@ fn settle(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, place: LocationId
 /// An unexpected effect: values that it implies are adopted, other values at the involved locations become uncertain.
 fn make_sense(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: ButtonId) {
     let hand = kitchen.hands[Agent::Human.index()];
-    let (mut state, _) = beliefs.point(kitchen);
+    let World { mut state, .. } = beliefs.point(kitchen);
     match kitchen.button(Agent::Human, button).action {
         ButtonAction::Take(item) => {
             state.set_content(hand, item);

@@ -7,8 +7,9 @@ use super::population::chance;
 use super::simulated::SimulatedParticipant;
 use super::true_beliefs::wanted_dish;
 use crate::base::time::SessionTime;
-use crate::communication::Signal;
-use crate::kitchen::{Agent, AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::kitchen::{
+    Agent, AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State, World,
+};
 
 /// Probability that the participant assigns to the content that it has just read.
 const READ_CERTAINTY: f64 = 0.97;
@@ -51,6 +52,10 @@ impl SimulatedParticipant {
     /// Changes on the display may capture attention; a change at the fixated location is read again.
     fn notice_changes(&mut self, now: SessionTime, state: State) {
         if state == self.display {
+            return;
+        }
+        if self.is_reading_signal(now) {
+            self.display = state;
             return;
         }
         let kitchen = self.kitchen.clone();
@@ -162,27 +167,6 @@ impl SimulatedParticipant {
         }
     }
 
-    pub(super) fn read_signal(&mut self, now: SessionTime, state: State) {
-        let is_due = self.signal.as_ref().is_some_and(|(time, _, _)| now >= *time);
-        let Some((_, location, signal)) = self.signal.take_if(|_| is_due) else { return };
-        let kitchen = self.kitchen.clone();
-        self.rethink = true;
-        let point = kitchen.location(location).display.centre();
-        self.eyes.look_at(now, point);
-        self.attention.looking_at = Some(location);
-        match signal {
-            Signal::Highlight(_) => self.read(now, location, state),
-            Signal::ShowRecipe(_) => {
-                let OrderContent::Dish(dish) = state.order(location) else { return };
-                self.read(now, location, state);
-                let variants = kitchen.dish(dish).variants.len();
-                let is_wrong = variants > 1 && chance(&mut self.mind, self.population.misreads_signal);
-                let seen = if is_wrong { self.mind.random_range(1..variants) } else { 0 };
-                self.memory.confirm(&kitchen, &mut self.beliefs, dish, seen);
-            }
-        }
-    }
-
     /// Reacts to a content that differs from the believed content.
     fn on_news(&mut self, location: LocationId, believed: u8, code: u8) {
         let kitchen = self.kitchen.clone();
@@ -201,7 +185,7 @@ impl SimulatedParticipant {
             return;
         }
         // The robot knows the true recipes, so what it carries, stacks or discards is a hint at them.
-        let (_, recipes) = self.beliefs.point(&kitchen);
+        let World { recipes, .. } = self.beliefs.point(&kitchen);
         let (before, now) = (ContentId(believed), ContentId(code));
         let has_place =
             |content: ContentId| wanted.iter().any(|&dish| could_become(&kitchen, content, recipes.get(dish)));
@@ -219,7 +203,7 @@ impl SimulatedParticipant {
     /// Whether all items of `content` are believed to be in the kitchen.
     fn is_about(&self, content: ContentId) -> bool {
         let kitchen = &self.kitchen;
-        let (state, _) = self.beliefs.point(kitchen);
+        let World { state, .. } = self.beliefs.point(kitchen);
         let places = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
         let places = places.filter(|&place| kitchen.location(place).kind != LocationKind::Order);
         let lying: Vec<ContentId> =

@@ -1,24 +1,32 @@
 //! Simulated participants for tests and simulated studies, with errors of known cause.
 //!
-//! A simulated participant differs from the assistant's human model: it acts on one most probable world, plans sub-goals and
-//! pursues them for some seconds, sees only fixated locations, and forgets recipes in steps.
+//! A simulated participant differs from the assistant's human model: it acts on one most probable world, plans by backward
+//! chaining of its own, sees only fixated locations, and forgets recipes in steps. It knows nothing of the cost to go that drives
+//! the assistant and defines errors.
 //!
 //! Modules from the ground up:
 //!
-//! - Components: [`population`] (distribution of traits), [`true_beliefs`], `memory` (of recipes), `eyes`, `attention`.
-//! - Consequences of beliefs: `decision` (next presses), `learning` (from own presses), `witness` (for the recording).
-//! - The participant: `simulated` (its data), then its behaviour: `targets`, `looking`, `thinking`, `hand`, `acting` (in time).
+//! - Components: [`population`] (distribution of traits), [`true_beliefs`], `memory` (of recipes), `eyes`, `attention`, `signal_sense`.
+//! - Planning: `knowledge` (of buttons and processes), `goals` (missing parts), `habits` (and lapses), `planning` (backward
+//!   chaining), `decision` (next presses).
+//! - Consequences of beliefs: `learning` (from own presses), `witness` (for the recording).
+//! - The participant: `simulated` (its data), then its behaviour: `targets`, `signals`, `looking`, `thinking`, `hand`, `acting`.
 
 mod acting;
 mod attention;
 mod decision;
 mod eyes;
-pub mod gaze_gaps;
+mod goals;
+mod habits;
 mod hand;
+mod knowledge;
 mod learning;
 mod looking;
 mod memory;
+mod planning;
 pub mod population;
+mod signal_sense;
+mod signals;
 mod simulated;
 mod targets;
 mod thinking;

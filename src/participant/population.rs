@@ -102,10 +102,28 @@ pub struct Population {
     pub patience_s: TraitSpread,
     /// Time for which the participant stays with one order, in seconds.
     pub commitment_s: TraitSpread,
+    /// Number of own presses that are thought through; rounded, from 2 to 5.
+    pub depth: TraitSpread,
+    /// Probability of not checking the preconditions of the presses after the next one.
+    pub skips_check: TraitSpread,
+    /// Probability that the last dish's part is taken instead of the present one's.
+    pub follows_habit: TraitSpread,
+    /// Probability that parts at parking places do not come to mind.
+    pub forgets_parked: TraitSpread,
+    /// Probability of doing first what is at hand for another order.
+    pub takes_along: TraitSpread,
     /// Probability of noticing a signal; at most 0.85.
     pub notices_signal: TraitSpread,
     /// Shortest and longest time from a signal to its reading, in seconds.
     pub signal_after_s: [f64; 2],
+    /// Shortest and longest time that reading a signal takes, in seconds. Nothing else is seen meanwhile.
+    pub reads_signal_s: [f64; 2],
+    /// Probability of losing the next intention by reading a signal.
+    pub loses_intention: TraitSpread,
+    /// Time from reading a signal to the next press if the intention is lost, in seconds.
+    pub resumes_after_s: f64,
+    /// Share by which the heed for signals moves towards the usefulness of each one that is read.
+    pub tires_of_signals: TraitSpread,
     /// Probability of reading a shown recipe wrongly.
     pub misreads_signal: f64,
     /// Factor per earlier trial on the odds of knowing a recipe (1: no learning between trials).
@@ -114,6 +132,8 @@ pub struct Population {
     pub practice_kept: f64,
     /// Offset of the eye tracker for this participant, in metres on the display (1 deg at 2 m is 0.035 m).
     pub tracker_offset_m: f64,
+    /// Whether the participants know the state and all recipes: their errors are those of planning, and slips.
+    pub all_knowing: bool,
 }
 
 /// Trials of a participant before the present one.
@@ -132,7 +152,7 @@ impl Default for Population {
             press_jitter: 0.3,
             novice_slowdown: 0.3,
             practice_presses: 25.0,
-            slip: TraitSpread::from_median(0.016, 0.4),
+            slip: TraitSpread::from_median(0.011, 0.4),
             look_alike_slip: TraitSpread::from_median(0.012, 0.4),
             thoughtless: TraitSpread::from_median(0.005, 0.4),
             notices_slip: 0.85,
@@ -155,12 +175,22 @@ impl Default for Population {
             takes_hints: TraitSpread::from_median(0.15, 0.4),
             patience_s: TraitSpread::from_median(4.0, 0.25),
             commitment_s: TraitSpread::from_median(12.0, 0.3),
+            depth: TraitSpread::from_median(3.4, 0.25),
+            skips_check: TraitSpread::from_median(0.15, 0.4),
+            follows_habit: TraitSpread::from_median(0.1, 0.4),
+            forgets_parked: TraitSpread::from_median(0.2, 0.4),
+            takes_along: TraitSpread::from_median(0.4, 0.4),
             notices_signal: TraitSpread::from_median(0.82, 0.15),
             signal_after_s: [0.5, 1.5],
+            reads_signal_s: [0.5, 1.5],
+            loses_intention: TraitSpread::from_median(0.05, 0.4),
+            resumes_after_s: 1.0,
+            tires_of_signals: TraitSpread::from_median(0.1, 0.4),
             misreads_signal: 0.03,
             recipes_gained: 1.0,
             practice_kept: 0.0,
             tracker_offset_m: 0.02,
+            all_knowing: false,
         }
     }
 }
@@ -212,8 +242,24 @@ pub struct Individual {
     pub commitment_s: f64,
     /// Chance to notice a signal.
     pub notices_signal: f64,
+    /// Number of own presses that are thought through, 2 to 5.
+    pub depth: usize,
+    /// Chance not to check the preconditions of later presses.
+    pub skips_check: f64,
+    /// Chance to take the last dish's part.
+    pub follows_habit: f64,
+    /// Chance that parked parts do not come to mind.
+    pub forgets_parked: f64,
+    /// Chance to do first what is at hand for another order.
+    pub takes_along: f64,
+    /// Chance to lose the next intention by reading a signal.
+    pub loses_intention: f64,
+    /// How much the heed for signals follows the usefulness of each, 0 to 1.
+    pub tires_of_signals: f64,
 }
 
+/// Least and largest number of own presses that a participant thinks through (study, "Simulated participants").
+const DEPTHS: [usize; 2] = [2, 5];
 /// Upper bound of the probability of noticing a signal (study, "Simulated participants").
 const MOST_SIGNALS_NOTICED: f64 = 0.85;
 
@@ -221,9 +267,12 @@ impl Population {
     /// The first parameters that exclude each other: the path of one of them in a session file, the value found, and a valid value.
     /// The ranges of single parameters are in `session::ranges`.
     pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
-        let [least, most] = self.signal_after_s;
-        let found = || format!("signal_after_s = [{least}, {most}]");
-        (most < least).then(|| ("participant.population.signal_after_s", found(), "[least, most], in seconds"))
+        let intervals = [
+            ("participant.population.signal_after_s", "signal_after_s", self.signal_after_s),
+            ("participant.population.reads_signal_s", "reads_signal_s", self.reads_signal_s),
+        ];
+        let (path, name, [least, most]) = intervals.into_iter().find(|(_, _, [least, most])| most < least)?;
+        Some((path, format!("{name} = [{least}, {most}]"), "[least, most], in seconds"))
     }
 
     /// Draws one individual.
@@ -251,6 +300,13 @@ impl Population {
             patience_s: self.patience_s.draw(random),
             commitment_s: self.commitment_s.draw(random),
             notices_signal: self.notices_signal.draw_chance(random).min(MOST_SIGNALS_NOTICED),
+            depth: (self.depth.draw(random).round() as usize).clamp(DEPTHS[0], DEPTHS[1]),
+            skips_check: self.skips_check.draw_chance(random),
+            follows_habit: self.follows_habit.draw_chance(random),
+            forgets_parked: self.forgets_parked.draw_chance(random),
+            takes_along: self.takes_along.draw_chance(random),
+            loses_intention: self.loses_intention.draw_chance(random),
+            tires_of_signals: self.tires_of_signals.draw_chance(random),
         }
     }
 }

@@ -5,12 +5,14 @@ use std::sync::Arc;
 use super::attention::Attention;
 use super::decision::Intent;
 use super::eyes::Eyes;
+use super::habits::{Habits, Lapses};
+use super::knowledge::TaskKnowledge;
 use super::memory::Memory;
 use super::population::{Experience, Individual, Population};
+use super::signal_sense::SignalSense;
 use super::true_beliefs::ParticipantBeliefs;
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
-use crate::communication::Signal;
 use crate::gaze::GazeSample;
 use crate::kitchen::{ButtonId, Kitchen, LocationId, State};
 use crate::mind::BeliefWitness;
@@ -36,6 +38,8 @@ pub enum ParticipantAction {
 #[derive(Clone, Debug)]
 pub struct SimulatedParticipant {
     pub(super) kitchen: Arc<Kitchen>,
+    pub(super) knowledge: Arc<TaskKnowledge>,
+    pub(super) habits: Habits,
     pub(super) population: Population,
     pub(super) person: Individual,
     pub(super) beliefs: ParticipantBeliefs,
@@ -60,7 +64,7 @@ pub struct SimulatedParticipant {
     pub(super) robot_pressed_at: SessionTime,
     /// Intended button of a slip that the participant has not noticed; `None` otherwise.
     pub(super) meant: Option<ButtonId>,
-    pub(super) signal: Option<(SessionTime, LocationId, Signal)>,
+    pub(super) signals: SignalSense,
     /// Served orders with the time at which each disappears.
     pub(super) clearing: Vec<(SessionTime, LocationId)>,
 }
@@ -76,6 +80,7 @@ impl SimulatedParticipant {
         trial: u64,
         experience: Experience,
     ) -> Self {
+        let habits = Habits::draw(&kitchen, &mut stream(seed, "participant's habits", person));
         let person = population.draw(&mut stream(seed, "participant", person)).after(experience, population);
         let mut beliefs = ParticipantBeliefs::of_state(&kitchen, kitchen.empty_state(), SURE_AT_START);
         let recall = stream(seed, "participant's memory", trial);
@@ -84,16 +89,20 @@ impl SimulatedParticipant {
         let eyes = Eyes::new(sight, kitchen.display_m, &person, population.tracker_offset_m);
         let read_at = vec![SessionTime::ZERO; kitchen.locations.len()];
         let display = kitchen.empty_state();
+        let mut mind = stream(seed, "participant's mind", trial);
+        let lapses = Lapses::draw(&person, &mut mind);
         SimulatedParticipant {
             population: population.clone(),
+            knowledge: Arc::new(TaskKnowledge::new(&kitchen)),
+            habits,
             person,
             beliefs,
             memory,
             eyes,
             at_targets: None,
             attention: Attention { read_at, ..Attention::default() },
-            intent: Intent::default(),
-            mind: stream(seed, "participant's mind", trial),
+            intent: Intent { lapses, ..Intent::default() },
+            mind,
             hand: stream(seed, "participant's hand", trial),
             is_started: false,
             display,
@@ -104,7 +113,7 @@ impl SimulatedParticipant {
             idle_since: None,
             robot_pressed_at: SessionTime::ZERO,
             meant: None,
-            signal: None,
+            signals: SignalSense::default(),
             clearing: Vec::new(),
             kitchen,
         }
@@ -138,7 +147,7 @@ impl SimulatedParticipant {
         self.press_at = self.press_at + by;
         self.robot_pressed_at = self.robot_pressed_at + by;
         self.idle_since = self.idle_since.map(|since| since + by);
-        self.signal = self.signal.take().map(|(time, location, signal)| (time + by, location, signal));
+        self.signals.postpone(by);
         self.intent.order = self.intent.order.map(|(order, until)| (order, until + by));
         for time in self.attention.read_at.iter_mut().chain(self.clearing.iter_mut().map(|(time, _)| time)) {
             *time = *time + by;

@@ -1,13 +1,14 @@
 //! Interpretation of events by the simulated participant (own presses, robot presses, passing time), and decisions on next presses.
 
+use super::decision::{Decision, Urgency};
+use super::habits::Lapses;
+use super::learning;
 use super::population::chance;
 use super::simulated::SimulatedParticipant;
 use super::true_beliefs::wanted_dish;
-use super::{decision, learning};
 use crate::base::time::SessionTime;
-use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{
-    Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, LocationId, LocationKind, OrderContent, State,
+    Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, LocationId, LocationKind, OrderContent, State, World,
 };
 
 /// Probability of looking at the location that the last press changed.
@@ -23,7 +24,7 @@ impl SimulatedParticipant {
         let kitchen = self.kitchen.clone();
         let hand = kitchen.hands[Agent::Robot.index()];
         let own = kitchen.hands[Agent::Human.index()];
-        let (state, _) = self.beliefs.point(&kitchen);
+        let World { state, .. } = self.beliefs.point(&kitchen);
         let held = state.content(hand);
         for (index, location) in kitchen.locations.iter().enumerate() {
             let id = LocationId(index as u8);
@@ -55,10 +56,12 @@ impl SimulatedParticipant {
     pub(super) fn take_in(&mut self, now: SessionTime, button: ButtonId, effective: bool) {
         let kitchen = self.kitchen.clone();
         let action = kitchen.button(Agent::Human, button).action;
-        let (state, recipes) = self.beliefs.point(&kitchen);
+        let World { state, recipes } = self.beliefs.point(&kitchen);
+        self.intent.lapses = Lapses::draw(&self.person, &mut self.mind);
         let has_failed = !effective && kitchen.press(state, &recipes, Agent::Human, button).is_some();
         if has_failed && self.population.insists > 0.0 && chance(&mut self.mind, self.population.insists) {
-            self.intent.plan.push_front(button);
+            self.intent.lapses.insists_on = Some(button);
+            self.rethink = true;
             return;
         }
         let is_surprised = learning::learn(&kitchen, &mut self.beliefs, button, effective);
@@ -74,6 +77,7 @@ impl SimulatedParticipant {
                 true => {
                     let variant = kitchen.dish(dish).variants.iter().position(|&v| v == recipes.get(dish));
                     self.memory.confirm(&kitchen, &mut self.beliefs, dish, variant.unwrap_or(0));
+                    self.intent.last_dish = Some(recipes.get(dish));
                     let gone = now + SessionTime::from_secs_f64(kitchen.served_shown_s);
                     self.clearing.push((gone, order));
                 }
@@ -88,13 +92,18 @@ impl SimulatedParticipant {
     }
 
     /// Decides on the next presses and queues looks at their locations.
-    pub(super) fn think(&mut self, now: SessionTime, cost: &mut CostToGo) {
+    pub(super) fn think(&mut self, now: SessionTime) {
         self.rethink = false;
-        let kitchen = self.kitchen.clone();
-        self.pass_time(now);
-        let commitment = SessionTime::from_secs_f64(self.person.commitment_s);
+        if !self.population.all_knowing {
+            self.pass_time(now);
+        }
+        self.intent.order = self.intent.order.filter(|&(_, until)| now < until);
         let before = self.intent.plan.front().copied();
-        decision::think(&kitchen, cost, &self.beliefs, &mut self.intent, now + commitment, now, &mut self.mind);
+        let resolution = self.decision(Urgency::Calm).resolve(&self.beliefs.point(&self.kitchen));
+        let commitment = SessionTime::from_secs_f64(self.person.commitment_s);
+        let kept = self.intent.order.filter(|&(order, _)| Some(order) == resolution.order);
+        self.intent.order = kept.or(resolution.order.map(|order| (order, now + commitment)));
+        self.intent.plan = resolution.plan;
         let next = self.intent.plan.front().copied();
         if next != before {
             for place in self.needed() {
@@ -102,6 +111,20 @@ impl SimulatedParticipant {
                     self.attention.later(place);
                 }
             }
+        }
+    }
+
+    /// The decision that is due, but for what is believed.
+    pub(super) fn decision(&self, urgency: Urgency) -> Decision<'_> {
+        Decision {
+            kitchen: &self.kitchen,
+            knowledge: &self.knowledge,
+            habits: &self.habits,
+            depth: self.person.depth,
+            in_progress: self.intent.order.map(|(order, _)| order),
+            last_dish: self.intent.last_dish,
+            lapses: self.intent.lapses,
+            urgency,
         }
     }
 

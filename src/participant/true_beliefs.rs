@@ -1,6 +1,6 @@
 //! Beliefs of the simulated participant: one categorical distribution per state aspect, with operations that change it.
 
-use crate::kitchen::{AspectId, AspectKind, DishId, Kitchen, LocationId, OrderContent, Recipes, State};
+use crate::kitchen::{AspectId, AspectKind, ContentId, DishId, Kitchen, LocationId, OrderContent, State, World};
 
 /// Beliefs of a simulated participant. Every distribution sums to 1, and every value has a positive probability.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,16 +81,16 @@ impl ParticipantBeliefs {
     }
 
     /// The most probable state and recipes.
-    pub fn point(&self, kitchen: &Kitchen) -> (State, Recipes) {
-        let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
+    pub fn point(&self, kitchen: &Kitchen) -> World {
+        let World { mut state, mut recipes } = World::empty(kitchen);
         for (index, aspect) in kitchen.aspects.iter().enumerate() {
             let code = aspect.values[self.most_likely(AspectId(index as u8))];
             match aspect.kind {
                 AspectKind::Location(location) => state.set_code(location, code),
-                AspectKind::Recipe(dish) => recipes.set(dish, crate::kitchen::ContentId(code)),
+                AspectKind::Recipe(dish) => recipes.set(dish, ContentId(code)),
             }
         }
-        (state, recipes)
+        World { state, recipes }
     }
 
     /// Probability that the participant assigns to the true value of an aspect.

@@ -1,14 +1,17 @@
-//! Record of a participant's beliefs at a press, and of the cause of the press.
+//! Record of a participant's beliefs at a press, and of the origin of the press.
+//!
+//! The decision is repeated with the truth and the same lapses. If the press stays the same, it came from the plan; if it changes,
+//! from a false belief, namely the smallest replacement by the truth that changes it. An order and the recipe of its dish are
+//! replaced together.
 
-use super::decision::good_presses;
+use super::decision::Decision;
 use super::true_beliefs::ParticipantBeliefs;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{AspectId, AspectKind, ButtonId, ContentId, Kitchen, Recipes, State};
-use crate::mind::{AspectBelief, BeliefWitness, WORTH_TELLING};
+use crate::kitchen::{AspectId, AspectKind, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, State, World};
+use crate::mind::{AspectBelief, BeliefWitness, PressOrigin, WORTH_TELLING};
 
 /// Records every aspect: its most probable value, the probability of the true value, and all other probabilities worth logging.
-pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, cause: String) -> BeliefWitness {
-    let of = |index: usize| {
+pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, reason: PressReason) -> BeliefWitness {
+    let told = |index: usize| {
         let (aspect, id) = (&kitchen.aspects[index], AspectId(index as u8));
         let values = aspect.labels.iter().zip(beliefs.distribution(id)).filter(|(_, p)| **p >= WORTH_TELLING);
         AspectBelief {
@@ -18,7 +21,13 @@ pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, ca
             values: values.map(|(label, &p)| (label.clone(), rounded(p))).collect(),
         }
     };
-    BeliefWitness { aspects: (0..kitchen.aspects.len()).map(of).collect(), cause }
+    let name = |aspect: &AspectId| kitchen.aspects[aspect.index()].name.clone();
+    BeliefWitness {
+        aspects: (0..kitchen.aspects.len()).map(told).collect(),
+        cause: reason.cause,
+        origin: Some(reason.origin),
+        targets: reason.targets.iter().map(name).collect(),
+    }
 }
 
 /// Rounds a probability to six decimals for the log.
@@ -26,42 +35,103 @@ fn rounded(p: f64) -> f64 {
     (p * 1e6).round() / 1e6
 }
 
-/// The cause of a useful press for the recording: "goal", or the belief without which the press would not seem useful.
-pub fn cause(
-    kitchen: &Kitchen,
-    cost: &mut CostToGo,
-    beliefs: &ParticipantBeliefs,
-    state: State,
-    button: ButtonId,
-) -> String {
-    let recipes = kitchen.true_recipes();
-    let is_good = |cost: &mut CostToGo, state: State, recipes: &Recipes| {
-        good_presses(kitchen, cost, state, recipes).iter().any(|(good, _)| *good == button)
-    };
-    if is_good(cost, state, &recipes) {
-        return "as it is".to_string();
+/// Why a participant presses a button.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PressReason {
+    /// Whether the press comes from the plan, from a false belief, or from a slip.
+    pub origin: PressOrigin,
+    /// The reason in words.
+    pub cause: String,
+    /// The aspects whose replacement by the truth changes the press.
+    pub targets: Vec<AspectId>,
+}
+
+impl PressReason {
+    /// A slip, in words.
+    pub fn slip(cause: String) -> PressReason {
+        PressReason { origin: PressOrigin::Slip, cause, targets: Vec::new() }
     }
-    let (believed, held) = beliefs.point(kitchen);
-    let mut wrong: Vec<String> = Vec::new();
-    for (index, aspect) in kitchen.aspects.iter().enumerate() {
-        let id = AspectId(index as u8);
-        let value = beliefs.most_likely(id);
-        if value == kitchen.true_value(state, id) {
-            continue;
+
+    /// The reason of a press that was decided for `believed`, while `truth` holds.
+    pub fn decided(decision: &Decision, believed: &World, truth: &World, button: ButtonId) -> PressReason {
+        let kitchen = decision.kitchen;
+        let presses = |world: &World| decision.resolve(world).plan.front().copied();
+        let informed = presses(truth);
+        if informed == Some(button) {
+            let cause = "as it is".to_string();
+            return PressReason { origin: PressOrigin::Plan, cause, targets: Vec::new() };
         }
-        let description = format!("believes {}: {}", aspect.name, aspect.labels[value]);
-        let (mut mended, mut recalled) = (believed, held);
-        match aspect.kind {
-            AspectKind::Location(location) => mended.set_code(location, state.code(location)),
-            AspectKind::Recipe(dish) => recalled.set(dish, ContentId(aspect.values[0])),
+        let wrong = wrong_targets(kitchen, believed, truth);
+        let told = |world: &World, target: &[AspectId]| {
+            let mut world = *world;
+            target.iter().for_each(|&aspect| tell(kitchen, &mut world, truth, aspect));
+            world
+        };
+        let mut changing: Option<Vec<AspectId>> = None;
+        for target in &wrong {
+            let press = presses(&told(believed, target));
+            if press != Some(button) && (changing.is_none() || press == informed) {
+                changing = Some(target.clone());
+                if press == informed {
+                    break;
+                }
+            }
         }
-        if !is_good(cost, mended, &recalled) {
-            return description;
-        }
-        wrong.push(description);
+        let pairs = || {
+            let pair = |(index, one): (usize, &Vec<AspectId>)| {
+                let world = told(believed, one);
+                let other = wrong[index + 1..].iter().find(|other| presses(&told(&world, other)) != Some(button))?;
+                Some([one.as_slice(), other].concat())
+            };
+            wrong.iter().enumerate().find_map(pair)
+        };
+        let targets = changing.or_else(pairs).unwrap_or_else(|| wrong.concat());
+        let label = |aspect: &AspectId| {
+            let known = &kitchen.aspects[aspect.index()];
+            let held = known.index_of(code_of(kitchen, believed, *aspect)).map_or("?", |value| &known.labels[value]);
+            format!("believes {}: {held}", known.name)
+        };
+        let cause = targets.iter().map(label).collect::<Vec<_>>().join(", ");
+        PressReason { origin: PressOrigin::Belief, cause, targets }
     }
-    match wrong.is_empty() {
-        true => "as it is, by a detour".to_string(),
-        false => wrong.join(", "),
+}
+
+/// What is believed wrong, in the order of the layout; an order and the believed recipes of the dishes in question are one target.
+fn wrong_targets(kitchen: &Kitchen, believed: &World, truth: &World) -> Vec<Vec<AspectId>> {
+    let is_wrong = |aspect: &AspectId| code_of(kitchen, believed, *aspect) != code_of(kitchen, truth, *aspect);
+    let mut left: Vec<AspectId> =
+        (0..kitchen.aspects.len()).map(|index| AspectId(index as u8)).filter(is_wrong).collect();
+    let mut targets = Vec::new();
+    for index in 0..kitchen.locations.len() {
+        let location = LocationId(index as u8);
+        let mut target = vec![AspectId::of_location(location)];
+        if kitchen.location(location).kind == LocationKind::Order
+            && let OrderContent::Dish(dish) = truth.state.order(location)
+        {
+            target.push(kitchen.aspect_of_dish(dish));
+        }
+        target.retain(|aspect| left.contains(aspect));
+        left.retain(|aspect| !target.contains(aspect));
+        if !target.is_empty() {
+            targets.push(target);
+        }
+    }
+    targets.extend(left.into_iter().map(|aspect| vec![aspect]));
+    targets
+}
+
+/// The code of an aspect's value in a world.
+fn code_of(kitchen: &Kitchen, world: &World, aspect: AspectId) -> u8 {
+    match kitchen.aspects[aspect.index()].kind {
+        AspectKind::Location(location) => world.state.code(location),
+        AspectKind::Recipe(dish) => world.recipes.get(dish).0,
+    }
+}
+
+/// Sets an aspect of a world to its true value.
+fn tell(kitchen: &Kitchen, world: &mut World, truth: &World, aspect: AspectId) {
+    match kitchen.aspects[aspect.index()].kind {
+        AspectKind::Location(location) => world.state.set_code(location, truth.state.code(location)),
+        AspectKind::Recipe(dish) => world.recipes.set(dish, truth.recipes.get(dish)),
     }
 }

@@ -205,7 +205,7 @@ impl Engine {
             return;
         }
         let state = self.session().state;
-        let deed = self.participant.as_mut().and_then(|one| one.act(now, state, &mut self.follower.cost));
+        let deed = self.participant.as_mut().and_then(|one| one.act(now, state));
         match deed {
             Some(ParticipantAction::Gaze(sample)) if self.session().spec.participant.simulates_gaze() => {
                 if !self.gaps.as_mut().is_some_and(|gaps| gaps.swallows(now)) {

@@ -15,6 +15,7 @@ use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogEnding, LogLine, LogReader, at_line, event_line};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::admit::is_external;
+use crate::session::header::PEOPLE_SINCE;
 use crate::session::{Event, Stamped};
 
 /// Result of `tomcom replay RECORDING --verify`.
@@ -28,6 +29,9 @@ pub struct Verification {
     pub cut: bool,
     /// Whether its session is still running.
     pub running: bool,
+    /// The version of the program since which simulated participants decide otherwise than in this recording.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub people_changed: Option<&'static str>,
     /// First difference between recording and re-run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difference: Option<VerificationDifference>,
@@ -57,7 +61,8 @@ pub fn verify(recording: &Path) -> FileResult<Verification> {
     let same_end = difference.is_some() || log.is_cut() || again.ends_like(&replayed);
     let verified = difference.is_none() && same_end;
     let (cut, running) = (log.is_cut(), log.ending() == LogEnding::Running);
-    Ok(Verification { verified, events: log.events(), cut, running, difference })
+    let people_changed = log.header.has_earlier_people().then_some(PEOPLE_SINCE);
+    Ok(Verification { verified, events: log.events(), cut, running, people_changed, difference })
 }
 
 /// A recording that was run again to its end.
@@ -161,14 +166,22 @@ pub fn describe(found: &Verification) -> String {
         (false, true) => ", up to where it was cut",
         (false, false) => "",
     };
-    match &found.difference {
-        None if found.verified => {
+    match (&found.difference, found.people_changed) {
+        (None, _) if found.verified => {
             let events = count(found.events, "event", "events");
             let come = if found.events == 1 { "comes" } else { "come" };
             format!("verified: {events} {come} out the same again{until}\n")
         }
-        None => "not verified: the re-run ends in another state than the recording\n".to_string(),
-        Some(difference) => format!(
+        (None, _) => "not verified: the re-run ends in another state than the recording\n".to_string(),
+        (Some(difference), Some(since)) => format!(
+            "not verified: simulated participants decide otherwise since version {since}, and an earlier one made this \
+             recording; all its events can be applied, but from event {} ({}:{}) on the session does not come out the same \
+             again\n",
+            difference.seq,
+            difference.log.display(),
+            difference.line,
+        ),
+        (Some(difference), None) => format!(
             "not verified: event {} ({}:{}) differs\n  recorded: {}\n  again:    {}\n",
             difference.seq,
             difference.log.display(),

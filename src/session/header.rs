@@ -2,13 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::settings::SessionSpec;
+use super::settings::{ParticipantKind, SessionSpec};
 use crate::base::time::SessionTime;
 
 /// The name of the log's format.
 pub const FORMAT: &str = "tomcom-session";
 /// The version of the format that this program writes and reads.
 pub const VERSION: u32 = 1;
+/// The version of the program since which simulated participants decide as they do now.
+pub const PEOPLE_SINCE: &str = "0.2.0";
 
 /// The header of a log.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,6 +68,14 @@ pub struct FileText {
 }
 
 impl Header {
+    /// Whether a simulated participant of an earlier version, who decided otherwise, took part.
+    pub fn has_earlier_people(&self) -> bool {
+        let numbers =
+            |version: &str| version.split('.').map(|part| part.parse::<u64>().ok()).collect::<Option<Vec<_>>>();
+        let is_earlier = numbers(&self.program).is_some_and(|program| Some(program) < numbers(PEOPLE_SINCE));
+        self.session.participant.kind == ParticipantKind::Simulated && is_earlier
+    }
+
     /// The header of a session that this program runs.
     pub fn new(session: SessionSpec, trial: u64, layout: FileText, recipes: FileText) -> Header {
         let program = env!("CARGO_PKG_VERSION").to_string();

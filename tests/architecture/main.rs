@@ -56,6 +56,15 @@ fn imports_go_one_way() {
     }
 }
 
+/// Simulated participants plan by themselves: the cost to go defines their errors and drives the assistant.
+#[test]
+fn simulated_participants_know_no_cost_to_go() {
+    for source in sources().iter().filter(|source| source.room() == "participant") {
+        let names = ["cost_to_go", "CostToGo"].map(|name| source.text.contains(name));
+        assert_eq!(names, [false; 2], "{} names the cost to go", source.path.display());
+    }
+}
+
 /// Files that import each other in a circle can only be understood, and changed, all at once.
 #[test]
 fn imports_form_no_circle() {

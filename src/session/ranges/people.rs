@@ -12,7 +12,7 @@ const fn chance(path: &'static str) -> NumberRange {
     NumberRange::real(path, [0.000_001, 0.999_999], "", reason).recorded(INSIDE_0_AND_1)
 }
 
-pub(super) const RANGES: [NumberRange; 42] = [
+pub(super) const RANGES: [NumberRange; 51] = [
     chance("participant.population.slip.median"),
     chance("participant.population.look_alike_slip.median"),
     chance("participant.population.thoughtless.median"),
@@ -28,6 +28,19 @@ pub(super) const RANGES: [NumberRange; 42] = [
     chance("participant.population.half_forgotten.median"),
     chance("participant.population.takes_hints.median"),
     chance("participant.population.notices_signal.median"),
+    chance("participant.population.skips_check.median"),
+    chance("participant.population.follows_habit.median"),
+    chance("participant.population.forgets_parked.median"),
+    chance("participant.population.takes_along.median"),
+    chance("participant.population.loses_intention.median"),
+    chance("participant.population.tires_of_signals.median"),
+    NumberRange::real(
+        "participant.population.depth.median",
+        [1.0, 10.0],
+        "presses",
+        "drawn depths are rounded to 2 to 5",
+    )
+    .recorded(ABOVE_0),
     NumberRange::real(
         "participant.population.press_s.median",
         [0.05, 60.0],
@@ -114,6 +127,10 @@ pub(super) const RANGES: [NumberRange; 42] = [
         "a signal that is read later is no help",
     )
     .recorded(NOT_NEGATIVE),
+    NumberRange::real("participant.population.reads_signal_s", [0.0, 60.0], SECONDS, "nobody reads one for longer")
+        .recorded(NOT_NEGATIVE),
+    NumberRange::real("participant.population.resumes_after_s", [0.0, 60.0], SECONDS, "nobody thinks for longer")
+        .recorded(NOT_NEGATIVE),
     NumberRange::real("participant.population.misreads_signal", [0.0, 1.0], "", CHANCE),
     NumberRange::real("participant.population.recipes_gained", [0.01, 100.0], "", "odds grow by it with every trial")
         .recorded(ABOVE_0),

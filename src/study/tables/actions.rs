@@ -68,7 +68,7 @@ impl ActionRow<'_> {
     fn gain_nats(&self) -> Option<f64> {
         match self.judged()?.cause? {
             Cause::Belief { gain_nats, .. } => Some(rounded(gain_nats)).filter(|gain| gain.is_finite()),
-            Cause::Slip => None,
+            Cause::Slip | Cause::Planning => None,
         }
     }
 
@@ -85,6 +85,7 @@ impl ActionRow<'_> {
 fn cause_name(cause: Cause) -> &'static str {
     match cause {
         Cause::Slip => CauseKind::Slip.name(),
+        Cause::Planning => "planning",
         Cause::Belief { .. } => CauseKind::Belief.name(),
     }
 }
@@ -100,7 +101,7 @@ impl TableRow for ActionRow<'_> {
     const TABLE: Table = Table::Actions;
 
     fn columns() -> Vec<Column<Self>> {
-        let cause = "cause of an error: belief or slip; source in the trial's beliefs_from; empty: unknown";
+        let cause = "cause of an error: belief, planning or slip; source in the trial's beliefs_from; empty: unknown";
         let second = "second aspect, if only two false beliefs together explain the error";
         let sequence = "number of a belief related error's sequence in the trial, from 1";
         let rater = "code of the rater who coded most errors: belief (with location), slip, race, other or buttons";

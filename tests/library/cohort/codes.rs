@@ -114,7 +114,7 @@ fn check_wrong_rows(coded: &mut [CodedRecording], recording: &Path, table: &Path
 #[test]
 fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     let out = folder("codes");
-    let made = run(&paper(120), 1, Shard::WHOLE, &out);
+    let made = run(&paper(304), 1, Shard::WHOLE, &out);
     let recording = PathBuf::from(&made.recordings[0]);
     let log = fs::read(recording.join(LOG_NAME)).expect("a log");
     let mut coded = vec![CodedRecording::open(&recording).expect("a recording")];

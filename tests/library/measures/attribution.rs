@@ -22,7 +22,7 @@ fn check(layout: &str, there: &[&str], falsely: &[&str], pressed: &str, why: &[&
         let belief = belief(&kitchen, state, falsely, sure);
         let cause = attributor.cause(&kitchen, &mut cost, &belief, &press, index);
         let found: Vec<String> = match cause {
-            Cause::Slip => vec!["slip".to_string()],
+            Cause::Slip | Cause::Planning => vec!["slip".to_string()],
             Cause::Belief { target, with, .. } => {
                 [Some(target), with].into_iter().flatten().map(|target| target.label(&kitchen)).collect()
             }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::Signal;
 use tomcom::gaze::{GazeSample, MIN_CONFIDENCE, nearest_location};
-use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, Press, State};
+use tomcom::mind::{BeliefWitness, PressOrigin};
 use tomcom::participant::population::{Experience, Population, TraitSpread};
 use tomcom::participant::{ParticipantAction, SimulatedParticipant};
 
@@ -15,12 +15,12 @@ use super::kitchen;
 /// A participant before a kitchen that nobody else changes.
 struct Bench {
     kitchen: Arc<Kitchen>,
-    cost: CostToGo,
     state: State,
     now: SessionTime,
     one: SimulatedParticipant,
     samples: Vec<GazeSample>,
     presses: Vec<(f64, ButtonId)>,
+    reasons: Vec<BeliefWitness>,
 }
 
 impl Bench {
@@ -30,8 +30,15 @@ impl Bench {
         let mut one = SimulatedParticipant::new(kitchen.clone(), population, seed, 0, 0, Experience::default());
         assert_eq!(one.next_due(), None, "nothing before the trial");
         one.on_trial_start(SessionTime::ZERO, state);
-        let cost = CostToGo::new(kitchen.clone());
-        Bench { kitchen, cost, state, now: SessionTime::ZERO, one, samples: Vec::new(), presses: Vec::new() }
+        Bench {
+            kitchen,
+            state,
+            now: SessionTime::ZERO,
+            one,
+            samples: Vec::new(),
+            presses: Vec::new(),
+            reasons: Vec::new(),
+        }
     }
 
     fn location(&self, name: &str) -> LocationId {
@@ -65,10 +72,11 @@ impl Bench {
         while let Some(due) = self.one.next_due().filter(|&due| due <= end) {
             assert!(due >= self.now, "time runs forwards");
             self.now = due;
-            match self.one.act(due, self.state, &mut self.cost) {
+            match self.one.act(due, self.state) {
                 Some(ParticipantAction::Gaze(sample)) => self.samples.push(sample),
                 Some(ParticipantAction::Press { button, belief }) => {
-                    assert!(!belief.cause.is_empty());
+                    assert!(!belief.cause.is_empty() && belief.origin.is_some());
+                    self.reasons.push(belief);
                     let press = self.kitchen.try_press(self.state, Agent::Human, button);
                     self.state = press.after;
                     self.presses.push((due.as_secs_f64(), button));
@@ -185,6 +193,87 @@ fn a_noticed_signal_makes_the_aspect_right() {
         bench.pass(2.0);
     }
     assert!(bench.p_truth("cooking_pot") > 0.9);
+}
+
+#[test]
+fn nothing_else_is_seen_or_pressed_while_a_signal_is_read() {
+    // It reads for exactly two seconds, half a second after each signal.
+    let slow = Population { signal_after_s: [0.5, 0.5], reads_signal_s: [2.0, 2.0], ..Population::default() };
+    let mut read = 0;
+    for seed in 0..40 {
+        let mut bench = Bench::new(&slow, seed);
+        bench.order("order_1", "tuna nigiri");
+        bench.pass(20.0);
+        let (order, counter) = (bench.location("order_1"), AspectId(bench.location("counter").0));
+        bench.one.on_signal(bench.now, order, &Signal::ShowRecipe("order_1".to_string()), bench.state);
+        bench.pass(0.6);
+        let busy = bench.now.as_secs_f64();
+        if bench.p_truth("recipe of tuna nigiri") < 0.96 {
+            continue;
+        }
+        read += 1;
+        let believed = bench.one.beliefs().distribution(counter).to_vec();
+        bench.put("counter", "salmon raw");
+        bench.pass(1.8);
+        assert_eq!(bench.one.beliefs().distribution(counter), believed, "seed {seed}: seen while reading");
+        assert!(bench.presses.iter().all(|(time, _)| *time <= busy), "seed {seed}: pressed while reading");
+    }
+    assert!(read >= 20, "{read} of 40 signals were read");
+}
+
+#[test]
+fn after_useless_signals_the_next_ones_are_noticed_less() {
+    let tired = Population { tires_of_signals: TraitSpread { median: 0.5, sigma: 0.0 }, ..unmoved() };
+    let ignorant = TraitSpread { median: 0.02, sigma: 0.0 };
+    let noticed_after = |useless: u32| {
+        let population = Population { learned: ignorant, half_forgotten: ignorant, ..tired.clone() };
+        let noticed = |seed: u64| {
+            let mut bench = Bench::new(&population, seed);
+            bench.order("order_1", "tuna nigiri");
+            let (order, hand) = (bench.location("order_1"), bench.location("human_hand"));
+            for _ in 0..useless {
+                bench.one.on_signal(bench.now, hand, &Signal::Highlight("human_hand".to_string()), bench.state);
+                bench.pass(4.0);
+            }
+            bench.one.on_signal(bench.now, order, &Signal::ShowRecipe("order_1".to_string()), bench.state);
+            bench.pass(1.6);
+            bench.p_truth("recipe of tuna nigiri") > 0.9
+        };
+        (0..100).filter(|&seed| noticed(seed)).count()
+    };
+    let (fresh, tired) = (noticed_after(0), noticed_after(4));
+    assert!(fresh >= 65 && tired <= fresh - 20, "{fresh} of 100 at first, {tired} after four useless ones");
+}
+
+#[test]
+fn it_records_where_its_presses_come_from() {
+    let never = TraitSpread { median: 0.000_001, sigma: 0.0 };
+    let sure = Population { slip: never, look_alike_slip: never, thoughtless: never, ..unmoved() };
+    let wrong = TraitSpread { median: 0.02, sigma: 0.0 };
+    let ignorant = Population { learned: wrong, half_forgotten: wrong, confuses_look_alikes: 1000.0, ..sure.clone() };
+    let clumsy = Population { slip: TraitSpread { median: 0.99, sigma: 0.0 }, ..sure.clone() };
+    let knowing = Population { all_knowing: true, ..sure };
+    let reasons = |population: &Population, seed: u64| {
+        let mut bench = Bench::new(population, seed);
+        bench.order("order_1", "shrimp nigiri");
+        bench.pass(30.0);
+        bench.reasons
+    };
+    let mut about_the_recipe = 0;
+    for seed in 0..10 {
+        assert!(reasons(&knowing, seed).iter().all(|one| one.origin == Some(PressOrigin::Plan)), "seed {seed}");
+        let slips = reasons(&clumsy, seed).iter().filter(|one| one.origin == Some(PressOrigin::Slip)).count();
+        assert!(slips > 5, "seed {seed}: {slips}");
+        let of_recipe = |one: &&BeliefWitness| one.targets == ["recipe of shrimp nigiri"];
+        let believed = reasons(&ignorant, seed);
+        about_the_recipe += usize::from(believed.iter().filter(of_recipe).count() > 0);
+        let named = |one: &BeliefWitness| (one.origin == Some(PressOrigin::Belief)) != one.targets.is_empty();
+        assert!(
+            believed.iter().all(named),
+            "seed {seed}: a target for every press from a false belief, and for no other"
+        );
+    }
+    assert!(about_the_recipe >= 7, "{about_the_recipe} of 10 take crab for shrimp");
 }
 
 #[test]

@@ -5,8 +5,9 @@ use std::convert::Infallible;
 use std::sync::Arc;
 
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, AspectKind, ButtonId, ContentId, DishId, Kitchen, OrderContent, Recipes, State};
-use tomcom::mind::BeliefWitness;
+use tomcom::kitchen::{Agent, Kitchen};
+use tomcom::measures::attribution::Cause;
+use tomcom::measures::sequences::sequences;
 use tomcom::run::engine::Engine;
 use tomcom::run::headless;
 use tomcom::session::{Event, SessionSpec, Stamped};
@@ -26,60 +27,24 @@ struct Figures {
     robot: usize,
     errors: usize,
     related: usize,
+    planning: usize,
     /// Lengths of the error sequences.
     sequences: Vec<usize>,
     /// Presses of both agents for each served order.
     per_order: Vec<u32>,
     /// The longest time without a press of anybody, in seconds.
     longest_standstill_s: f64,
-    /// Errors by the first word of their cause, or by the kind of aspect that was false.
+    /// Errors by their cause.
     causes: BTreeMap<String, usize>,
     error_share: Vec<f64>,
     wall_s: f64,
 }
 
-/// Log-probability of a press under the softmax of the assistant's model, for a state held for certain.
-fn log_likelihood(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes, pressed: ButtonId) -> f64 {
-    const TAU: f64 = 4.0;
-    const LAPSE: f64 = 0.03;
-    let count = kitchen.buttons[Agent::Human.index()].len();
-    let mut value = |index: usize| {
-        let next = kitchen.press(state, recipes, Agent::Human, ButtonId(index as u8)).unwrap_or(state);
-        -TAU * f64::from(1 + cost.all_orders(next, recipes))
-    };
-    let values: Vec<f64> = (0..count).map(&mut value).collect();
-    let top = values.iter().copied().fold(f64::MIN, f64::max);
-    let total: f64 = values.iter().map(|value| (value - top).exp()).sum();
-    let p = (values[pressed.index()] - top).exp() / total;
-    ((1.0 - LAPSE) * p + LAPSE / count as f64).ln()
-}
-
-/// The state and recipes that a witness holds most likely.
-fn believed(kitchen: &Kitchen, witness: &BeliefWitness) -> (State, Recipes) {
-    let (mut state, mut recipes) = (kitchen.empty_state(), kitchen.true_recipes());
-    for (aspect, held) in kitchen.aspects.iter().zip(&witness.aspects) {
-        let value = aspect.labels.iter().position(|label| *label == held.believes).expect("a value of the aspect");
-        match aspect.kind {
-            AspectKind::Location(location) => state.set_code(location, aspect.values[value]),
-            AspectKind::Recipe(dish) => recipes.set(dish, ContentId(aspect.values[value])),
-        }
-    }
-    (state, recipes)
-}
-
-fn kind_of(cause: &str) -> String {
-    match cause.split_once(": ") {
-        Some((aspect, _)) if aspect.starts_with("believes recipe") => "believes recipe".to_string(),
-        Some((head, _)) => head.to_string(),
-        None => cause.to_string(),
-    }
-}
-
-/// Plays unassisted trials and measures them; belief related errors by the definition of the study, with the point belief.
+/// Plays unassisted trials and measures them.
 fn play(kitchen: &Arc<Kitchen>, seed: u64, trials: u64) -> Figures {
     let began = std::time::Instant::now();
     let mut figures = Figures::default();
-    let mut cost = CostToGo::new(kitchen.clone());
+    let cost = CostToGo::new(kitchen.clone());
     for trial in 0..trials {
         let mut engine = Engine::new(kitchen.clone(), settings(seed), trial, cost.clone());
         let mut events: Vec<Stamped> = Vec::new();
@@ -90,31 +55,13 @@ fn play(kitchen: &Arc<Kitchen>, seed: u64, trials: u64) -> Figures {
             Ok::<(), Infallible>(())
         };
         headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
-        measure(kitchen, &mut cost, &engine, &events, &mut figures);
+        measure(&engine, &events, &mut figures);
     }
     figures.wall_s = began.elapsed().as_secs_f64();
     figures
 }
 
-/// The task state after an event.
-fn after(kitchen: &Kitchen, mut state: State, event: &Event) -> State {
-    let order = |name: &str| kitchen.location_named(name).expect("an order");
-    match event {
-        Event::OrderShown { order: name, dish } => {
-            let dish = kitchen.dishes.iter().position(|other| other.name == *dish).expect("a dish");
-            state.set_order(order(name), OrderContent::Dish(DishId(dish as u8)));
-        }
-        Event::OrderCleared { order: name } => state.set_order(order(name), OrderContent::None),
-        Event::Press { agent, button, .. } => {
-            let button = kitchen.button_named(*agent, button).expect("a button");
-            return kitchen.press(state, &kitchen.true_recipes(), *agent, button).unwrap_or(state);
-        }
-        _ => {}
-    }
-    state
-}
-
-fn measure(kitchen: &Kitchen, cost: &mut CostToGo, engine: &Engine, events: &[Stamped], figures: &mut Figures) {
+fn measure(engine: &Engine, events: &[Stamped], figures: &mut Figures) {
     let session = engine.session();
     figures.seconds += session.trial_clock(session.time).as_secs_f64();
     figures.robot += session.presses[Agent::Robot.index()] as usize;
@@ -123,54 +70,30 @@ fn measure(kitchen: &Kitchen, cost: &mut CostToGo, engine: &Engine, events: &[St
         figures.per_order.push(served.presses - before);
         before = served.presses;
     }
-    let mut judged = engine.judged().iter().peekable();
-    let mut witness = BeliefWitness::default();
-    let (mut errors, mut presses, mut since_error, mut sequence) = (0, 0, 0, 0);
     let mut last_press = 0.0;
-    let mut state = kitchen.empty_state();
-    for stamped in events {
+    for stamped in events.iter().filter(|stamped| matches!(stamped.event, Event::Press { .. })) {
         let now = stamped.time.as_secs_f64();
-        if let Event::Press { .. } = stamped.event {
-            figures.longest_standstill_s = figures.longest_standstill_s.max(now - last_press);
-            last_press = now;
-        }
-        match &stamped.event {
-            Event::ParticipantBelieves(belief) => witness = belief.clone(),
-            Event::Press { agent: Agent::Human, button, .. } => {
-                let press = judged.next_if(|press| press.seq == stamped.seq).expect("a verdict for every press");
-                presses += 1;
-                if press.verdict.error {
-                    errors += 1;
-                    let button = kitchen.button_named(Agent::Human, button).expect("a button");
-                    let (held, recipes) = believed(kitchen, &witness);
-                    let gain = log_likelihood(kitchen, cost, held, &recipes, button)
-                        - log_likelihood(kitchen, cost, state, &kitchen.true_recipes(), button);
-                    let is_related = gain >= 3.0_f64.ln();
-                    let mark = if is_related { "" } else { " (not related)" };
-                    *figures.causes.entry(kind_of(&witness.cause) + mark).or_default() += 1;
-                    if is_related {
-                        figures.related += 1;
-                        if sequence > 0 && since_error > 3 {
-                            figures.sequences.push(sequence);
-                            sequence = 0;
-                        }
-                        sequence += 1;
-                        since_error = 0;
-                    }
-                } else {
-                    since_error += 1;
-                }
+        figures.longest_standstill_s = figures.longest_standstill_s.max(now - last_press);
+        last_press = now;
+    }
+    let judged = engine.judged();
+    let errors = || judged.iter().filter(|press| press.verdict.error);
+    for press in errors() {
+        let name = match press.cause {
+            Some(Cause::Belief { target, .. }) => {
+                figures.related += 1;
+                format!("{target:?}")
             }
-            _ => {}
-        }
-        state = after(kitchen, state, &stamped.event);
+            Some(other) => format!("{other:?}"),
+            None => "unknown".to_string(),
+        };
+        *figures.causes.entry(name).or_default() += 1;
     }
-    if sequence > 0 {
-        figures.sequences.push(sequence);
-    }
-    figures.human += presses;
-    figures.errors += errors;
-    figures.error_share.push(errors as f64 / presses.max(1) as f64);
+    figures.planning += errors().filter(|press| press.cause == Some(Cause::Planning)).count();
+    figures.sequences.extend(sequences(judged).iter().map(|one| one.length as usize));
+    figures.human += judged.len();
+    figures.errors += errors().count();
+    figures.error_share.push(errors().count() as f64 / judged.len().max(1) as f64);
 }
 
 impl Figures {
@@ -223,9 +146,8 @@ fn check(name: &str, seed: u64, trials: u64) {
     assert!(figures.per_order.len() as f64 / figures.seconds * 900.0 >= 25.0);
     assert!(figures.related as f64 / figures.errors as f64 > 0.6);
     assert!(figures.longest_standstill_s < 60.0);
-    let nameless: usize =
-        figures.causes.iter().filter(|(cause, _)| cause.starts_with("as it is")).map(|(_, n)| n).sum();
-    assert!(nameless * 50 <= figures.errors, "{nameless} errors without a cause");
+    assert_eq!(figures.causes.get("unknown"), None, "every error has a cause");
+    assert!(figures.planning > 0 && figures.planning * 5 < figures.errors, "{} of planning", figures.planning);
     let (least, most) = figures.error_share.iter().fold((1.0_f64, 0.0_f64), |(a, b), &x| (a.min(x), b.max(x)));
     assert!(most > 1.3 * least, "individuals differ");
 }

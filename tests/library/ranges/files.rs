@@ -15,6 +15,7 @@ const RULED: [&str; 8] = [
     "human.perception.look_alike",
     "human.perception.anything",
     "participant.population.signal_after_s",
+    "participant.population.reads_signal_s",
     "tracker.corners",
     "plan.block",
     "plan.questionnaire.after",

@@ -77,7 +77,8 @@ fn check_end(range: &NumberRange, value: f64, folder: &Path) {
     let is_refused = ["human.perception.look_alike", "human.perception.anything"].contains(&range.path) && value == 1.0
         || range.path == "plan.block"
         || range.path == "plan.questionnaire.after" && value > 2.0
-        || range.path == "participant.population.signal_after_s" && value > 0.0
+        || ["participant.population.signal_after_s", "participant.population.reads_signal_s"].contains(&range.path)
+            && value > 0.0
         || range.path == "tracker.corners";
     let ran = run(&format!("{} = {value}", range.path), range.path, &settings, folder);
     assert!(ran || is_refused, "{} = {value} is refused", range.path);
@@ -116,7 +117,12 @@ fn sessions_at_the_ends_of_every_range_run_and_can_be_read() {
 #[test]
 fn sessions_with_all_numbers_of_a_table_at_their_ends_run_and_can_be_read() {
     let folder = folder("all-ends");
-    let stays = ["human.perception.look_alike", "human.perception.anything", "participant.population.signal_after_s"];
+    let stays = [
+        "human.perception.look_alike",
+        "human.perception.anything",
+        "participant.population.signal_after_s",
+        "participant.population.reads_signal_s",
+    ];
     let ends: [fn(&NumberRange) -> f64; 2] = [|range| range.least, |range| range.most];
     for table in ["participant.population.", "wizard.", "robot.", "human."] {
         for end in ends {

@@ -1,12 +1,12 @@
 //! The same seed gives the same recording, and a recording the same session.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use tomcom::edge::log::LOG_NAME;
 use tomcom::kitchen::LocationId;
 use tomcom::run::replay::Replay;
-use tomcom::run::verify::verify;
+use tomcom::run::verify::{describe, verify};
 use tomcom::session::Phase;
 use tomcom::session::header::VERSION;
 use tomcom::session::settings::ArmKind;
@@ -63,6 +63,16 @@ fn a_changed_recording_does_not_verify_and_the_first_difference_is_named() {
     let found = verify(&changed).expect("a recording");
     assert_eq!(found.difference.map(|difference| difference.line), Some(number + 1));
     assert!(!found.verified);
+}
+
+#[test]
+fn of_simulated_people_of_an_earlier_version_it_is_told_that_they_decide_otherwise_now() {
+    let found = verify(Path::new("tests/golden/format-1-simulated.jsonl")).expect("a recording");
+    assert!(!found.verified && found.people_changed == Some("0.2.0"), "{found:?}");
+    let told = describe(&found);
+    assert!(told.contains("decide otherwise since version 0.2.0"), "{told}");
+    let (now, _) = by_hand("default.toml", ArmKind::Timed, "people-now", 6);
+    assert_eq!(verify(&now).expect("a recording").people_changed, None, "this version's people are the same again");
 }
 
 /// What a replay came to, in lines.

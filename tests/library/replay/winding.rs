@@ -50,7 +50,7 @@ fn a_recording_can_be_wound_forward_and_back() {
 
 #[test]
 fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
-    let out = simulated("default.toml", ArmKind::Timed, "landmarks", 1, 3);
+    let out = simulated("default.toml", ArmKind::Timed, "landmarks", 1, 4);
     let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
     let mut film = SeekableReplay::open(&recording).expect("a recording");
     let mut errors = film.errors.clone();

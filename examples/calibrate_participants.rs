@@ -1,0 +1,278 @@
+//! Calibrates simulated participants to the rates of the paper: measures populations over whole studies, and searches for some
+//! that agree with it. docs/simulated-participants.md has the steps, the seeds and what came of them.
+//!
+//! ```sh
+//! run="cargo run --release --no-default-features --example calibrate_participants --"
+//! $run figures sessions/paper.toml 3001,3002          # the session's population
+//! $run planning sessions/paper.toml 3001,3002         # the same people, who know everything and do not slip
+//! $run search sessions/paper.toml 3001,3002 200       # vectors of belief parameters that agree with the paper
+//! $run each sessions/paper.toml 4001,4002 sessions/people/accepted.toml
+//! ```
+
+use std::convert::Infallible;
+use std::error::Error;
+use std::path::Path;
+use std::sync::Arc;
+
+use rand::RngExt;
+use tomcom::base::rng::stream;
+use tomcom::communication::settings::Shadow;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::kitchen::layout::LayoutSpec;
+use tomcom::kitchen::{Agent, Kitchen};
+use tomcom::measures::JudgedPress;
+use tomcom::measures::attribution::Cause;
+use tomcom::measures::sequences::{sequences, sequences_by_target};
+use tomcom::participant::population::Population;
+use tomcom::run::engine::Engine;
+use tomcom::run::headless;
+use tomcom::session::SessionSpec;
+use tomcom::session::plan::Study;
+
+/// The belief parameters that a search varies, with the least and the largest value that it tries.
+const PARAMETERS: [(&str, f64, f64); 5] = [
+    ("learned", 0.93, 0.965),
+    ("half_forgotten", 0.68, 0.78),
+    ("insists", 0.93, 0.975),
+    ("patience_s", 8.0, 14.0),
+    ("takes_hints", 0.012, 0.03),
+];
+/// Rates of the paper with their standard errors: errors per press of both agents, and the share of belief related ones.
+/// The standard errors allow for errors that come in sequences of three.
+const ERRORS: (f64, f64) = (587.0 / 8515.0, 0.005);
+const RELATED: (f64, f64) = (481.0 / 587.0, 0.028);
+/// Errors in a sequence: 481 in 153, of which every one is in a sequence.
+const LENGTH: f64 = 481.0 / 153.0;
+/// Least mean length of sequences of related errors.
+const LEAST_RELATED_LENGTH: f64 = 2.6;
+/// Chance of a slip of people who do not slip: a probability may not be 0.
+const NEVER: f64 = 0.000_001;
+
+/// Sums over trials.
+#[derive(Clone, Debug, Default)]
+struct Rates {
+    human: f64,
+    both: f64,
+    errors: f64,
+    beliefs: f64,
+    planning: f64,
+    slips: f64,
+    /// Number of sequences of related errors, and of errors in them; the same whatever the aspect.
+    related: [f64; 2],
+    any: [f64; 2],
+    orders: f64,
+    seconds: f64,
+    regret: f64,
+}
+
+impl Rates {
+    fn add(&mut self, engine: &Engine) {
+        let (session, judged) = (engine.session(), engine.judged());
+        let errors = || judged.iter().filter(|press| press.verdict.error);
+        let count = |is: fn(&&JudgedPress) -> bool| errors().filter(is).count() as f64;
+        self.human += judged.len() as f64;
+        self.both += f64::from(session.presses[Agent::Human.index()] + session.presses[Agent::Robot.index()]);
+        self.errors += count(|_| true);
+        self.beliefs += count(|press| matches!(press.cause, Some(Cause::Belief { .. })));
+        self.planning += count(|press| press.cause == Some(Cause::Planning));
+        self.slips += count(|press| press.cause == Some(Cause::Slip));
+        for (sums, all) in [(&mut self.related, sequences_by_target(judged)), (&mut self.any, sequences(judged))] {
+            sums[0] += all.len() as f64;
+            sums[1] += all.iter().map(|one| f64::from(one.length)).sum::<f64>();
+        }
+        self.orders += session.served.len() as f64;
+        self.seconds += session.trial_clock(session.time).as_secs_f64();
+        self.regret += judged.iter().map(|press| f64::from(press.verdict.regret)).sum::<f64>();
+    }
+
+    fn merge(&mut self, other: &Rates) {
+        let pairs = [
+            (&mut self.human, other.human),
+            (&mut self.both, other.both),
+            (&mut self.errors, other.errors),
+            (&mut self.beliefs, other.beliefs),
+            (&mut self.planning, other.planning),
+            (&mut self.slips, other.slips),
+            (&mut self.orders, other.orders),
+            (&mut self.seconds, other.seconds),
+            (&mut self.regret, other.regret),
+        ];
+        pairs.into_iter().for_each(|(sum, more)| *sum += more);
+        for index in 0..2 {
+            self.related[index] += other.related[index];
+            self.any[index] += other.any[index];
+        }
+    }
+
+    fn error_rate(&self) -> f64 {
+        self.errors / self.both
+    }
+
+    fn related_share(&self) -> f64 {
+        self.beliefs / self.errors.max(1.0)
+    }
+
+    fn lengths(&self) -> [f64; 2] {
+        [self.related, self.any].map(|[count, errors]| errors / count.max(1.0))
+    }
+
+    /// Whether the rates agree with the paper's within one standard error, and the paper's length lies where it should.
+    fn agrees(&self) -> bool {
+        let near = |found: f64, (paper, error): (f64, f64)| (found - paper).abs() <= error;
+        let [related, any] = self.lengths();
+        let is_between = (LEAST_RELATED_LENGTH..=LENGTH).contains(&related) && LENGTH <= any;
+        near(self.error_rate(), ERRORS) && near(self.related_share(), RELATED) && is_between
+    }
+
+    fn line(&self) -> String {
+        let [related, any] = self.lengths();
+        let per_100 = |errors: f64| 100.0 * errors / self.human;
+        format!(
+            "{:.2} % of all presses, {:.1} % belief related, {related:.2} a sequence (any aspect {any:.2}); per 100 human presses: \
+             beliefs {:.2}, planning {:.2}, slips {:.2}; human share {:.2}, {:.1} s and {:.1} presses an order",
+            100.0 * self.error_rate(),
+            100.0 * self.related_share(),
+            per_100(self.beliefs),
+            per_100(self.planning),
+            per_100(self.slips),
+            self.human / self.both,
+            self.seconds / self.orders,
+            self.both / self.orders,
+        )
+    }
+}
+
+/// A session file with its kitchen.
+struct Setting {
+    spec: SessionSpec,
+    kitchen: Arc<Kitchen>,
+    cost: CostToGo,
+}
+
+impl Setting {
+    fn read(path: &Path) -> Result<Setting, Box<dyn Error>> {
+        let mut spec: SessionSpec = toml::from_str(&std::fs::read_to_string(path)?)?;
+        let layout = path.parent().unwrap_or(Path::new(".")).join(&spec.layout);
+        let text = std::fs::read_to_string(&layout)?;
+        let names: LayoutSpec = toml::from_str(&text)?;
+        let recipes = layout.parent().unwrap_or(Path::new(".")).join(names.recipes.get_ref());
+        let kitchen = Arc::new(Kitchen::from_toml(&text, &std::fs::read_to_string(recipes)?)?);
+        // Nobody asks for the estimate, or for advice.
+        let inference = &mut spec.human.inference;
+        (inference.beliefs, inference.states, inference.max_beliefs, inference.predictions) = (1, 1, 1, 1);
+        inference.min_effective = 1.0;
+        spec.assistant.shadow = Shadow::Off;
+        let cost = CostToGo::new(kitchen.clone());
+        Ok(Setting { spec, kitchen, cost })
+    }
+
+    fn population(&self) -> Population {
+        self.spec.participant.population.clone().unwrap_or_default()
+    }
+
+    /// A whole study of this population: every participant with every condition.
+    fn study(&self, population: &Population, seed: u64) -> Result<Rates, Box<dyn Error>> {
+        let mut spec = self.spec.clone();
+        (spec.seed, spec.participant.population) = (seed, Some(population.clone()));
+        let study = Study::new(&spec, Vec::new()).ok_or("a session with a plan")?;
+        let mut rates = Rates::default();
+        for participant in 0..study.plan.codes().len() {
+            for period in 1..=study.plan.conditions.len() as u32 {
+                let (spec, trial) = study.simulated(participant, period);
+                let mut engine = Engine::new(self.kitchen.clone(), spec, trial, self.cost.clone());
+                headless::run(&mut engine, |_| Ok::<(), Infallible>(())).unwrap_or_else(|never| match never {});
+                rates.add(&engine);
+            }
+        }
+        Ok(rates)
+    }
+
+    /// Studies of this population with several seeds; `tell` gets each.
+    fn studies(
+        &self,
+        population: &Population,
+        seeds: &[u64],
+        mut tell: impl FnMut(u64, &Rates),
+    ) -> Result<Rates, Box<dyn Error>> {
+        let mut all = Rates::default();
+        for &seed in seeds {
+            let rates = self.study(population, seed)?;
+            tell(seed, &rates);
+            all.merge(&rates);
+        }
+        Ok(all)
+    }
+}
+
+/// A population with some parameters replaced: numbers, or medians of traits.
+fn with_parameters(population: &Population, vector: &toml::Table) -> Result<Population, Box<dyn Error>> {
+    let mut table = toml::Table::try_from(population)?;
+    for (name, value) in vector {
+        match table.get_mut(name).ok_or_else(|| format!("{name}: no parameter"))? {
+            toml::Value::Table(spread) => drop(spread.insert("median".to_string(), value.clone())),
+            number => *number = value.clone(),
+        }
+    }
+    Ok(table.try_into()?)
+}
+
+/// People who know everything and do not slip.
+fn knowing(population: &Population) -> Result<Population, Box<dyn Error>> {
+    let never = ["slip", "look_alike_slip", "thoughtless"].map(|name| (name.to_string(), toml::Value::Float(NEVER)));
+    let knowing = Population { all_knowing: true, ..population.clone() };
+    with_parameters(&knowing, &never.into_iter().collect())
+}
+
+/// Draws a vector of belief parameters.
+fn drawn(number: u64) -> toml::Table {
+    let mut random = stream(0, "calibration", number);
+    let value = |least: f64, most: f64, share: f64| (least * (most / least).powf(share) * 1000.0).round() / 1000.0;
+    let draw = |(name, least, most): (&str, f64, f64)| {
+        (name.to_string(), toml::Value::Float(value(least, most, random.random::<f64>())))
+    };
+    PARAMETERS.map(draw).into_iter().collect()
+}
+
+fn words(vector: &toml::Table) -> String {
+    vector.iter().map(|(name, value)| format!("{name} = {value}\n")).collect()
+}
+
+/// Runs the command of the arguments.
+pub fn main() -> Result<(), Box<dyn Error>> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let [command, session, seeds, rest @ ..] = &args[..] else {
+        return Err("figures, planning, search or each; a session file; seeds such as 1,2; for search how many".into());
+    };
+    let seeds = seeds.split(',').map(str::parse).collect::<Result<Vec<u64>, _>>()?;
+    let setting = Setting::read(Path::new(session))?;
+    let tell = |seed: u64, rates: &Rates| println!("seed {seed}: {}", rates.line());
+    match (command.as_str(), rest) {
+        ("figures" | "planning", changes) => {
+            let vector: toml::Table = changes.join("\n").parse()?;
+            let population = with_parameters(&setting.population(), &vector)?;
+            let population = if command == "planning" { knowing(&population)? } else { population };
+            println!("all: {}", setting.studies(&population, &seeds, tell)?.line());
+        }
+        ("search", [count]) => {
+            for number in 0..count.parse()? {
+                let vector = drawn(number);
+                let rates = setting.studies(&with_parameters(&setting.population(), &vector)?, &seeds, |_, _| ())?;
+                let found = if rates.agrees() { "[[vector]]\n" } else { "" };
+                let comment = words(&vector).replace('\n', ", ");
+                let told = if found.is_empty() { format!("# {comment}") } else { words(&vector) };
+                println!("{found}# {number}: {}\n{told}", rates.line());
+            }
+        }
+        ("each", [file]) => {
+            let accepted: toml::Table = std::fs::read_to_string(file)?.parse()?;
+            let vectors = accepted.get("vector").and_then(toml::Value::as_array).ok_or("no [[vector]]")?;
+            for vector in vectors {
+                let vector = vector.as_table().ok_or("a [[vector]] that is no table")?;
+                let rates = setting.studies(&with_parameters(&setting.population(), vector)?, &seeds, |_, _| ())?;
+                println!("{}", rates.line());
+            }
+        }
+        _ => return Err(format!("{command}: figures, planning, search or each").into()),
+    }
+    Ok(())
+}

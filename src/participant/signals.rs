@@ -1,0 +1,87 @@
+//! What signals do to the simulated participant: it may notice and read them, and they cost it something.
+//!
+//! The values come from the literature on glances and interruptions and were fixed before any condition with signals was simulated:
+//!
+//! - Reading takes a glance, during which nothing else is seen and pressed: 0.5 to 1.5 s, as people allocate to single glances at
+//!   displays beside a primary task (Green 1998, "Visual and Task Demands of Driver Information Systems", UMTRI-98-16).
+//! - Now and then the next intention is lost, and the work is resumed after a lag of a second: interruptions of 2.8 s doubled the
+//!   rate of sequence errors (Altmann, Trafton and Hambrick 2014, "Momentary interruptions can derail the train of thought"). A
+//!   signal takes half of that time and loses the intention in 5 %, half of the rate at which simulated people err anyway.
+//! - After useless signals the next ones are noticed less: people respond to alarms about as often as these are right (Bliss,
+//!   Gilson and Deaton 1995, "Human probability matching behaviour in response to alarms of varying reliability").
+
+use rand::RngExt;
+
+use super::population::chance;
+use super::simulated::SimulatedParticipant;
+use crate::base::time::SessionTime;
+use crate::communication::Signal;
+use crate::kitchen::{LocationId, OrderContent, State};
+
+/// Least share of a participant's signals that it still notices when all of them were useless.
+const LEAST_HEED: f64 = 0.3;
+
+impl SimulatedParticipant {
+    /// Reacts to a signal: the participant may notice it and looks at it after a short delay.
+    pub fn on_signal(&mut self, now: SessionTime, location: LocationId, signal: &Signal, _state: State) {
+        let [least, most] = self.population.signal_after_s;
+        let after_s = least + (most - least) * self.mind.random::<f64>();
+        let heed = LEAST_HEED + (1.0 - LEAST_HEED) * self.signals.worth;
+        let is_noticed = chance(&mut self.mind, self.person.notices_signal * heed);
+        self.signals.pending =
+            is_noticed.then(|| (now + SessionTime::from_secs_f64(after_s), location, signal.clone()));
+    }
+
+    /// Removes the signal; the participant cannot read it any more.
+    pub fn on_signal_end(&mut self, _now: SessionTime) {
+        self.signals.pending = None;
+    }
+
+    /// Whether a signal is being read, when nothing else is seen.
+    pub(super) fn is_reading_signal(&self, now: SessionTime) -> bool {
+        now < self.signals.busy_until
+    }
+
+    /// Reads the signal that is due. What the participant knew already makes later signals be noticed less.
+    pub(super) fn read_signal(&mut self, now: SessionTime, state: State) {
+        let is_due = self.signals.pending.as_ref().is_some_and(|(time, _, _)| now >= *time);
+        let Some((_, location, signal)) = self.signals.pending.take_if(|_| is_due) else { return };
+        let kitchen = self.kitchen.clone();
+        self.rethink = true;
+        let point = kitchen.location(location).display.centre();
+        self.eyes.look_at(now, point);
+        self.attention.looking_at = Some(location);
+        let before = self.beliefs.point(&kitchen);
+        match signal {
+            Signal::Highlight(_) => self.read(now, location, state),
+            Signal::ShowRecipe(_) => {
+                if let OrderContent::Dish(dish) = state.order(location) {
+                    self.read(now, location, state);
+                    let variants = kitchen.dish(dish).variants.len();
+                    let is_wrong = variants > 1 && chance(&mut self.mind, self.population.misreads_signal);
+                    let seen = if is_wrong { self.mind.random_range(1..variants) } else { 0 };
+                    self.memory.confirm(&kitchen, &mut self.beliefs, dish, seen);
+                }
+            }
+        }
+        let is_useful = self.beliefs.point(&kitchen) != before;
+        self.pay_for_signal(now, is_useful);
+    }
+
+    /// The costs of a signal that was read: time, perhaps the next intention, and heed for later ones.
+    fn pay_for_signal(&mut self, now: SessionTime, is_useful: bool) {
+        let [least, most] = self.population.reads_signal_s;
+        let reading_s = least + (most - least) * self.mind.random::<f64>();
+        let until = now + SessionTime::from_secs_f64(reading_s);
+        self.signals.busy_until = until;
+        self.eyes.rest_until(until);
+        let worth = f64::from(u8::from(is_useful));
+        self.signals.worth += self.person.tires_of_signals * (worth - self.signals.worth);
+        self.press_at = self.press_at.max(until);
+        if chance(&mut self.mind, self.person.loses_intention) {
+            let lag = SessionTime::from_secs_f64(self.population.resumes_after_s);
+            self.press_at = self.press_at.max(until + lag);
+            self.intent.lose();
+        }
+    }
+}

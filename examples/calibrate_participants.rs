@@ -22,7 +22,7 @@ use tomcom::kitchen::layout::LayoutSpec;
 use tomcom::kitchen::{Agent, Kitchen};
 use tomcom::measures::JudgedPress;
 use tomcom::measures::attribution::Cause;
-use tomcom::measures::sequences::{sequences, sequences_by_target};
+use tomcom::measures::sequences::{sequences, sequences_any_aspect};
 use tomcom::participant::population::Population;
 use tomcom::run::engine::Engine;
 use tomcom::run::headless;
@@ -76,9 +76,9 @@ impl Rates {
         self.beliefs += count(|press| matches!(press.cause, Some(Cause::Belief { .. })));
         self.planning += count(|press| press.cause == Some(Cause::Planning));
         self.slips += count(|press| press.cause == Some(Cause::Slip));
-        for (sums, all) in [(&mut self.related, sequences_by_target(judged)), (&mut self.any, sequences(judged))] {
+        for (sums, all) in [(&mut self.related, sequences(judged)), (&mut self.any, sequences_any_aspect(judged))] {
             sums[0] += all.len() as f64;
-            sums[1] += all.iter().map(|one| f64::from(one.length)).sum::<f64>();
+            sums[1] += all.iter().map(|one| f64::from(one.length())).sum::<f64>();
         }
         self.orders += session.served.len() as f64;
         self.seconds += session.trial_clock(session.time).as_secs_f64();
@@ -146,6 +146,8 @@ impl Rates {
 struct Setting {
     spec: SessionSpec,
     kitchen: Arc<Kitchen>,
+    /// Layout and recipes, as they stand in their files.
+    texts: [String; 2],
     cost: CostToGo,
 }
 
@@ -156,14 +158,15 @@ impl Setting {
         let text = std::fs::read_to_string(&layout)?;
         let names: LayoutSpec = toml::from_str(&text)?;
         let recipes = layout.parent().unwrap_or(Path::new(".")).join(names.recipes.get_ref());
-        let kitchen = Arc::new(Kitchen::from_toml(&text, &std::fs::read_to_string(recipes)?)?);
+        let texts = [text, std::fs::read_to_string(recipes)?];
+        let kitchen = Arc::new(Kitchen::from_toml(&texts[0], &texts[1])?);
         // Nobody asks for the estimate, or for advice.
         let inference = &mut spec.human.inference;
         (inference.beliefs, inference.states, inference.max_beliefs, inference.predictions) = (1, 1, 1, 1);
         inference.min_effective = 1.0;
         spec.assistant.shadow = Shadow::Off;
         let cost = CostToGo::new(kitchen.clone());
-        Ok(Setting { spec, kitchen, cost })
+        Ok(Setting { spec, kitchen, texts, cost })
     }
 
     fn population(&self) -> Population {
@@ -174,7 +177,8 @@ impl Setting {
     fn study(&self, population: &Population, seed: u64) -> Result<Rates, Box<dyn Error>> {
         let mut spec = self.spec.clone();
         (spec.seed, spec.participant.population) = (seed, Some(population.clone()));
-        let study = Study::new(&spec, Vec::new()).ok_or("a session with a plan")?;
+        let study =
+            Study::new(&spec, Vec::new(), self.texts.each_ref().map(String::as_str)).ok_or("a session with a plan")?;
         let mut rates = Rates::default();
         for participant in 0..study.plan.codes().len() {
             for period in 1..=study.plan.conditions.len() as u32 {

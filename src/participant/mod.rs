@@ -16,6 +16,7 @@ mod acting;
 mod attention;
 mod decision;
 mod eyes;
+pub mod gaze_gaps;
 mod goals;
 mod habits;
 mod hand;

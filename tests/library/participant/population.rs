@@ -90,7 +90,7 @@ fn measure(engine: &Engine, events: &[Stamped], figures: &mut Figures) {
         *figures.causes.entry(name).or_default() += 1;
     }
     figures.planning += errors().filter(|press| press.cause == Some(Cause::Planning)).count();
-    figures.sequences.extend(sequences(judged).iter().map(|one| one.length as usize));
+    figures.sequences.extend(sequences(judged).iter().map(|one| one.length() as usize));
     figures.human += judged.len();
     figures.errors += errors().count();
     figures.error_share.push(errors().count() as f64 / judged.len().max(1) as f64);

@@ -129,7 +129,9 @@ impl Scenario {
 
     fn answer(&self, seed: u64) -> Recommendation {
         let kitchen = self.kitchen();
-        let spec = AssistantSpec::default();
+        let mut spec = AssistantSpec::default();
+        // Who looks around sees most of it without a signal: here nobody does.
+        (spec.rollout.other_looks_hz, spec.rollout.capture) = (Some(0.0), Some(0.0));
         let spec = AssistantSpec { cost_of_communication: self.cost.unwrap_or(spec.cost_of_communication), ..spec };
         self.ask(&mut *concept(ConceptName::TomCom, kitchen, &HumanModel::default(), &spec, seed), None)
     }

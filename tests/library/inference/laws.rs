@@ -12,7 +12,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent, Press, State};
 use tomcom::mind::dirichlet::{Dirichlet, LEAST_MEAN, PRECISIONS};
 use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::model::{HumanModel, InferenceModel};
+use tomcom::mind::model::{HumanModel, InferenceModel, LookingModel};
 use tomcom::mind::observation::{Observation, Observed};
 
 const KITCHENS: [&str; 2] = ["sushi", "burger"];
@@ -23,6 +23,12 @@ fn kitchen(name: &str) -> Arc<Kitchen> {
 
 fn at(seconds: f64) -> SessionTime {
     SessionTime::from_secs_f64(seconds)
+}
+
+/// A human who looks at nothing while the gaze is unknown.
+fn looks_at_nothing() -> HumanModel {
+    let looking = LookingModel { looks_hz: 0.0, other_looks_hz: 0.0, capture: 0.0, ..LookingModel::default() };
+    HumanModel { looking, ..HumanModel::default() }
 }
 
 /// A filter at work, with the kitchen as it truly is.
@@ -241,7 +247,7 @@ fn reading_does_not_depend_on_the_sampling_rate() {
 
 #[test]
 fn a_long_look_ends_in_the_confusion_matrix_and_elsewhere_nothing_changes() {
-    let mut bench = Bench::new("sushi", HumanModel::default());
+    let mut bench = Bench::new("sushi", looks_at_nothing());
     bench.order(0.5, "order_1", "tuna nigiri");
     bench.press(0.6, Agent::Robot, "take salmon");
     let before = bench.filter.belief().clone();
@@ -387,7 +393,7 @@ fn recipes_are_forgotten_with_their_half_life_and_pauses_do_not_count() {
 #[test]
 fn a_signal_makes_certain_what_it_is_about_as_often_as_it_is_noticed() {
     for noticed in [1.0, 0.6] {
-        let mut model = HumanModel::default();
+        let mut model = looks_at_nothing();
         model.signal.noticed = noticed;
         let mut bench = Bench::new("burger", model);
         let place = bench.kitchen.board;

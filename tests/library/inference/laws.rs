@@ -12,8 +12,10 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent, Press, State};
 use tomcom::mind::dirichlet::{Dirichlet, LEAST_MEAN, PRECISIONS};
 use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::model::{HumanModel, InferenceModel, LookingModel};
+use tomcom::mind::model::{HumanModel, InferenceModel};
 use tomcom::mind::observation::{Observation, Observed};
+
+use super::looks_at_nothing;
 
 const KITCHENS: [&str; 2] = ["sushi", "burger"];
 
@@ -23,12 +25,6 @@ fn kitchen(name: &str) -> Arc<Kitchen> {
 
 fn at(seconds: f64) -> SessionTime {
     SessionTime::from_secs_f64(seconds)
-}
-
-/// A human who looks at nothing while the gaze is unknown.
-fn looks_at_nothing() -> HumanModel {
-    let looking = LookingModel { looks_hz: 0.0, other_looks_hz: 0.0, capture: 0.0, ..LookingModel::default() };
-    HumanModel { looking, ..HumanModel::default() }
 }
 
 /// A filter at work, with the kitchen as it truly is.
@@ -410,8 +406,7 @@ fn a_signal_makes_certain_what_it_is_about_as_often_as_it_is_noticed() {
 #[test]
 fn too_few_effective_samples_are_met_with_more() {
     let inference = InferenceModel { beliefs: 32, states: 8, min_effective: 30.0, max_beliefs: 256, predictions: 8 };
-    let model = HumanModel { inference, ..HumanModel::default() };
-    let mut bench = Bench::new("sushi", model);
+    let mut bench = Bench::new("sushi", HumanModel { inference, ..HumanModel::default() });
     bench.order(0.5, "order_1", "salmon nigiri");
     bench.look(1.0, 6.0, "order_1", 120.0);
     let mut most = 0;

@@ -7,9 +7,9 @@ use super::participant_settings::ParticipantKind;
 use super::phase::Phase;
 use super::session_state::{Served, Session, ShownSignal};
 use super::timeline_entry::TimelineEvent;
-use super::{accuracy_check, protocol, robot_changes};
+use super::{accuracy_check, offers, protocol, robot_changes};
 use crate::base::time::SessionTime;
-use crate::communication::offer::{GAP, HOLD, OfferBook};
+use crate::communication::offer::{GAP, HOLD, OfferBook, OfferEnd};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Change, ContentId, DishId, LocationId, OrderContent, State};
@@ -166,7 +166,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
             let location = named.location(signal.target())?;
             session.cue = Some(stamped.seq);
             if *by == Sender::Wizard {
-                session.offers.sends(signal, *offer);
+                offers::sends(session, now, signal, offer.is_some());
             }
             show(session, now, *by, (signal, location), &mut effects);
         }
@@ -324,6 +324,7 @@ fn close(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
     session.phase = Phase::Closed;
     session.robot.intention = None;
     session.shown = None;
+    session.offers.closes(now, OfferEnd::TrialEnded);
     session.advice = None;
     effects.push(Effect::CancelAll);
     effects.push(Effect::Close);

@@ -1,9 +1,8 @@
 //! `apply(&mut Session, &Stamped) -> Applied`: the only way in which a session changes.
 
-use super::admit::admit;
+use super::admit::{admit, is_too_early};
 use super::event::{EndReason, Event, SignalEnd, Stamped};
 use super::gaze_samples::take_sample;
-use super::participant_settings::ParticipantKind;
 use super::phase::Phase;
 use super::session_state::{Served, Session, ShownSignal};
 use super::timeline_entry::TimelineEvent;
@@ -401,17 +400,6 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
         effects.push(Effect::At { time: now, timer: Timer::EndTrialByPresses });
     }
     Change::Press { press, presses: session.presses }
-}
-
-/// Whether a person presses again before the session's pace allows it.
-fn is_too_early(session: &Session, now: SessionTime) -> bool {
-    let spec = &session.spec;
-    let Some(pace_s) = spec.trial.pace_s.filter(|_| spec.participant.kind != ParticipantKind::Simulated) else {
-        return false;
-    };
-    let is_own = |what: &TimelineEvent| matches!(what, TimelineEvent::Press { agent: Agent::Human, .. });
-    let last = session.timeline.iter().rfind(|entry| is_own(&entry.what));
-    last.is_some_and(|last| session.age(last.time, now).as_secs_f64() < pace_s)
 }
 
 /// The dish that a serve press served, given the state before it.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use tomcom::analysis::offer_summary::TimedOffer;
 use tomcom::base::time::SessionTime;
+use tomcom::communication::offer::OfferEnd;
 use tomcom::communication::settings::Shadow;
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::kitchen::cost_to_go::CostToGo;
@@ -77,7 +78,8 @@ fn a_session_that_was_cut_goes_on_with_its_open_offer() {
     // Nobody has seen the orders, and signals cost nothing: something is worth saying.
     files.spec.assistant.cost_of_communication = 0.0;
     let kitchen = Arc::new(files.kitchen.kitchen);
-    let header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+    let mut header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+    header.started = Some("2026-03-14T10:00:00Z".to_string());
     let mut log = LogWriter::create_live(&folder("offers-live"), "2026-03-14", &header).expect("a folder");
     let mut engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
     let mut advisor = engine.advisor();
@@ -106,4 +108,14 @@ fn recordings_of_format_1_have_no_offers() {
         replay.run().expect("a golden recording");
         assert!(TimedOffer::all(replay.session()).is_empty(), "{name}");
     }
+}
+
+#[test]
+fn a_recording_of_format_2_keeps_its_offers() {
+    let mut replay = Replay::open(Path::new("tests/golden/format-2-offers.jsonl")).expect("a golden recording");
+    replay.run().expect("a golden recording");
+    let offers = TimedOffer::all(replay.session());
+    let told: Vec<(Option<f64>, Option<OfferEnd>)> = offers.iter().map(|one| (one.stood_s, one.reason)).collect();
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(told.iter().all(|(stood_s, reason)| stood_s.is_some_and(|s| s >= 1.5) && reason.is_some()), "{told:?}");
 }

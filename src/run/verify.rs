@@ -85,7 +85,7 @@ impl RerunRecording {
         header.session.require_built().map_err(|missing| FileError::not_built(log.path(), missing))?;
         let cost = CostToGo::new(kitchen.clone());
         let mut replayed = Follower::new(log.session(), cost.clone());
-        let engine = Engine::new(kitchen, header.session, header.trial, cost);
+        let engine = Engine::for_header(kitchen, &header, cost);
         let advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
         let mut again = RerunSession { engine, produced: VecDeque::new(), advisor, questions: VecDeque::new() };
         let mut difference = None;

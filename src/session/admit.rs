@@ -6,6 +6,7 @@ use super::phase::Phase;
 use super::protocol::{self, ProtocolEvent};
 use super::session_state::Session;
 use super::settings::{ArmKind, Condition, ParticipantKind};
+use super::timeline_entry::TimelineEvent;
 use super::{accuracy_check, interventions, tracker};
 use crate::base::time::SessionTime;
 use crate::communication::{self, Sender, Signal};
@@ -46,7 +47,19 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         }
         Event::RobotStopped => refuse_if(session.robot.is_stopped_by_wizard(), "the robot is stopped already"),
         Event::RobotResumed => refuse_if(!session.robot.stopped, "the robot is not stopped"),
-        Event::SignalShown { by, signal, .. } => admit_signal(session, *by, signal),
+        Event::SignalShown { by, signal, offer, .. } => {
+            admit_signal(session, *by, signal)?;
+            let is_there = |seq: u64| session.offers.find(seq).is_some_and(|offer| offer.signal() == Some(signal));
+            refuse_if(offer.is_some_and(|seq| !is_there(seq)), "that was not the last offer")
+        }
+        Event::OfferOpened(_) => {
+            refuse_if(phase != Phase::Running, "no trial runs")?;
+            refuse_if(session.offers.unclosed().is_some(), "an offer is open already")
+        }
+        Event::OfferClosed { offer, .. } => {
+            let is_open = session.offers.unclosed().is_some_and(|open| open.seq == *offer);
+            refuse_if(!is_open, "that offer is not open")
+        }
         Event::Advised(_) => {
             refuse_if(phase != Phase::Running, "no trial runs")?;
             refuse_if(!session.spec.asks_assistant(), "nobody asks the assistant in this session")
@@ -104,6 +117,17 @@ pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(),
     }
 }
 
+/// Whether a person presses again before the session's pace allows it.
+pub(super) fn is_too_early(session: &Session, now: SessionTime) -> bool {
+    let spec = &session.spec;
+    let Some(pace_s) = spec.trial.pace_s.filter(|_| spec.participant.kind != ParticipantKind::Simulated) else {
+        return false;
+    };
+    let is_own = |what: &TimelineEvent| matches!(what, TimelineEvent::Press { agent: Agent::Human, .. });
+    let last = session.timeline.iter().rfind(|entry| is_own(&entry.what));
+    last.is_some_and(|last| session.age(last.time, now).as_secs_f64() < pace_s)
+}
+
 /// Whether an event comes from outside (wizard, participant, tracker) rather than from the running session itself.
 pub fn is_external(session: &Session, event: &Event) -> bool {
     let participant = &session.spec.participant;
@@ -148,6 +172,8 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::RobotMoves(_)
         | Event::RobotSafety { .. }
         | Event::RobotTouched { .. }
+        | Event::OfferOpened(_)
+        | Event::OfferClosed { .. }
         | Event::ParticipantBelieves(_)
         | Event::BeliefEstimated(_) => false,
     }

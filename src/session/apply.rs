@@ -1,14 +1,14 @@
 //! `apply(&mut Session, &Stamped) -> Applied`: the only way in which a session changes.
 
-use super::admit::admit;
+use super::admit::{admit, is_too_early};
 use super::event::{EndReason, Event, SignalEnd, Stamped};
 use super::gaze_samples::take_sample;
-use super::participant_settings::ParticipantKind;
 use super::phase::Phase;
 use super::session_state::{Served, Session, ShownSignal};
 use super::timeline_entry::TimelineEvent;
-use super::{accuracy_check, protocol, robot_changes};
+use super::{accuracy_check, offers, protocol, robot_changes};
 use crate::base::time::SessionTime;
+use crate::communication::offer::{GAP, HOLD, OfferBook, OfferEnd};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Change, ContentId, DishId, LocationId, OrderContent, State};
@@ -48,6 +48,8 @@ pub enum Timer {
     EndTrialByPresses,
     /// The set number of orders was served.
     EndTrialByOrders,
+    /// A time of the rules of offers has passed: one may open or close.
+    ReviewOffer,
 }
 
 /// An event that the session cannot accept: the log is damaged or was written by another program.
@@ -151,16 +153,28 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
             session.note(now, TimelineEvent::Corrected { location });
         }
         Event::Advised(advice) => advise(session, advice.clone()),
-        Event::SignalShown { by, signal, .. } => {
+        Event::OfferOpened(advice) => {
+            session.offers.opens(stamped.seq, now, advice.clone());
+            effects.push(Effect::At { time: now + HOLD, timer: Timer::ReviewOffer });
+        }
+        Event::OfferClosed { reason, .. } => {
+            session.offers.closes(now, *reason);
+            effects.push(Effect::At { time: now + GAP, timer: Timer::ReviewOffer });
+        }
+        Event::SignalShown { by, signal, offer, .. } => {
             let location = named.location(signal.target())?;
             session.cue = Some(stamped.seq);
+            if *by == Sender::Wizard {
+                offers::sends(session, now, signal, offer.is_some());
+            }
             show(session, now, *by, (signal, location), &mut effects);
         }
         Event::SignalEnded { reason } => end_signal(session, now, *reason, &mut effects),
         Event::Marker { note: text } => session.note(now, TimelineEvent::Marker(text.clone())),
         Event::Protocol(event) => protocol::apply(session, event),
         Event::Unblinded { .. } => session.unblinded = true,
-        Event::Preflight { .. } | Event::Screen(_) | Event::Display(_) | Event::SignalDrawn { .. } => {}
+        Event::Screen(_) => session.has_console = true,
+        Event::Preflight { .. } | Event::Display(_) | Event::SignalDrawn { .. } => {}
         Event::ClockJumped { .. } | Event::ParticipantBelieves(_) | Event::BeliefEstimated(_) => {}
         Event::SessionEnded => close(session, now, &mut effects),
     }
@@ -247,6 +261,7 @@ fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) -> 
     session.paused_total = SessionTime::ZERO;
     session.presses = [0; 2];
     session.served.clear();
+    session.offers = OfferBook::default();
     let empty = session.kitchen.empty_state();
     let (before, after) = update(session, now, |state| *state = empty);
     session.note(now, TimelineEvent::Trial(Phase::Running));
@@ -308,6 +323,7 @@ fn close(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
     session.phase = Phase::Closed;
     session.robot.intention = None;
     session.shown = None;
+    session.offers.closes(now, OfferEnd::TrialEnded);
     session.advice = None;
     effects.push(Effect::CancelAll);
     effects.push(Effect::Close);
@@ -324,6 +340,8 @@ fn show(
     session.shown = Some(ShownSignal { signal: signal.clone(), location, by, since: now, until });
     if by == Sender::Wizard {
         session.signalled_at = Some(now);
+        let cool_down = SessionTime::from_secs_f64(session.spec.signals.cool_down_s);
+        effects.push(Effect::At { time: now + cool_down, timer: Timer::ReviewOffer });
         if let Some(advice) = &mut session.advice {
             advice.remove(signal);
         }
@@ -382,17 +400,6 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
         effects.push(Effect::At { time: now, timer: Timer::EndTrialByPresses });
     }
     Change::Press { press, presses: session.presses }
-}
-
-/// Whether a person presses again before the session's pace allows it.
-fn is_too_early(session: &Session, now: SessionTime) -> bool {
-    let spec = &session.spec;
-    let Some(pace_s) = spec.trial.pace_s.filter(|_| spec.participant.kind != ParticipantKind::Simulated) else {
-        return false;
-    };
-    let is_own = |what: &TimelineEvent| matches!(what, TimelineEvent::Press { agent: Agent::Human, .. });
-    let last = session.timeline.iter().rfind(|entry| is_own(&entry.what));
-    last.is_some_and(|last| session.age(last.time, now).as_secs_f64() < pace_s)
 }
 
 /// The dish that a serve press served, given the state before it.

@@ -114,7 +114,7 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionFiles, Vec<Stamped>
         (2.0 * f64::from(number), Event::Press { agent: Agent::Human, button, at_ns: None })
     }));
     inputs.extend(sent.iter().map(|(time_s, signal)| {
-        (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None })
+        (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None, offer: None })
     }));
     inputs.push((80.0, Event::TrialEnded { reason: EndReason::Wizard }));
     inputs.push((81.0, Event::SessionEnded));
@@ -140,6 +140,8 @@ fn advice_that_nobody_sees_changes_nothing_else() {
         let noted: Result<(), ()> = headless::run(&mut engine, |stamped| {
             match &stamped.event {
                 Event::Advised(_) => advised += 1,
+                // Offers are that advice as a wizard would see it.
+                Event::OfferOpened(_) | Event::OfferClosed { .. } => {}
                 // The number of the press in the log counts the advice, too.
                 Event::BeliefEstimated(witness) => told.push(format!("{:?} {:?}", witness.log_p, witness.aspects)),
                 event => told.push(format!("{:?} {event:?}", stamped.time)),

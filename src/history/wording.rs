@@ -2,6 +2,7 @@
 
 use crate::base::time::SessionTime;
 use crate::base::words::count;
+use crate::communication::recommendation::Reason;
 use crate::communication::{Sender, Signal};
 use crate::gaze::quality::DropCounts;
 use crate::kitchen::{Agent, ButtonAction, Kitchen, LocationId, OrderContent};
@@ -44,6 +45,12 @@ pub fn signal(signal: &Signal) -> String {
     }
 }
 
+/// The reason of a recommendation with its contents worded as on screens; the recorded one has their names.
+pub fn reason(kitchen: &Kitchen, reason: &Reason) -> Reason {
+    let worded = |name: &str| kitchen.worded(name).to_string();
+    Reason { believes: worded(&reason.believes), truth: worded(&reason.truth), ..reason.clone() }
+}
+
 /// A sender in words.
 pub fn sender(by: Sender) -> &'static str {
     match by {
@@ -52,12 +59,12 @@ pub fn sender(by: Sender) -> &'static str {
     }
 }
 
-/// Recipe of an order's dish: "rice cooked + nori + tuna cut".
+/// Recipe of an order's dish: "cooked rice + nori + cut tuna".
 pub fn recipe(session: &Session, order: LocationId) -> Option<String> {
     let OrderContent::Dish(dish) = session.state.order(order) else { return None };
     let kitchen = &session.kitchen;
     let stack = kitchen.content(kitchen.dish(dish).stack());
-    let names: Vec<&str> = stack.items.iter().map(|&item| kitchen.content(item).name.as_str()).collect();
+    let names: Vec<&str> = stack.items.iter().map(|&item| kitchen.content(item).wording.as_str()).collect();
     Some(names.join(" + "))
 }
 

@@ -5,6 +5,7 @@
 //! The files from the ground up; each imports only from those before it:
 //!
 //! - The parts: `agent`, `look`, [`content`], `location`, `dish`, `process`, [`action`], [`state`], [`aspect`],
+//!   [`words`],
 //!   `transition_tables`.
 //! - The whole: `compiled` ([`Kitchen`] and what can be looked up in it), `rules` (what a press does), [`change`], [`world`].
 //! - How far it is: [`cost_to_go`].
@@ -29,6 +30,7 @@ pub mod recipe;
 mod rules;
 pub mod state;
 mod transition_tables;
+pub mod words;
 pub mod world;
 
 pub use action::{Button, ButtonAction, ButtonColour, ButtonId};

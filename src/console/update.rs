@@ -307,8 +307,9 @@ fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option
         }
         KeyAction::Accept => accept(model, session),
         KeyAction::Press(button) => {
+            let why = wording::no_effect(&session.kitchen, session.state, button).unwrap_or_default();
             let button = session.kitchen.button(Agent::Human, button).name.clone();
-            send(model, session, Event::Press { agent: Agent::Human, button, at_ns: None }, NoticeLevel::Done, "")
+            send(model, session, Event::Press { agent: Agent::Human, button, at_ns: None }, NoticeLevel::Refused, &why)
         }
         KeyAction::TakeBack => {
             send(model, session, Event::SignalEnded { reason: SignalEnd::TakenBack }, NoticeLevel::Done, "taken back")

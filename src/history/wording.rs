@@ -5,7 +5,8 @@ use crate::base::words::count;
 use crate::communication::recommendation::Reason;
 use crate::communication::{Sender, Signal};
 use crate::gaze::quality::DropCounts;
-use crate::kitchen::{Agent, ButtonAction, Kitchen, LocationId, OrderContent};
+use crate::kitchen::no_effect::NoEffect;
+use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, OrderContent, State};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
 use crate::robot::moment::ArmPhase;
@@ -25,6 +26,29 @@ pub fn button(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> 
 /// A location's name in words.
 pub fn location(name: &str) -> String {
     name.replace('_', " ")
+}
+
+/// Why the human's press of this button would have no effect now: "cook has no effect: the cooking pot is empty"; `None` if it would
+/// have one.
+pub fn no_effect(kitchen: &Kitchen, state: State, id: ButtonId) -> Option<String> {
+    let (why, about) = kitchen.no_effect(state, Agent::Human, id)?;
+    let held = kitchen.content_label(state, kitchen.hands[Agent::Human.index()]);
+    let (name, there) = (kitchen.location(about).label(), kitchen.content_label(state, about));
+    let because = match why {
+        NoEffect::HandFull => format!("the hand is full, it holds {held}"),
+        NoEffect::HandEmpty => "the hand is empty".to_string(),
+        NoEffect::BothEmpty => format!("the hand and the {name} are empty"),
+        NoEffect::PlaceEmpty => format!("the {name} is empty"),
+        NoEffect::PlaceFull => format!("the {name} is full, it holds {there}"),
+        NoEffect::NotAccepted => format!("{held} does not go on the {name}"),
+        NoEffect::NotStacked => format!("{held} does not go together with {there}"),
+        NoEffect::NotProcessed => format!("{there} cannot be processed so"),
+        NoEffect::NoOrder => format!("{name} shows no order"),
+        NoEffect::NotServed => {
+            format!("what is on the {} is not served for {name}", kitchen.location(kitchen.plate).label())
+        }
+    };
+    Some(format!("{} has no effect: {because}", button(kitchen, Agent::Human, id)))
 }
 
 /// Location of a button: its own location, or the agent's hand.

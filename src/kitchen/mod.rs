@@ -7,7 +7,8 @@
 //! - The parts: `agent`, `look`, [`content`], `location`, `dish`, `process`, [`action`], [`state`], [`aspect`],
 //!   [`words`],
 //!   `transition_tables`.
-//! - The whole: `compiled` ([`Kitchen`] and what can be looked up in it), `rules` (what a press does), [`change`], [`world`].
+//! - The whole: `compiled` ([`Kitchen`] and what can be looked up in it), `rules` (what a press does),
+//!   [`no_effect`] (why it does nothing), [`change`], [`world`].
 //! - How far it is: [`cost_to_go`].
 //! - Where it comes from: [`layout`] and [`recipe`] (the files as written), [`compile`] (from them to a [`Kitchen`], no larger
 //!   than the cost to go can number).
@@ -25,6 +26,7 @@ pub mod layout;
 pub mod layout_ranges;
 mod location;
 pub mod look;
+pub mod no_effect;
 mod process;
 pub mod recipe;
 mod rules;

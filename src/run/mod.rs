@@ -21,6 +21,8 @@ pub mod headless;
 #[cfg(feature = "cli")]
 pub mod leaving;
 #[cfg(feature = "cli")]
+pub mod list;
+#[cfg(feature = "cli")]
 pub mod live;
 #[cfg(all(feature = "cli", feature = "rerun"))]
 pub mod open_viewer;
@@ -28,6 +30,8 @@ pub mod open_viewer;
 pub mod options;
 #[cfg(feature = "cli")]
 pub mod parallel;
+#[cfg(feature = "cli")]
+pub mod pick_recording;
 #[cfg(feature = "cli")]
 pub mod plan;
 #[cfg(feature = "cli")]

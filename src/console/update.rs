@@ -333,7 +333,12 @@ fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option
         },
         KeyAction::Hand(hand) => hands::act(model, session, hand),
         KeyAction::SwitchLayer => {
-            model.layer = if model.layer == KeyLayer::Wizard { KeyLayer::Participant } else { KeyLayer::Wizard };
+            let (layer, words) = match model.layer {
+                KeyLayer::Wizard => (KeyLayer::Participant, "from now on, keys press the participant's buttons"),
+                KeyLayer::Participant => (KeyLayer::Wizard, "from now on, keys send the wizard's signals"),
+            };
+            model.layer = layer;
+            model.say(NoticeLevel::Done, words);
             None
         }
         KeyAction::Look(at) => {

@@ -28,27 +28,24 @@ pub fn location(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// Why the human's press of this button would have no effect now: "cook has no effect: the cooking pot is empty"; `None` if it would
-/// have one.
+/// Why the human's press of this button would have no effect now: "no effect: the cooking pot is empty"; `None` if it would have one.
+/// Short, since it stands beside the keys at 80 columns.
 pub fn no_effect(kitchen: &Kitchen, state: State, id: ButtonId) -> Option<String> {
     let (why, about) = kitchen.no_effect(state, Agent::Human, id)?;
-    let held = kitchen.content_label(state, kitchen.hands[Agent::Human.index()]);
-    let (name, there) = (kitchen.location(about).label(), kitchen.content_label(state, about));
+    let name = kitchen.location(about).label();
     let because = match why {
-        NoEffect::HandFull => format!("the hand is full, it holds {held}"),
+        NoEffect::HandFull => "the hand is full".to_string(),
         NoEffect::HandEmpty => "the hand is empty".to_string(),
-        NoEffect::BothEmpty => format!("the hand and the {name} are empty"),
+        NoEffect::BothEmpty => "hand and place are empty".to_string(),
         NoEffect::PlaceEmpty => format!("the {name} is empty"),
-        NoEffect::PlaceFull => format!("the {name} is full, it holds {there}"),
-        NoEffect::NotAccepted => format!("{held} does not go on the {name}"),
-        NoEffect::NotStacked => format!("{held} does not go together with {there}"),
-        NoEffect::NotProcessed => format!("{there} cannot be processed so"),
-        NoEffect::NoOrder => format!("{name} shows no order"),
-        NoEffect::NotServed => {
-            format!("what is on the {} is not served for {name}", kitchen.location(kitchen.plate).label())
-        }
+        NoEffect::PlaceFull => format!("the {name} is full"),
+        NoEffect::NotAccepted => "it does not go there".to_string(),
+        NoEffect::NotStacked => "they do not go together".to_string(),
+        NoEffect::NotProcessed => format!("not with {}", kitchen.content_label(state, about)),
+        NoEffect::NoOrder => format!("{name} wants nothing"),
+        NoEffect::NotServed => "it is not served there".to_string(),
     };
-    Some(format!("{} has no effect: {because}", button(kitchen, Agent::Human, id)))
+    Some(format!("no effect: {because}"))
 }
 
 /// Location of a button: its own location, or the agent's hand.

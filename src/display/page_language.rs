@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::kitchen::Kitchen;
-use crate::kitchen::words::SCREEN_LANGUAGE;
+use crate::kitchen::content_wording::SCREEN_LANGUAGE;
 use crate::session::wall_display::DisplaySpec;
 
 const ENGLISH: &str = include_str!("languages/en.toml");

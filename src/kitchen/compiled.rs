@@ -4,12 +4,12 @@ use super::action::{Button, ButtonAction, ButtonId};
 use super::agent::Agent;
 use super::aspect::{Aspect, AspectId, AspectKind};
 use super::content::{Content, ContentId};
+use super::content_wording::KitchenWords;
 use super::dish::{Dish, DishId};
 use super::location::{Location, LocationId, LocationKind, Storage};
 use super::process::Process;
 use super::state::{OrderContent, Recipes, State};
 use super::transition_tables::TransitionTables;
-use super::words::KitchenWords;
 use crate::base::rng::mix;
 
 /// A compiled kitchen: tables over contents, locations, buttons and dishes. It never changes after loading.

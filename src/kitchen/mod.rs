@@ -5,7 +5,7 @@
 //! The files from the ground up; each imports only from those before it:
 //!
 //! - The parts: `agent`, `look`, [`content`], `location`, `dish`, `process`, [`action`], [`state`], [`aspect`],
-//!   [`words`],
+//!   [`content_wording`],
 //!   `transition_tables`.
 //! - The whole: `compiled` ([`Kitchen`] and what can be looked up in it), `rules` (what a press does),
 //!   [`no_effect`] (why it does nothing), [`change`], [`world`].
@@ -20,6 +20,7 @@ pub mod change;
 pub mod compile;
 mod compiled;
 pub mod content;
+pub mod content_wording;
 pub mod cost_to_go;
 mod dish;
 pub mod layout;
@@ -32,7 +33,7 @@ pub mod recipe;
 mod rules;
 pub mod state;
 mod transition_tables;
-pub mod words;
+
 pub mod world;
 
 pub use action::{Button, ButtonAction, ButtonColour, ButtonId};

@@ -21,8 +21,6 @@ pub mod headless;
 #[cfg(feature = "cli")]
 pub mod leaving;
 #[cfg(feature = "cli")]
-pub mod list;
-#[cfg(feature = "cli")]
 pub mod live;
 #[cfg(all(feature = "cli", feature = "rerun"))]
 pub mod open_viewer;
@@ -34,6 +32,8 @@ pub mod parallel;
 pub mod pick_recording;
 #[cfg(feature = "cli")]
 pub mod plan;
+#[cfg(feature = "cli")]
+pub mod recording_list;
 #[cfg(feature = "cli")]
 pub mod replay;
 #[cfg(feature = "cli")]

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use super::contents::IngredientItems;
 use super::spec_error::{Result, SpecFile, wrong};
 use crate::kitchen::content::Content;
+use crate::kitchen::content_wording::{KitchenWords, SCREEN_LANGUAGE};
 use crate::kitchen::recipe::RecipesSpec;
-use crate::kitchen::words::{KitchenWords, SCREEN_LANGUAGE};
 
 /// Largest length of a wording, in characters: longer ones would not fit under a place.
 const MAX_WORDING: usize = 40;

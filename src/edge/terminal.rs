@@ -24,7 +24,7 @@ use super::ask::ground;
 use super::frames::{FrameWriter, write_within};
 use crate::console::question::QuestionPage;
 use crate::console::recording_picker::RecordingPicker;
-use crate::console::view::recording_list::draw_recordings;
+use crate::console::view::recordings_page::draw_recordings;
 use crate::console::view::sheet::draw_question;
 use crate::console::view::theme::{TerminalBackground, Theme};
 use crate::console::{ConsoleMessage, ConsoleModel, view};

@@ -93,7 +93,7 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     assert!(complaint(&["compare", recordings[0], "--seed", "3"]).contains("--seed, with recordings"));
     assert!(complaint(&["compare", session, "--open", "1"]).contains("--open, with a session"));
     assert!(complaint(&["compare", session, "--only", "tom"]).contains("--only, with a session"));
-    assert!(complaint(&["compare", "tests/golden"]).contains("events.jsonl"));
+    assert!(complaint(&["compare", "tests/golden"]).contains("a folder without recordings"));
     // What is summed up counts once, whatever path leads to it.
     let [one, same] = ["tests/golden/format-1-hand.jsonl", "tests/../tests/golden/format-1-hand.jsonl"];
     for command in [&["compare"][..], &["fit"], &["replay", "--check-beliefs"], &["replay", "--accuracy"]] {
@@ -135,7 +135,7 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
     assert_eq!((&rows[1]["errors"], &rows[1]["trial_s"]), (&whole["errors"], &whole["trial_s"]));
     assert_eq!(rows[1]["condition"], "none");
     let told = String::from_utf8_lossy(&check(&["list", out], 0).stdout).into_owned();
-    assert!(told.contains("excluded  seed7-S003  (excluded: interrupted)"), "{told}");
+    assert!(told.contains("excluded    seed7-S003  (excluded: interrupted)"), "{told}");
     assert!(told.ends_with(&format!("4 recordings in {out}\n")), "{told}");
     for command in [&["replay", out][..], &["replay", out, "--verify"], &["compare", out], &["codes", out]] {
         let told = complaint(command);

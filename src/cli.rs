@@ -5,6 +5,7 @@ mod choices;
 mod data;
 mod estimates;
 mod failure;
+mod list;
 mod operate;
 mod output;
 #[cfg(feature = "rerun")]
@@ -67,6 +68,7 @@ pub fn main() -> ExitCode {
         CliCommand::Train(args) => wizard::train(&args),
         CliCommand::Replay(args) => replay(&args),
         CliCommand::Review(args) => review::review(&args),
+        CliCommand::List(args) => list::list(&args),
         CliCommand::Simulate(args) => simulation::simulate(&args),
         CliCommand::Study(args) => study::study(&args),
         CliCommand::Plan(args) => show_plan(&args),
@@ -115,6 +117,7 @@ fn warn_of(recordings: &[PathBuf]) -> Result<(), Failure> {
 }
 
 fn replay(args: &ReplayArgs) -> Result<(), Failure> {
+    let args = &ReplayArgs { recordings: list::each_chosen(&args.recordings)?, ..args.clone() };
     warn_of(&args.recordings)?;
     if args.check_beliefs {
         return estimates::check_beliefs(args);
@@ -176,15 +179,16 @@ fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
 }
 
 fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
-    let ruling = log::rule(&args.recording, !args.back, args.reason.as_deref().unwrap_or_default())?;
+    let recording = list::chosen(&args.recording)?;
+    let ruling = log::rule(&recording, !args.back, args.reason.as_deref().unwrap_or_default())?;
     // Including a recording again reports other reasons in its log that still exclude it.
-    let aborted = if ruling.excluded { None } else { standing::aborted(&args.recording)? };
+    let aborted = if ruling.excluded { None } else { standing::aborted(&recording)? };
     let words = match (ruling.excluded, aborted) {
         (true, _) => "is left out of the analysis".to_string(),
         (false, None) => "counts again".to_string(),
         (false, Some(reason)) => format!("is not excluded; it is still left out of the analysis, as aborted: {reason}"),
     };
-    print(args.format, &ruling, || format!("{} {words}\n", args.recording.display()))
+    print(args.format, &ruling, || format!("{} {words}\n", recording.display()))
 }
 
 fn examine(args: &DoctorArgs) -> Result<(), Failure> {

@@ -7,10 +7,10 @@ use crate::communication::concept::ConceptName;
 use crate::communication::offer::OfferedAdvice;
 use crate::communication::recommendation::Recommendation;
 use crate::history::wording::{self, location as said};
-use crate::kitchen::Agent;
+use crate::kitchen::{Agent, Kitchen};
 use crate::measures::sequences::FALSE_BELOW;
-use crate::mind::BeliefWitness;
 use crate::mind::recorded_estimate::{AspectEstimate, EstimateWitness};
+use crate::mind::{AspectBelief, BeliefWitness};
 use crate::robot::IdleReason;
 use crate::robot::safety::SafetyMode;
 use crate::session::event::{EndReason, SignalEnd};
@@ -24,10 +24,11 @@ pub const HEADING: &str = " trial time  what happened";
 
 /// The line for an event that was just applied, at the time of the trial's clock; none for gaze samples and the arm's motion.
 pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
+    let kitchen = &follower.session.kitchen;
     let words = match &stamped.event {
         Event::Gaze(_) | Event::SignalDrawn { .. } | Event::RobotMoves(_) => return None,
         // An estimate is worth a line where it says that something is believed wrong.
-        Event::BeliefEstimated(estimate) => estimated(estimate)?,
+        Event::BeliefEstimated(estimate) => estimated(kitchen, estimate)?,
         Event::TrialStarted => "trial started".to_string(),
         Event::TrialPaused => "trial paused".to_string(),
         Event::TrialResumed => "trial goes on".to_string(),
@@ -51,7 +52,7 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::Press { agent, button, .. } => {
             format!("{} presses {}{}", agent.name(), said(button), verdict(stamped, follower))
         }
-        Event::OrderShown { order, dish } => format!("{} wants {dish}", said(order)),
+        Event::OrderShown { order, dish } => format!("{} wants {}", said(order), kitchen.worded(dish)),
         Event::OrderCleared { order } => format!("{} is cleared", said(order)),
         Event::RobotIntends { button, .. } => format!("robot sets out for {}", said(button)),
         Event::RobotAborts { button, reason } => format!("robot gives up {}: {}", said(button), reason.words()),
@@ -69,12 +70,12 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::RobotSkipped { .. } => "the wizard skips the robot's press".to_string(),
         Event::RobotDriven { button, .. } => format!("the wizard drives the robot to {}", said(button)),
         Event::KitchenCorrected { location, content } => {
-            format!("corrected by hand: {} holds {content}", said(location))
+            format!("corrected by hand: {} holds {}", said(location), kitchen.worded(content))
         }
         Event::RobotStopped => "robot stopped by the wizard".to_string(),
         Event::RobotResumed => "robot goes on".to_string(),
         // Advice is worth a line where something should be said.
-        Event::Advised(advice) => advised(advice, follower.session.spec.assistant.concept)?,
+        Event::Advised(advice) => advised(kitchen, advice, follower.session.spec.assistant.concept)?,
         Event::OfferOpened(offer) => offered(offer),
         Event::OfferClosed { reason, .. } => format!("offer closes: {}", reason.words()),
         Event::SignalShown { signal: shown, offer: Some(_), .. } => {
@@ -88,7 +89,7 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::Tracker(event) => wording::tracker(event)?,
         Event::Calibration(event) => wording::calibration(event),
         Event::ClockJumped { by_ms } => format!("the wall clock jumped by {:.1} s", *by_ms as f64 / 1000.0),
-        Event::ParticipantBelieves(belief) => believes(belief),
+        Event::ParticipantBelieves(belief) => believes(kitchen, belief),
         Event::SessionEnded => "session over".to_string(),
     };
     // Notes and names of devices may hold anything.
@@ -137,13 +138,14 @@ fn verdict(stamped: &Stamped, follower: &Follower) -> String {
     }
 }
 
-fn believes(belief: &BeliefWitness) -> String {
+fn believes(kitchen: &Kitchen, belief: &BeliefWitness) -> String {
     let wrong = belief.aspects.iter().filter(|aspect| aspect.p_truth < FALSE_BELOW);
-    let wrong: Vec<String> = wrong.map(|aspect| format!("{} = {}", said(&aspect.aspect), aspect.believes)).collect();
+    let told = |aspect: &AspectBelief| format!("{} = {}", said(&aspect.aspect), kitchen.worded(&aspect.believes));
+    let wrong: Vec<String> = wrong.map(told).collect();
     // Why it presses what it presses is worth a word where something wrong is the reason.
     let cause = match belief.cause.as_str() {
         "as it is" => String::new(),
-        cause => format!(" ({})", said(cause)),
+        cause => format!(" ({})", said(&worded_cause(kitchen, cause))),
     };
     match wrong.is_empty() {
         true => format!("participant believes nothing wrong{cause}"),
@@ -151,16 +153,25 @@ fn believes(belief: &BeliefWitness) -> String {
     }
 }
 
-fn estimated(estimate: &EstimateWitness) -> Option<String> {
+/// A recorded cause with its contents worded: "believes cooking_pot: cooked rice".
+fn worded_cause(kitchen: &Kitchen, cause: &str) -> String {
+    let worded = |part: &str| match part.split_once(": ") {
+        Some((about, content)) => format!("{about}: {}", kitchen.worded(content)),
+        None => part.to_string(),
+    };
+    cause.split(", ").map(worded).collect::<Vec<_>>().join(", ")
+}
+
+fn estimated(kitchen: &Kitchen, estimate: &EstimateWitness) -> Option<String> {
     let wrong = estimate.aspects.iter().filter(|aspect| aspect.p_truth < FALSE_BELOW);
     let told = |aspect: &AspectEstimate| {
-        format!("{} = {} (wrong {:.2})", said(&aspect.aspect), aspect.believes, 1.0 - aspect.p_truth)
+        format!("{} = {} (wrong {:.2})", said(&aspect.aspect), kitchen.worded(&aspect.believes), 1.0 - aspect.p_truth)
     };
     let wrong: Vec<String> = wrong.map(told).collect();
     (!wrong.is_empty()).then(|| format!("estimated: participant believes {}", wrong.join(", ")))
 }
 
-fn advised(advice: &Recommendation, by: ConceptName) -> Option<String> {
+fn advised(kitchen: &Kitchen, advice: &Recommendation, by: ConceptName) -> Option<String> {
     if let Some(proposal) = &advice.proposal {
         let presses: Vec<String> = proposal.presses.iter().map(|press| said(press)).collect();
         return Some(format!("proposed after the error: {}", presses.join(", ")));
@@ -171,7 +182,8 @@ fn advised(advice: &Recommendation, by: ConceptName) -> Option<String> {
         ConceptName::Tom => format!("belief off by {:.2}", best.benefit),
         _ => format!("saves {:.1} presses (±{:.1})", best.benefit, best.standard_error),
     };
-    let reason = advice.reason.as_ref().map_or(String::new(), |reason| format!(": {}", reason.words()));
+    let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason));
+    let reason = reason.map_or(String::new(), |reason| format!(": {}", reason.words()));
     Some(format!("advised: {what}, {worth}{reason}"))
 }
 

@@ -71,6 +71,7 @@ pub fn unheard(session: &Session, spell: &FalseBeliefPeriod) -> JudgedBelief {
         errors: spell.errors,
         believed: String::new(),
         truth: String::new(),
+        words: String::new(),
         signal: None,
         hit_by: None,
     }
@@ -80,9 +81,16 @@ pub fn unheard(session: &Session, spell: &FalseBeliefPeriod) -> JudgedBelief {
 pub fn hear(belief: &mut JudgedBelief, session: &Session, aspect: AspectId, witness: &BeliefWitness) {
     let kitchen = &session.kitchen;
     let Some(told) = witness.aspects.get(aspect.index()) else { return };
-    let truth = &kitchen.aspects[aspect.index()].labels[kitchen.true_value(session.state, aspect)];
+    let (values, value) = (&kitchen.aspects[aspect.index()], kitchen.true_value(session.state, aspect));
+    let truth = &values.labels[value];
     belief.believed.clone_from(&told.believes);
     belief.truth.clone_from(truth);
+    belief.words = match told.believes == *truth {
+        true => format!("unsure of {}", phrase(&values.wordings[value])),
+        false => {
+            format!("believed {}, truly {}", phrase(kitchen.worded(&told.believes)), phrase(&values.wordings[value]))
+        }
+    };
     let tells = |signal: &Signal| {
         unavailable(kitchen, session.state, signal).is_none()
             && aspects_told(kitchen, session.state, signal).contains(&aspect)
@@ -94,11 +102,7 @@ pub fn hear(belief: &mut JudgedBelief, session: &Session, aspect: AspectId, witn
 /// "recipe of tuna nigiri: believed salmon nigiri, truly tuna nigiri".
 pub fn about(belief: &JudgedBelief) -> String {
     let what = belief.aspect.replace('_', " ");
-    match (belief.believed.as_str(), belief.truth.as_str()) {
-        ("", _) => what,
-        (believed, truth) if believed == truth => format!("{what}: unsure of {}", phrase(truth)),
-        (believed, truth) => format!("{what}: believed {}, truly {}", phrase(believed), phrase(truth)),
-    }
+    if belief.words.is_empty() { what } else { format!("{what}: {}", belief.words) }
 }
 
 /// What would have been right.

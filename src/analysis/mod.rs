@@ -21,6 +21,8 @@ pub mod offer_summary;
 pub mod order_work;
 pub mod planner_accuracy;
 pub mod recording_summary;
+#[cfg(feature = "cli")]
+pub mod recording_table;
 pub mod sweep_row;
 pub mod timing_summary;
 pub mod training_record;

@@ -80,6 +80,9 @@ pub struct JudgedBelief {
     pub believed: String,
     /// What was true then.
     pub truth: String,
+    /// Both as screens word them; only in the program that judges, records have the names.
+    #[serde(skip)]
+    pub words: String,
     /// The signal that would have been right; null: none tells it.
     pub signal: Option<Signal>,
     /// Which of the signals hit it, 0 the first; null: it was missed.

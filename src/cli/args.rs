@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::choices::{ArmArg, ConceptArg, SimulatedCondition};
 use super::data::{CodesArgs, ForgetArgs};
+use super::list::ListArgs;
 use super::operate::{OperateArgs, OperateFlags};
 use super::output::OutputFormat;
 use super::review::ReviewArgs;
@@ -35,6 +36,7 @@ pub(super) enum CliCommand {
     Train(TrainArgs),
     Replay(ReplayArgs),
     Review(ReviewArgs),
+    List(ListArgs),
     Simulate(SimulateArgs),
     Study(StudyArgs),
     Plan(PlanArgs),
@@ -52,10 +54,11 @@ pub(super) enum CliCommand {
 /// Shows, prints or verifies a recording.
 ///
 /// In a terminal it opens the console over the recording; through a pipe it prints what happened, line by line.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify\nMore: docs/recordings.md")]
 pub(super) struct ReplayArgs {
-    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs, --accuracy and --offers.
+    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs, --accuracy and --offers. Of a folder of
+    /// recordings, one is chosen from a list.
     #[arg(required = true, value_name = "RECORDING")]
     pub(super) recordings: Vec<PathBuf>,
     /// Run the session again from the recording's header and inputs; every line must be identical.

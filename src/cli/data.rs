@@ -7,6 +7,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
+use super::list::each_chosen;
 use super::output::{OutputFormat, print, progress, put_aside};
 use crate::base::words::count;
 use crate::edge::forget::{self, ParticipantData};
@@ -38,8 +39,9 @@ pub(super) struct CodesArgs {
 }
 
 pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
-    let bar = progress(args.recordings.len() as u64, "recordings");
-    let read = crate::run::parallel::each(&args.recordings, |recording| CodedRecording::open(recording), || bar.inc(1));
+    let chosen = each_chosen(&args.recordings)?;
+    let bar = progress(chosen.len() as u64, "recordings");
+    let read = crate::run::parallel::each(&chosen, |recording| CodedRecording::open(recording), || bar.inc(1));
     bar.finish_and_clear();
     let mut recordings = read.into_iter().collect::<Result<Vec<CodedRecording>, _>>()?;
     if let Some(file) = &args.import {

@@ -1,13 +1,13 @@
 //! `tomcom operate`.
 
-use std::net::IpAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::choices::{ArmArg, ConceptArg, ConditionArg, GazeArg, ParticipantArg};
 use super::failure::{Failure, wrong_setting};
-use super::output::put;
+use super::output::{put, put_aside};
 use crate::analysis::watcher::CompareRequest;
 use crate::base::features::Feature;
 use crate::communication::concept::ConceptName;
@@ -56,15 +56,15 @@ pub(super) struct OperateFlags {
     #[arg(long, value_enum)]
     pub(super) concept: Option<ConceptArg>,
     /// Serve the wall display at this address instead of localhost; the page then asks for the pairing code that the console
-    /// shows.
-    #[arg(long, value_name = "ADDRESS")]
+    /// shows. An address without a port: the port is that of the session file.
+    #[arg(long, value_name = "ADDRESS", value_parser = address_without_port)]
     pub(super) listen: Option<IpAddr>,
     /// Seed of all random numbers; by default that of the session file.
     #[arg(long)]
     pub(super) seed: Option<u64>,
     /// Address at which Rerun viewers connect, instead of the session file's. Whoever reaches it can watch without a password,
-    /// and change nothing.
-    #[arg(long, value_name = "ADDRESS")]
+    /// and change nothing. An address with a port, such as 127.0.0.1:9876.
+    #[arg(long, value_name = "ADDRESS:PORT")]
     pub(super) rerun_listen: Option<String>,
     /// Folder in which the recording's folder is created. Not with --continue: a further part is created beside the recording.
     #[arg(long, default_value = "sessions")]
@@ -105,6 +105,10 @@ pub(super) fn new_session(
     let name = session.unwrap_or(Path::new("sessions/default.toml"));
     files.spec.require_built_live().map_err(|missing| FileError::not_built(name, missing))?;
     let out = flags.out.clone();
+    if flags.code.is_none() && files.spec.plan.is_none() {
+        let code = &files.spec.participant.code;
+        put_aside(&format!("The participant's code is {code}, from {}; --code CODE sets another.\n", name.display()));
+    }
     match &files.spec.plan {
         None => Ok(series::operate(SessionStart::New { files: Box::new(files), trial: 0, out }, compare)?),
         Some(plan) => {
@@ -113,4 +117,16 @@ pub(super) fn new_session(
             Ok(series::operate_series(RemainingTrials { files, participant, out, compare })?)
         }
     }
+}
+
+/// Parses an address of this computer. A port beside it has no meaning here.
+fn address_without_port(text: &str) -> Result<IpAddr, String> {
+    text.parse().map_err(|_| match text.parse::<SocketAddr>() {
+        Ok(with_port) => format!(
+            "right would be an address without a port, as {}; the port is `port` under [display] in the session file (only --rerun-listen takes \
+             both)",
+            with_port.ip()
+        ),
+        Err(_) => "right would be an IP address of this computer, as 192.168.1.5, or 0.0.0.0 for all".to_string(),
+    })
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
+use super::list::each_chosen;
 use super::rerun_messages::open;
 use crate::base::features::Feature;
 use crate::base::time::SessionTime;
@@ -19,7 +20,7 @@ use crate::base::time::SessionTime;
                   tomcom review sessions/2026-03-14-P07-1 --at 1:34\nMore: docs/rerun.md"
 )]
 pub(super) struct ReviewArgs {
-    /// The folders of recordings, or their events.jsonl.
+    /// The folders of recordings, or their events.jsonl. Of a folder of recordings, one is chosen from a list.
     #[arg(required = true, value_name = "RECORDING")]
     recordings: Vec<PathBuf>,
     /// Only write the stream file: recording.rrd beside the log, or FILE. Several recordings need a FILE.
@@ -67,7 +68,7 @@ pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
             recordings.len()
         )));
     }
-    open(recordings, save, args.web, args.at)
+    open(each_chosen(&recordings)?, save, args.web, args.at)
 }
 
 #[cfg(test)]

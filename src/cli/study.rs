@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::failure::Failure;
+use super::list::exists;
 use super::output::{OutputFormat, print, progress};
 use crate::run::study::reading::AnalysisScope;
 use crate::run::study::{self, AnalysisRequest, NamedRecordings, StudyError};
@@ -51,6 +52,7 @@ impl From<StudyError> for Failure {
 }
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
+    args.paths.iter().try_for_each(|path| exists(path))?;
     let recordings = NamedRecordings::find(&args.paths)?;
     let extent =
         AnalysisScope { concepts: !args.skip.contains(&Skip::Concepts), events: !args.skip.contains(&Skip::Events) };

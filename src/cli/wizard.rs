@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::choices::ConceptArg;
 use super::failure::Failure;
+use super::list::{chosen, each_chosen, exists};
 use super::operate::{OperateFlags, new_session};
 use super::output::{OutputFormat, print, progress, put};
 use crate::analysis::comparison_summary::{self, ComparisonSummary};
@@ -106,6 +107,7 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     };
     check_flags(args, session.is_some() && !args.follow)?;
     if let Some(session) = session.filter(|_| !args.follow) {
+        session.map_or(Ok(()), exists)?;
         let done = new_session(session, &args.flags, Some(request(args.window)))?;
         return Ok(put(&series::describe(&done))?);
     }
@@ -114,11 +116,12 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
             let help = "the folder of one recording";
             return Err(Failure::Wrong(miette::miette!(help = help, "found --follow and {} paths", args.paths.len())));
         };
-        return Ok(review_console::review(recording, true, Some(&request(args.window)))?);
+        return Ok(review_console::review(&chosen(recording)?, true, Some(&request(args.window)))?);
     }
+    let paths = each_chosen(&args.paths)?;
     let windows: Vec<u32> = if args.sweep { similarity::SWEEP.collect() } else { vec![args.window] };
-    let bar = progress((args.paths.len() * windows.len()) as u64, "recordings");
-    let watch = |window: u32| similarity::watch(&args.paths, &request(window), || bar.inc(1));
+    let bar = progress((paths.len() * windows.len()) as u64, "recordings");
+    let watch = |window: u32| similarity::watch(&paths, &request(window), || bar.inc(1));
     let first = watch(windows[0])?;
     let mut figures = ComparisonSummary::from_recordings(&first);
     for &window in &windows[1..] {
@@ -177,7 +180,7 @@ pub(super) fn train(args: &TrainArgs) -> Result<(), Failure> {
     }
     let recordings = match &args.recordings[..] {
         [] => simulate::for_training(args.seed, args.seconds, &args.out.join("recordings"))?,
-        given => given.to_vec(),
+        given => each_chosen(given)?,
     };
     let lesson = TrainingRequest {
         recordings,

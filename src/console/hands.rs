@@ -127,7 +127,7 @@ pub(super) fn pick(
         (_, PickerAnswer::Place(place)) => ask(model, PickerQuestion::Content(place)),
         (PickerQuestion::Content(place), PickerAnswer::Content(content)) => {
             let (location, content) = (kitchen.location(place), kitchen.content(content).name.clone());
-            let words = format!("corrected: {} holds {content}", location.label());
+            let words = format!("corrected: {} holds {}", location.label(), kitchen.worded(&content));
             let event = Event::KitchenCorrected { location: location.name.clone(), content };
             send(model, session, event, NoticeLevel::Done, &words)
         }

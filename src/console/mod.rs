@@ -24,6 +24,7 @@ pub mod playback;
 pub mod preflight;
 pub mod question;
 pub mod rater_session;
+pub mod recording_picker;
 pub mod screen;
 mod sending;
 mod table;

@@ -154,7 +154,7 @@ fn contents(session: &Session, place: LocationId) -> Vec<PickerEntry> {
     let ids = (0..kitchen.contents.len()).map(|index| ContentId(index as u8));
     let left = ids.filter(|&id| can_be(id) && id != session.state.content(place));
     let choice = |id: ContentId| {
-        let label = kitchen.content(id).name.clone();
+        let label = kitchen.content(id).wording.clone();
         PickerEntry { answer: PickerAnswer::Content(id), label, remark: String::new() }
     };
     left.map(choice).collect()

@@ -72,18 +72,21 @@ fn viewers(viewers: &ViewerStreamStatus) -> PreflightCheck {
     let ViewerStreamStatus { address, dropped, .. } = viewers;
     let is_open = |address: &String| address.parse::<SocketAddr>().is_ok_and(|address| !address.ip().is_loopback());
     let found = match address {
-        Some(address) if is_open(address) => {
-            format!("viewers connect at {address}; whoever reaches that can watch, without a password")
-        }
+        Some(address) if is_open(address) => format!("viewers at {address} need no password"),
         Some(address) => format!("viewers connect at {address}"),
         None => "recorded, no viewer can connect".to_string(),
     };
-    match dropped {
-        0 => PreflightCheck::ok("rerun", found),
-        dropped => {
-            let remedy = "end what else keeps the processor busy; tomcom review makes the stream from the log";
-            PreflightCheck::new("rerun", PreflightVerdict::Warning, format!("{found}; {dropped} rows dropped"), remedy)
-        }
+    let warning = |found, remedy: &str| PreflightCheck::new("rerun", PreflightVerdict::Warning, found, remedy);
+    match (dropped, address.as_ref().is_some_and(is_open)) {
+        (0, false) => PreflightCheck::ok("rerun", found),
+        (0, true) => warning(
+            found,
+            "whoever reaches this address can watch the session; start with --rerun-listen 127.0.0.1:9876 to let only this computer watch",
+        ),
+        (dropped, _) => warning(
+            format!("{found}; {dropped} rows dropped"),
+            "end what else keeps the processor busy; tomcom review makes the stream from the log",
+        ),
     }
 }
 

@@ -301,8 +301,9 @@ fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option
         }
         KeyAction::Accept => accept(model, session),
         KeyAction::Press(button) => {
+            let why = wording::no_effect(&session.kitchen, session.state, button).unwrap_or_default();
             let button = session.kitchen.button(Agent::Human, button).name.clone();
-            send(model, session, Event::Press { agent: Agent::Human, button, at_ns: None }, NoticeLevel::Done, "")
+            send(model, session, Event::Press { agent: Agent::Human, button, at_ns: None }, NoticeLevel::Refused, &why)
         }
         KeyAction::TakeBack => {
             send(model, session, Event::SignalEnded { reason: SignalEnd::TakenBack }, NoticeLevel::Done, "taken back")
@@ -326,7 +327,12 @@ fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option
         },
         KeyAction::Hand(hand) => hands::act(model, session, hand),
         KeyAction::SwitchLayer => {
-            model.layer = if model.layer == KeyLayer::Wizard { KeyLayer::Participant } else { KeyLayer::Wizard };
+            let (layer, words) = match model.layer {
+                KeyLayer::Wizard => (KeyLayer::Participant, "from now on, keys press the participant's buttons"),
+                KeyLayer::Participant => (KeyLayer::Wizard, "from now on, keys send the wizard's signals"),
+            };
+            model.layer = layer;
+            model.say(NoticeLevel::Done, words);
             None
         }
         KeyAction::Look(at) => {

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::kitchen::Kitchen;
+use crate::kitchen::content_wording::SCREEN_LANGUAGE;
 use crate::session::wall_display::DisplaySpec;
 
 const ENGLISH: &str = include_str!("languages/en.toml");
@@ -27,6 +29,17 @@ impl DisplayWords {
         }
         words.extend(spec.words.clone());
         let language = words.get("language").cloned().unwrap_or_default();
+        DisplayWords { language, words }
+    }
+
+    /// The same with the kitchen's words for its contents: in this language, or else in that of the screens. The words of the
+    /// session file stand over them.
+    pub fn for_kitchen(kitchen: &Kitchen, spec: &DisplaySpec) -> DisplayWords {
+        let DisplayWords { language, words: others } = DisplayWords::for_display(spec);
+        let mut words = kitchen.words.in_language(SCREEN_LANGUAGE).clone();
+        words.extend(others);
+        words.extend(kitchen.words.in_language(&language).clone());
+        words.extend(spec.words.clone());
         DisplayWords { language, words }
     }
 

@@ -117,7 +117,7 @@ pub struct LabelledAppearance {
 /// The scene of a session.
 pub fn scene(session: &Session) -> DisplayScene {
     let (kitchen, spec) = (&session.kitchen, &session.spec);
-    let words = DisplayWords::for_display(&spec.display);
+    let words = DisplayWords::for_kitchen(kitchen, &spec.display);
     let rect = |area: crate::kitchen::DisplayArea| [area.x, area.y, area.w, area.h];
     let spot = |location: &crate::kitchen::Location| DisplayLocation {
         name: location.name.clone(),

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::page_language::DisplayWords;
 use crate::communication::Signal;
+use crate::kitchen::no_effect::NoEffect;
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind, OrderContent};
 use crate::session::accuracy_check::RunningGazeCheck;
 use crate::session::plan::PhaseSpec;
@@ -95,6 +96,18 @@ pub struct DisplayedPress {
     pub at: DisplayPlace,
     /// The press changed the kitchen.
     pub effective: bool,
+    /// Why the human's press did not, if the session says so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<DisplayedReason>,
+}
+
+/// Why a press had no effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct DisplayedReason {
+    /// The page has words for it.
+    pub reason: NoEffect,
+    /// The location that it is about, by its index in the scene.
+    pub about: usize,
 }
 
 /// A signal.
@@ -220,7 +233,10 @@ fn pressed(session: &Session, agent: Agent) -> Option<DisplayedPress> {
     });
     let (button, effective) = newest?;
     let at = spot(&session.kitchen, agent, session.kitchen.button(agent, button).action);
-    Some(DisplayedPress { number: session.presses[agent.index()], at, effective })
+    let is_told = agent == Agent::Human && !effective && session.spec.display.reasons == Some(true);
+    let why = session.no_effect.filter(|_| is_told);
+    let why = why.map(|(reason, about)| DisplayedReason { reason, about: about.index() });
+    Some(DisplayedPress { number: session.presses[agent.index()], at, effective, why })
 }
 
 /// Where a press of an agent happens.

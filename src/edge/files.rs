@@ -64,6 +64,7 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
         spec.human = read_human_model(&model)?;
     }
     read_words(path, &text, &mut spec)?;
+    spec.display.reasons.get_or_insert(true);
     spec.check().and_then(|()| spec.check_participant_codes()).map_err(|error| wrong_setting(path, &text, error))?;
     if let Some(step) = &spec.step {
         let found = format!("the place of a recording in the plan \"{}\"", step.plan);

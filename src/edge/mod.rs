@@ -20,6 +20,7 @@ mod host_name;
 pub mod key_file;
 pub mod language;
 pub mod log;
+pub mod near_path;
 pub mod overwrite;
 pub mod parse;
 mod place;

@@ -23,6 +23,8 @@ use ratatui::backend::CrosstermBackend;
 use super::ask::ground;
 use super::frames::{FrameWriter, write_within};
 use crate::console::question::QuestionPage;
+use crate::console::recording_picker::RecordingPicker;
+use crate::console::view::recordings_page::draw_recordings;
 use crate::console::view::sheet::draw_question;
 use crate::console::view::theme::{TerminalBackground, Theme};
 use crate::console::{ConsoleMessage, ConsoleModel, view};
@@ -132,6 +134,14 @@ impl TerminalScreen {
     /// The terminal's size cannot be found out.
     pub fn ask(&mut self, question: &QuestionPage, theme: Theme) -> io::Result<()> {
         self.compose(|frame| draw_question(question, theme, frame))
+    }
+
+    /// Composes a list of recordings that stands alone.
+    ///
+    /// # Errors
+    /// The terminal's size cannot be found out.
+    pub fn list(&mut self, picker: &RecordingPicker, theme: Theme) -> io::Result<()> {
+        self.compose(|frame| draw_recordings(picker, theme, frame))
     }
 
     fn compose(&mut self, draw: impl FnOnce(&mut ratatui::Frame)) -> io::Result<()> {

@@ -213,7 +213,11 @@ impl LaneComparison {
         };
         if let Some(advice) = self.advice(difference) {
             let lane = &self.lanes[self.assistant(difference)];
-            lines.push(format!("{} then: {}", lane.name, thought(advice, lane.concept == Some(ConceptName::Tom))));
+            lines.push(format!(
+                "{} then: {}",
+                lane.name,
+                thought(kitchen, advice, lane.concept == Some(ConceptName::Tom))
+            ));
         }
         lines.extend(believed(kitchen, known));
         lines.push(format!("truly: {}", truly(kitchen, known.state)));
@@ -223,7 +227,7 @@ impl LaneComparison {
 }
 
 /// A recommendation in words; ToM's options are expected belief deviations.
-fn thought(advice: &Recommendation, is_tom: bool) -> String {
+fn thought(kitchen: &Kitchen, advice: &Recommendation, is_tom: bool) -> String {
     if let Some(proposal) = &advice.proposal {
         return CommunicationContent::Proposal(proposal.presses.clone()).words();
     }
@@ -236,7 +240,8 @@ fn thought(advice: &Recommendation, is_tom: bool) -> String {
     };
     let options: Vec<String> = advice.options.iter().take(3).map(option).collect();
     let best = advice.best.as_ref().map_or("say nothing".to_string(), wording::signal);
-    let reason = advice.reason.as_ref().map_or(String::new(), |reason| format!("; the human {}", reason.words()));
+    let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason));
+    let reason = reason.map_or(String::new(), |reason| format!("; the human {}", reason.words()));
     match options.is_empty() {
         true => best,
         false if is_tom => format!("{best}{reason}; deviations: {}", options.join(", ")),
@@ -255,7 +260,7 @@ fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
         let aspect = &kitchen.aspects[index];
         let truth = kitchen.true_value(known.state, AspectId(index as u8));
         let name = wording::location(&aspect.name);
-        let (believes, truth_label) = (&aspect.labels[usize::from(held.believes)], &aspect.labels[truth]);
+        let (believes, truth_label) = (&aspect.wordings[usize::from(held.believes)], &aspect.wordings[truth]);
         match usize::from(held.believes) == truth {
             true => format!("{name}: most likely {truth_label}, but only {:.2}", held.p_truth),
             false => format!("{name}: {believes} {:.2}, truly {truth_label} {:.2}", held.p, held.p_truth),

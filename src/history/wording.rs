@@ -3,9 +3,11 @@
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::offer::OfferedAct;
+use crate::communication::recommendation::Reason;
 use crate::communication::{Sender, Signal};
 use crate::gaze::quality::DropCounts;
-use crate::kitchen::{Agent, ButtonAction, Kitchen, LocationId, OrderContent};
+use crate::kitchen::no_effect::NoEffect;
+use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, OrderContent, State};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
 use crate::robot::moment::ArmPhase;
@@ -25,6 +27,26 @@ pub fn button(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> 
 /// A location's name in words.
 pub fn location(name: &str) -> String {
     name.replace('_', " ")
+}
+
+/// Why the human's press of this button would have no effect now: "no effect: the cooking pot is empty"; `None` if it would have one.
+/// Short, since it stands beside the keys at 80 columns.
+pub fn no_effect(kitchen: &Kitchen, state: State, id: ButtonId) -> Option<String> {
+    let (why, about) = kitchen.no_effect(state, Agent::Human, id)?;
+    let name = kitchen.location(about).label();
+    let because = match why {
+        NoEffect::HandFull => "the hand is full".to_string(),
+        NoEffect::HandEmpty => "the hand is empty".to_string(),
+        NoEffect::BothEmpty => "hand and place are empty".to_string(),
+        NoEffect::PlaceEmpty => format!("the {name} is empty"),
+        NoEffect::PlaceFull => format!("the {name} is full"),
+        NoEffect::NotAccepted => "it does not go there".to_string(),
+        NoEffect::NotStacked => "they do not go together".to_string(),
+        NoEffect::NotProcessed => format!("not with {}", kitchen.content_label(state, about)),
+        NoEffect::NoOrder => format!("{name} wants nothing"),
+        NoEffect::NotServed => "it is not served there".to_string(),
+    };
+    Some(format!("no effect: {because}"))
 }
 
 /// Location of a button: its own location, or the agent's hand.
@@ -56,6 +78,12 @@ pub fn offered(what: &OfferedAct) -> String {
     }
 }
 
+/// The reason of a recommendation with its contents worded as on screens; the recorded one has their names.
+pub fn reason(kitchen: &Kitchen, reason: &Reason) -> Reason {
+    let worded = |name: &str| kitchen.worded(name).to_string();
+    Reason { believes: worded(&reason.believes), truth: worded(&reason.truth), ..reason.clone() }
+}
+
 /// A sender in words.
 pub fn sender(by: Sender) -> &'static str {
     match by {
@@ -64,12 +92,12 @@ pub fn sender(by: Sender) -> &'static str {
     }
 }
 
-/// Recipe of an order's dish: "rice cooked + nori + tuna cut".
+/// Recipe of an order's dish: "cooked rice + nori + cut tuna".
 pub fn recipe(session: &Session, order: LocationId) -> Option<String> {
     let OrderContent::Dish(dish) = session.state.order(order) else { return None };
     let kitchen = &session.kitchen;
     let stack = kitchen.content(kitchen.dish(dish).stack());
-    let names: Vec<&str> = stack.items.iter().map(|&item| kitchen.content(item).name.as_str()).collect();
+    let names: Vec<&str> = stack.items.iter().map(|&item| kitchen.content(item).wording.as_str()).collect();
     Some(names.join(" + "))
 }
 

@@ -38,8 +38,10 @@ pub struct Aspect {
     pub kind: AspectKind,
     /// The possible values, as codes (see [`AspectKind`]).
     pub values: Vec<u8>,
-    /// Label of each value on screens.
+    /// The name of each value in logs and tables: "rice cooked".
     pub labels: Vec<String>,
+    /// How screens and reports word each value: "cooked rice".
+    pub wordings: Vec<String>,
 }
 
 impl Aspect {

@@ -4,6 +4,7 @@ use super::action::{Button, ButtonAction, ButtonId};
 use super::agent::Agent;
 use super::aspect::{Aspect, AspectId, AspectKind};
 use super::content::{Content, ContentId};
+use super::content_wording::KitchenWords;
 use super::dish::{Dish, DishId};
 use super::location::{Location, LocationId, LocationKind, Storage};
 use super::process::Process;
@@ -28,6 +29,8 @@ pub struct Kitchen {
     pub new_order_after_s: f64,
     /// Every content; index 0 is "empty", then the ingredient items, then the stacks by size.
     pub contents: Vec<Content>,
+    /// How contents are worded, by language.
+    pub words: KitchenWords,
     /// The locations, order locations first, in the order of the file.
     pub locations: Vec<Location>,
     /// The buttons of the human and of the robot, indexed by [`Agent::index`] and [`ButtonId`].
@@ -117,15 +120,20 @@ impl Kitchen {
         self.buttons[agent.index()].iter().position(|button| button.name == name).map(|index| ButtonId(index as u8))
     }
 
-    /// What a location shows, in words: the content's name, or the order's dish, `none` or `served`.
+    /// A content in words, by its name in logs; another name stands for itself.
+    pub fn worded<'a>(&'a self, name: &'a str) -> &'a str {
+        self.content_named(name).map_or(name, |content| &self.content(content).wording)
+    }
+
+    /// What a location shows, in words: its content, or the order's dish, `none` or `served`.
     pub fn content_label(&self, state: State, location: LocationId) -> &str {
         match self.location(location).kind {
             LocationKind::Order => match state.order(location) {
                 OrderContent::None => "none",
                 OrderContent::Served => "served",
-                OrderContent::Dish(dish) => &self.dish(dish).name,
+                OrderContent::Dish(dish) => &self.content(self.dish(dish).stack()).wording,
             },
-            _ => &self.content(state.content(location)).name,
+            _ => &self.content(state.content(location)).wording,
         }
     }
 

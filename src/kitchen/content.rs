@@ -26,8 +26,10 @@ impl ContentId {
 /// One content of the kitchen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Content {
-    /// "rice cooked", "nori + rice cooked", "empty"; a full stack on the menu has its dish's name.
+    /// The name in logs and tables: "rice cooked", "nori + rice cooked", "empty"; a full stack on the menu has its dish's name.
     pub name: String,
+    /// How screens and reports word it: "cooked rice", "nori + cooked rice".
+    pub wording: String,
     /// The ingredient items in it, in the order of the recipe file; one for an item, none for empty.
     pub items: Vec<ContentId>,
     /// The ingredient it is made of, as index into the recipe file's list, if it is an item.

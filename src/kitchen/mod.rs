@@ -5,8 +5,10 @@
 //! The files from the ground up; each imports only from those before it:
 //!
 //! - The parts: `agent`, `look`, [`content`], `location`, `dish`, `process`, [`action`], [`state`], [`aspect`],
+//!   [`content_wording`],
 //!   `transition_tables`.
-//! - The whole: `compiled` ([`Kitchen`] and what can be looked up in it), `rules` (what a press does), [`change`], [`world`].
+//! - The whole: `compiled` ([`Kitchen`] and what can be looked up in it), `rules` (what a press does),
+//!   [`no_effect`] (why it does nothing), [`change`], [`world`].
 //! - How far it is: [`cost_to_go`].
 //! - Where it comes from: [`layout`] and [`recipe`] (the files as written), [`compile`] (from them to a [`Kitchen`], no larger
 //!   than the cost to go can number).
@@ -18,17 +20,20 @@ pub mod change;
 pub mod compile;
 mod compiled;
 pub mod content;
+pub mod content_wording;
 pub mod cost_to_go;
 mod dish;
 pub mod layout;
 pub mod layout_ranges;
 mod location;
 pub mod look;
+pub mod no_effect;
 mod process;
 pub mod recipe;
 mod rules;
 pub mod state;
 mod transition_tables;
+
 pub mod world;
 
 pub use action::{Button, ButtonAction, ButtonColour, ButtonId};

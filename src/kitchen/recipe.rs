@@ -1,6 +1,8 @@
 //! The recipe file: ingredients with states and look-alikes, processing steps, the stacking rule, the menu, and possible deviations
 //! of a remembered recipe.
 
+use std::collections::BTreeMap;
+
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -27,6 +29,9 @@ pub struct RecipesSpec {
     /// What else may be taken for a dish's recipe.
     #[serde(default)]
     pub deviation: Vec<DeviationSpec>,
+    /// How items, ingredients and dishes are worded: by language, and in a language by name.
+    #[serde(default)]
+    pub words: BTreeMap<String, BTreeMap<String, Spanned<String>>>,
 }
 
 /// `[[ingredient]]` of a recipe file.

@@ -11,6 +11,7 @@ use super::desk::{OperatorDesk, PageInput};
 use super::error::TerminalError;
 use crate::communication::recommendation::Recommendation;
 use crate::console::question::QuestionPage;
+use crate::console::recording_picker::RecordingPicker;
 use crate::console::view::theme::Theme;
 use crate::console::{ConsoleMessage, ConsoleModel};
 use crate::edge::gaze_input::GazeNews;
@@ -76,9 +77,11 @@ pub(super) enum ShellView<'a> {
     Console(&'a Session, &'a ConsoleModel),
     /// A question without a session.
     Question(&'a QuestionPage, Theme),
+    /// A list of recordings without a session.
+    Recordings(&'a RecordingPicker, Theme),
 }
 
-/// One kind of console: live session, review, training, or question.
+/// One kind of console: live session, review, training, question, or list of recordings.
 pub(super) trait ConsoleShell {
     /// Result with which the shell is left.
     type Outcome;
@@ -196,6 +199,7 @@ fn draw<S: ConsoleShell>(shell: &mut S, screen: &mut TerminalScreen) -> Result<(
     let drawn = match shell.view() {
         ShellView::Console(session, model) => screen.draw(session, model),
         ShellView::Question(question, theme) => screen.ask(question, theme),
+        ShellView::Recordings(picker, theme) => screen.list(picker, theme),
     };
     drawn.map_err(TerminalError)?;
     shell.drawn();

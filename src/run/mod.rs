@@ -29,7 +29,11 @@ pub mod options;
 #[cfg(feature = "cli")]
 pub mod parallel;
 #[cfg(feature = "cli")]
+pub mod pick_recording;
+#[cfg(feature = "cli")]
 pub mod plan;
+#[cfg(feature = "cli")]
+pub mod recording_list;
 #[cfg(feature = "cli")]
 pub mod replay;
 #[cfg(feature = "cli")]

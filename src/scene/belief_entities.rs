@@ -108,7 +108,9 @@ impl BeliefScene {
         let aspects = || witness.aspects.iter();
         let mut rows: Vec<EntityUpdate> =
             aspects().flat_map(|told| estimate_rows(&told.aspect, told.p_truth)).collect();
-        let held: Vec<Held> = aspects().map(|told| Held { believes: &told.believes, p_truth: told.p_truth }).collect();
+        let held: Vec<Held> = aspects()
+            .map(|told| Held { believes: session.kitchen.worded(&told.believes), p_truth: told.p_truth })
+            .collect();
         if held.len() == session.kitchen.aspects.len() {
             rows.extend(self.in_words(session, &held));
         }
@@ -124,7 +126,7 @@ impl BeliefScene {
         let p_truth = |index: usize| belief.p_truth(kitchen, session.state, AspectId(index as u8));
         let held: Vec<Held> = (0..kitchen.aspects.len())
             .map(|index| {
-                let believes = &kitchen.aspects[index].labels[belief.aspects[index].most_likely()];
+                let believes = &kitchen.aspects[index].wordings[belief.aspects[index].most_likely()];
                 Held { believes, p_truth: p_truth(index) }
             })
             .collect();
@@ -195,5 +197,5 @@ fn taken_for_what<'a>(session: &Session, aspect: usize, held: &Held<'a>) -> &'a 
 }
 
 fn truth(kitchen: &Kitchen, state: State, aspect: usize) -> &str {
-    &kitchen.aspects[aspect].labels[kitchen.true_value(state, AspectId(aspect as u8))]
+    &kitchen.aspects[aspect].wordings[kitchen.true_value(state, AspectId(aspect as u8))]
 }

@@ -7,7 +7,7 @@ use crate::communication::offer::{OfferEnd, OfferedAdvice};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, signals};
 use crate::history::wording;
-use crate::kitchen::{Agent, AspectId};
+use crate::kitchen::{Agent, AspectId, Kitchen};
 use crate::measures::JudgedPress;
 use crate::session::event::SignalEnd;
 use crate::session::protocol::ProtocolEvent;
@@ -105,7 +105,7 @@ pub fn mark() -> EntityUpdate {
 }
 
 /// Expected saving of each signal before its cost, and the recommendation.
-pub fn advice(advice: &Recommendation) -> Vec<EntityUpdate> {
+pub fn advice(kitchen: &Kitchen, advice: &Recommendation) -> Vec<EntityUpdate> {
     let mut rows: Vec<EntityUpdate> = advice
         .options
         .iter()
@@ -114,7 +114,8 @@ pub fn advice(advice: &Recommendation) -> Vec<EntityUpdate> {
     rows.push(EntityUpdate::new(COST_LINE, EntityData::Value(0.0)));
     if let Some(best) = &advice.best {
         let net = advice.top().map_or(0.0, |top| top.net);
-        let why = advice.reason.as_ref().map_or_else(String::new, |reason| format!("; {}", reason.words()));
+        let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason));
+        let why = reason.map_or_else(String::new, |reason| format!("; {}", reason.words()));
         let text = format!("assistant advises: {} (net {net:+.2}){why}", wording::signal(best));
         rows.push(say("assistant/advice", LogLevel::Info, text, colours::ASSISTANT));
     }

@@ -135,7 +135,7 @@ impl SessionScene {
             Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded => {
                 rows.extend(place_entities::shown_signal(session));
             }
-            Event::Advised(advice) => rows.extend(happenings::advice(advice)),
+            Event::Advised(advice) => rows.extend(happenings::advice(&session.kitchen, advice)),
             Event::OfferOpened(offer) => rows.push(happenings::offer_opened(offer)),
             Event::OfferClosed { reason, .. } => rows.push(happenings::offer_closed(*reason)),
             Event::Protocol(event) => rows.push(happenings::protocol(event)),

@@ -378,6 +378,9 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
     }
     let kitchen = session.kitchen.clone();
     let press = kitchen.try_press(session.state, agent, button);
+    if agent == Agent::Human {
+        session.no_effect = kitchen.no_effect(session.state, agent, button);
+    }
     session.presses[agent.index()] += 1;
     session.note(now, TimelineEvent::Press { agent, button, effective: press.effective });
     if press.effective {

@@ -32,6 +32,10 @@ pub struct DisplaySpec {
     pub tags: bool,
     /// Whether a square flashes at the start of the trial and at signals, to synchronise video recordings.
     pub flash: bool,
+    /// Whether a press without effect says why. A session file without it means yes; a recording without it was made when nothing
+    /// was said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reasons: Option<bool>,
     /// Where questionnaires are answered.
     pub questionnaire: Answering,
 }
@@ -48,6 +52,7 @@ impl Default for DisplaySpec {
             intention: false,
             tags: true,
             flash: true,
+            reasons: None,
             questionnaire: Answering::Console,
         }
     }

@@ -25,14 +25,14 @@ use tomcom::session::{Event, Header, Session};
 const SESSIONS: [&str; 2] = ["sessions/default.toml", "sessions/burger.toml"];
 
 /// A session file of the project, with an inference that is coarse and quick.
-fn files(path: &str) -> SessionFiles {
+pub(super) fn files(path: &str) -> SessionFiles {
     let mut files = read_session(Path::new(path)).expect("a session file of the project");
     let inference = &mut files.spec.human.inference;
     (inference.beliefs, inference.states, inference.max_beliefs) = (16, 8, 32);
     files
 }
 
-fn engine(files: SessionFiles) -> Engine {
+pub(super) fn engine(files: SessionFiles) -> Engine {
     let kitchen = Arc::new(files.kitchen.kitchen);
     Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen))
 }
@@ -102,41 +102,49 @@ fn has_recipe(kitchen: &Kitchen, list: &[String]) -> bool {
     })
 }
 
+/// Fields of what the page is told.
+const FIELDS: [&str; 26] = [
+    "why",
+    "reason",
+    "about",
+    "stage",
+    "practice",
+    "contents",
+    "served",
+    "presses",
+    "intention",
+    "signal",
+    "cue",
+    "question",
+    "item",
+    "stack",
+    "dish",
+    "number",
+    "at",
+    "effective",
+    "location",
+    "storage",
+    "recipe",
+    "highlight",
+    "order",
+    "items",
+    "target",
+    "checks",
+];
+
 /// Holds a sight against the session: every text in it is one that the participant may see now, and nothing else.
-fn check(session: &Session) {
+pub(super) fn check(session: &Session) {
     let (kitchen, now) = (&session.kitchen, sight(session));
     let value = serde_json::to_value(&now).expect("a sight is JSON");
     let mut found = Vec::new();
     texts(&value, "", &mut found);
-    let fields = [
-        "stage",
-        "practice",
-        "contents",
-        "served",
-        "presses",
-        "intention",
-        "signal",
-        "cue",
-        "question",
-        "item",
-        "stack",
-        "dish",
-        "number",
-        "at",
-        "effective",
-        "location",
-        "storage",
-        "recipe",
-        "highlight",
-        "order",
-        "items",
-        "target",
-        "checks",
-    ];
+    // A reason is one of the page's words, at a location: neither a content nor a recipe.
+    let words = DisplayWords::for_display(&session.spec.display).of_page();
     let on_display = |name: &String| {
         let places = (0..kitchen.locations.len()).map(|index| tomcom::kitchen::LocationId(index as u8));
         places.into_iter().any(|place| {
-            let label = kitchen.content_label(session.state, place);
+            let aspect = tomcom::kitchen::AspectId::of_location(place);
+            let label = &kitchen.aspects[aspect.index()].labels[kitchen.true_value(session.state, aspect)];
             let is_order = kitchen.orders.contains(&place);
             let items = if is_order { &[][..] } else { &kitchen.content(session.state.content(place)).items[..] };
             label == name || items.iter().any(|item| kitchen.content(*item).name == *name)
@@ -144,8 +152,9 @@ fn check(session: &Session) {
     };
     for (field, text) in &found {
         let is_fine = match field.as_str() {
-            "field" => fields.contains(&text.as_str()),
+            "field" => FIELDS.contains(&text.as_str()),
             "stage" => true,
+            "reason" => words.contains_key(&format!("why {text}")),
             "contents" => ["empty", "served"].contains(&text.as_str()),
             "item" | "stack" | "dish" => on_display(text),
             "items" => value.pointer("/signal/recipe").is_some(),
@@ -342,7 +351,8 @@ fn german_has_every_word_of_the_page_and_of_both_kitchens() {
         let labels =
             scene.locations.iter().map(|spot| &spot.label).chain(scene.storages.iter().map(|shelf| &shelf.label));
         let pictures = scene.items.values().chain(scene.dishes.values()).map(|picture| &picture.label);
-        let known: Vec<&String> = german.values().collect();
+        let kitchen = read_session(Path::new(path)).expect("a session file").kitchen.kitchen;
+        let known: Vec<&String> = german.values().chain(kitchen.words.in_language("de").values()).collect();
         for label in labels.chain(pictures).filter(|label| *label != "Nori") {
             assert!(known.contains(&label), "{path}: {label}");
         }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use rand::RngExt;
 use tomcom::base::rng::stream;
 use tomcom::edge::files::{compile_kitchen, read_kitchen};
-use tomcom::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationKind, OrderContent, State};
+use tomcom::kitchen::{Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationKind, OrderContent, State};
 
 fn load(layout: &str) -> Kitchen {
     match read_kitchen(Path::new(layout)) {
@@ -40,7 +40,8 @@ fn check(kitchen: &Kitchen, orders: &[&str], presses: &[&str], expected: &[(&str
     }
     for (location, content) in expected {
         let id = kitchen.location_named(location).expect("a location");
-        assert_eq!(kitchen.content_label(state, id), *content, "{location}");
+        let aspect = AspectId::of_location(id);
+        assert_eq!(kitchen.aspects[aspect.index()].labels[kitchen.true_value(state, aspect)], *content, "{location}");
     }
     state
 }
@@ -271,4 +272,55 @@ fn a_kitchen_that_is_too_large_is_refused() {
     let refused = compile_kitchen((path, layout), (Path::new("recipes/sushi.toml"), recipes));
     let message = refused.expect_err("37^8 is too many").to_string();
     assert!(message.contains("3512479453921 ways to fill the locations"), "{message}");
+}
+
+/// The sushi kitchen with other words.
+fn reworded(words: &str) -> Kitchen {
+    let read = |path: &str| std::fs::read_to_string(path).expect("a file of the project");
+    let recipes = read("recipes/sushi.toml").split("\n[words.de]").next().expect("the first part").to_string();
+    Kitchen::from_toml(&read("layouts/sushi.toml"), &format!("{recipes}\n{words}")).expect("a kitchen")
+}
+
+#[test]
+fn contents_are_worded_by_default_and_as_the_recipe_file_says_while_names_stay() {
+    let kitchen = load("layouts/sushi.toml");
+    let wording = |kitchen: &Kitchen, name: &str| kitchen.worded(name).to_string();
+    for (name, words) in [
+        ("empty", "empty"),
+        ("nori", "nori"),
+        ("rice cooked", "cooked rice"),
+        ("rice cooked + nori", "cooked rice + nori"),
+        ("rice shaped + nori + crab cut", "shaped rice + nori + cut crab"),
+        ("salmon maki", "salmon maki"),
+        ("served", "served"),
+    ] {
+        assert_eq!(wording(&kitchen, name), words);
+    }
+    let own = "[words.en]\n\"rice cooked\" = \"boiled rice\"\n\"crab maki\" = \"crab roll\"\n";
+    let kitchen = reworded(own);
+    for (name, words) in
+        [("rice cooked + nori", "boiled rice + nori"), ("rice raw", "raw rice"), ("crab maki", "crab roll")]
+    {
+        assert_eq!(wording(&kitchen, name), words);
+        assert!(kitchen.content_named(name).is_some(), "the name in logs stays: {name}");
+    }
+    let order = kitchen.location_named("order_1").expect("an order");
+    let mut state = kitchen.empty_state();
+    state.set_order(order, OrderContent::Dish(kitchen.dish_named("crab maki").expect("a dish")));
+    assert_eq!(kitchen.content_label(state, order), "crab roll");
+    let without = reworded("");
+    assert_eq!(wording(&without, "rice cooked"), "cooked rice");
+    assert!(without.words.in_language("de").is_empty());
+}
+
+#[test]
+fn words_are_shown_and_names_are_recorded() {
+    let kitchen = load("layouts/sushi.toml");
+    for aspect in &kitchen.aspects {
+        for (label, wording) in aspect.labels.iter().zip(&aspect.wordings) {
+            assert_eq!(kitchen.worded(label), wording, "{}", aspect.name);
+        }
+    }
+    let pot = kitchen.aspects.iter().find(|aspect| aspect.name == "cooking_pot").expect("the pot");
+    assert!(pot.labels.contains(&"rice cooked".to_string()) && pot.wordings.contains(&"cooked rice".to_string()));
 }

@@ -312,7 +312,7 @@ impl Panel<'_> {
     }
 
     fn label(&self, aspect: usize, value: usize) -> &str {
-        &self.kitchen().aspects[aspect].labels[value]
+        &self.kitchen().aspects[aspect].wordings[value]
     }
 
     /// What is believed against what is. The truth may be what is believed most, and yet not surely enough.

@@ -15,6 +15,7 @@ pub mod paint;
 pub mod picker;
 mod popup;
 pub mod recommendation_panel;
+pub mod recordings_page;
 pub mod regions;
 pub mod robot_panel;
 pub mod sheet;

@@ -159,7 +159,7 @@ fn line(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel
             parts.push((worth, TextRole::Strong));
             parts.push((key(option, session, model), TextRole::Signal));
             parts.push((wording::signal(&option.signal), TextRole::Strong));
-            if let Some(reason) = &advice.reason {
+            if let Some(reason) = advice.reason.as_ref().map(|reason| wording::reason(&session.kitchen, reason)) {
                 parts.push((format!(": {}", reason.words()), TextRole::Quiet));
             }
         }
@@ -247,6 +247,7 @@ fn gauge(brush: &mut Painter, x: u16, y: u16, option: &SignalOption, session: &S
 /// Draws the reason for the best option, shortened to the available room; returns the row below.
 fn reason(brush: &mut Painter, inside: Rect, y: u16, advice: &Recommendation, session: &Session) -> u16 {
     let (Some(reason), Some(option)) = (&advice.reason, advice.top()) else { return y };
+    let reason = wording::reason(&session.kitchen, reason);
     let saves = match session.spec.assistant.concept {
         ConceptName::Tom => String::new(),
         _ => format!("; saves {:.1} presses, net {:+.1}", option.benefit, option.net),

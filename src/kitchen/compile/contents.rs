@@ -131,7 +131,8 @@ fn content(set: &[ContentId], items: &IngredientItems, dish_names: &[(Vec<Conten
         None => names.join(" + "),
     };
     let ingredient = (set.len() == 1).then(|| items.ingredient[set[0].index() - 1]);
-    Content { name, items: set.to_vec(), ingredient, look_alikes: Vec::new(), look: None }
+    let wording = name.clone();
+    Content { name, wording, items: set.to_vec(), ingredient, look_alikes: Vec::new(), look: None }
 }
 
 pub(super) fn dish_names(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<(Vec<ContentId>, String)>> {

@@ -1,10 +1,11 @@
 //! From the two files to a [`Kitchen`]: contents, buttons, recipe variants and state aspects are computed here.
 //!
-//! Errors (`spec_error`) are shared by all steps. The steps in their order: `contents` (items and stacks), `places`
+//! Errors (`spec_error`) are shared by all steps. The steps in their order: `contents` (items and stacks), `content_words`, `places`
 //! (locations and storages), `dishes` (processes, dishes, variants), `buttons`; transition tables and aspects follow from
 //! them here.
 
 mod buttons;
+mod content_words;
 mod contents;
 mod dishes;
 mod places;
@@ -64,7 +65,9 @@ impl Kitchen {
     /// Compiles a kitchen. Errors name the file, the place in it, what was found and what would be right.
     pub fn compile(layout: &LayoutSpec, recipes: &RecipesSpec) -> Result<Kitchen> {
         let items = IngredientItems::read(recipes)?;
-        let contents = contents::contents(recipes, &items)?;
+        let mut contents = contents::contents(recipes, &items)?;
+        let words = content_words::content_words(recipes, &items)?;
+        content_words::word(&mut contents, &words);
         let locations = places::locations(layout)?;
         let (hands, board, plate) = places::roles(layout, &locations)?;
         let processes = dishes::processes(recipes, &items, &locations)?;
@@ -96,6 +99,7 @@ impl Kitchen {
             new_order_after_s: *layout.table.new_order_after_s.get_ref(),
             storages: places::storages(layout, recipes, &items)?,
             contents,
+            words,
             locations,
             buttons,
             dishes,
@@ -220,11 +224,15 @@ fn aspects(contents: &[Content], locations: &[Location], dishes: &[Dish], tables
         let dishes = (0..dishes.len()).map(|index| OrderContent::Dish(DishId(index as u8)).code());
         [OrderContent::None.code(), OrderContent::Served.code()].into_iter().chain(dishes).collect()
     };
-    let label = |kind: LocationKind, code: u8| match (kind, OrderContent::from_code(code)) {
-        (LocationKind::Order, OrderContent::None) => "none".to_string(),
-        (LocationKind::Order, OrderContent::Served) => "served".to_string(),
-        (LocationKind::Order, OrderContent::Dish(dish)) => dishes[dish.index()].name.clone(),
-        _ => contents[usize::from(code)].name.clone(),
+    // Name and wording of a value.
+    let said = |kind: LocationKind, code: u8| match (kind, OrderContent::from_code(code)) {
+        (LocationKind::Order, OrderContent::None) => ["none", "none"],
+        (LocationKind::Order, OrderContent::Served) => ["served", "served"],
+        (LocationKind::Order, OrderContent::Dish(dish)) => {
+            let dish = &dishes[dish.index()];
+            [dish.name.as_str(), contents[dish.stack().index()].wording.as_str()]
+        }
+        _ => [contents[usize::from(code)].name.as_str(), contents[usize::from(code)].wording.as_str()],
     };
     let of_location = |(index, location): (usize, &Location)| {
         let accepted = |content: &usize| *content == 0 || tables.accepts[index * tables.width + content];
@@ -232,14 +240,17 @@ fn aspects(contents: &[Content], locations: &[Location], dishes: &[Dish], tables
             LocationKind::Order => order_values(),
             _ => (0..contents.len()).filter(accepted).map(|content| content as u8).collect(),
         };
-        let labels = values.iter().map(|&code| label(location.kind, code)).collect();
-        Aspect { name: location.name.clone(), kind: AspectKind::Location(LocationId(index as u8)), values, labels }
+        let labels = values.iter().map(|&code| said(location.kind, code)[0].to_string()).collect();
+        let wordings = values.iter().map(|&code| said(location.kind, code)[1].to_string()).collect();
+        let kind = AspectKind::Location(LocationId(index as u8));
+        Aspect { name: location.name.clone(), kind, values, labels, wordings }
     };
     let of_dish = |(index, dish): (usize, &Dish)| Aspect {
         name: format!("recipe of {}", dish.name),
         kind: AspectKind::Recipe(DishId(index as u8)),
         values: dish.variants.iter().map(|variant| variant.0).collect(),
         labels: dish.variants.iter().map(|variant| contents[variant.index()].name.clone()).collect(),
+        wordings: dish.variants.iter().map(|variant| contents[variant.index()].wording.clone()).collect(),
     };
     locations.iter().enumerate().map(of_location).chain(dishes.iter().enumerate().map(of_dish)).collect()
 }

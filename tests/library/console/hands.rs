@@ -25,13 +25,13 @@ fn the_kitchen_is_corrected_from_two_lists() {
         stage.wait(0.03);
         assert_eq!(stage.key(KeyCode::Enter), None, "a held enter answers one question");
     }
-    type_in(&mut stage, "riceco");
+    type_in(&mut stage, "cookedri");
     stage.wait(0.05);
     let corrected = Event::KitchenCorrected { location: "cooking_pot".to_string(), content: "rice cooked".to_string() };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(corrected.clone()), "{}", stage.notice());
     assert_eq!(stage.model.dialog, None);
     stage.at(23.0, corrected);
-    assert!(stage.screen((120, 40)).contains("rice cooked"));
+    assert!(stage.screen((120, 40)).contains("cooked rice"));
     // Esc goes back a step, then leaves; what nothing is called leads nowhere.
     stage.wait(1.0);
     stage.control('k');

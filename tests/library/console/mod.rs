@@ -9,6 +9,7 @@ mod hands;
 mod keys;
 mod notices;
 mod pointer;
+mod recording_picker;
 mod screens;
 mod sheets;
 mod training;

@@ -2,9 +2,12 @@
 
 use crossterm::event::KeyCode;
 use tomcom::base::time::SessionTime;
+use tomcom::console::console_model::ViewerStreamStatus;
+use tomcom::console::key_action::KeyLayer;
 use tomcom::console::preflight::checks;
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyMap, update};
 use tomcom::session::event::{EndReason, Event};
+use tomcom::session::preflight_checks::PreflightVerdict;
 use tomcom::session::settings::{GazeSource, ParticipantKind};
 
 use super::{SIZES, Stage, input};
@@ -118,4 +121,51 @@ fn notes_in_words_are_written_when_paused_and_only_there_the_space_bar_types() {
     stage.key(KeyCode::Char('0'));
     assert_eq!(stage.key(KeyCode::Esc), None);
     assert_eq!(stage.model.dialog, None);
+}
+
+#[test]
+fn a_press_without_effect_says_why_and_a_switch_says_whose_the_keys_are() {
+    let mut stage = Stage::sushi(ParticipantKind::Keyboard);
+    stage.wait(1.0);
+    stage.model.layer = KeyLayer::Participant;
+    // The hand holds raw salmon, the assembly board a stack, the pot is empty.
+    for (key, words) in [
+        ('e', "no effect: the hand is full"),
+        ('a', "no effect: they do not go together"),
+        ('v', "no effect: the cooking pot is empty"),
+        ('b', "no effect: it does not go there"),
+        ('1', "no effect: the plate is empty"),
+        ('z', "no effect: not with raw salmon"),
+    ] {
+        stage.wait(1.0);
+        assert!(matches!(input(stage.key(KeyCode::Char(key))), Some(Event::Press { .. })), "the press counts");
+        assert_eq!(stage.notice(), words);
+        assert!(stage.screen((80, 24)).contains(words), "{}", stage.screen((80, 24)));
+    }
+    stage.wait(1.0);
+    assert!(input(stage.key(KeyCode::Char('f'))).is_some());
+    assert_eq!(stage.notice(), "", "a press with an effect needs no words");
+    for words in ["from now on, keys send the wizard's signals", "from now on, keys press the participant's buttons"] {
+        stage.wait(1.0);
+        stage.key(KeyCode::Tab);
+        assert_eq!(stage.notice(), words);
+    }
+}
+
+#[test]
+fn an_open_port_for_viewers_is_a_warning_in_whole_sentences() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    let of_viewers = |stage: &Stage| {
+        let all = checks(&stage.session, &stage.model);
+        all.into_iter().find(|check| check.name == "rerun").expect("a check of the stream")
+    };
+    for (address, verdict) in [("127.0.0.1:9876", PreflightVerdict::Ok), ("0.0.0.0:9876", PreflightVerdict::Warning)] {
+        stage.model.viewers = Some(ViewerStreamStatus { address: Some(address.to_string()), written: 0, dropped: 0 });
+        let check = of_viewers(&stage);
+        assert_eq!(check.verdict, verdict, "{address}");
+        assert_eq!(check.remedy.is_some(), verdict == PreflightVerdict::Warning);
+    }
+    let check = of_viewers(&stage);
+    assert_eq!(check.found, "viewers at 0.0.0.0:9876 need no password");
+    assert!(check.remedy.is_some_and(|remedy| remedy.contains("--rerun-listen 127.0.0.1:9876")));
 }

@@ -117,7 +117,7 @@ fn the_trials_of_a_participant_ask_for_the_same_dishes_in_another_order() {
 fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
     let digest = |change: fn(&mut SessionFiles)| study(change).digest;
     let original = digest(|_| ());
-    let others: [NamedChange; 10] = [
+    let others: [NamedChange; 11] = [
         ("presses", |files| files.spec.trial.presses += 1),
         ("arm", |files| files.spec.robot.arm = ArmKind::Timed),
         ("signals", |files| files.spec.signals.shown_s += 1.0),
@@ -125,6 +125,7 @@ fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
         ("what the wizard sees", |files| files.spec.console.visibility = Visibility::Recommendation),
         ("human model", |files| files.spec.human.decision.tau += 0.1),
         ("display", |files| files.spec.display.intention = true),
+        ("reasons of presses without effect", |files| files.spec.display.reasons = Some(false)),
         ("seed", |files| files.spec.seed += 1),
         ("layout", |files| files.kitchen.layout.text.push('\n')),
         ("recipes", |files| files.kitchen.recipes.text.push('\n')),

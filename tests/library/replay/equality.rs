@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use tomcom::edge::log::LOG_NAME;
-use tomcom::kitchen::LocationId;
+use tomcom::kitchen::{AspectId, LocationId};
 use tomcom::run::replay::Replay;
 use tomcom::run::verify::{describe, verify};
 use tomcom::session::Phase;
@@ -86,7 +86,9 @@ fn summary(replay: &Replay) -> String {
     ];
     let places = kitchen.locations.iter().enumerate();
     lines.extend(places.map(|(index, location)| {
-        format!("{}: {}", location.name, kitchen.content_label(session.state, LocationId(index as u8)))
+        let aspect = AspectId::of_location(LocationId(index as u8));
+        let content = &kitchen.aspects[aspect.index()].labels[kitchen.true_value(session.state, aspect)];
+        format!("{}: {content}", location.name)
     }));
     lines.join("\n")
 }

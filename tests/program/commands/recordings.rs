@@ -37,7 +37,7 @@ fn a_closed_recording_is_excluded_and_taken_back_and_the_figures_say_so() {
     let rulings = fs::read_to_string(format!("{recording}/exclusion.toml")).expect("what was said");
     assert_eq!(rulings.matches("[[ruling]]").count(), 2, "nothing is forgotten:\n{rulings}");
     assert!(complaint(&["exclude", &recording, "--reason", ""]).contains("a reason of 1 to 200 characters"));
-    assert!(complaint(&["exclude", out, "--reason", "x"]).contains("cannot be read"));
+    assert!(complaint(&["exclude", out, "--reason", "x"]).contains("where one recording is meant"));
     fs::write(format!("{recording}/exclusion.toml"), "[[ruling]]\nexcluded = 1\n").expect("written");
     let told = complaint(&["replay", &recording, "--format", "json"]);
     assert!(told.contains("exclusion.toml:2") && told.contains("[[ruling]]"), "{told}");
@@ -93,7 +93,7 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     assert!(complaint(&["compare", recordings[0], "--seed", "3"]).contains("--seed, with recordings"));
     assert!(complaint(&["compare", session, "--open", "1"]).contains("--open, with a session"));
     assert!(complaint(&["compare", session, "--only", "tom"]).contains("--only, with a session"));
-    assert!(complaint(&["compare", "tests/golden"]).contains("events.jsonl"));
+    assert!(complaint(&["compare", "tests/golden"]).contains("a folder without recordings"));
     // What is summed up counts once, whatever path leads to it.
     let [one, same] = ["tests/golden/format-1-hand.jsonl", "tests/../tests/golden/format-1-hand.jsonl"];
     for command in [&["compare"][..], &["fit"], &["replay", "--check-beliefs"], &["replay", "--accuracy"]] {
@@ -103,4 +103,61 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     let swept: Vec<u64> =
         swept["pairs"].as_array().expect("pairs").iter().filter_map(|pair| pair["window_actions"].as_u64()).collect();
     assert_eq!(swept, (0..=10).collect::<Vec<u64>>());
+}
+
+#[test]
+#[serial]
+fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
+    let out = folder("list");
+    let session = out.join("short.toml");
+    let layout = Path::new(env!("CARGO_MANIFEST_DIR")).join("layouts/sushi.toml");
+    let text = format!(
+        "layout = \"{}\"\n[trial]\nseconds = 20.0\n[human.inference]\nbeliefs = 32\nstates = 8\n",
+        layout.display()
+    );
+    fs::write(&session, text).expect("a session file");
+    let [session, out] = [&session, &out].map(|path| path.to_str().expect("a path in UTF-8"));
+    check(&["simulate", session, "--trials", "4", "--seed", "7", "--arm", "timed", "--out", out], 0);
+    // The second is cut, the third excluded, the fourth no log.
+    let log = format!("{out}/seed7-S002/events.jsonl");
+    let lines = fs::read_to_string(&log).expect("a log");
+    let cut: Vec<&str> = lines.lines().take(lines.lines().count() / 2).collect();
+    fs::write(&log, cut.join("\n") + "\n").expect("cut");
+    check(&["exclude", &format!("{out}/seed7-S003"), "--reason", "interrupted"], 0);
+    fs::write(format!("{out}/seed7-S004/events.jsonl"), "{}\n").expect("damaged");
+    let list = figures(&["list", out, "--format", "json"], 0);
+    let rows = list["recordings"].as_array().expect("a list");
+    let column = |name: &str| rows.iter().map(|row| row[name].clone()).collect::<Vec<_>>();
+    assert_eq!(column("code"), [Value::Null, "S001".into(), "S002".into(), "S003".into()]);
+    assert_eq!(column("state"), ["unreadable", "whole", "cut", "excluded"]);
+    assert_eq!(rows[3]["reason"], "excluded: interrupted");
+    let whole = figures(&["replay", &format!("{out}/seed7-S001"), "--format", "json"], 0);
+    assert_eq!((&rows[1]["errors"], &rows[1]["trial_s"]), (&whole["errors"], &whole["trial_s"]));
+    assert_eq!(rows[1]["condition"], "none");
+    let told = String::from_utf8_lossy(&check(&["list", out], 0).stdout).into_owned();
+    assert!(told.contains("excluded    seed7-S003  (excluded: interrupted)"), "{told}");
+    assert!(told.ends_with(&format!("4 recordings in {out}\n")), "{told}");
+    for command in [&["replay", out][..], &["replay", out, "--verify"], &["compare", out], &["codes", out]] {
+        let told = complaint(command);
+        assert!(told.contains("found a folder with 4 recordings, where one recording is meant"), "{told}");
+        assert!(told.contains(&format!("{out}/seed7-S001, {out}/seed7-S002")), "{told}");
+    }
+    assert!(complaint(&["list", &format!("{out}/seed7-S001/nothing")]).contains("cannot be read"));
+}
+
+#[test]
+#[serial]
+fn a_path_that_is_nearly_right_gets_a_suggestion() {
+    let out = folder("nearly");
+    fs::create_dir_all(out.join("seed7-S001")).expect("a folder");
+    fs::copy("tests/golden/format-1-hand.jsonl", out.join("seed7-S001/events.jsonl")).expect("a recording");
+    let out = out.display().to_string();
+    let wrong = format!("{out}/seed7-S01");
+    let wanted = format!("{wrong} does not exist; did you mean {out}/seed7-S001?");
+    for command in [&["replay", &wrong][..], &["replay", &wrong, "--verify"], &["study", &wrong], &["list", &wrong]] {
+        let told = complaint(command);
+        assert!(told.contains(&wanted), "{command:?}: {told}");
+    }
+    let far = complaint(&["replay", &format!("{out}/another"), "--verify"]);
+    assert!(!far.contains("did you mean") && far.contains("cannot be read"), "{far}");
 }

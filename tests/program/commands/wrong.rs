@@ -27,6 +27,9 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     complaint(&["simulate", "sessions/default.toml", "--trials", "0"]);
     complaint(&["simulate", "sessions/default.toml", "--arm", "both"]);
     complaint(&["dance"]);
+    let told = complaint(&["operate", "--listen", "0.0.0.0:50022"]);
+    assert!(told.contains("an address without a port, as 0.0.0.0;") && told.contains("[display]"), "{told}");
+    assert!(complaint(&["operate", "--listen", "here"]).contains("an IP address of this computer"));
 }
 
 /// An edit of a file that makes it wrong, or a wrong file, and the message that it has to give.

@@ -82,3 +82,32 @@ fn a_rater_codes_errors_by_keys_and_sees_no_estimate() {
     terminal.key("C-c");
     terminal.is_whole("0");
 }
+
+#[test]
+#[serial]
+fn a_recording_of_a_folder_is_chosen_from_a_list_by_typing() {
+    let Some(terminal) = Terminal::open("chosen") else { return };
+    let out = terminal.folder.join("recordings");
+    for (name, golden) in [("P07-1", "hand"), ("S001", "simulated")] {
+        fs::create_dir_all(out.join(name)).expect("a folder");
+        let golden = format!("tests/golden/format-1-{golden}.jsonl");
+        fs::copy(golden, out.join(name).join("events.jsonl")).expect("a recording");
+    }
+    terminal.run(&format!("{TOMCOM} replay {}", out.display()));
+    terminal.see("Which recording of");
+    terminal.see("2 of 2");
+    terminal.key("Space");
+    for key in ["s", "0", "0", "1"] {
+        terminal.key(key);
+    }
+    terminal.see("s001_");
+    terminal.see("1 of 2");
+    terminal.key("Enter");
+    terminal.see("play 1x");
+    terminal.key("q");
+    terminal.is_whole("0");
+    terminal.run(&format!("{TOMCOM} replay {} --verify", out.display()));
+    terminal.see("Which recording of");
+    terminal.key("Escape");
+    terminal.is_whole("0");
+}

@@ -194,7 +194,9 @@ const Stage = (() => {
     kitchen.append(...locations.map((l) => l.made), ...storages.map((s) => s.made), ...buildPills(others));
     free.push(...freeForRecipe(others));
     const recipe = put(element("div", "recipe"), free);
-    kitchen.append(recipe);
+    const why = element("div", "why");
+    why.setAttribute("role", "status");
+    kitchen.append(recipe, why);
     const sheet = element("div", "sheet"), toast = element("div", "toast"), served = element("div", "served"), target = element("div", "target", "<i></i>");
     root.append(kitchen, served, sheet, toast, target, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
     const flash = element("div", "flash");
@@ -202,7 +204,7 @@ const Stage = (() => {
       const tag = scene.tags[2] ? scene.tags[2].area : [0.99, 0.98, 0, 0];
       root.append(put(flash, [tag[0] - 0.033, 1 - 0.0267 * Number(scene.display_m[0] / scene.display_m[1]) * 0.9375 - 0.004, 0.025, 0.025 * (scene.display_m[0] / scene.display_m[1])]));
     }
-    parts = { kitchen, locations, storages, recipe, sheet, toast, served, flash, target, free };
+    parts = { kitchen, locations, storages, recipe, why, sheet, toast, served, flash, target, free };
     mark({});
   }
 
@@ -250,7 +252,21 @@ const Stage = (() => {
       made.querySelector(".ring").className = `ring ${agent} ${now.effective ? "works" : "fails"}`;
       replay(made.querySelector(".ring"), "pulse");
       if (!now.effective && agent === "human") replay(made, "shakes");
+      if (agent === "human") drawReason(now, made);
     });
+  }
+
+  /** Why a press had no effect, in a line below its place, until the next press or for a moment. */
+  function drawReason({ why }, made) {
+    const said = why ? (scene.words[`why ${why.reason}`] || "").replace("#", scene.locations[why.about].label) : "";
+    parts.why.replaceChildren(text("span", "", said));
+    if (!said) return parts.why.classList.remove("says");
+    const [box, stage] = [made.getBoundingClientRect(), parts.kitchen.getBoundingClientRect()];
+    const wide = widthOf(said, 0.016) + 0.03, middle = (box.left + box.width / 2 - stage.left) / stage.width;
+    const low = (box.bottom - stage.top) / stage.height, high = (box.top - stage.top) / stage.height;
+    const top = low < 0.9 ? low + 0.005 : high - 0.055;
+    put(parts.why, [Math.min(0.994 - wide, Math.max(0.006, middle - wide / 2)), top, wide, 0.05]);
+    replay(parts.why, "says");
   }
 
   function drawSignal(signal) {
@@ -381,40 +397,3 @@ const Stage = (() => {
 
   return { build, show, flash, mark, greet, askCode, point, scene: () => scene, shown: () => shown };
 })();
-
-/** An item of a questionnaire, to be touched or answered with digits. */
-const Questions = {
-  draw(sheet, question, words, { element, text }) {
-    const card = element("div", "card question");
-    card.append(text("h2", "", question.title));
-    if (question.item) {
-      card.append(text("p", "count", `${question.number} / ${question.of}`), text("p", "item", question.text));
-      const scale = element("div", "scale");
-      for (let point = 1; point <= question.points; point += 1) {
-        const made = text("button", point === question.answer ? "chosen" : "", point);
-        made.dataset.rate = point;
-        scale.append(made);
-      }
-      const ends = element("div", "ends");
-      ends.append(text("span", "", question.low), text("span", "", question.high));
-      card.append(scale, ends);
-    } else {
-      card.append(text("p", "item", question.text));
-      const given = element("ol", question.given.length > 6 ? "given small" : "given");
-      for (const { text: asked, rated } of question.given) {
-        const line = element("li", "");
-        line.append(text("span", "", asked), text("b", "", rated ?? "–"));
-        given.append(line);
-      }
-      card.append(given);
-    }
-    const row = element("div", "row");
-    const button = (does, label) => { const made = text("button", does, label); made.dataset.does = does; row.append(made); };
-    if (question.before) button("back", words.back);
-    if (question.item) button("skip", words.skip);
-    if (question.item && question.answer) button("next", words.next);
-    if (!question.item) button("confirm", words.confirm);
-    card.append(row);
-    sheet.replaceChildren(card);
-  },
-};

@@ -1,0 +1,117 @@
+//! A folder of recordings as a list: who, when, how long, how many errors, and whether the recording is whole.
+
+use serde::Serialize;
+
+use crate::base::words::count;
+use crate::session::settings::Condition;
+
+/// State of a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RecordingState {
+    /// The session was closed.
+    Whole,
+    /// The session's end is missing, and nobody writes on.
+    Cut,
+    /// The trial was aborted or excluded: the analysis leaves it out.
+    Excluded,
+    /// The session still runs.
+    Running,
+    /// The recording cannot be read.
+    Unreadable,
+}
+
+impl RecordingState {
+    /// The state in a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            RecordingState::Whole => "whole",
+            RecordingState::Cut => "cut",
+            RecordingState::Excluded => "excluded",
+            RecordingState::Running => "running",
+            RecordingState::Unreadable => "unreadable",
+        }
+    }
+}
+
+/// A recording of a list.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ListedRecording {
+    /// Name of its folder.
+    pub recording: String,
+    /// The participant's code; null for what cannot be read.
+    pub code: Option<String>,
+    /// Who sent signals; null for what cannot be read.
+    pub condition: Option<Condition>,
+    /// When the recording began (UTC, RFC 3339); null for a simulated one.
+    pub date: Option<String>,
+    /// The trial's length by its own clock, in seconds.
+    pub trial_s: Option<f64>,
+    /// The human's presses that were errors; null where they are not counted.
+    pub errors: Option<u64>,
+    /// Whether it is whole.
+    pub state: RecordingState,
+    /// Why it is excluded, or cannot be read.
+    pub reason: Option<String>,
+}
+
+/// The recordings in a folder.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RecordingList {
+    /// The folder.
+    pub folder: String,
+    /// Sorted by code, then by date, then by name.
+    pub recordings: Vec<ListedRecording>,
+}
+
+impl RecordingList {
+    /// The headings of [`ListedRecording::cells`].
+    pub const HEADINGS: [&'static str; 7] = ["code", "condition", "date", "length", "errors", "state", "recording"];
+
+    /// A sorted list.
+    pub fn new(folder: String, mut recordings: Vec<ListedRecording>) -> RecordingList {
+        let key = |one: &ListedRecording| (one.code.clone(), one.date.clone(), one.recording.clone());
+        recordings.sort_by_key(key);
+        RecordingList { folder, recordings }
+    }
+
+    /// The list as a table, for people.
+    pub fn describe(&self) -> String {
+        let mut rows: Vec<[String; 7]> = vec![RecordingList::HEADINGS.map(str::to_string)];
+        rows.extend(self.recordings.iter().map(ListedRecording::cells));
+        let widths: Vec<usize> = (0..7).map(|column| widest(&rows, column)).collect();
+        let mut text = String::new();
+        for (row, one) in rows.iter().zip(std::iter::once(None).chain(self.recordings.iter().map(Some))) {
+            let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
+            text.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
+            let reason = one.and_then(|one| one.reason.as_ref());
+            text.push_str(&reason.map_or("\n".to_string(), |reason| format!("  ({reason})\n")));
+        }
+        text + &format!("{} in {}\n", count(self.recordings.len() as u64, "recording", "recordings"), self.folder)
+    }
+}
+
+fn widest(rows: &[[String; 7]], column: usize) -> usize {
+    rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)
+}
+
+impl ListedRecording {
+    /// One cell for each of [`RecordingList::HEADINGS`]; "-" for what is not known.
+    pub fn cells(&self) -> [String; 7] {
+        let or_dash = |cell: Option<String>| cell.unwrap_or_else(|| "-".to_string());
+        let condition = self.condition.map(|condition| match condition {
+            Condition::None => "unassisted".to_string(),
+            other => other.name().to_string(),
+        });
+        let minutes = |seconds: f64| format!("{}:{:02}", seconds as u64 / 60, seconds as u64 % 60);
+        [
+            or_dash(self.code.clone()),
+            or_dash(condition),
+            or_dash(self.date.as_deref().map(|date| date.chars().take(16).collect::<String>().replace('T', " "))),
+            or_dash(self.trial_s.map(minutes)),
+            or_dash(self.errors.map(|errors| errors.to_string())),
+            self.state.name().to_string(),
+            self.recording.clone(),
+        ]
+    }
+}

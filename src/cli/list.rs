@@ -1,0 +1,83 @@
+//! `tomcom list`, and the choice of a recording where a folder of recordings is given.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::failure::Failure;
+use super::output::{OutputFormat, print, progress};
+use crate::base::words::count;
+use crate::edge::log::LOG_NAME;
+use crate::edge::{near_path, recordings};
+use crate::run::pick_recording;
+use crate::run::recording_list::{self, ListDepth};
+
+/// Largest number of recordings that a message names.
+const MOST_NAMED: usize = 12;
+
+/// Lists the recordings of a folder.
+///
+/// Code, condition, date, length of the trial, errors, and state: whole, cut (without its end), excluded (or aborted), running,
+/// unreadable. Sorted by code and date.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples: tomcom list sessions\n          tomcom list recordings --format json\nMore: docs/recordings.md"
+)]
+pub(super) struct ListArgs {
+    /// A folder with recordings in it.
+    #[arg(value_name = "DIR", default_value = "sessions")]
+    folder: PathBuf,
+    /// Output format.
+    #[arg(long, value_enum, default_value = "text")]
+    format: OutputFormat,
+}
+
+/// `tomcom list DIR`.
+pub(super) fn list(args: &ListArgs) -> Result<(), Failure> {
+    exists(&args.folder)?;
+    let bar = progress(0, "recordings");
+    let begun = |number: usize| bar.set_length(number as u64);
+    let (list, _) = recording_list::list(&args.folder, ListDepth::WithErrors, begun, || bar.inc(1))?;
+    bar.finish_and_clear();
+    print(args.format, &list, || list.describe())
+}
+
+/// The recordings that are meant by paths, each of which is one recording: of a folder of recordings, one is chosen at a terminal.
+pub(super) fn each_chosen(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    paths.iter().map(|path| chosen(path)).collect()
+}
+
+/// The recording that is meant by a path: of a folder of recordings, the one that is chosen at a terminal.
+pub(super) fn chosen(path: &Path) -> Result<PathBuf, Failure> {
+    exists(path)?;
+    if !path.is_dir() || path.join(LOG_NAME).exists() {
+        return Ok(path.to_path_buf());
+    }
+    let found = recordings::of_folder(path)?;
+    if std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
+        return pick_recording::pick(path)?.ok_or(Failure::Unread);
+    }
+    let named: Vec<String> = found.iter().take(MOST_NAMED).map(|path| path.display().to_string()).collect();
+    let more = match found.len().saturating_sub(MOST_NAMED) {
+        0 => String::new(),
+        more => format!(", and {more} more, which tomcom list {} shows", path.display()),
+    };
+    let number = count(found.len() as u64, "recording", "recordings");
+    Err(Failure::Wrong(miette::miette!(
+        help = format!("one of {}{more}", named.join(", ")),
+        "{}: found a folder with {number}, where one recording is meant",
+        path.display()
+    )))
+}
+
+/// Refuses a path that does not exist, with the one that is nearly the same.
+pub(super) fn exists(path: &Path) -> Result<(), Failure> {
+    let Some(near) = Some(path).filter(|path| !path.exists()).and_then(near_path::nearest) else { return Ok(()) };
+    Err(Failure::Wrong(miette::miette!(
+        help = near.display().to_string(),
+        "{} does not exist; did you mean {}?",
+        path.display(),
+        near.display()
+    )))
+}

@@ -1,0 +1,78 @@
+//! Lets a person at a terminal choose a recording of a folder.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use super::desk::OperatorDesk;
+use super::error::{ReviewError, TerminalError};
+use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
+use super::recording_list::{self, ListDepth};
+use crate::analysis::recording_table::RecordingList;
+use crate::console::ConsoleMessage;
+use crate::console::recording_picker::{RecordingPicker, RecordingReply};
+use crate::console::view::theme::Theme;
+use crate::session::settings::ConsoleSpec;
+
+/// Period of redrawing the list, in case the terminal's size changed.
+const REDRAW: Duration = Duration::from_millis(100);
+
+/// Asks which recording of the folder is meant; `None` if that is left open.
+///
+/// # Errors
+/// The folder cannot be read or has no recordings, or there is no terminal.
+pub fn pick(folder: &Path) -> Result<Option<PathBuf>, ReviewError> {
+    let (list, paths) = recording_list::list(folder, ListDepth::Quick, |_| (), || ())?;
+    // Errors are not counted here: the column would be empty.
+    let without_errors = |cells: [String; 7]| {
+        let [code, condition, date, length, _, state, recording] = cells;
+        vec![code, condition, date, length, state, recording]
+    };
+    let headings = without_errors(RecordingList::HEADINGS.map(str::to_string));
+    let rows = list.recordings.iter().map(|one| without_errors(one.cells())).collect();
+    let title = format!("Which recording of {}?", list.folder);
+    let picker = RecordingPicker::new(title, headings, rows);
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
+    let chosen = runtime.block_on(async {
+        let mut desk = OperatorDesk::without_devices(&ConsoleSpec::default())?;
+        let mut shell = OpenPicker { picker, theme: desk.theme, dirty: true };
+        event_loop::run(&mut shell, &mut desk).await
+    })?;
+    Ok(match chosen {
+        Some(RecordingReply::Chosen(index)) => paths.get(index).cloned(),
+        Some(RecordingReply::Leave) | None => None,
+    })
+}
+
+/// A list in which nothing is chosen yet.
+struct OpenPicker {
+    picker: RecordingPicker,
+    theme: Theme,
+    /// Whether the screen must be redrawn.
+    dirty: bool,
+}
+
+impl ConsoleShell for OpenPicker {
+    type Outcome = RecordingReply;
+    type Error = ReviewError;
+
+    fn deadlines(&mut self) -> ShellDeadlines {
+        ShellDeadlines { frame_after: if self.dirty { FRAME } else { REDRAW }, ..ShellDeadlines::default() }
+    }
+
+    fn take(&mut self, event: LoopEvent) -> Result<Option<RecordingReply>, ReviewError> {
+        let LoopEvent::Terminal(message) = event else { return Ok(None) };
+        self.dirty = true;
+        Ok(match message {
+            ConsoleMessage::Key(key) => self.picker.key(&key),
+            _ => None,
+        })
+    }
+
+    fn view(&self) -> ShellView<'_> {
+        ShellView::Recordings(&self.picker, self.theme)
+    }
+
+    fn drawn(&mut self) {
+        self.dirty = false;
+    }
+}

@@ -1,0 +1,110 @@
+//! Lists the recordings of a folder.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::{parallel, standing};
+use crate::analysis::recording_table::{ListedRecording, RecordingList, RecordingState};
+use crate::edge::file_error::FileResult;
+use crate::edge::log::{LogEnding, LogReader, at_line};
+use crate::edge::recordings;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, Change, Kitchen};
+use crate::measures::errors::PressJudge;
+use crate::session::apply;
+
+/// What is found out about each recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ListDepth {
+    /// All but the errors, which take the longest.
+    Quick,
+    /// Also the errors.
+    WithErrors,
+}
+
+/// The recordings that a path means, as [`recordings::of_folder`] finds them, in the order of their list. What cannot be read is listed as
+/// such. `done` is called after each.
+///
+/// # Errors
+/// The folder cannot be read, or there is no recording.
+pub fn list(
+    folder: &Path,
+    depth: ListDepth,
+    begun: impl FnOnce(usize),
+    done: impl Fn() + Sync,
+) -> FileResult<(RecordingList, Vec<PathBuf>)> {
+    let found = recordings::of_folder(folder)?;
+    begun(found.len());
+    let own = || None::<(Arc<Kitchen>, CostToGo)>;
+    let rows = parallel::each_with(&found, own, |cost, path| read_or_tell(path, depth, cost), done);
+    let list = RecordingList::new(folder.display().to_string(), rows);
+    let is_named = |path: &PathBuf, row: &ListedRecording| name(path) == row.recording;
+    let path = |row| found.iter().find(|path| is_named(path, row)).cloned().unwrap_or_else(|| folder.to_path_buf());
+    let paths = list.recordings.iter().map(path).collect();
+    Ok((list, paths))
+}
+
+/// The last part of a recording's path.
+fn name(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+}
+
+fn read_or_tell(path: &Path, depth: ListDepth, cost: &mut Option<(Arc<Kitchen>, CostToGo)>) -> ListedRecording {
+    read(path, depth, cost).unwrap_or_else(|error| ListedRecording {
+        recording: name(path),
+        code: None,
+        condition: None,
+        date: None,
+        trial_s: None,
+        errors: None,
+        state: RecordingState::Unreadable,
+        reason: Some(error.to_string()),
+    })
+}
+
+/// Applies all events of a recording; `cost` is kept for the next recording of the same kitchen.
+fn read(path: &Path, depth: ListDepth, cost: &mut Option<(Arc<Kitchen>, CostToGo)>) -> FileResult<ListedRecording> {
+    let mut log = LogReader::open(path)?;
+    let mut session = log.session();
+    let kitchen = session.kitchen.clone();
+    if cost.as_ref().is_none_or(|(known, _)| **known != *kitchen) {
+        *cost = Some((kitchen.clone(), CostToGo::new(kitchen.clone())));
+    }
+    let mut judge = PressJudge::new(kitchen);
+    let mut errors = 0;
+    while let Some(line) = log.next_line()? {
+        let wrong = |error: crate::session::apply::ApplyError| {
+            at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy)
+        };
+        let change = apply(&mut session, &line.stamped).map_err(wrong)?.change;
+        match (change, &mut *cost) {
+            (Change::Press { press, .. }, Some((_, cost)))
+                if press.agent == Agent::Human && depth == ListDepth::WithErrors =>
+            {
+                errors += u64::from(judge.human_pressed(cost, line.stamped.time, &press).error);
+            }
+            (Change::Press { press, .. }, _) if press.agent == Agent::Robot => {
+                judge.others_changed(line.stamped.time, press.before, press.after);
+            }
+            (Change::Correction { before, after, .. }, _) => judge.others_changed(line.stamped.time, before, after),
+            _ => {}
+        }
+    }
+    let standing = standing::exclusion_status(&session, &log)?;
+    let state = match log.ending() {
+        LogEnding::Running => RecordingState::Running,
+        _ if !standing.counts() => RecordingState::Excluded,
+        LogEnding::Cut => RecordingState::Cut,
+        LogEnding::Closed => RecordingState::Whole,
+    };
+    Ok(ListedRecording {
+        recording: name(path),
+        code: Some(session.spec.participant.code.clone()),
+        condition: Some(session.spec.trial.condition),
+        date: log.header.started.clone(),
+        trial_s: Some(session.trial_clock(session.time).as_secs_f64()),
+        errors: (depth == ListDepth::WithErrors).then_some(errors),
+        state,
+        reason: (state == RecordingState::Excluded).then(|| standing.describe()),
+    })
+}

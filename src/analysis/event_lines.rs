@@ -4,6 +4,7 @@ use super::follower::Follower;
 use crate::base::printable::printable;
 use crate::base::words::count;
 use crate::communication::concept::ConceptName;
+use crate::communication::offer::OfferedAdvice;
 use crate::communication::recommendation::Recommendation;
 use crate::history::wording::{self, location as said};
 use crate::kitchen::Agent;
@@ -74,6 +75,11 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::RobotResumed => "robot goes on".to_string(),
         // Advice is worth a line where something should be said.
         Event::Advised(advice) => advised(advice, follower.session.spec.assistant.concept)?,
+        Event::OfferOpened(offer) => offered(offer),
+        Event::OfferClosed { reason, .. } => format!("offer closes: {}", reason.words()),
+        Event::SignalShown { signal: shown, offer: Some(_), .. } => {
+            format!("signal: {} (the offer is taken)", wording::signal(shown))
+        }
         Event::SignalShown { signal: shown, .. } => format!("signal: {}", wording::signal(shown)),
         Event::SignalEnded { reason: SignalEnd::Elapsed } => "signal ends".to_string(),
         Event::SignalEnded { reason: SignalEnd::TakenBack } => "signal taken back".to_string(),
@@ -167,4 +173,9 @@ fn advised(advice: &Recommendation, by: ConceptName) -> Option<String> {
     };
     let reason = advice.reason.as_ref().map_or(String::new(), |reason| format!(": {}", reason.words()));
     Some(format!("advised: {what}, {worth}{reason}"))
+}
+
+fn offered(offer: &OfferedAdvice) -> String {
+    let unseen = if offer.visible { "" } else { " (not visible to a wizard)" };
+    format!("offer: {}{unseen}", wording::offered(&offer.what))
 }

@@ -3,7 +3,7 @@
 //! The files from the ground up:
 //!
 //! - `signal`, [`recommendation`] (what a concept answers), [`repeats`] (what was said already), [`situation`].
-//! - `concept_name`, [`settings`], [`concept`] (the interface).
+//! - `concept_name`, [`settings`], [`concept`] (the interface), [`offer`] (a recommendation as the wizard sees it).
 //! - What implements it: [`planner`] (ToM-Com), [`tom`], [`dev`]; [`concepts`] builds one by its name. `reference` is the
 //!   planner in its plainest form.
 
@@ -11,6 +11,7 @@ pub mod concept;
 mod concept_name;
 pub mod concepts;
 pub mod dev;
+pub mod offer;
 pub mod planner;
 pub mod recommendation;
 pub mod reference;

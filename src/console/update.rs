@@ -23,8 +23,8 @@ use crate::communication::Sender;
 use crate::history::belief_track;
 use crate::history::wording;
 use crate::kitchen::Agent;
-use crate::session::admit::may_send;
 use crate::session::event::{EndReason, SignalEnd};
+use crate::session::offers;
 use crate::session::settings::{ParticipantKind, Visibility};
 use crate::session::{Event, Phase, Session};
 
@@ -273,24 +273,18 @@ fn report(model: &mut ConsoleModel, code: KeyCode, action: Option<KeyAction>) {
     }
 }
 
-/// Sends the signal that the assistant recommends, if the wizard sees it.
+/// Sends the signal of the offer that the wizard has read.
 fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
-    if session.spec.console.visibility != Visibility::Recommendation {
-        model.say(NoticeLevel::Refused, "not accepted: recommendations are not shown in this session");
-        return None;
+    match offers::enter(session, model.now) {
+        Ok((offer, event)) => {
+            let words = format!("sent: {}", offer.signal().map_or(String::new(), wording::signal));
+            send(model, session, event, NoticeLevel::Done, &words)
+        }
+        Err(reason) => {
+            model.say(NoticeLevel::Refused, format!("not sent: {reason}"));
+            None
+        }
     }
-    if let Err(reason) = may_send(session, Sender::Wizard) {
-        model.say(NoticeLevel::Refused, format!("not accepted: {reason}"));
-        return None;
-    }
-    let best = session.advice.as_ref().and_then(|advice| Some((advice, advice.best.clone()?)));
-    let Some((advice, signal)) = best else {
-        model.say(NoticeLevel::Refused, "not accepted: nothing is recommended");
-        return None;
-    };
-    let words = format!("accepted: {}", wording::signal(&signal));
-    let event = Event::SignalShown { by: Sender::Wizard, signal, accepted: Some(advice.for_seq) };
-    send(model, session, event, NoticeLevel::Done, &words)
 }
 
 fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option<ConsoleCommand> {
@@ -300,7 +294,7 @@ fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option
             send(
                 model,
                 session,
-                Event::SignalShown { by: Sender::Wizard, signal, accepted: None },
+                Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None },
                 NoticeLevel::Done,
                 &words,
             )

@@ -2,6 +2,7 @@
 
 use crate::base::time::SessionTime;
 use crate::base::words::count;
+use crate::communication::offer::OfferedAct;
 use crate::communication::{Sender, Signal};
 use crate::gaze::quality::DropCounts;
 use crate::kitchen::{Agent, ButtonAction, Kitchen, LocationId, OrderContent};
@@ -41,6 +42,17 @@ pub fn signal(signal: &Signal) -> String {
     match signal {
         Signal::ShowRecipe(order) => format!("recipe of {}", location(order)),
         Signal::Highlight(place) => format!("highlight {}", location(place)),
+    }
+}
+
+/// What is offered in words.
+pub fn offered(what: &OfferedAct) -> String {
+    match what {
+        OfferedAct::Signal(told) => signal(told),
+        OfferedAct::Presses(presses) => {
+            let names: Vec<String> = presses.iter().map(|press| location(press)).collect();
+            format!("press {}", names.join(", "))
+        }
     }
 }
 

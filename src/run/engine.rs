@@ -165,6 +165,12 @@ impl Engine {
         Engine { wizard: None, ..self }
     }
 
+    /// The engine of a recording that was made without offers.
+    pub fn without_offers(mut self) -> Engine {
+        self.follower.session.makes_offers = false;
+        self
+    }
+
     /// The follower of the session, after its end.
     pub fn into_follower(self) -> Follower {
         self.follower
@@ -228,7 +234,7 @@ impl Engine {
         let Some(signal) = self.wizard.as_mut().and_then(|one| one.act(now, state, &mut self.follower.cost)) else {
             return;
         };
-        let event = Event::SignalShown { by: Sender::Wizard, signal, accepted: None };
+        let event = Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None };
         if admit(self.session(), &event).is_ok() {
             self.record_own(now, event);
         }
@@ -247,13 +253,15 @@ impl Engine {
             Timer::EndTrial => Event::TrialEnded { reason: EndReason::Time },
             Timer::EndTrialByOrders => Event::TrialEnded { reason: EndReason::Orders },
             Timer::EndTrialByPresses => Event::TrialEnded { reason: EndReason::Presses },
+            Timer::ReviewOffer => return self.review_offer(now),
         };
         self.record_own(now, event);
     }
 
-    /// Applies immediate consequences, then requests advice.
+    /// Applies immediate consequences, then opens or closes offers and requests advice.
     fn settle(&mut self, now: SessionTime) {
         self.let_follow(now);
+        self.review_offer(now);
         if let Some((seq, time)) = self.to_ask.take().filter(|_| self.session().is_running()) {
             self.questions.push(AdviceRequest::from_follower(&self.follower, seq, time));
         }
@@ -343,7 +351,7 @@ impl Engine {
     /// The signal that the assistant sends because of its recommendation, if it is allowed.
     fn acted_on(&self, advice: &Recommendation) -> Option<Event> {
         let signal = advice.best.clone()?;
-        let event = Event::SignalShown { by: Sender::Assistant, signal, accepted: None };
+        let event = Event::SignalShown { by: Sender::Assistant, signal, accepted: None, offer: None };
         admit(self.session(), &event).is_ok().then_some(event)
     }
 

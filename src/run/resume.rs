@@ -97,5 +97,7 @@ pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
     let mut header = Header::new(old.session, old.trial, old.layout, old.recipes);
     header.continues = Some(continues);
     header.keys = old.keys;
+    // All parts of a recording have one format.
+    header.version = old.version;
     Ok(ResumedSession { engine: again.engine, first, header, time, folder, lock })
 }

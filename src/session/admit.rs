@@ -46,7 +46,19 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         }
         Event::RobotStopped => refuse_if(session.robot.is_stopped_by_wizard(), "the robot is stopped already"),
         Event::RobotResumed => refuse_if(!session.robot.stopped, "the robot is not stopped"),
-        Event::SignalShown { by, signal, .. } => admit_signal(session, *by, signal),
+        Event::SignalShown { by, signal, offer, .. } => {
+            admit_signal(session, *by, signal)?;
+            let is_there = |seq: u64| session.offers.find(seq).is_some_and(|offer| offer.signal() == Some(signal));
+            refuse_if(offer.is_some_and(|seq| !is_there(seq)), "that was not the last offer")
+        }
+        Event::OfferOpened(_) => {
+            refuse_if(phase != Phase::Running, "no trial runs")?;
+            refuse_if(session.offers.unclosed().is_some(), "an offer is open already")
+        }
+        Event::OfferClosed { offer, .. } => {
+            let is_open = session.offers.unclosed().is_some_and(|open| open.seq == *offer);
+            refuse_if(!is_open, "that offer is not open")
+        }
         Event::Advised(_) => {
             refuse_if(phase != Phase::Running, "no trial runs")?;
             refuse_if(!session.spec.asks_assistant(), "nobody asks the assistant in this session")
@@ -148,6 +160,8 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::RobotMoves(_)
         | Event::RobotSafety { .. }
         | Event::RobotTouched { .. }
+        | Event::OfferOpened(_)
+        | Event::OfferClosed { .. }
         | Event::ParticipantBelieves(_)
         | Event::BeliefEstimated(_) => false,
     }

@@ -9,6 +9,7 @@ use super::session_state::{Served, Session, ShownSignal};
 use super::timeline_entry::TimelineEvent;
 use super::{accuracy_check, protocol, robot_changes};
 use crate::base::time::SessionTime;
+use crate::communication::offer::{GAP, HOLD, OfferBook};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Change, ContentId, DishId, LocationId, OrderContent, State};
@@ -48,6 +49,8 @@ pub enum Timer {
     EndTrialByPresses,
     /// The set number of orders was served.
     EndTrialByOrders,
+    /// A time of the rules of offers has passed: one may open or close.
+    ReviewOffer,
 }
 
 /// An event that the session cannot accept: the log is damaged or was written by another program.
@@ -151,16 +154,28 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
             session.note(now, TimelineEvent::Corrected { location });
         }
         Event::Advised(advice) => advise(session, advice.clone()),
-        Event::SignalShown { by, signal, .. } => {
+        Event::OfferOpened(advice) => {
+            session.offers.opens(stamped.seq, now, advice.clone());
+            effects.push(Effect::At { time: now + HOLD, timer: Timer::ReviewOffer });
+        }
+        Event::OfferClosed { reason, .. } => {
+            session.offers.closes(now, *reason);
+            effects.push(Effect::At { time: now + GAP, timer: Timer::ReviewOffer });
+        }
+        Event::SignalShown { by, signal, offer, .. } => {
             let location = named.location(signal.target())?;
             session.cue = Some(stamped.seq);
+            if *by == Sender::Wizard {
+                session.offers.sends(signal, *offer);
+            }
             show(session, now, *by, (signal, location), &mut effects);
         }
         Event::SignalEnded { reason } => end_signal(session, now, *reason, &mut effects),
         Event::Marker { note: text } => session.note(now, TimelineEvent::Marker(text.clone())),
         Event::Protocol(event) => protocol::apply(session, event),
         Event::Unblinded { .. } => session.unblinded = true,
-        Event::Preflight { .. } | Event::Screen(_) | Event::Display(_) | Event::SignalDrawn { .. } => {}
+        Event::Screen(_) => session.has_console = true,
+        Event::Preflight { .. } | Event::Display(_) | Event::SignalDrawn { .. } => {}
         Event::ClockJumped { .. } | Event::ParticipantBelieves(_) | Event::BeliefEstimated(_) => {}
         Event::SessionEnded => close(session, now, &mut effects),
     }
@@ -247,6 +262,7 @@ fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) -> 
     session.paused_total = SessionTime::ZERO;
     session.presses = [0; 2];
     session.served.clear();
+    session.offers = OfferBook::default();
     let empty = session.kitchen.empty_state();
     let (before, after) = update(session, now, |state| *state = empty);
     session.note(now, TimelineEvent::Trial(Phase::Running));
@@ -324,6 +340,8 @@ fn show(
     session.shown = Some(ShownSignal { signal: signal.clone(), location, by, since: now, until });
     if by == Sender::Wizard {
         session.signalled_at = Some(now);
+        let cool_down = SessionTime::from_secs_f64(session.spec.signals.cool_down_s);
+        effects.push(Effect::At { time: now + cool_down, timer: Timer::ReviewOffer });
         if let Some(advice) = &mut session.advice {
             advice.remove(signal);
         }

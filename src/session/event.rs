@@ -13,6 +13,7 @@ use super::wall_display::DisplayEvent;
 use super::wizard_screen::VisibleScreen;
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
+use crate::communication::offer::{OfferEnd, OfferedAdvice};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::gaze::GazeSample;
@@ -176,12 +177,24 @@ pub enum Event {
         by: Sender,
         /// The signal that is shown.
         signal: Signal,
-        /// Sequence number of the event whose recommendation the wizard accepted, if any.
+        /// In logs of format 1, which has no offers: sequence number of the event whose recommendation the wizard accepted, if any.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         accepted: Option<u64>,
+        /// Sequence number of the `offer_opened` whose offer the wizard took, if any.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        offer: Option<u64>,
     },
     /// A recommendation of the assistant; it refers to an earlier event if it was computed while the session continued.
     Advised(Recommendation),
+    /// An offer to the wizard opens.
+    OfferOpened(OfferedAdvice),
+    /// The open offer closes.
+    OfferClosed {
+        /// Sequence number of its `offer_opened`.
+        offer: u64,
+        /// Why it closes.
+        reason: OfferEnd,
+    },
     /// Witness: the first frame with the signal of this sequence number was written to the terminal.
     SignalDrawn {
         /// Sequence number of the event that showed the signal.
@@ -263,6 +276,8 @@ impl Event {
             Event::RobotDriven { .. } => "robot_driven",
             Event::KitchenCorrected { .. } => "kitchen_corrected",
             Event::Advised(_) => "advised",
+            Event::OfferOpened(_) => "offer_opened",
+            Event::OfferClosed { .. } => "offer_closed",
             Event::SignalShown { .. } => "signal_shown",
             Event::SignalDrawn { .. } => "signal_drawn",
             Event::SignalEnded { .. } => "signal_ended",

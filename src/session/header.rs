@@ -7,8 +7,10 @@ use crate::base::time::SessionTime;
 
 /// The name of the log's format.
 pub const FORMAT: &str = "tomcom-session";
-/// The version of the format that this program writes and reads.
-pub const VERSION: u32 = 1;
+/// The version of the format that this program writes. It reads all versions from 1 on.
+pub const VERSION: u32 = 2;
+/// The version of the format since which recommendations become offers.
+const OFFERS_SINCE: u32 = 2;
 /// The version of the program since which simulated participants decide as they do now.
 pub const PEOPLE_SINCE: &str = "0.2.0";
 
@@ -74,6 +76,11 @@ impl Header {
             |version: &str| version.split('.').map(|part| part.parse::<u64>().ok()).collect::<Option<Vec<_>>>();
         let is_earlier = numbers(&self.program).is_some_and(|program| Some(program) < numbers(PEOPLE_SINCE));
         self.session.participant.kind == ParticipantKind::Simulated && is_earlier
+    }
+
+    /// Whether recommendations became offers in the recording.
+    pub fn has_offers(&self) -> bool {
+        self.version >= OFFERS_SINCE
     }
 
     /// The header of a session that this program runs.

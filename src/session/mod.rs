@@ -12,7 +12,7 @@
 //! - The state: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `protocol_state`; `session_state`, all of them
 //!   together.
 //! - What can happen when, and what it changes: `robot_changes`, [`accuracy_check`], [`gaze_samples`], [`protocol`],
-//!   `interventions`; [`admit`] and [`mod@apply`], all of them together. Beside them [`preflight_checks`], and the [`timers`] that [`apply()`] sets.
+//!   `interventions`; [`admit`] and [`mod@apply`], all of them together. On these stand the rules of [`offers`]. Beside them [`preflight_checks`], and the [`timers`] that [`apply()`] sets.
 
 pub mod accuracy_check;
 pub mod admit;
@@ -25,6 +25,7 @@ pub mod gaze_samples;
 mod gaze_status;
 pub mod header;
 mod interventions;
+pub mod offers;
 pub mod orders;
 pub mod participant_code;
 mod participant_settings;

@@ -194,6 +194,8 @@ pub const FILE_WORDS: &[&str] = &[
     "none",
     "null",
     "off",
+    "offer_closed",
+    "offer_opened",
     "on",
     "order",
     "order_cleared",

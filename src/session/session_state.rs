@@ -12,6 +12,7 @@ use super::timeline_entry::{TimelineEntry, TimelineEvent};
 use super::tracker::TrackerStatus;
 use crate::base::rng::of_trial;
 use crate::base::time::SessionTime;
+use crate::communication::offer::OfferBook;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::kitchen::state::MAX_LOCATIONS;
@@ -55,6 +56,12 @@ pub struct Session {
     pub shown: Option<ShownSignal>,
     /// Latest recommendation of the assistant in the running trial.
     pub advice: Option<Recommendation>,
+    /// Whether recommendations become offers: not in recordings of format 1.
+    pub makes_offers: bool,
+    /// The offer to the wizard, and the last one.
+    pub offers: OfferBook,
+    /// Whether a console shows the session to a wizard.
+    pub has_console: bool,
     /// Sequence number of the latest event that the display marks with a flash (trial start, signal).
     pub cue: Option<u64>,
     /// Time of the wizard's last signal.
@@ -133,6 +140,9 @@ impl Session {
             robot: RobotStatus::default(),
             shown: None,
             advice: None,
+            makes_offers: true,
+            offers: OfferBook::default(),
+            has_console: false,
             cue: None,
             signalled_at: None,
             unblinded: false,

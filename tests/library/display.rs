@@ -179,7 +179,7 @@ fn the_page_is_told_what_may_be_seen_and_nothing_else() {
             let wizard = |step: u32, session: &Session| match step % 41 {
                 7 | 23 if condition == Condition::Wizard => {
                     let signal = signals[(step as usize / 16) % signals.len()].1.clone();
-                    Some(Event::SignalShown { by: Sender::Wizard, signal, accepted: None })
+                    Some(Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None })
                 }
                 // Whatever lies there: complete stacks, too, on the menu and not.
                 13 => {
@@ -298,7 +298,7 @@ fn what_the_display_tells_is_recorded_and_verified() {
         (1.02, Event::Display(DisplayEvent::Drawn { cue: 1, at_ns: at(1.015) })),
         (2.0, press("take rice", 1.98)),
         (3.0, press("cooking_pot", 2.995)),
-        (3.5, Event::SignalShown { by: Sender::Wizard, signal, accepted: None }),
+        (3.5, Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None }),
         (4.0, Event::Display(DisplayEvent::Lost)),
         (5.0, Event::TrialEnded { reason: EndReason::Wizard }),
         (5.0, Event::SessionEnded),

@@ -8,12 +8,14 @@ use super::theme::TextRole;
 use crate::base::words::count;
 use crate::communication::Sender;
 use crate::communication::concept::ConceptName;
+use crate::communication::offer::{OfferWorth, OfferedAct};
 use crate::communication::recommendation::{Proposal, Recommendation, SignalOption};
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::history::wording;
 use crate::session::Session;
 use crate::session::admit::may_send;
+use crate::session::offers;
 
 /// Width of a gauge in columns; a column is half a saved press, or for ToM a twelfth of the deviation.
 const GAUGE: u16 = 12;
@@ -35,7 +37,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         return line(brush, area, session, model);
     }
     let inside = brush.panel(area, "Recommendation", remark(session, area.width));
-    let Some(advice) = &session.advice else {
+    let Some(advice) = &shown(session) else {
         let quiet = brush.style(TextRole::Quiet);
         for (row, line) in wrap(silence(session), inside.width).iter().enumerate() {
             brush.text(inside.x, inside.y + row as u16, inside.width, line, quiet);
@@ -74,6 +76,30 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         let style = brush.style(TextRole::Quiet);
         brush.text(inside.x, y, inside.width, &text, style);
     }
+}
+
+/// The recommendation with the open offer in the place of its best signal; where none are made, as it is.
+fn shown(session: &Session) -> Option<Recommendation> {
+    let advice = session.advice.clone()?;
+    if !offers::are_made(session) {
+        return Some(advice);
+    }
+    let silent = Recommendation { best: None, reason: None, proposal: None, ..advice };
+    let Some(offer) = session.offers.open() else { return Some(silent) };
+    let reason = offer.advice.reason.clone();
+    Some(match (&offer.advice.what, offer.advice.worth) {
+        (OfferedAct::Signal(signal), Some(OfferWorth { benefit, standard_error, net })) => {
+            let offered = SignalOption { signal: signal.clone(), benefit, standard_error, net, rollouts: 0 };
+            let others = silent.options.into_iter().filter(|option| option.signal != *signal);
+            let options = std::iter::once(offered).chain(others).collect();
+            Recommendation { options, best: Some(signal.clone()), reason, ..silent }
+        }
+        (OfferedAct::Presses(presses), _) => {
+            let proposal = Proposal { error: offer.advice.for_seq, presses: presses.clone() };
+            Recommendation { proposal: Some(proposal), ..silent }
+        }
+        (OfferedAct::Signal(_), None) => silent,
+    })
 }
 
 /// Remark in the title: the concept and the unit of its numbers.
@@ -118,7 +144,7 @@ fn silence(session: &Session) -> &'static str {
 /// Draws the best option in one line.
 fn line(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel) {
     let mut parts = vec![(" advice   ".to_string(), TextRole::Quiet)];
-    match session.advice.as_ref().map(|advice| (advice, advice.best.as_ref().and(advice.top()))) {
+    match shown(session).as_ref().map(|advice| (advice, advice.best.as_ref().and(advice.top()))) {
         None => parts.push((silence(session).to_string(), TextRole::Quiet)),
         Some((Recommendation { proposal: Some(proposal), .. }, None)) => {
             parts.push((proposed(proposal), TextRole::Strong));

@@ -102,7 +102,8 @@ impl LogReader {
 
     /// The session before its first event.
     pub fn session(&self) -> Session {
-        Session::new(self.kitchen.clone(), self.header.session.clone(), self.header.trial)
+        let session = Session::new(self.kitchen.clone(), self.header.session.clone(), self.header.trial);
+        Session { makes_offers: self.header.has_offers(), ..session }
     }
 
     /// The next event; `None` where the log ends for now.
@@ -220,8 +221,8 @@ fn open_before(path: &Path, text: &str, header: &Header, before: &Continues, par
     }
     let first = LogReader::open_part(&folder, parts - 1)?;
     let same = |other: &Header| {
-        (&other.session, &other.layout, &other.recipes, &other.keys, other.trial)
-            == (&header.session, &header.layout, &header.recipes, &header.keys, header.trial)
+        (&other.session, &other.layout, &other.recipes, &other.keys, other.trial, other.version)
+            == (&header.session, &header.layout, &header.recipes, &header.keys, header.trial, header.version)
     };
     match same(&first.header) {
         true => Ok(first),
@@ -271,10 +272,10 @@ fn read_header(path: &Path, text: &str) -> FileResult<Header> {
         return Err(wrong(0, "no header of a tomcom log".to_string(), is_log));
     }
     match value.get("version").and_then(|version| version.as_u64()) {
-        Some(version) if version == u64::from(VERSION) => {}
+        Some(version) if (1..=u64::from(VERSION)).contains(&version) => {}
         version => {
             let found = version.map_or("no format version".to_string(), |version| format!("format version {version}"));
-            let remedy = format!("format version {VERSION}, or the tomcom that wrote the log");
+            let remedy = format!("format version 1 to {VERSION}, or the tomcom that wrote the log");
             return Err(wrong(0, found, remedy));
         }
     }

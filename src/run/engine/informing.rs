@@ -1,8 +1,12 @@
-//! Information about events for the simulated participant and the scripted wizard.
+//! Information about events for the simulated participant and the scripted wizard, and offers to a wizard at the console.
 
 use super::Engine;
+use crate::base::time::SessionTime;
+use crate::communication::offer::OfferedAct;
+use crate::communication::recommendation::Reason;
 use crate::kitchen::Change;
 use crate::session::accuracy_check::RunningGazeCheck;
+use crate::session::offers;
 use crate::session::{Event, Stamped};
 
 impl Engine {
@@ -26,6 +30,20 @@ impl Engine {
                 participant.on_target(now, session.calibration.as_ref().and_then(RunningGazeCheck::target))
             }
             _ => {}
+        }
+    }
+
+    /// Records the changes of the offer that are due.
+    pub(super) fn review_offer(&mut self, now: SessionTime) {
+        while let Some(mut event) = offers::due(self.session(), now) {
+            // The recommendation has a reason for its first option only; of two orders of one dish another may be offered.
+            if let Event::OfferOpened(advice) = &mut event
+                && let (None, OfferedAct::Signal(signal)) = (&advice.reason, &advice.what)
+            {
+                let session = &self.follower.session;
+                advice.reason = Reason::for_signal(&session.kitchen, session.state, self.belief(), signal);
+            }
+            self.record_own(now, event);
         }
     }
 

@@ -56,7 +56,7 @@ fn a_wizard_who_sees_nothing_says_nothing_and_no_hand_signals_in_its_place() {
     (spec.trial.condition, spec.plan) = (Condition::Wizard, None);
     let session = Session::new(Arc::new(files.kitchen.kitchen.clone()), spec, 0);
     let (_, signal) = tomcom::communication::signals(&session.kitchen, false).swap_remove(3);
-    let event = Event::SignalShown { by: Sender::Wizard, signal, accepted: None };
+    let event = Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None };
     let refused = hygiene(&session, SessionTime::ZERO, &event).expect_err("nobody signals beside the script");
     assert!(refused.contains("scripted"), "{refused}");
 }

@@ -43,6 +43,7 @@ fn advised(best: bool) -> Stage {
     let for_ns = SessionTime::from_secs_f64(21.9);
     let advice = Recommendation { options, best, reason: Some(reason), ..Recommendation::silent(17, for_ns) };
     stage.at(21.9, Event::Advised(advice));
+    stage.offer(22.4);
     stage.model.now = SessionTime::from_secs_f64(22.6);
     stage
 }
@@ -61,10 +62,11 @@ fn enter_accepts_what_is_recommended_and_says_so() {
     // Signals keep apart.
     seen.model.now = SessionTime::from_secs_f64(30.0);
     let accepted = input(seen.key(KeyCode::Enter));
-    let Some(Event::SignalShown { by: Sender::Wizard, signal, accepted: Some(17) }) = accepted else {
+    let offer = seen.session.offers.open().map(|offer| offer.seq);
+    let Some(Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: taken }) = accepted else {
         panic!("not accepted: {accepted:?}");
     };
-    assert_eq!(signal, Signal::ShowRecipe("order_1".to_string()));
+    assert_eq!((signal, taken), (Signal::ShowRecipe("order_1".to_string()), offer));
     assert_eq!(input(advised(false).key(KeyCode::Enter)), None, "there is nothing to accept");
     let mut unseen = advised(true);
     unseen.session.spec.console.visibility = Visibility::State;
@@ -76,15 +78,19 @@ fn what_was_sent_is_not_offered_again_before_there_is_newer_advice() {
     let mut stage = advised(true);
     let advice = stage.session.advice.clone().expect("advice");
     let sent = advice.best.clone().expect("a recommendation");
-    stage.at(22.6, Event::SignalShown { by: Sender::Wizard, signal: sent, accepted: Some(17) });
+    let offer = stage.session.offers.open().map(|offer| offer.seq);
+    stage.at(22.6, Event::SignalShown { by: Sender::Wizard, signal: sent, accepted: None, offer });
+    stage.offer(22.6);
     stage.model.now = SessionTime::from_secs_f64(23.2);
     assert_eq!(input(stage.key(KeyCode::Enter)), None);
     // The answer to what was asked before comes late, and does not know of it.
     let late = |at| Recommendation { for_ns: SessionTime::from_secs_f64(at), ..advice.clone() };
-    stage.at(23.2, Event::Advised(late(22.5)));
+    stage.at(23.7, Event::Advised(late(22.5)));
+    stage.offer(23.7);
     assert_eq!(input(stage.key(KeyCode::Enter)), None);
     stage.at(26.6, Event::SignalEnded { reason: SignalEnd::TakenBack });
     stage.at(30.0, Event::Advised(late(30.0)));
-    stage.model.now = SessionTime::from_secs_f64(30.0);
+    stage.offer(30.0);
+    stage.wait(1.0);
     assert!(input(stage.key(KeyCode::Enter)).is_some(), "that is newer");
 }

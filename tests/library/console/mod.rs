@@ -34,7 +34,7 @@ use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom::mind::model::PriorModel;
 use tomcom::session::event::{Event, SignalEnd, Stamped};
 use tomcom::session::settings::{GazeSource, ParticipantKind};
-use tomcom::session::{Session, SessionSpec, apply};
+use tomcom::session::{Session, SessionSpec, apply, offers};
 
 const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
 
@@ -73,6 +73,13 @@ impl Stage {
         let stamped = Stamped { seq: self.seq, time: self.model.now, event };
         apply(&mut self.session, &stamped).expect("the event fits");
         self.seq += 1;
+    }
+
+    /// Opens or closes the offer that is due, as a running session does.
+    fn offer(&mut self, seconds: f64) {
+        while let Some(event) = offers::due(&self.session, SessionTime::from_secs_f64(seconds)) {
+            self.at(seconds, event);
+        }
     }
 
     fn press(&mut self, seconds: f64, agent: Agent, button: &str) {
@@ -120,6 +127,7 @@ impl Stage {
                 by: Sender::Wizard,
                 signal: Signal::Highlight("cutting_board".to_string()),
                 accepted: None,
+                offer: None,
             },
         );
         stage.press(13.2, Agent::Human, "assembly_board");
@@ -152,6 +160,7 @@ impl Stage {
                 by: Sender::Wizard,
                 signal: Signal::ShowRecipe("order_1".to_string()),
                 accepted: None,
+                offer: None,
             },
         );
         stage.model.errors = [15.0, 21.0].map(SessionTime::from_secs_f64).to_vec();

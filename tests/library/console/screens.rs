@@ -80,6 +80,7 @@ fn what_a_wizard_sees_at_each_size() {
             by: Sender::Wizard,
             signal: Signal::Highlight("cutting_board".to_string()),
             accepted: None,
+            offer: None,
         },
     );
     let mut alarm = Stage::sushi(ParticipantKind::Simulated);

@@ -111,7 +111,7 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionFiles, Vec<Stamped>
         (2.0 * f64::from(number), Event::Press { agent: Agent::Human, button, at_ns: None })
     }));
     inputs.extend(sent.iter().map(|(time_s, signal)| {
-        (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None })
+        (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None, offer: None })
     }));
     inputs.push((80.0, Event::TrialEnded { reason: EndReason::Wizard }));
     inputs.push((81.0, Event::SessionEnded));

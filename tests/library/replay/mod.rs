@@ -84,7 +84,7 @@ fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
         }
         11..14 => {
             let (_, signal) = &signals[random.random_range(0..signals.len())];
-            Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None }
+            Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None, offer: None }
         }
         14..24 => {
             let [x, y, confidence] = [1.2, 1.2, 1.0].map(|scale| scale * random.random::<f64>());

@@ -10,7 +10,12 @@ use tomcom::session::{Event, Phase};
 use super::{at, check, engine, press, refused};
 
 fn highlight(location: &str) -> Event {
-    Event::SignalShown { by: Sender::Wizard, signal: Signal::Highlight(location.to_string()), accepted: None }
+    Event::SignalShown {
+        by: Sender::Wizard,
+        signal: Signal::Highlight(location.to_string()),
+        accepted: None,
+        offer: None,
+    }
 }
 
 #[test]

@@ -1,0 +1,165 @@
+//! The rules of offers: when one opens and closes, and which one `enter` takes.
+//!
+//! A running session asks [`due`] after every event and at [`Timer::ReviewOffer`](super::Timer), and records the event that it
+//! returns; a replay applies the recorded ones. Ages are measured on the trial's clock, so they stand still in a pause.
+
+use super::admit::{admit, hygiene};
+use super::event::Event;
+use super::phase::Phase;
+use super::session_state::Session;
+use super::settings::{Condition, Visibility};
+use crate::base::time::SessionTime;
+use crate::communication::offer::{
+    GAP, HOLD, Offer, OfferEnd, OfferThresholds, OfferUse, OfferWorth, OfferedAct, OfferedAdvice, TAKEN_AFTER, UNREAD,
+};
+use crate::communication::recommendation::{Recommendation, SignalOption};
+use crate::communication::{Sender, Signal, unavailable};
+use crate::kitchen::OrderContent;
+
+/// Whether the recommendations of a session become offers. An assistant that acts by itself sends its recommendation at once.
+pub fn are_made(session: &Session) -> bool {
+    session.makes_offers && session.spec.trial.condition != Condition::Assistant
+}
+
+/// The change of the offer that is due now: `offer_opened`, `offer_closed`, or none.
+pub fn due(session: &Session, now: SessionTime) -> Option<Event> {
+    match session.offers.unclosed() {
+        Some(offer) => {
+            let reason = closing(session, offer, now)?;
+            Some(Event::OfferClosed { offer: offer.seq, reason })
+        }
+        None => opening(session, now).map(Event::OfferOpened),
+    }
+}
+
+/// Why the open offer closes now, if it does.
+fn closing(session: &Session, offer: &Offer, now: SessionTime) -> Option<OfferEnd> {
+    match session.phase {
+        Phase::Running => {}
+        Phase::Ready | Phase::Paused => return None,
+        Phase::Over(_) | Phase::Closed => return Some(OfferEnd::TrialEnded),
+    }
+    match offer.used {
+        Some(OfferUse::Taken) => return Some(OfferEnd::Taken),
+        Some(OfferUse::OwnKey) => return Some(OfferEnd::OwnKey),
+        None => {}
+    }
+    let is_impossible = |signal| unavailable(&session.kitchen, session.state, signal).is_some();
+    if offer.signal().is_some_and(is_impossible) {
+        return Some(OfferEnd::Impossible);
+    }
+    if session.age(offer.opened, now) < HOLD {
+        return None;
+    }
+    outdone(session, offer, session.advice.as_ref()?)
+}
+
+/// Whether the latest recommendation speaks against the offer.
+fn outdone(session: &Session, offer: &Offer, advice: &Recommendation) -> Option<OfferEnd> {
+    let signal = match &offer.advice.what {
+        OfferedAct::Signal(signal) => signal,
+        OfferedAct::Presses(presses) => {
+            return match &advice.proposal {
+                None => Some(OfferEnd::Fell),
+                Some(proposal) => (proposal.presses != *presses).then_some(OfferEnd::Replaced),
+            };
+        }
+    };
+    // A signal that the recommendation does not list has no net benefit that could speak against it.
+    let net = advice.options.iter().find(|option| option.signal == *signal)?.net;
+    let thresholds = OfferThresholds::for_concept(session.spec.assistant.concept);
+    if net < thresholds.closes_below {
+        return Some(OfferEnd::Fell);
+    }
+    let other = candidate(session, advice).filter(|option| option.signal != *signal)?;
+    (other.net >= net + thresholds.better_by).then_some(OfferEnd::Replaced)
+}
+
+/// The offer that opens now, if one does.
+fn opening(session: &Session, now: SessionTime) -> Option<OfferedAdvice> {
+    if !session.is_running() || !are_made(session) {
+        return None;
+    }
+    let rests = session.offers.last().is_some_and(|last| session.age(last.closed, now) < GAP);
+    let cool_down = SessionTime::from_secs_f64(session.spec.signals.cool_down_s);
+    let cools = session.signalled_at.is_some_and(|sent| now - sent < cool_down);
+    if rests || cools {
+        return None;
+    }
+    let advice = session.advice.as_ref()?;
+    let (for_seq, visible) = (advice.for_seq, is_visible(session));
+    if let Some(proposal) = &advice.proposal {
+        let what = OfferedAct::Presses(proposal.presses.clone());
+        return Some(OfferedAdvice { what, for_seq, worth: None, reason: None, visible });
+    }
+    let option = candidate(session, advice)?;
+    let SignalOption { benefit, standard_error, net, .. } = *option;
+    let worth = Some(OfferWorth { benefit, standard_error, net });
+    // The recommendation has a reason for its best signal only.
+    let reason = advice.reason.clone().filter(|_| advice.best.as_ref() == Some(&option.signal));
+    Some(OfferedAdvice { what: OfferedAct::Signal(option.signal.clone()), for_seq, worth, reason, visible })
+}
+
+/// Whether a wizard could see an offer that opens now: something draws the console, and the settings show recommendations.
+fn is_visible(session: &Session) -> bool {
+    session.has_console && session.spec.console.visibility == Visibility::Recommendation
+}
+
+/// The signal that would be offered: the best one that is worth its cost, and of two orders of one dish the older one, if
+/// its recipe is worth its cost too.
+fn candidate<'a>(session: &Session, advice: &'a Recommendation) -> Option<&'a SignalOption> {
+    let is_worth = |option: &&SignalOption| {
+        option.net > 0.0 && unavailable(&session.kitchen, session.state, &option.signal).is_none()
+    };
+    let best = advice.best.as_ref()?;
+    let best = advice.options.iter().find(|option| option.signal == *best).filter(is_worth)?;
+    let Some((appeared, dish)) = wanted(session, &best.signal) else { return Some(best) };
+    let others = advice.options.iter().filter(is_worth).filter_map(|option| {
+        let (at, other) = wanted(session, &option.signal)?;
+        (other == dish && at < appeared).then_some((at, option))
+    });
+    Some(others.min_by_key(|(at, _)| *at).map_or(best, |(_, option)| option))
+}
+
+/// When the order of a recipe signal appeared (ties in the layout's order), and the dish that it wants.
+fn wanted(session: &Session, signal: &Signal) -> Option<((SessionTime, usize), OrderContent)> {
+    let Signal::ShowRecipe(order) = signal else { return None };
+    let order = session.kitchen.location_named(order)?;
+    let index = session.kitchen.orders.iter().position(|location| *location == order)?;
+    Some(((session.changed_at[order.index()], index), session.state.order(order)))
+}
+
+/// The offer that `enter` takes at `now`, with the event that sends its signal: the open offer; in its first 0.3 s, or while none is
+/// open, the last one if it closed at most 1.3 s ago and was not taken.
+///
+/// # Errors
+/// Why `enter` means nothing now, in words for the wizard.
+pub fn enter(session: &Session, now: SessionTime) -> Result<(&Offer, Event), String> {
+    if session.spec.console.visibility != Visibility::Recommendation {
+        return Err("recommendations are not shown in this session".to_string());
+    }
+    let open = session.offers.open();
+    if let Some(offer) = open.filter(|offer| session.age(offer.opened, now) >= UNREAD) {
+        return sendable(session, offer, now);
+    }
+    let last = session.offers.last().filter(|last| session.age(last.closed, now) <= TAKEN_AFTER);
+    match (last, open) {
+        (Some(last), _) if last.offer.used.is_none() => sendable(session, &last.offer, now),
+        (_, Some(_)) => Err("the offer has just appeared: read it, then press again".to_string()),
+        (Some(_), None) => Err("the offer was taken already".to_string()),
+        (None, None) => Err("nothing is on offer".to_string()),
+    }
+}
+
+/// The offer with the event that sends its signal.
+///
+/// # Errors
+/// Why it cannot be sent now.
+fn sendable<'a>(session: &Session, offer: &'a Offer, now: SessionTime) -> Result<(&'a Offer, Event), String> {
+    let signal = offer.signal().ok_or("proposed presses are for the participant to make; they cannot be sent")?;
+    let (by, signal) = (Sender::Wizard, signal.clone());
+    let event = Event::SignalShown { by, signal, accepted: None, offer: Some(offer.seq) };
+    admit(session, &event)?;
+    hygiene(session, now, &event)?;
+    Ok((offer, event))
+}

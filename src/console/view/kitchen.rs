@@ -4,11 +4,13 @@
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
+use super::offer;
 use super::paint::{Painter, fit, width, wrap};
 use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::console::arrange::{KitchenMap, MapElement};
+use crate::console::beliefs::beliefs;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
 use crate::history::wording;
@@ -18,7 +20,7 @@ use crate::session::settings::{Condition, ParticipantKind};
 
 /// Time for which a change is marked, in seconds.
 const FRESH_S: f64 = 5.0;
-/// Time for which a change is highlighted, and time for which it is bold, in seconds.
+/// Time for which a change is underlined, and time for which it is bold, in seconds.
 const LOUD_S: f64 = 1.2;
 const FADING_S: f64 = 3.0;
 /// Time for which the last gaze sample is drawn, in seconds.
@@ -46,9 +48,15 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let with_keys = session.spec.participant.kind == ParticipantKind::Keyboard;
     let plan = KitchenMap::new(&session.kitchen, regions.kitchen_inside(), with_keys);
     zones(brush, &plan);
+    let believed = beliefs(session, model);
+    let offered = offer::shown(session).and_then(|offer| offer.place(session));
     for spot in &plan.spots {
         match spot.thing {
-            MapElement::Location(location) => Place::new(session, model, location).draw(brush, spot.cells),
+            MapElement::Location(location) => {
+                let place = Place::new(session, model, location);
+                let thinks = offer::thinks(session, &believed, location);
+                Place { thinks, is_offered: offered == Some(location), ..place }.draw(brush, spot.cells);
+            }
             MapElement::Storage(index) => storage(brush, session, model, index, spot.cells),
         }
     }
@@ -127,6 +135,10 @@ struct Place<'a> {
     fresh: Option<(f64, Option<Agent>)>,
     /// Whether a signal highlights this place.
     is_shown: bool,
+    /// Whether the open offer is about this place.
+    is_offered: bool,
+    /// What is falsely believed about it.
+    thinks: Option<String>,
 }
 
 impl<'a> Place<'a> {
@@ -142,7 +154,8 @@ impl<'a> Place<'a> {
         let age_s = session.age(at, model.now).as_secs_f64();
         let fresh = (at > SessionTime::ZERO && age_s < FRESH_S).then(|| (age_s, wording::changed_by(session, at)));
         let is_shown = session.shown.as_ref().is_some_and(|shown| shown.signal.target() == kitchen.location(id).name);
-        Place { session, model, id, kitchen, content, is_empty, fresh, is_shown }
+        let (is_offered, thinks) = (false, None);
+        Place { session, model, id, kitchen, content, is_empty, fresh, is_shown, is_offered, thinks }
     }
 
     fn draw(&self, brush: &mut Painter, cells: Rect) {
@@ -162,8 +175,9 @@ impl<'a> Place<'a> {
             (false, 0) => {}
             (false, height) => {
                 let buttons = self.other_buttons();
-                let lines =
-                    self.contents(brush, Rect { height: height - (buttons.len() as u16).min(height - 1), ..below });
+                let free = height - (buttons.len() as u16).min(height - 1);
+                let lines = self.contents(brush, Rect { height: free, ..below });
+                let lines = self.belief(brush, Rect { height: free, ..below }, lines);
                 match buttons.is_empty() {
                     true => self.news(brush, below, lines),
                     false => draw_buttons(brush, below, &buttons),
@@ -177,6 +191,7 @@ impl<'a> Place<'a> {
         let signs = brush.theme.signs();
         let (sign, role) = match (self.is_shown, self.fresh) {
             (true, _) => (signs.rules[2], TextRole::Signal),
+            _ if self.is_offered => (signs.rules[1], TextRole::Signal),
             (_, Some((_, by))) => (signs.rules[1], agent_role(by)),
             _ => (signs.rules[0], if self.is_empty { TextRole::Frame } else { TextRole::Quiet }),
         };
@@ -197,7 +212,8 @@ impl<'a> Place<'a> {
             x = brush.text(x, cells.y, cells.width, &key, style);
         }
         let style = match self.is_shown {
-            true => brush.theme.badge(TextRole::Signal),
+            true => brush.style(TextRole::Signal).add_modifier(Modifier::UNDERLINED),
+            false if self.is_offered => brush.style(TextRole::Signal),
             false => brush.style(if self.is_empty { TextRole::Quiet } else { TextRole::Text }),
         };
         let room = cells.right().saturating_sub(x);
@@ -223,7 +239,9 @@ impl<'a> Place<'a> {
 
     fn content_style(&self, brush: &Painter) -> Style {
         match self.fresh {
-            Some((age_s, by)) if age_s < LOUD_S => brush.theme.badge(agent_role(by)),
+            Some((age_s, by)) if age_s < LOUD_S => {
+                brush.style(agent_role(by)).add_modifier(Modifier::BOLD | Modifier::UNDERLINED)
+            }
             Some((age_s, by)) if age_s < FADING_S => brush.style(agent_role(by)).add_modifier(Modifier::BOLD),
             Some((_, by)) => brush.style(agent_role(by)),
             None if self.is_empty => brush.style(TextRole::Quiet),
@@ -247,7 +265,28 @@ impl<'a> Place<'a> {
         lines.len() as u16
     }
 
-    /// Draws an order: dish, age, and the recipe while it is shown.
+    /// Draws what is falsely believed about the place below its content, or beside it; returns the number of lines so far.
+    fn belief(&self, brush: &mut Painter, room: Rect, lines: u16) -> u16 {
+        let Some(thinks) = &self.thinks else { return lines };
+        let style = brush.style(TextRole::FalseBelief);
+        let words = format!("thinks: {thinks}");
+        if lines < room.height {
+            let rows = wrap(&words, room.width);
+            let free = usize::from(room.height - lines);
+            let rows = if rows.len() <= free { rows } else { vec![squeeze(&words, room.width)] };
+            for (row, text) in rows.iter().enumerate() {
+                brush.text(room.x, room.y + lines + row as u16, room.width, text, style);
+            }
+            return lines + rows.len() as u16;
+        }
+        let y = room.bottom() - 1;
+        let written = (0..room.width).filter(|x| brush.is_written(room.x + x, y)).max().map_or(0, |x| x + 2);
+        let left = room.width.saturating_sub(written);
+        brush.text(room.x + written, y, left, &squeeze(&words, left), style);
+        room.height
+    }
+
+    /// Draws an order: dish, age, what is falsely believed about it, and the recipe while it is shown.
     fn order(&self, brush: &mut Painter, room: Rect) {
         let style = self.content_style(brush);
         let is_wanted = matches!(self.session.state.order(self.id), OrderContent::Dish(_));
@@ -259,7 +298,17 @@ impl<'a> Place<'a> {
             OrderContent::Dish(_) => self.content.clone(),
         };
         let end = brush.text(room.x, room.y, room.width.saturating_sub(6), &text, style);
-        if is_wanted {
+        let thinks = self.thinks.as_ref().map(|thinks| format!("thinks: {thinks}"));
+        let recipe = wording::recipe(self.session, self.id).filter(|_| self.is_shown && room.height > 1);
+        let recipe_row = if thinks.is_some() && room.height > 2 { 2 } else { 1 };
+        if let Some(thinks) = &thinks
+            && (room.height == 1 || recipe.is_none() || recipe_row == 2)
+        {
+            let (x, y) = if room.height > 1 { (room.x, room.y + 1) } else { (end + 1, room.y) };
+            let (style, left) = (brush.style(TextRole::FalseBelief), room.right().saturating_sub(x));
+            brush.text(x, y, left, &squeeze(thinks, left), style);
+        }
+        if is_wanted && (thinks.is_none() || room.height > 1) {
             let gap = if room.height > 1 { 2 } else { 1 };
             let unseen = if wording::is_unseen(self.session, self.id) { "unseen" } else { "" };
             let left = |x: u16| room.right().saturating_sub(x);
@@ -268,9 +317,9 @@ impl<'a> Place<'a> {
                 brush.parts(x, room.y, left(x), &[(unseen, TextRole::Gaze)]);
             }
         }
-        if let (true, true, Some(recipe)) = (self.is_shown, room.height > 1, wording::recipe(self.session, self.id)) {
+        if let Some(recipe) = recipe {
             let style = brush.style(TextRole::Signal);
-            brush.text(room.x, room.y + 1, room.width, &squeeze(&recipe, room.width), style);
+            brush.text(room.x, room.y + recipe_row, room.width, &squeeze(&recipe, room.width), style);
         }
     }
 
@@ -285,7 +334,9 @@ impl<'a> Place<'a> {
             news.push((format!("{}robot", signs.to), TextRole::Robot));
         }
         if let Some((age_s, by)) = self.fresh {
-            news.push((format!("{}{age_s:.0}s", signs.changed), agent_role(by)));
+            let words = by.map(|by| format!("{} {age_s:.0} s ago", by.name()));
+            let words = words.filter(|words| news.is_empty() && width(words) <= room.width && lines < room.height);
+            news.push((words.unwrap_or(format!("{}{age_s:.0}s", signs.changed)), agent_role(by)));
         } else if wording::is_unseen(self.session, self.id) {
             let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
             news.push((format!("unseen {age}"), TextRole::Gaze));

@@ -1,6 +1,7 @@
 //! `view(&Session, &Model, &mut Frame)`: reads, draws, and changes nothing.
 
 pub mod belief_panel;
+mod cards;
 pub mod comparison_panel;
 pub mod dialog;
 pub mod events;
@@ -11,12 +12,14 @@ pub mod hands;
 pub mod head;
 pub mod kitchen;
 pub mod lesson;
+pub mod offer;
 pub mod paint;
 pub mod picker;
 mod popup;
 pub mod recommendation_panel;
 pub mod regions;
 pub mod robot_panel;
+mod scrub;
 pub mod sheet;
 pub mod shown;
 pub mod theme;
@@ -40,6 +43,7 @@ pub fn view(session: &Session, model: &ConsoleModel, frame: &mut Frame) {
     }
     let regions = Regions::showing((area.width, area.height), session, model);
     head::draw(&mut brush, &regions, session, model);
+    offer::draw(&mut brush, &regions, session, model);
     kitchen::draw(&mut brush, &regions, session, model);
     belief_panel::draw(&mut brush, &regions, session, model);
     recommendation_panel::draw(&mut brush, &regions, session, model);
@@ -51,7 +55,9 @@ pub fn view(session: &Session, model: &ConsoleModel, frame: &mut Frame) {
     events::draw(&mut brush, &regions, session, model);
     timeline::draw(&mut brush, &regions, session, model);
     comparison_panel::draw(&mut brush, &regions, session, model);
+    scrub::draw(&mut brush, &regions, session, model);
     footer::draw(&mut brush, &regions, session, model);
+    cards::draw(&mut brush, &regions, session, model);
     sheet::draw(&mut brush, area, session, model);
     dialog::draw(&mut brush, area, session, model);
 }

@@ -31,12 +31,13 @@ use tomcom::session::{Event, Session, Stamped};
 
 const SIZES: [(u16, u16); 2] = [(80, 24), (120, 40)];
 const SESSIONS: [&str; 2] = ["sessions/default.toml", "sessions/burger.toml"];
-const SEEDS: [u64; 2] = [20_261, 20_262];
-const PRESSES: u32 = 140;
-/// Number of situations of each kind from each trial: with a recommendation, with a distractor, without both.
-const WANTED: [usize; 3] = [5, 2, 3];
+const FIRST_SEED: u64 = 20_261;
+/// Number of situations of each kind: with a recommendation, with a distractor, without both.
+const WANTED: [usize; 3] = [20, 10, 10];
+/// Number of situations of each kind from one trial.
+const OF_TRIAL: usize = 3;
 /// A recommendation counts if it has stood for this long with this net benefit, and silence if it has lasted this long.
-const STANDS_S: f64 = 2.0;
+const STANDS_S: f64 = 1.5;
 const NET: f64 = 1.0;
 /// Least time between situations of one trial, in seconds.
 const APART_S: f64 = 5.0;
@@ -72,16 +73,19 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     std::fs::create_dir_all(&frames)?;
     let mut situations = Vec::new();
-    for session in SESSIONS {
-        for seed in SEEDS {
-            situations.extend(situations_of_trial(Path::new(session), seed)?);
+    let mut left = WANTED;
+    let seeds = (FIRST_SEED..).flat_map(|seed| SESSIONS.map(|session| (session, seed)));
+    for (session, seed) in seeds {
+        if left == [0; 3] {
+            break;
         }
+        situations.extend(situations_of_trial(Path::new(session), seed, &mut left)?);
     }
     // A reader shall not learn from the order: a fixed permutation mixes trials and kinds.
     let count = situations.len();
     let mut table = "frame,kind,key,signal,net,stood_s,falsely_believed\n".to_string();
     for place in 0..count {
-        let situation = &situations[(place * 17 + 5) % count];
+        let situation = &situations[(place * 23 + 5) % count];
         for ((columns, rows), frame) in SIZES.iter().zip(&situation.frames) {
             std::fs::write(frames.join(format!("{:02}-{columns}x{rows}.ansi", place + 1)), frame)?;
         }
@@ -92,10 +96,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn situations_of_trial(session: &Path, seed: u64) -> Result<Vec<Situation>, Box<dyn Error>> {
+fn situations_of_trial(session: &Path, seed: u64, wanted: &mut [usize; 3]) -> Result<Vec<Situation>, Box<dyn Error>> {
     let mut stage = Stage::new(session, seed)?;
     let mut advisor = stage.engine.advisor();
-    let mut left = WANTED;
+    let mut left = wanted.map(|wanted| wanted.min(OF_TRIAL));
     let mut last = SessionTime::ZERO;
     let mut found = Vec::new();
     let started = stage.engine.input(SessionTime::ZERO, Event::TrialStarted).events;
@@ -120,6 +124,7 @@ fn situations_of_trial(session: &Path, seed: u64) -> Result<Vec<Situation>, Box<
         {
             (stage.model.now, stage.model.clock) = (now, now);
             left[kind as usize] -= 1;
+            wanted[kind as usize] -= 1;
             last = now;
             found.push(stage.situation(&before, kind, witness)?);
         }
@@ -132,7 +137,6 @@ impl Stage {
     fn new(session: &Path, seed: u64) -> Result<Stage, Box<dyn Error>> {
         let mut files = session_or_default(Some(session))?;
         files.spec.seed = seed;
-        files.spec.trial.presses = PRESSES;
         let kitchen = Arc::new(files.kitchen.kitchen);
         let keys = KeyBindings::live(&kitchen, &files.spec, &KeyMap::default())?;
         let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };

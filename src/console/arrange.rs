@@ -204,9 +204,9 @@ fn items(kitchen: &Kitchen, with_keys: bool) -> Vec<Item> {
     let location = |(index, location): (usize, &crate::kitchen::Location)| {
         let owner = if let LocationKind::Hand(agent) = location.kind { Some(agent) } else { None };
         let thing = MapElement::Location(LocationId(index as u8));
-        // Rule, key and gap beside the name (the own hand seldom has a key); orders stand in a strip of their own.
+        // Rule, key and gap beside the name (the own hand is seldom highlighted); orders stand in a strip of their own.
         let beside = match location.kind {
-            LocationKind::Hand(Agent::Human) => 3,
+            LocationKind::Hand(Agent::Human) => 2,
             // Without brackets around the key there is room for those of the storage.
             _ if with_keys => 4,
             _ => 5,

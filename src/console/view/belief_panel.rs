@@ -23,6 +23,8 @@ const ONE_LINE: u16 = 66;
 const FRAMED: u16 = 5;
 /// Rows of a chart below the list, with its title.
 const CHART_ROWS: u16 = 5;
+/// Columns of a bar with a gap.
+const BAR: u16 = 7;
 /// Columns left of a chart for the scale.
 const SCALE: u16 = 6;
 
@@ -115,7 +117,8 @@ impl Panel<'_> {
             brush.text(area.x, y, area.width, &words, quiet);
             y += 2;
         }
-        for belief in &self.beliefs {
+        // Beside the kitchen only what is not right; where there is much room, the others too.
+        for belief in self.beliefs.iter().filter(|belief| is_wide || belief.standing != BeliefStanding::Right) {
             if y + CHART_ROWS > area.bottom() {
                 return;
             }
@@ -182,15 +185,17 @@ impl Panel<'_> {
             end = format!("{end}  {cost:>2} {}", if cost.is_empty() { "       " } else { "presses" });
         }
         brush.text_right(area.right(), y, area.width, &end, style);
-        let bar = area.right().saturating_sub(width(&end) + 7);
-        brush.bar(bar, y, 6, f64::from(belief.p), role(belief));
-        let room = bar.saturating_sub(area.x + 1);
-        if belief.standing == BeliefStanding::Unsure {
-            brush.text(area.x, y, room, &self.title(belief), style);
-            return;
-        }
         let (thinks, truth) = self.values(belief);
-        let (head, is) = (format!("{}: thinks {thinks}, ", self.title(belief)), format!("is {truth}"));
+        let (head, is) = match belief.standing {
+            BeliefStanding::Unsure => (self.title(belief), String::new()),
+            _ => (format!("{}: thinks {thinks}, ", self.title(belief)), format!("is {truth}")),
+        };
+        // Names have priority over the bar, since the number shows the same.
+        let mut room = area.width.saturating_sub(width(&end) + 1);
+        if width(&head) + width(&is) + BAR < room {
+            room -= BAR;
+            brush.bar(area.x + room + 1, y, BAR - 1, f64::from(belief.p), role(belief));
+        }
         let x = brush.text(area.x, y, room, &head, style);
         let text = brush.style(TextRole::Text);
         brush.text(x, y, (area.x + room).saturating_sub(x), &is, text);
@@ -243,8 +248,11 @@ impl Panel<'_> {
             ),
         };
         let end = "probability of the truth";
-        brush.text(area.x, area.y, area.width.saturating_sub(width(end) + 1), &head, style);
-        brush.text_right(area.right(), area.y, area.width, end, quiet);
+        let has_room = width(&head) + width(end) + 2 <= area.width;
+        if has_room {
+            brush.text_right(area.right(), area.y, area.width, end, quiet);
+        }
+        brush.text(area.x, area.y, area.width, &head, style);
         let plot = Rect {
             x: area.x + SCALE,
             y: area.y + 1,

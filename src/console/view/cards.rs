@@ -61,7 +61,7 @@ fn key(model: &ConsoleModel, action: &KeyAction) -> Option<String> {
 fn before(session: &Session, model: &ConsoleModel) -> Card {
     let trial = &session.spec.trial;
     let length =
-        format!("{} or {}", count(trial.presses.into(), "press", "presses"), SessionTime::from_secs_f64(trial.seconds));
+        format!("{} or {}", count(trial.presses, "press", "presses"), SessionTime::from_secs_f64(trial.seconds));
     let mut facts = vec![
         ("participant", place(session), TextRole::Strong),
         ("kitchen", session.kitchen.title.clone(), TextRole::Text),

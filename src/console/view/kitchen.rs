@@ -4,8 +4,9 @@
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
+use super::gaze;
 use super::offer;
-use super::paint::{Painter, fit, width, wrap};
+use super::paint::{Painter, fit, squeeze, width, wrap, wrap_to};
 use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
@@ -23,8 +24,6 @@ const FRESH_S: f64 = 5.0;
 /// Time for which a change is underlined, and time for which it is bold, in seconds.
 const LOUD_S: f64 = 1.2;
 const FADING_S: f64 = 3.0;
-/// Time for which the last gaze sample is drawn, in seconds.
-const GAZE_S: f64 = 3.0;
 
 /// Draws the kitchen panel.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
@@ -60,7 +59,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
             MapElement::Storage(index) => storage(brush, session, model, index, spot.cells),
         }
     }
-    gaze_mark(brush, &plan, area, session, model);
+    gaze::mark(brush, &plan, area, session, model);
     super::gaze_targets::target(brush, &plan, area, session);
 }
 
@@ -271,9 +270,7 @@ impl<'a> Place<'a> {
         let style = brush.style(TextRole::FalseBelief);
         let words = format!("thinks: {thinks}");
         if lines < room.height {
-            let rows = wrap(&words, room.width);
-            let free = usize::from(room.height - lines);
-            let rows = if rows.len() <= free { rows } else { vec![squeeze(&words, room.width)] };
+            let rows = wrap_to(&words, room.width, room.height - lines, brush.theme.signs().ellipsis);
             for (row, text) in rows.iter().enumerate() {
                 brush.text(room.x, room.y + lines + row as u16, room.width, text, style);
             }
@@ -306,7 +303,15 @@ impl<'a> Place<'a> {
         {
             let (x, y) = if room.height > 1 { (room.x, room.y + 1) } else { (end + 1, room.y) };
             let (style, left) = (brush.style(TextRole::FalseBelief), room.right().saturating_sub(x));
-            brush.text(x, y, left, &squeeze(thinks, left), style);
+            let free = (room.height.saturating_sub(1)).max(1) - u16::from(recipe.is_some());
+            let lines = match room.height {
+                // On one line, what is thought stands only in the belief's line.
+                1 if width(thinks) > left => vec!["false belief".to_string()],
+                _ => wrap_to(thinks, left, free, brush.theme.signs().ellipsis),
+            };
+            for (row, line) in lines.iter().enumerate() {
+                brush.text(x, y + row as u16, left, line, style);
+            }
         }
         if is_wanted && (thinks.is_none() || room.height > 1) {
             let gap = if room.height > 1 { 2 } else { 1 };
@@ -393,44 +398,5 @@ fn draw_buttons(brush: &mut Painter, room: Rect, buttons: &[(String, String)]) {
         };
         let name = fit(name, columns.saturating_sub(3), "");
         brush.text(x, y, columns, &format!("[{key}]{name}"), style);
-    }
-}
-
-/// Shortens a name to a width: removes spaces first, then the ends of the longest words.
-pub fn squeeze(name: &str, columns: u16) -> String {
-    let mut words: Vec<String> = name.replace(" + ", " +").split(' ').map(str::to_string).collect();
-    if width(name) <= columns {
-        return name.to_string();
-    }
-    while width(&words.join(" ")) > columns {
-        let Some(longest) = words.iter_mut().max_by_key(|word| word.chars().count()) else { break };
-        if longest.chars().count() <= 2 {
-            break;
-        }
-        longest.pop();
-    }
-    fit(&words.join(" "), columns, "")
-}
-
-fn gaze_mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Session, model: &ConsoleModel) {
-    let Some((at, sample)) = session.gaze.last else { return };
-    let age_s = model.now.secs_since(at);
-    let Some((x, y)) = plan.cell([sample.x, sample.y]) else { return };
-    if age_s > GAZE_S || x < panel.x || x >= panel.right() || y < panel.y || y >= panel.bottom() {
-        return;
-    }
-    let style = brush.style(TextRole::Gaze);
-    let style = if age_s > 1.0 { style.remove_modifier(Modifier::BOLD).add_modifier(Modifier::DIM) } else { style };
-    let sign = brush.theme.signs().gaze;
-    let is_text = |symbol: &str| symbol.chars().any(|letter| letter.is_alphanumeric());
-    let covers_text = brush.buffer.cell((x, y)).is_some_and(|cell| is_text(cell.symbol()));
-    if !covers_text {
-        brush.text(x, y, 1, sign, style);
-        return;
-    }
-    // Text under the gaze stays readable: its letter is marked, and the gaze sign is drawn beside the card's name.
-    brush.buffer.set_style(Rect::new(x, y, 1, 1), style.add_modifier(Modifier::REVERSED));
-    if let Some(spot) = plan.spots.iter().find(|spot| spot.cells.contains((x, y).into())) {
-        brush.text(spot.cells.right(), spot.cells.y, 1, sign, style);
     }
 }

@@ -5,7 +5,6 @@ use super::belief_panel::QUIET;
 use super::paint::{Painter, width};
 use super::regions::Regions;
 use super::theme::TextRole;
-use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
@@ -25,8 +24,6 @@ pub(super) struct ShownOffer<'a> {
     act: OfferedAct,
     benefit: Option<f64>,
     reason: Option<&'a Reason>,
-    /// Since when it has been open.
-    since: SessionTime,
 }
 
 /// The offer that the wizard sees now.
@@ -41,7 +38,7 @@ pub(super) fn shown(session: &Session) -> Option<ShownOffer<'_>> {
         let offer = session.offers.open()?;
         let benefit = offer.advice.worth.map(|worth| worth.benefit);
         let (act, reason) = (offer.advice.what.clone(), offer.advice.reason.as_ref());
-        return Some(ShownOffer { act, benefit, reason, since: offer.opened });
+        return Some(ShownOffer { act, benefit, reason });
     }
     let advice = session.advice.as_ref()?;
     let (act, benefit) = match (&advice.best, &advice.proposal) {
@@ -49,7 +46,7 @@ pub(super) fn shown(session: &Session) -> Option<ShownOffer<'_>> {
         (None, Some(proposal)) => (OfferedAct::Presses(proposal.presses.clone()), None),
         (None, None) => return None,
     };
-    Some(ShownOffer { act, benefit, reason: advice.reason.as_ref(), since: advice.for_ns })
+    Some(ShownOffer { act, benefit, reason: advice.reason.as_ref() })
 }
 
 impl ShownOffer<'_> {
@@ -92,16 +89,18 @@ impl ShownOffer<'_> {
         let Some(reason) = self.reason else { return Vec::new() };
         let aspect = session.kitchen.aspects.iter().position(|aspect| aspect.name == reason.aspect);
         let aspect = aspect.map(|index| AspectId(index as u8));
-        let since = aspect.and_then(|aspect| {
-            beliefs(session, model).into_iter().find(|belief| belief.aspect == aspect).and_then(|belief| belief.since)
-        });
+        let belief = beliefs(session, model).into_iter().find(|belief| Some(belief.aspect) == aspect);
+        let since = belief.and_then(|belief| belief.since);
+        // The certainty is that of the belief panel, while the participant is thought to think the same.
+        let is_same = |belief: &EstimatedBelief| {
+            beliefs::value(&session.kitchen, belief.aspect, belief.thinks) == reason.believes
+        };
+        let p = belief.filter(is_same).map_or(reason.p_believes, |belief| belief.p.into());
         let age = since.map_or(String::new(), |since| format!(" for {}", session.age(since, model.now)));
-        let thinks = if reason.p_believes < 0.5 { "may think" } else { "thinks" };
-        let mut said = vec![
-            format!("{thinks} {}, is {}", reason.believes, reason.truth),
-            format!("{}{age}", percent(reason.p_believes)),
-        ];
-        said.extend(reason.prevents.as_ref().map(|button| format!("about to press {}", wording::location(button))));
+        let thinks = if p < 0.5 { "may think" } else { "thinks" };
+        let mut said =
+            vec![format!("{thinks} {}, is {}", reason.believes, reason.truth), format!("{}{age}", percent(p))];
+        said.extend(reason.prevents.as_ref().map(|button| format!("next press: {}", wording::location(button))));
         said
     }
 }

@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use super::paint::{Painter, width, wrap};
+use super::paint::{Painter, wrap};
 use super::regions::Regions;
 use super::theme::TextRole;
 use crate::base::words::count;

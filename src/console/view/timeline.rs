@@ -16,8 +16,9 @@ use crate::session::{Phase, Session, TimelineEntry, TimelineEvent};
 
 /// Duration of a column, in seconds.
 const COLUMN_S: f64 = 0.5;
-/// Time between the labels of an axis, in seconds.
-const TICK_S: f64 = 10.0;
+/// Times between the labels of an axis, in seconds, and columns that a label needs.
+const TICKS_S: [f64; 4] = [10.0, 20.0, 30.0, 60.0];
+const LABEL_COLUMNS: f64 = 8.0;
 const LABELS: u16 = 10;
 const TITLE: &str = "Timeline";
 
@@ -126,7 +127,7 @@ pub(super) fn axis(brush: &mut Painter, plot: Rect, session: &Session, model: &C
     ticks(brush, Rect { height: 1, ..plot }, session.trial_clock(model.now) - back, column_s);
 }
 
-/// Draws a line with the trial's clock at every ten seconds; its right end is `end`.
+/// Draws a line with the trial's clock at full tens of seconds; its right end is `end`.
 pub(super) fn ticks(brush: &mut Painter, line: Rect, end: SessionTime, column_s: f64) {
     let quiet = brush.style(TextRole::Quiet);
     let thin = brush.style(TextRole::Frame);
@@ -134,10 +135,12 @@ pub(super) fn ticks(brush: &mut Painter, line: Rect, end: SessionTime, column_s:
     brush.text(line.x, line.y, line.width, &rule, thin);
     let column = |seconds: f64| (seconds / column_s) as i64;
     let last = column(end.as_secs_f64());
-    let mut tick = (end.as_secs_f64() / TICK_S).floor();
+    let is_wide = |step_s: &f64| step_s / column_s >= LABEL_COLUMNS;
+    let step_s = TICKS_S.into_iter().find(is_wide).unwrap_or(TICKS_S[TICKS_S.len() - 1]);
+    let mut tick = (end.as_secs_f64() / step_s).floor();
     while tick >= 0.0 {
-        let back = last - column(tick * TICK_S);
-        let label = format!(" {} ", SessionTime::from_secs_f64(tick * TICK_S));
+        let back = last - column(tick * step_s);
+        let label = format!(" {} ", SessionTime::from_secs_f64(tick * step_s));
         let x = i64::from(line.right()) - 1 - back - i64::from(width(&label) / 2);
         if x < i64::from(line.x) {
             return;

@@ -156,7 +156,7 @@ fn silence(session: &Session, model: &ConsoleModel) -> String {
     let wrong = beliefs(session, model).iter().filter(|belief| belief.standing == BeliefStanding::False).count();
     match wrong {
         0 => QUIET.to_string(),
-        _ => format!("{}, no signal is worth its cost now", count(wrong as u64, "false belief", "false beliefs")),
+        _ => format!("{}, no signal is offered", count(wrong as u64, "false belief", "false beliefs")),
     }
 }
 

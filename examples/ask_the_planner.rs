@@ -21,7 +21,9 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let (layout, recipes) =
         (std::fs::read_to_string("layouts/sushi.toml")?, std::fs::read_to_string("recipes/sushi.toml")?);
     let kitchen = Arc::new(Kitchen::from_toml(&layout, &recipes)?);
-    let human = HumanModel::default();
+    // A person who looks at what the next press needs, and at nothing else: what is seen anyway needs no signal.
+    let mut human = HumanModel::default();
+    (human.looking.other_looks_hz, human.looking.capture) = (0.0, 0.0);
     let order = kitchen.location_named("order_1").ok_or("an order")?;
     let mut state = kitchen.empty_state();
     state.set_order(order, OrderContent::Dish(kitchen.dish_named("salmon nigiri").ok_or("a dish")?));

@@ -21,7 +21,9 @@ const GAZE_HZ: usize = 60;
 pub fn main() -> Result<(), Box<dyn Error>> {
     let kitchen = Kitchen::from_toml(&read_to_string("layouts/sushi.toml")?, &read_to_string("recipes/sushi.toml")?)?;
     let kitchen = Arc::new(kitchen);
-    let (human, mut cost) = (HumanModel::default(), CostToGo::new(kitchen.clone()));
+    let (mut human, mut cost) = (HumanModel::default(), CostToGo::new(kitchen.clone()));
+    // The human looks at what the next press needs, and at nothing else: what is seen anyway needs no signal.
+    (human.looking.other_looks_hz, human.looking.capture) = (0.0, 0.0);
     let mut filter = BeliefFilter::new(kitchen.clone(), human.clone(), 1);
     let mut observe = |seconds: f64, what: Observed, cost: &mut CostToGo| {
         filter.observe(&Observation { time: SessionTime::from_secs_f64(seconds), what }, cost);

@@ -122,8 +122,11 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     if args.accuracy {
         return estimates::accuracy(args);
     }
+    if args.offers {
+        return estimates::offers(args);
+    }
     let [recording] = &args.recordings[..] else {
-        let help = "one recording, or --check-beliefs or --accuracy";
+        let help = "one recording, or --check-beliefs, --accuracy or --offers";
         return Err(Failure::Wrong(miette::miette!(help = help, "found {} recordings", args.recordings.len())));
     };
     if args.verify {

@@ -1,6 +1,7 @@
 //! A recording in which wizard and assistants were compared from its first event to its last.
 
 use super::exclusion_status::ExclusionStatus;
+use super::offer_summary::{OfferSummary, TimedOffer};
 use super::watcher::{CompareRequest, ComparisonFollower};
 use super::wizard_log::{WizardLog, WizardSummary};
 use crate::history::comparison::LaneComparison;
@@ -42,7 +43,9 @@ impl RecordingComparer {
         let comparison = self.follower.comparison(true);
         let is_wizards = self.session().spec.trial.condition == Condition::Wizard;
         let wizard = is_wizards.then(|| self.wizard.figures(&self.follower.follower));
-        ComparedRecording { recording, follower: self.follower, standing, comparison, wizard }
+        let offers = self.session().makes_offers.then(|| TimedOffer::visible(self.session()));
+        let offers = offers.map(|offers| OfferSummary::from_offers(&offers));
+        ComparedRecording { recording, follower: self.follower, standing, comparison, wizard, offers }
     }
 }
 
@@ -58,6 +61,8 @@ pub struct ComparedRecording {
     pub comparison: LaneComparison,
     /// None where nobody could send signals.
     pub wizard: Option<WizardSummary>,
+    /// Offers that a wizard could see; `None` in recordings without offers.
+    pub offers: Option<OfferSummary>,
 }
 
 impl ComparedRecording {

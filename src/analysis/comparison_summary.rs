@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::compared_recording::ComparedRecording;
 use super::exclusion_status::ExclusionStatus;
 use super::lesson_report::TrainingSummary;
+use super::offer_summary::OfferSummary;
 use super::watcher::CompareRequest;
 use super::wizard_log::{self, WizardSummary};
 use crate::base::time::SessionTime;
@@ -59,6 +60,8 @@ pub struct RecordingComparison {
     pub lanes: Vec<LaneSummary>,
     /// Of the wizard; null where nobody could send signals.
     pub wizard: Option<WizardSummary>,
+    /// Offers that a wizard could see; null in recordings without offers.
+    pub offers: Option<OfferSummary>,
     /// Communications without a match in another lane.
     pub differences: Vec<UnmatchedSummary>,
 }
@@ -190,6 +193,7 @@ impl RecordingComparison {
             human_actions: u64::from(watched.follower.presses()),
             lanes: lanes.collect(),
             wizard: watched.wizard.clone(),
+            offers: watched.offers.clone(),
             differences: differences
                 .map(|(index, one)| UnmatchedSummary::from_unmatched(watched, index, one))
                 .collect(),
@@ -262,6 +266,7 @@ pub fn describe(figures: &ComparisonSummary, request: &CompareRequest) -> String
             text += &format!("left out of the analysis: {}\n", one.standing.describe());
         }
         text += &one.wizard.as_ref().map_or(String::new(), wizard_log::describe);
+        text += &one.offers.as_ref().map_or(String::new(), OfferSummary::describe);
         text += &describe_differences(&one.differences);
         // That of the session's own concept, if there is one.
         if let Some(first) = one.differences.iter().min_by_key(|one| one.rank()) {

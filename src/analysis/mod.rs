@@ -16,6 +16,8 @@ pub mod kitchen_summary;
 pub mod lesson_report;
 #[cfg(feature = "cli")]
 pub mod likelihood;
+pub mod offer_steadiness;
+pub mod offer_summary;
 pub mod order_work;
 pub mod planner_accuracy;
 pub mod recording_summary;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::follower::Follower;
+use super::offer_summary::{OfferDurations, TimedOffer};
 use crate::base::words::count;
 use crate::kitchen::{Agent, DishId};
 use crate::measures::attribution::Cause;
@@ -31,6 +32,8 @@ pub struct TrialSummary {
     pub served: Vec<(DishId, u32)>,
     /// Length of the trial on its own clock, in seconds.
     pub seconds: f64,
+    /// For each closed offer, the time for which it stood, in milliseconds.
+    pub offers_ms: Vec<u32>,
 }
 
 impl TrialSummary {
@@ -54,6 +57,10 @@ impl TrialSummary {
             beliefs: TrialBeliefErrors::from_follower(follower),
             served,
             seconds: session.trial_clock(session.time).as_secs_f64(),
+            offers_ms: TimedOffer::all(session)
+                .iter()
+                .filter_map(|one| Some((1000.0 * one.stood_s?).round() as u32))
+                .collect(),
         }
     }
 }
@@ -178,6 +185,8 @@ pub struct SimulationSummary {
     pub beliefs: BeliefErrorSummary,
     /// Signals that were shown.
     pub signals: u64,
+    /// Offers, whether a wizard could see them or not.
+    pub offers: OfferDurations,
     /// Orders served.
     pub orders_served: u64,
     /// Median over served orders of the number of presses of both agents since the previously served order.
@@ -275,6 +284,8 @@ pub struct SimulationSums {
     /// Histograms of the presses per served order, and of the least presses for its dish.
     presses_per_order: BTreeMap<u32, u64>,
     optimal_presses_per_order: BTreeMap<u32, u64>,
+    /// Histogram of the times for which offers stood, in milliseconds.
+    offers_ms: BTreeMap<u32, u64>,
 }
 
 impl SimulationSums {
@@ -300,6 +311,7 @@ impl SimulationSums {
         one.errors += trial.errors;
         one.signals += trial.signals;
         self.beliefs.add(trial.beliefs.as_ref());
+        trial.offers_ms.iter().for_each(|&ms| *self.offers_ms.entry(ms).or_default() += 1);
         for (dish, presses) in &trial.served {
             *self.presses_per_order.entry(*presses).or_default() += 1;
             *self.optimal_presses_per_order.entry(plan_lengths[dish.index()]).or_default() += 1;
@@ -312,6 +324,11 @@ impl SimulationSums {
             beliefs: self.beliefs.figures(),
             presses_per_order: median_of(&self.presses_per_order),
             optimal_presses_per_order: median_of(&self.optimal_presses_per_order),
+            offers: OfferDurations {
+                n: self.offers_ms.values().sum(),
+                median_s: median_of(&self.offers_ms).map(|ms| ms / 1000.0),
+                shortest_s: self.offers_ms.keys().next().map(|&ms| f64::from(ms) / 1000.0),
+            },
             ..self.figures.clone()
         }
     }

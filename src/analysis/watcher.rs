@@ -272,6 +272,8 @@ impl ComparisonFollower {
         if let Some(signal) = &advice.best {
             voice.repeats.shown(&session.kitchen, session.state, signal);
             let location = session.kitchen.location_named(signal.target());
+            // An earlier signal about this place must not end the memory of this one when it leaves the window.
+            voice.said.retain(|(_, earlier)| Some(*earlier) != location);
             voice.said.extend(location.map(|location| (session.presses[Agent::Human.index()], location)));
             return Some(CommunicationContent::Signal(signal.clone()));
         }

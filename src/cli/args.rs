@@ -55,7 +55,7 @@ pub(super) enum CliCommand {
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify\nMore: docs/recordings.md")]
 pub(super) struct ReplayArgs {
-    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs and --accuracy.
+    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs, --accuracy and --offers.
     #[arg(required = true, value_name = "RECORDING")]
     pub(super) recordings: Vec<PathBuf>,
     /// Run the session again from the recording's header and inputs; every line must be identical.
@@ -80,12 +80,15 @@ pub(super) struct ReplayArgs {
     /// With --accuracy: largest number of steps for the plain reference; 0 for none.
     #[arg(long, default_value_t = 30, requires = "accuracy", value_parser = clap::value_parser!(u64).range(0..=100_000))]
     pub(super) reference_steps: u64,
+    /// Measure how steady offers are: how long they stand, and whether a scripted hand sends what it has read.
+    #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy"])]
+    pub(super) offers: bool,
     /// Watch a session that is still running, until it ends.
     #[arg(long)]
     pub(super) follow: bool,
     /// Code the errors of the recording as this rater (a code, never a name), without any estimate in view: letters code
     /// false beliefs, 1 a slip, 2 a race, 3 another cause, 4 mixed up buttons. Codes are saved beside the log.
-    #[arg(long, value_name = "CODE", conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy", "format"])]
+    #[arg(long, value_name = "CODE", conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy", "offers", "format"])]
     pub(super) rater: Option<String>,
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]

@@ -5,10 +5,10 @@ use std::path::Path;
 use super::args::{FitArgs, ReplayArgs};
 use super::failure::Failure;
 use super::output::{print, progress};
-use crate::analysis::{belief_check, fitting, planner_accuracy};
+use crate::analysis::{belief_check, fitting, offer_steadiness, planner_accuracy};
 use crate::edge::files;
 use crate::run::accuracy::AccuracySample;
-use crate::run::{accuracy, check_beliefs, fit};
+use crate::run::{accuracy, check_beliefs, fit, steadiness};
 
 /// `tomcom replay RECORDING... --check-beliefs`.
 pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
@@ -27,6 +27,14 @@ pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
     let found = accuracy::measure(&args.recordings, extent, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &found, || planner_accuracy::describe(&found))
+}
+
+/// `tomcom replay RECORDING... --offers`.
+pub(super) fn offers(args: &ReplayArgs) -> Result<(), Failure> {
+    let bar = progress(args.recordings.len() as u64, "recordings");
+    let found = steadiness::measure(&args.recordings, || bar.inc(1))?;
+    bar.finish_and_clear();
+    print(args.format, &found, || offer_steadiness::describe(&found))
 }
 
 /// `tomcom fit RECORDING...`.

@@ -67,6 +67,15 @@ pub enum OfferUse {
     OwnKey,
 }
 
+/// When and how the signal of an offer was sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UsedOffer {
+    /// By which key.
+    pub how: OfferUse,
+    /// When, in session time.
+    pub at: SessionTime,
+}
+
 /// An offer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Offer {
@@ -74,8 +83,8 @@ pub struct Offer {
     pub seq: u64,
     /// When it opened, in session time.
     pub opened: SessionTime,
-    /// How its signal was sent since it opened, if it was.
-    pub used: Option<OfferUse>,
+    /// How the wizard sent its signal while it was open or could still be taken, if it was sent.
+    pub used: Option<UsedOffer>,
     /// What is offered, and why.
     pub advice: OfferedAdvice,
 }
@@ -155,11 +164,11 @@ pub struct ClosedOffer {
     pub reason: OfferEnd,
 }
 
-/// The open offer and the last one that closed.
+/// The offers of a trial: the open one, and those that closed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OfferBook {
     present: Option<Offer>,
-    last: Option<ClosedOffer>,
+    closed: Vec<ClosedOffer>,
 }
 
 impl OfferBook {
@@ -175,13 +184,17 @@ impl OfferBook {
 
     /// The offer that closed last.
     pub fn last(&self) -> Option<&ClosedOffer> {
-        self.last.as_ref()
+        self.closed.last()
+    }
+
+    /// All closed offers of the trial, in order.
+    pub fn closed(&self) -> &[ClosedOffer] {
+        &self.closed
     }
 
     /// The present or the last offer, by its sequence number.
     pub fn find(&self, seq: u64) -> Option<&Offer> {
-        let last = self.last.as_ref().map(|last| &last.offer);
-        self.present.iter().chain(last).find(|offer| offer.seq == seq)
+        self.present.iter().chain(self.last().map(|last| &last.offer)).find(|offer| offer.seq == seq)
     }
 
     /// Opens an offer.
@@ -189,17 +202,17 @@ impl OfferBook {
         self.present = Some(Offer { seq, opened: now, used: None, advice });
     }
 
-    /// Closes the open offer.
+    /// Closes the open offer, if there is one.
     pub fn closes(&mut self, now: SessionTime, reason: OfferEnd) {
-        self.last = self.present.take().map(|offer| ClosedOffer { offer, closed: now, reason }).or(self.last.take());
+        self.closed.extend(self.present.take().map(|offer| ClosedOffer { offer, closed: now, reason }));
     }
 
-    /// Notes that the wizard sent a signal; `taken` is the sequence number of the offer that was taken, if one was.
-    pub fn sends(&mut self, signal: &Signal, taken: Option<u64>) {
-        let how = if taken.is_some() { OfferUse::Taken } else { OfferUse::OwnKey };
-        let last = self.last.as_mut().map(|last| &mut last.offer);
+    /// Notes that the wizard sent a signal. It concerns the open offer and, if `with_last`, the last one that closed, as far
+    /// as they offered this signal.
+    pub fn sends(&mut self, signal: &Signal, used: UsedOffer, with_last: bool) {
+        let last = self.closed.last_mut().filter(|_| with_last).map(|last| &mut last.offer);
         for offer in self.present.iter_mut().chain(last).filter(|offer| offer.signal() == Some(signal)) {
-            offer.used.get_or_insert(how);
+            offer.used.get_or_insert(used);
         }
     }
 }

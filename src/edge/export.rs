@@ -105,7 +105,7 @@ impl ExportFolder {
     ///
     /// # Errors
     /// The files cannot be written.
-    pub fn keep(&self, index: usize, rows: &[Vec<u8>; 4]) -> Result<(), ExportError> {
+    pub fn keep(&self, index: usize, rows: &[Vec<u8>; 5]) -> Result<(), ExportError> {
         for (table, rows) in Table::OF_EVENTS.into_iter().zip(rows) {
             let path = self.part(index, table);
             fs::write(&path, rows).map_err(|reason| ExportError { path, reason })?;

@@ -36,7 +36,7 @@ use crate::session::orders::OrderList;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::timers::TimerQueue;
-use crate::session::{Applied, Effect, Event, Phase, Session, SessionSpec, Stamped, Timer};
+use crate::session::{Applied, Effect, Event, Header, Phase, Session, SessionSpec, Stamped, Timer};
 use crate::wizard::ScriptedWizard;
 
 /// A running session.
@@ -163,6 +163,15 @@ impl Engine {
     /// The same engine without the scripted wizard, who sends no further signals.
     pub fn without_wizard(self) -> Engine {
         Engine { wizard: None, ..self }
+    }
+
+    /// The engine of a recording's header, with what the format of the recording has.
+    ///
+    /// # Panics
+    /// As [`Self::new`].
+    pub fn for_header(kitchen: Arc<Kitchen>, header: &Header, cost: CostToGo) -> Engine {
+        let engine = Engine::new(kitchen, header.session.clone(), header.trial, cost);
+        if header.has_offers() { engine } else { engine.without_offers() }
     }
 
     /// The engine of a recording that was made without offers.

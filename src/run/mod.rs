@@ -47,6 +47,8 @@ pub mod simulate;
 #[cfg(feature = "cli")]
 pub mod standing;
 #[cfg(feature = "cli")]
+pub mod steadiness;
+#[cfg(feature = "cli")]
 pub mod study;
 #[cfg(feature = "cli")]
 pub mod sweep;

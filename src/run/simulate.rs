@@ -278,6 +278,7 @@ pub fn describe(figures: &SimulationSummary) -> String {
         some => format!(", {some} of them before"),
     };
     let moved = describe_moved(&figures.moved);
+    let offers = figures.offers.describe();
     let by_condition: String = match &figures.conditions[..] {
         [] => String::new(),
         [one] if one.condition == Condition::None => String::new(),
@@ -292,6 +293,7 @@ pub fn describe(figures: &SimulationSummary) -> String {
          errors: {} ({:.1} % of the human's presses, {:.1} % of all)\n\
          {by_condition}\
          {}\n\
+         {offers}\
          orders served: {}{each}\n\
          {excluded}\
          recordings:\n{}\n{look}",

@@ -52,8 +52,7 @@ impl PreparedSession {
                 Ok(PreparedSession { engine, header, first, consent: false, time, compare: None, place })
             }
             SessionStart::Again { header, kitchen, out } => {
-                let engine = Engine::new(kitchen.clone(), header.session.clone(), header.trial, CostToGo::new(kitchen))
-                    .without_causes();
+                let engine = Engine::for_header(kitchen.clone(), &header, CostToGo::new(kitchen)).without_causes();
                 let (header, place) = (*header, RecordingPlace::In(out));
                 Ok(PreparedSession {
                     engine,

@@ -85,9 +85,7 @@ impl RerunRecording {
         header.session.require_built().map_err(|missing| FileError::not_built(log.path(), missing))?;
         let cost = CostToGo::new(kitchen.clone());
         let mut replayed = Follower::new(log.session(), cost.clone());
-        let has_offers = header.has_offers();
-        let engine = Engine::new(kitchen, header.session, header.trial, cost);
-        let engine = if has_offers { engine } else { engine.without_offers() };
+        let engine = Engine::for_header(kitchen, &header, cost);
         let advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
         let mut again = RerunSession { engine, produced: VecDeque::new(), advisor, questions: VecDeque::new() };
         let mut difference = None;

@@ -3,6 +3,7 @@
 use super::EntityUpdate;
 use super::colours::{self, Colour};
 use super::entity_content::{EntityData, LogLevel, MarkShape, SceneSeries, slug};
+use crate::communication::offer::{OfferEnd, OfferedAdvice};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, signals};
 use crate::history::wording;
@@ -118,4 +119,16 @@ pub fn advice(advice: &Recommendation) -> Vec<EntityUpdate> {
         rows.push(say("assistant/advice", LogLevel::Info, text, colours::ASSISTANT));
     }
     rows
+}
+
+/// The offer to the wizard opens.
+pub fn offer_opened(offer: &OfferedAdvice) -> EntityUpdate {
+    let unseen = if offer.visible { "" } else { " (not visible to a wizard)" };
+    let text = format!("offer to the wizard: {}{unseen}", wording::offered(&offer.what));
+    say("assistant/offers", LogLevel::Info, text, colours::ASSISTANT)
+}
+
+/// The offer closes.
+pub fn offer_closed(reason: OfferEnd) -> EntityUpdate {
+    say("assistant/offers", LogLevel::Info, format!("offer closes: {}", reason.words()), colours::ASSISTANT)
 }

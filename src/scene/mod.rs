@@ -20,7 +20,7 @@ use belief_entities::BeliefScene;
 pub use entity_content::{EntityData, EntityUpdate};
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 
 /// Updates of entities at one time.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,6 +136,8 @@ impl SessionScene {
                 rows.extend(place_entities::shown_signal(session));
             }
             Event::Advised(advice) => rows.extend(happenings::advice(advice)),
+            Event::OfferOpened(offer) => rows.push(happenings::offer_opened(offer)),
+            Event::OfferClosed { reason, .. } => rows.push(happenings::offer_closed(*reason)),
             Event::Protocol(event) => rows.push(happenings::protocol(event)),
             _ => {}
         }

@@ -6,6 +6,7 @@ use super::phase::Phase;
 use super::protocol::{self, ProtocolEvent};
 use super::session_state::Session;
 use super::settings::{ArmKind, Condition, ParticipantKind};
+use super::timeline_entry::TimelineEvent;
 use super::{accuracy_check, interventions, tracker};
 use crate::base::time::SessionTime;
 use crate::communication::{self, Sender, Signal};
@@ -114,6 +115,17 @@ pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(),
         Some(age_s) => Err(format!("too soon: {age_s:.1} s after the last signal, it takes {cool_down_s} s")),
         None => Ok(()),
     }
+}
+
+/// Whether a person presses again before the session's pace allows it.
+pub(super) fn is_too_early(session: &Session, now: SessionTime) -> bool {
+    let spec = &session.spec;
+    let Some(pace_s) = spec.trial.pace_s.filter(|_| spec.participant.kind != ParticipantKind::Simulated) else {
+        return false;
+    };
+    let is_own = |what: &TimelineEvent| matches!(what, TimelineEvent::Press { agent: Agent::Human, .. });
+    let last = session.timeline.iter().rfind(|entry| is_own(&entry.what));
+    last.is_some_and(|last| session.age(last.time, now).as_secs_f64() < pace_s)
 }
 
 /// Whether an event comes from outside (wizard, participant, tracker) rather than from the running session itself.

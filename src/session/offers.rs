@@ -11,6 +11,7 @@ use super::settings::{Condition, Visibility};
 use crate::base::time::SessionTime;
 use crate::communication::offer::{
     GAP, HOLD, Offer, OfferEnd, OfferThresholds, OfferUse, OfferWorth, OfferedAct, OfferedAdvice, TAKEN_AFTER, UNREAD,
+    UsedOffer,
 };
 use crate::communication::recommendation::{Recommendation, SignalOption};
 use crate::communication::{Sender, Signal, unavailable};
@@ -39,7 +40,7 @@ fn closing(session: &Session, offer: &Offer, now: SessionTime) -> Option<OfferEn
         Phase::Ready | Phase::Paused => return None,
         Phase::Over(_) | Phase::Closed => return Some(OfferEnd::TrialEnded),
     }
-    match offer.used {
+    match offer.used.map(|used| used.how) {
         Some(OfferUse::Taken) => return Some(OfferEnd::Taken),
         Some(OfferUse::OwnKey) => return Some(OfferEnd::OwnKey),
         None => {}
@@ -129,8 +130,37 @@ fn wanted(session: &Session, signal: &Signal) -> Option<((SessionTime, usize), O
     Some(((session.changed_at[order.index()], index), session.state.order(order)))
 }
 
-/// The offer that `enter` takes at `now`, with the event that sends its signal: the open offer; in its first 0.3 s, or while none is
-/// open, the last one if it closed at most 1.3 s ago and was not taken.
+/// Notes that the wizard sent a signal: of the open offer, or of the last one while it can still be taken.
+pub(super) fn sends(session: &mut Session, now: SessionTime, signal: &Signal, is_taken: bool) {
+    let how = if is_taken { OfferUse::Taken } else { OfferUse::OwnKey };
+    let with_last = still_takes(session, now).is_some();
+    session.offers.sends(signal, UsedOffer { how, at: now }, with_last);
+}
+
+/// The last offer that closed, while it can still be taken.
+fn still_takes(session: &Session, now: SessionTime) -> Option<&Offer> {
+    session.offers.last().filter(|last| session.age(last.closed, now) <= TAKEN_AFTER).map(|last| &last.offer)
+}
+
+/// The offer that `enter` means at `now`: the open one; in its first 0.3 s, or while none is open, the last one if it closed at
+/// most 1.3 s ago and was not taken.
+///
+/// # Errors
+/// Why it means none, in words for the wizard.
+pub fn meant(session: &Session, now: SessionTime) -> Result<&Offer, &'static str> {
+    let open = session.offers.open();
+    if let Some(offer) = open.filter(|offer| session.age(offer.opened, now) >= UNREAD) {
+        return Ok(offer);
+    }
+    match (still_takes(session, now), open) {
+        (Some(last), _) if last.used.is_none() => Ok(last),
+        (_, Some(_)) => Err("the offer has just appeared: read it, then press again"),
+        (Some(_), None) => Err("the offer was taken already"),
+        (None, None) => Err("nothing is on offer"),
+    }
+}
+
+/// The offer that `enter` takes at `now`, with the event that sends its signal.
 ///
 /// # Errors
 /// Why `enter` means nothing now, in words for the wizard.
@@ -138,24 +168,7 @@ pub fn enter(session: &Session, now: SessionTime) -> Result<(&Offer, Event), Str
     if session.spec.console.visibility != Visibility::Recommendation {
         return Err("recommendations are not shown in this session".to_string());
     }
-    let open = session.offers.open();
-    if let Some(offer) = open.filter(|offer| session.age(offer.opened, now) >= UNREAD) {
-        return sendable(session, offer, now);
-    }
-    let last = session.offers.last().filter(|last| session.age(last.closed, now) <= TAKEN_AFTER);
-    match (last, open) {
-        (Some(last), _) if last.offer.used.is_none() => sendable(session, &last.offer, now),
-        (_, Some(_)) => Err("the offer has just appeared: read it, then press again".to_string()),
-        (Some(_), None) => Err("the offer was taken already".to_string()),
-        (None, None) => Err("nothing is on offer".to_string()),
-    }
-}
-
-/// The offer with the event that sends its signal.
-///
-/// # Errors
-/// Why it cannot be sent now.
-fn sendable<'a>(session: &Session, offer: &'a Offer, now: SessionTime) -> Result<(&'a Offer, Event), String> {
+    let offer = meant(session, now)?;
     let signal = offer.signal().ok_or("proposed presses are for the participant to make; they cannot be sent")?;
     let (by, signal) = (Sender::Wizard, signal.clone());
     let event = Event::SignalShown { by, signal, accepted: None, offer: Some(offer.seq) };

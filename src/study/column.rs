@@ -20,6 +20,8 @@ pub enum Table {
     Actions,
     /// A row for each signal that was sent, or would have been.
     Communications,
+    /// A row for each offer that a wizard could see.
+    Offers,
     /// A row for each press of the human and state aspect.
     Beliefs,
     /// A row for each run of gaze samples on one location.
@@ -30,19 +32,21 @@ pub enum Table {
 
 impl Table {
     /// Every table.
-    pub const ALL: [Table; 9] = [
+    pub const ALL: [Table; 10] = [
         Table::Participants,
         Table::Trials,
         Table::Questionnaires,
         Table::Concepts,
         Table::Actions,
         Table::Communications,
+        Table::Offers,
         Table::Beliefs,
         Table::Gaze,
         Table::Dictionary,
     ];
     /// Tables whose rows are events of a trial.
-    pub const OF_EVENTS: [Table; 4] = [Table::Actions, Table::Communications, Table::Beliefs, Table::Gaze];
+    pub const OF_EVENTS: [Table; 5] =
+        [Table::Actions, Table::Communications, Table::Offers, Table::Beliefs, Table::Gaze];
 
     /// File name of the table without `.csv`.
     pub fn name(self) -> &'static str {
@@ -53,6 +57,7 @@ impl Table {
             Table::Concepts => "concepts",
             Table::Actions => "actions",
             Table::Communications => "communications",
+            Table::Offers => "offers",
             Table::Beliefs => "beliefs",
             Table::Gaze => "gaze",
             Table::Dictionary => "dictionary",

@@ -8,6 +8,7 @@ use super::tables::aspect_beliefs::BeliefRow;
 use super::tables::communications::CommunicationRow;
 use super::tables::concept_table::ConceptRow;
 use super::tables::gaze_runs::GazeRow;
+use super::tables::offer_table::OfferRow;
 use super::tables::participants::ParticipantRow;
 use super::tables::questionnaires::AnswerRow;
 use super::trial_statistics::Trial;
@@ -47,6 +48,7 @@ pub fn columns(table: Table) -> Vec<DictionaryRow> {
         Table::Concepts => declared::<ConceptRow>(),
         Table::Actions => declared::<ActionRow>(),
         Table::Communications => declared::<CommunicationRow>(),
+        Table::Offers => declared::<OfferRow>(),
         Table::Beliefs => declared::<BeliefRow>(),
         Table::Gaze => declared::<GazeRow>(),
         Table::Dictionary => declared::<DictionaryRow>(),

@@ -13,6 +13,7 @@ use super::roc::{ConceptComparison, Roc, SweptTrial, compare};
 use super::statistics::{Correlation, FTest, Interval, share_interval};
 use super::tables::trials::measures;
 use super::trial_statistics::{BeliefBasis, BeliefErrors, Trial, mean, mean_length};
+use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
 use crate::measures::cause_codes::{Agreement, AgreementTable, Codes};
 use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::matching::{MatchCounts, Similarity, WINDOW};
@@ -70,6 +71,8 @@ pub struct StudySummary {
     pub similarity_by_trial: Vec<TrialSimilarity>,
     /// How well wizards did, over all trials with a wizard.
     pub wizard: Option<WizardMeasures>,
+    /// Offers that wizards could see in trials in which they could send signals; null without such offers.
+    pub offers: Option<OfferSummary>,
     /// How participants take the assistance.
     pub acceptance: Option<Acceptance>,
     /// The answers, by item and condition.
@@ -223,6 +226,7 @@ impl StudySummary {
             similarity_with_advice: similarity(&advised),
             similarity_by_trial: counting.iter().filter_map(|trial| similarity_of_trial(trial)).collect(),
             wizard: (!wizards.is_empty()).then(|| WizardMeasures::sum(wizards)),
+            offers: offers(&counting),
             acceptance: acceptance(&counting),
             questionnaires: items(&counting),
             raters: agreement(&counting),
@@ -230,6 +234,13 @@ impl StudySummary {
             practice,
         }
     }
+}
+
+/// Summary of the offers in wizard trials; `None` if there was none.
+fn offers(trials: &[&Trial]) -> Option<OfferSummary> {
+    let wizards = trials.iter().filter(|trial| trial.condition == Condition::Wizard);
+    let all: Vec<&TimedOffer> = wizards.filter_map(|trial| trial.offers.as_ref()).flatten().collect();
+    (!all.is_empty()).then(|| OfferSummary::from_offers(all))
 }
 
 fn title(facts: &Facts, trials: &[Trial], simulated: bool) -> String {

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::acting_arm::ActingArm;
 use super::robot_tally::RobotSummary;
 use super::roc::SweptTrial;
+use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
 use crate::measures::cause_codes::Codes;
 use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::matching::CommunicationEvent;
@@ -67,6 +68,8 @@ pub struct Trial {
     pub signals: u64,
     /// Number of these that were useful, judged by twins of simulated trials; `None` where there are none.
     pub useful_signals: Option<u64>,
+    /// Offers that a wizard could see; `None` in recordings without offers.
+    pub offers: Option<Vec<TimedOffer>>,
     /// Length of the trial without pauses, in seconds.
     pub seconds: f64,
     /// The answers to questionnaires after the trial.
@@ -147,6 +150,11 @@ pub struct QuestionnaireAnswer {
 }
 
 impl Trial {
+    /// Summary of the offers that a wizard could see; `None` in recordings without offers.
+    pub fn offer_summary(&self) -> Option<OfferSummary> {
+        self.offers.as_ref().map(OfferSummary::from_offers)
+    }
+
     /// Whether the trial counts in the analysis.
     pub fn counts(&self) -> bool {
         self.left_out.is_none()

@@ -170,6 +170,8 @@ fn the_page_is_told_what_may_be_seen_and_nothing_else() {
         for condition in [Condition::Assistant, Condition::Wizard] {
             let mut files = files(path);
             files.spec.trial.condition = condition;
+            // Whatever is worth anything is said, so that there are signals to look at.
+            files.spec.assistant.cost_of_communication = 0.0;
             // With both arms: nothing of them is to be seen.
             files.spec.robot.arm = if condition == Condition::Wizard { ArmKind::Timed } else { ArmKind::Physics };
             let mut engine = engine(files);

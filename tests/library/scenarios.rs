@@ -129,7 +129,7 @@ impl Scenario {
 
     fn answer(&self, seed: u64) -> Recommendation {
         let kitchen = self.kitchen();
-        let spec = AssistantSpec::default();
+        let spec = nobody_looks_around();
         let spec = AssistantSpec { cost_of_communication: self.cost.unwrap_or(spec.cost_of_communication), ..spec };
         self.ask(&mut *concept(ConceptName::TomCom, kitchen, &HumanModel::default(), &spec, seed), None)
     }
@@ -144,6 +144,13 @@ impl Scenario {
         let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
         concept.advise(&mut CostToGo::new(kitchen), &DecisionPoint { error, ..moment(situation, &signals) })
     }
+}
+
+/// Settings of people who look only at what their next press needs: who looks around sees most changes without a signal.
+fn nobody_looks_around() -> AssistantSpec {
+    let mut spec = AssistantSpec::default();
+    (spec.rollout.other_looks_hz, spec.rollout.capture) = (Some(0.0), Some(0.0));
+    spec
 }
 
 /// A moment at the start of a session.
@@ -230,7 +237,7 @@ fn an_answer_depends_on_nothing_that_was_asked_before() {
     let paths = scenarios();
     let first = Scenario::read(&paths[0]);
     let kitchen = first.kitchen();
-    let spec = AssistantSpec::default();
+    let spec = nobody_looks_around();
     let mut cost = CostToGo::new(kitchen.clone());
     let mut planner = Planner::new(kitchen.clone(), &HumanModel::default(), spec, 1);
     let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
@@ -283,7 +290,7 @@ fn what_will_be_seen_anyway_is_not_worth_saying() {
 /// Planners that go from question to question, dealt out to so many threads; answers in the order of the scenarios.
 fn answers<'a>(scenarios: &'a [Scenario], threads: usize) -> Vec<Recommendation> {
     let planner = |scenario: &Scenario| {
-        concept(ConceptName::TomCom, scenario.kitchen(), &HumanModel::default(), &AssistantSpec::default(), 1)
+        concept(ConceptName::TomCom, scenario.kitchen(), &HumanModel::default(), &nobody_looks_around(), 1)
     };
     let of_thread = move |thread: usize| -> Vec<(usize, Recommendation)> {
         let mut kept: BTreeMap<&str, Box<dyn Concept>> = BTreeMap::new();

@@ -8,6 +8,7 @@ use super::sweep::ConceptSweep;
 use super::twin::useful_signals;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::follower::Follower;
+use crate::analysis::offer_summary::TimedOffer;
 use crate::analysis::order_work::{RegretSum, order_times};
 use crate::analysis::watcher::{CompareRequest, ComparisonFollower};
 use crate::analysis::wizard_log::{WizardLog, clock_at};
@@ -45,8 +46,8 @@ pub struct RecordingAnalysis {
     pub trial: Trial,
     /// What the report tells about the recording.
     pub facts: Facts,
-    /// CSV rows of the four tables of events.
-    pub rows: [Vec<u8>; 4],
+    /// CSV rows of the tables of events.
+    pub rows: [Vec<u8>; 5],
 }
 
 /// Optional parts of the analysis.
@@ -372,6 +373,7 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         answers: Vec::new(),
         wizard: None,
         useful_signals: None,
+        offers: session.makes_offers.then(|| TimedOffer::visible(session)),
         wizard_saw_advice: saw_advice(session),
         lanes: None,
         swept: Vec::new(),

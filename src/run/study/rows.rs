@@ -1,6 +1,7 @@
 //! Collects the rows of the tables of events during the replay of a recording. [`crate::study::tables`] declares their columns.
 
 use crate::analysis::follower::Follower;
+use crate::analysis::offer_summary::TimedOffer;
 use crate::analysis::wizard_log::clock_at;
 use crate::base::time::SessionTime;
 use crate::edge::export::TableRows;
@@ -19,6 +20,7 @@ use crate::study::tables::actions::{ActionRow, PressAnalysis, RecordedPress};
 use crate::study::tables::aspect_beliefs::BeliefRow;
 use crate::study::tables::communications::CommunicationRow;
 use crate::study::tables::gaze_runs::{GazeRow, GazeRun};
+use crate::study::tables::offer_table::OfferRow;
 
 /// Collects the rows of the tables of events of one recording.
 #[derive(Debug)]
@@ -35,7 +37,7 @@ pub struct RowCollector {
 
 /// Rows of each table of events, in the order of [`Table::OF_EVENTS`].
 #[derive(Debug)]
-struct EventRows([TableRows; 4]);
+struct EventRows([TableRows; 5]);
 
 impl EventRows {
     fn add<Row: TableRow>(&mut self, row: &Row) {
@@ -179,7 +181,7 @@ impl RowCollector {
         known: &PressFacts,
         lanes: &[(String, Vec<CommunicationEvent>)],
         window: u32,
-    ) -> [Vec<u8>; 4] {
+    ) -> [Vec<u8>; 5] {
         self.end_look(session);
         let (recording, kitchen) = (&*self.recording, &*session.kitchen);
         for recorded in &self.presses {
@@ -195,6 +197,9 @@ impl RowCollector {
                 let matched = pairs.as_ref().map(is_matched);
                 self.rows.add(&CommunicationRow { recording, kitchen, lane, sent, matched });
             }
+        }
+        for timed in &TimedOffer::visible(session) {
+            self.rows.add(&OfferRow { recording, timed });
         }
         self.rows.0.map(TableRows::into_bytes)
     }

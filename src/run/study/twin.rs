@@ -43,7 +43,7 @@ pub(super) fn useful_signals(recording: &Path) -> FileResult<Option<u64>> {
         return Ok(None);
     }
     let cost = CostToGo::new(kitchen.clone());
-    let mut again = Engine::new(kitchen, header.session, header.trial, cost);
+    let mut again = Engine::for_header(kitchen, &header, cost);
     let (mut produced, mut twins) = (VecDeque::new(), Vec::new());
     while let Some(line) = log.next_line()? {
         if produced.is_empty() {

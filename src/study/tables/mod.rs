@@ -5,6 +5,7 @@ pub mod aspect_beliefs;
 pub mod communications;
 pub mod concept_table;
 pub mod gaze_runs;
+pub mod offer_table;
 pub mod participants;
 pub mod questionnaires;
 pub mod trials;

@@ -1,5 +1,6 @@
 //! Table of trials, and the measures among its columns that are compared between conditions.
 
+use crate::analysis::offer_summary::OfferSummary;
 use crate::measures::cause_kinds::CauseKindCounts;
 use crate::robot::AbortReason;
 use crate::session::event::EndReason;
@@ -80,6 +81,7 @@ fn declared() -> impl Iterator<Item = TrialColumn> {
         .chain(presses_given_up())
         .chain(by_hand())
         .chain(work())
+        .chain(offered())
 }
 
 fn plain(
@@ -320,5 +322,33 @@ fn work() -> Vec<TrialColumn> {
             |causes| causes.order_or_recipe,
         ),
         cause("errors_about_places", "belief related errors about another location's content", |causes| causes.places),
+    ]
+}
+
+/// Offers that a wizard could see.
+fn offered() -> Vec<TrialColumn> {
+    fn offers(
+        name: &'static str,
+        unit: &'static str,
+        meaning: &'static str,
+        value: fn(OfferSummary) -> TableCell<'static>,
+    ) -> TrialColumn {
+        TrialColumn::Plain(Trial::column(name, unit, meaning, move |trial| trial.offer_summary().map(value).into()))
+    }
+    vec![
+        offers("offers", "offers", "closed offers that a wizard could see; empty: a recording without offers", |of| {
+            of.all.n.into()
+        }),
+        offers(
+            "offers_taken",
+            "offers",
+            "those whose signal the wizard sent with the key that takes the offer",
+            |of| of.taken.into(),
+        ),
+        offers("offers_by_own_key", "offers", "those whose signal the wizard sent with the signal's own key", |of| {
+            of.by_own_key.into()
+        }),
+        offers("offer_stood_s", "s", "median time for which these offers were open", |of| of.all.median_s.into()),
+        offers("offer_reaction_s", "s", "median time from an offer's opening to either key", |of| of.reaction_s.into()),
     ]
 }

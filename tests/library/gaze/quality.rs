@@ -44,6 +44,9 @@ fn what_is_read_is_what_the_display_showed_when_the_sample_was_taken() {
     let p_salmon = |taken_ms: u64| {
         let mut engine = engine(|spec| {
             (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
+            // Before the samples the gaze is unknown, and nothing is looked at.
+            (spec.human.looking.looks_hz, spec.human.looking.other_looks_hz) = (0.0, 0.0);
+            spec.human.looking.capture = 0.0;
         });
         let kitchen = engine.session().kitchen.clone();
         let counter = kitchen.location_named("counter").expect("a counter");

@@ -12,11 +12,13 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, Kitchen};
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom::mind::gaze_presence::GazePresence;
-use tomcom::mind::model::{HumanModel, LookingModel};
+use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, Observed};
 use tomcom::mind::reference::belief_set::Particles;
 use tomcom::mind::reference::person::Particle;
 use tomcom::mind::reference::reading_effect::GazeFollower;
+
+use super::looks_at_nothing;
 
 /// The grid has at most so many nodes, …
 const MOST_NODES: usize = 40_000;
@@ -51,8 +53,7 @@ impl GridFilter {
         let mut thoughtful = model.clone();
         thoughtful.transition.foresight = 1.0;
         // The grid reads gaze itself, and there is no time without gaze.
-        let none = LookingModel { looks_hz: 0.0, other_looks_hz: 0.0, capture: 0.0, ..LookingModel::default() };
-        thoughtful.looking = none;
+        thoughtful.looking = looks_at_nothing().looking;
         let people = Particles::new(kitchen.clone(), thoughtful);
         let belief = people.prior.clone();
         let places = belief.aspects.iter().take(kitchen.locations.len());

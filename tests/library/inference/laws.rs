@@ -15,6 +15,8 @@ use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::{HumanModel, InferenceModel};
 use tomcom::mind::observation::{Observation, Observed};
 
+use super::looks_at_nothing;
+
 const KITCHENS: [&str; 2] = ["sushi", "burger"];
 
 fn kitchen(name: &str) -> Arc<Kitchen> {
@@ -241,7 +243,7 @@ fn reading_does_not_depend_on_the_sampling_rate() {
 
 #[test]
 fn a_long_look_ends_in_the_confusion_matrix_and_elsewhere_nothing_changes() {
-    let mut bench = Bench::new("sushi", HumanModel::default());
+    let mut bench = Bench::new("sushi", looks_at_nothing());
     bench.order(0.5, "order_1", "tuna nigiri");
     bench.press(0.6, Agent::Robot, "take salmon");
     let before = bench.filter.belief().clone();
@@ -387,7 +389,7 @@ fn recipes_are_forgotten_with_their_half_life_and_pauses_do_not_count() {
 #[test]
 fn a_signal_makes_certain_what_it_is_about_as_often_as_it_is_noticed() {
     for noticed in [1.0, 0.6] {
-        let mut model = HumanModel::default();
+        let mut model = looks_at_nothing();
         model.signal.noticed = noticed;
         let mut bench = Bench::new("burger", model);
         let place = bench.kitchen.board;
@@ -404,8 +406,7 @@ fn a_signal_makes_certain_what_it_is_about_as_often_as_it_is_noticed() {
 #[test]
 fn too_few_effective_samples_are_met_with_more() {
     let inference = InferenceModel { beliefs: 32, states: 8, min_effective: 30.0, max_beliefs: 256, predictions: 8 };
-    let model = HumanModel { inference, ..HumanModel::default() };
-    let mut bench = Bench::new("sushi", model);
+    let mut bench = Bench::new("sushi", HumanModel { inference, ..HumanModel::default() });
     bench.order(0.5, "order_1", "salmon nigiri");
     bench.look(1.0, 6.0, "order_1", 120.0);
     let mut most = 0;

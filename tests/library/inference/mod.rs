@@ -11,3 +11,11 @@ mod particles;
 mod recorded;
 mod unknown_gaze;
 mod world;
+
+use tomcom::mind::model::{HumanModel, LookingModel};
+
+/// A human who looks at nothing while the gaze is unknown.
+fn looks_at_nothing() -> HumanModel {
+    let looking = LookingModel { looks_hz: 0.0, other_looks_hz: 0.0, capture: 0.0, ..LookingModel::default() };
+    HumanModel { looking, ..HumanModel::default() }
+}

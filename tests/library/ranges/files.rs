@@ -11,12 +11,14 @@ use tomcom::session::ranges;
 use super::{as_number, every_setting, extremes, folder, has, questionnaire, set};
 
 /// Settings that other rules bound beside their range: together with others, or as multiples of others.
-const RULED: [&str; 9] = [
+const RULED: [&str; 11] = [
     "human.perception.look_alike",
     "human.perception.anything",
     "participant.population.signal_after_s",
     "participant.population.reads_signal_s",
     "tracker.corners",
+    "tracker.gaps.shortest_s",
+    "tracker.gaps.longest_s",
     "plan.block",
     "plan.questionnaire.after",
     "plan.participants",

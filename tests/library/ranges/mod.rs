@@ -22,6 +22,14 @@ fn every_setting() -> toml::Table {
         pace_s = 2.0
         [tracker]
         corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+        [tracker.gaps]
+        every_s = 10.0
+        shortest_s = 1.0
+        longest_s = 5.0
+        [assistant.rollout]
+        looks_hz = 1.0
+        other_looks_hz = 0.25
+        capture = 0.35
         [participant.population]
         [plan]
         name = "all"

@@ -73,12 +73,14 @@ fn check_end(range: &NumberRange, value: f64, folder: &Path) {
     if !range.path.starts_with("plan.") {
         settings.remove("plan");
     }
-    // Two settings of perception exclude each other at their ends, and every block needs as many participants.
+    // Two settings of perception exclude each other at their ends, and every block needs as many participants; gaps last from 1 to 5 s.
     let is_refused = ["human.perception.look_alike", "human.perception.anything"].contains(&range.path) && value == 1.0
         || range.path == "plan.block"
         || range.path == "plan.questionnaire.after" && value > 2.0
         || ["participant.population.signal_after_s", "participant.population.reads_signal_s"].contains(&range.path)
             && value > 0.0
+        || range.path == "tracker.gaps.shortest_s" && value > 5.0
+        || range.path == "tracker.gaps.longest_s" && value < 1.0
         || range.path == "tracker.corners";
     let ran = run(&format!("{} = {value}", range.path), range.path, &settings, folder);
     assert!(ran || is_refused, "{} = {value} is refused", range.path);

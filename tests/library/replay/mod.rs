@@ -2,6 +2,7 @@
 
 mod assistants;
 mod equality;
+mod offers;
 mod reading;
 mod scenes;
 mod winding;

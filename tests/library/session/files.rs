@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use tomcom::communication::settings::AssistantSpec;
 use tomcom::console::{KeyBindings, KeyMap};
 use tomcom::edge::files::read_session;
 use tomcom::edge::parse::parse;
@@ -28,13 +27,10 @@ fn the_default_session_spells_out_every_default() {
     let only_layout: SessionSpec = parse(path, "layout = \"../layouts/sushi.toml\"").expect("a session file");
     let spec = read_session(path).expect("the default session").spec;
     // But for the arm, which is timed where nothing is said, as in recordings of before there was another; and for what is
-    // fitted to its simulated participant: the human model, and where people look in rollouts.
+    // fitted to its simulated participant: the human model.
     let robot = RobotSpec { arm: ArmKind::Timed, ..spec.robot };
     assert_ne!(spec.human, only_layout.human);
-    assert_ne!(spec.assistant.rollout, only_layout.assistant.rollout);
-    let rollout = only_layout.assistant.rollout.clone();
-    let assistant = AssistantSpec { rollout, ..spec.assistant };
-    assert_eq!(SessionSpec { human: only_layout.human.clone(), assistant, robot, ..spec }, only_layout);
+    assert_eq!(SessionSpec { human: only_layout.human.clone(), robot, ..spec }, only_layout);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod files;
 mod judgement;
+mod offers;
 mod orders;
 mod robot;
 mod trial;

@@ -1,0 +1,253 @@
+//! How steady offers are: how long they stand, and whether a hand that reads an offer and then presses `enter` sends what it read.
+//!
+//! The scripted hand reads the screen at random moments of the trial's running time and presses 0.6 to 1.2 s later. Its key is
+//! resolved by [`offers::meant`]; it sends nothing, so recordings in which nobody could send are measured too.
+
+use rand::RngExt;
+use serde::Serialize;
+
+use super::offer_summary::{OfferSummary, TimedOffer};
+use crate::base::rng::{Stream, stream};
+use crate::base::time::SessionTime;
+use crate::base::words::count;
+use crate::communication::offer::{Offer, OfferEnd};
+use crate::communication::recommendation::Recommendation;
+use crate::communication::{Signal, unavailable};
+use crate::measures::median;
+use crate::session::{Session, offers};
+
+/// Mean time between two readings of the scripted hand, in seconds.
+const BETWEEN_READINGS_S: f64 = 0.5;
+/// Least and largest time from reading to the key, in seconds.
+const HAND_S: [f64; 2] = [0.6, 1.2];
+/// An offer reopens if the same signal is offered within this time after its close, in seconds.
+const REOPENS_S: f64 = 5.0;
+
+/// What came of a reading.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct HandSummary {
+    /// Readings with an offer on the screen, followed by a key while the trial ran.
+    pub readings: u64,
+    /// The key meant the offer that was read.
+    pub as_read: u64,
+    /// The key meant something else.
+    pub something_else: u64,
+    /// The key meant nothing.
+    pub nothing: u64,
+}
+
+/// The output of `tomcom replay RECORDING... --offers`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct SteadinessSummary {
+    /// Number of recordings.
+    pub recordings: u64,
+    /// Number, durations and uses of offers.
+    pub offers: OfferSummary,
+    /// Median time for which the raw recommendation stayed the same, in seconds; null without recommendations.
+    pub raw_median_s: Option<f64>,
+    /// The scripted hand.
+    pub hand: HandSummary,
+    /// Closed offers, without those that the wizard used and those at the end of a trial.
+    pub could_reopen: u64,
+    /// Number of these whose signal was offered again within 5 s.
+    pub reopened: u64,
+    /// Share of them; null without such offers.
+    pub reopened_share: Option<f64>,
+    /// Time with an open offer, in seconds.
+    pub open_s: f64,
+    /// Share of this time in which the raw net benefit was at or below 0; null without offers.
+    pub share_at_or_below_0: Option<f64>,
+}
+
+/// An offer that the scripted hand has read.
+#[derive(Clone, Debug)]
+struct Reading {
+    /// When it presses the key.
+    key_at: SessionTime,
+    /// Sequence number of the offer.
+    read: Option<u64>,
+}
+
+/// Follows one recording. [`Self::before`] is called before each event, [`Self::after`] after it.
+#[derive(Clone, Debug)]
+pub struct SteadinessTally {
+    random: Stream,
+    next_reading: Option<SessionTime>,
+    readings: Vec<Reading>,
+    hand: HandSummary,
+    open_s: f64,
+    at_or_below_0_s: f64,
+    /// The raw recommendation with the time since which it has been the same.
+    raw: Option<(Signal, SessionTime)>,
+    raw_s: Vec<f64>,
+}
+
+impl SteadinessTally {
+    /// The tally of a recording; the hand's random stream is seeded by the session's seed and trial.
+    pub fn new(session: &Session) -> SteadinessTally {
+        SteadinessTally {
+            random: stream(session.spec.seed, "reading hand", session.trial),
+            next_reading: None,
+            readings: Vec::new(),
+            hand: HandSummary::default(),
+            open_s: 0.0,
+            at_or_below_0_s: 0.0,
+            raw: None,
+            raw_s: Vec::new(),
+        }
+    }
+
+    /// Accounts for the time from the last event until the next one, at `now`.
+    pub fn before(&mut self, session: &Session, now: SessionTime) {
+        if !session.is_running() {
+            // A pause gives the hand time to look again.
+            (self.next_reading, self.readings) = (None, Vec::new());
+            return;
+        }
+        if let Some(offer) = session.offers.open() {
+            let passed_s = now.secs_since(session.time);
+            self.open_s += passed_s;
+            if session.advice.as_ref().is_some_and(|advice| is_at_or_below_0(advice, offer)) {
+                self.at_or_below_0_s += passed_s;
+            }
+        }
+        self.read_until(session, now);
+    }
+
+    /// Lets the hand read and press as it is due before `now`.
+    fn read_until(&mut self, session: &Session, now: SessionTime) {
+        let mut next = self.next_reading.unwrap_or(session.time);
+        while next < now {
+            let open = session.offers.open().map(|offer| offer.seq);
+            let [least_s, most_s] = HAND_S;
+            let key_s = self.random.random_range(least_s..=most_s);
+            let key_at = next + SessionTime::from_secs_f64(key_s);
+            if next >= session.time && open.is_some() {
+                self.readings.push(Reading { key_at, read: open });
+            }
+            let pause_s = 2.0 * BETWEEN_READINGS_S * self.random.random::<f64>();
+            next = next + SessionTime::from_secs_f64(pause_s);
+        }
+        self.next_reading = Some(next);
+        let (due, waiting) = std::mem::take(&mut self.readings).into_iter().partition(|one: &Reading| one.key_at < now);
+        self.readings = waiting;
+        for reading in due {
+            self.press(session, &reading);
+        }
+    }
+
+    fn press(&mut self, session: &Session, reading: &Reading) {
+        let is_possible = |signal| unavailable(&session.kitchen, session.state, signal).is_none();
+        let meant = offers::meant(session, reading.key_at).ok();
+        let meant = meant.filter(|offer| offer.signal().is_none_or(is_possible)).map(|offer| offer.seq);
+        self.hand.readings += 1;
+        *match meant {
+            None => &mut self.hand.nothing,
+            meant if meant == reading.read => &mut self.hand.as_read,
+            Some(_) => &mut self.hand.something_else,
+        } += 1;
+    }
+
+    /// Notes the raw recommendation after an event.
+    pub fn after(&mut self, session: &Session) {
+        let best = session.advice.as_ref().and_then(|advice| advice.best.as_ref());
+        if self.raw.as_ref().map(|(signal, _)| signal) == best {
+            return;
+        }
+        if let Some((_, since)) = self.raw.take() {
+            self.raw_s.push(session.age(since, session.time).as_secs_f64());
+        }
+        self.raw = best.map(|signal| (signal.clone(), session.time));
+    }
+}
+
+/// Whether the recommendation gives what is offered no positive net benefit.
+fn is_at_or_below_0(advice: &Recommendation, offer: &Offer) -> bool {
+    match offer.signal() {
+        Some(signal) => advice.options.iter().any(|option| option.signal == *signal && option.net <= 0.0),
+        None => advice.proposal.is_none(),
+    }
+}
+
+/// Sums over recordings.
+#[derive(Clone, Debug, Default)]
+pub struct SteadinessSums {
+    summary: SteadinessSummary,
+    offers: Vec<TimedOffer>,
+    raw_s: Vec<f64>,
+    at_or_below_0_s: f64,
+}
+
+impl SteadinessSums {
+    /// Adds a recording that was followed to its end.
+    pub fn add(&mut self, tally: SteadinessTally, session: &Session) {
+        let sums = &mut self.summary;
+        sums.recordings += 1;
+        sums.hand.readings += tally.hand.readings;
+        sums.hand.as_read += tally.hand.as_read;
+        sums.hand.something_else += tally.hand.something_else;
+        sums.hand.nothing += tally.hand.nothing;
+        sums.open_s += tally.open_s;
+        self.at_or_below_0_s += tally.at_or_below_0_s;
+        self.raw_s.extend(tally.raw_s);
+        let offers = TimedOffer::all(session);
+        for (index, one) in offers.iter().enumerate() {
+            let (Some(stood_s), Some(reason)) = (one.stood_s, one.reason) else { continue };
+            if !matches!(reason, OfferEnd::Impossible | OfferEnd::Fell | OfferEnd::Replaced) {
+                continue;
+            }
+            sums.could_reopen += 1;
+            let until_s = one.opened_s + stood_s + REOPENS_S;
+            let mut soon = offers[index + 1..].iter().take_while(|later| later.opened_s <= until_s);
+            sums.reopened += u64::from(soon.any(|later| later.offer.advice.what == one.offer.advice.what));
+        }
+        self.offers.extend(offers);
+    }
+
+    /// The summary of all added recordings.
+    pub fn summary(self) -> SteadinessSummary {
+        let SteadinessSums { summary, offers, raw_s, at_or_below_0_s } = self;
+        let share = |part: f64, all: f64| (all > 0.0).then(|| part / all);
+        SteadinessSummary {
+            offers: OfferSummary::from_offers(&offers),
+            raw_median_s: median(raw_s),
+            reopened_share: share(summary.reopened as f64, summary.could_reopen as f64),
+            share_at_or_below_0: share(at_or_below_0_s, summary.open_s),
+            ..summary
+        }
+    }
+}
+
+/// The summary as text.
+pub fn describe(found: &SteadinessSummary) -> String {
+    let seconds = |value: Option<f64>| value.map_or("-".to_string(), |s| format!("{s:.1} s"));
+    let percent = |value: Option<f64>| value.map_or("-".to_string(), |share| format!("{:.1} %", 100.0 * share));
+    let mut text = format!(
+        "{} in {}\nstood {} in the median, {} at least (raw recommendations: {} in the median)\n",
+        count(found.offers.all.n, "offer", "offers"),
+        count(found.recordings, "recording", "recordings"),
+        seconds(found.offers.all.median_s),
+        seconds(found.offers.all.shortest_s),
+        seconds(found.raw_median_s),
+    );
+    for (reason, one) in &found.offers.by_reason {
+        let (median, shortest) = (seconds(one.median_s), seconds(one.shortest_s));
+        text += &format!("  {}: {}, {median} in the median, {shortest} at least\n", reason.words(), one.n);
+    }
+    let hand = &found.hand;
+    let share = |part: u64| percent((hand.readings > 0).then(|| part as f64 / hand.readings as f64));
+    text + &format!(
+        "a hand that presses enter 0.6 to 1.2 s after reading, {}: as read {}, something else {}, nothing {}\n\
+         offered again within 5 s: {} of {} ({})\n\
+         time with an open offer whose raw net benefit is at or below 0: {} of {:.0} s\n",
+        count(hand.readings, "reading", "readings"),
+        share(hand.as_read),
+        share(hand.something_else),
+        share(hand.nothing),
+        found.reopened,
+        found.could_reopen,
+        percent(found.reopened_share),
+        percent(found.share_at_or_below_0),
+        found.open_s,
+    )
+}

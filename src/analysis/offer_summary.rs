@@ -1,0 +1,128 @@
+//! Offers of a trial: how long they stood, why they closed, and whether the wizard sent what was offered.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::wizard_log::clock_at;
+use crate::communication::offer::{Offer, OfferEnd, OfferUse};
+use crate::measures::median;
+use crate::session::Session;
+
+/// An offer with its times on the trial's clock, in seconds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimedOffer {
+    /// The offer.
+    pub offer: Offer,
+    /// When it opened.
+    pub opened_s: f64,
+    /// How long it stood; `None` if the recording was cut while it was open.
+    pub stood_s: Option<f64>,
+    /// Why it closed.
+    pub reason: Option<OfferEnd>,
+    /// Time from its opening to the key that sent its signal.
+    pub reaction_s: Option<f64>,
+}
+
+impl TimedOffer {
+    /// All offers of a session so far, in order.
+    pub fn all(session: &Session) -> Vec<TimedOffer> {
+        let timed = |offer: &Offer, closed: Option<(f64, OfferEnd)>| {
+            let opened_s = clock_at(session, offer.opened).as_secs_f64();
+            TimedOffer {
+                offer: offer.clone(),
+                opened_s,
+                stood_s: closed.map(|(closed_s, _)| closed_s - opened_s),
+                reason: closed.map(|(_, reason)| reason),
+                reaction_s: offer.used.map(|used| clock_at(session, used.at).as_secs_f64() - opened_s),
+            }
+        };
+        let closed = session.offers.closed().iter();
+        let closed =
+            closed.map(|one| timed(&one.offer, Some((clock_at(session, one.closed).as_secs_f64(), one.reason))));
+        closed.chain(session.offers.unclosed().map(|open| timed(open, None))).collect()
+    }
+
+    /// The offers that a wizard could see.
+    pub fn visible(session: &Session) -> Vec<TimedOffer> {
+        let all = TimedOffer::all(session).into_iter();
+        all.filter(|one| one.offer.advice.visible).collect()
+    }
+}
+
+/// Number and duration of offers, in seconds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct OfferDurations {
+    /// Number of offers.
+    pub n: u64,
+    /// Median time for which they stood; null without offers.
+    pub median_s: Option<f64>,
+    /// Shortest of these times.
+    pub shortest_s: Option<f64>,
+}
+
+impl OfferDurations {
+    fn from_times(times: Vec<f64>) -> OfferDurations {
+        let shortest_s = times.iter().copied().reduce(f64::min);
+        OfferDurations { n: times.len() as u64, median_s: median(times), shortest_s }
+    }
+
+    /// The durations as text: one line; empty without offers.
+    pub fn describe(&self) -> String {
+        let (Some(median_s), Some(shortest_s)) = (self.median_s, self.shortest_s) else { return String::new() };
+        format!("offers: {}, {median_s:.1} s in the median, {shortest_s:.1} s at least\n", self.n)
+    }
+}
+
+/// Summary of offers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct OfferSummary {
+    /// All closed offers.
+    #[serde(flatten)]
+    pub all: OfferDurations,
+    /// The same by the reason of closing.
+    pub by_reason: BTreeMap<OfferEnd, OfferDurations>,
+    /// Offers whose signal was sent by the key that takes the offer.
+    pub taken: u64,
+    /// Offers whose signal was sent by the signal's own key.
+    pub by_own_key: u64,
+    /// Closed offers whose signal was not sent.
+    pub not_taken: u64,
+    /// Median time from the opening to either key, in seconds; null without such offers.
+    pub reaction_s: Option<f64>,
+}
+
+impl OfferSummary {
+    /// The summary of offers of one or several trials. An offer that was still open where a recording was cut is not counted.
+    pub fn from_offers<'a>(offers: impl IntoIterator<Item = &'a TimedOffer>) -> OfferSummary {
+        let mut summary = OfferSummary::default();
+        let (mut stood, mut reactions) = (Vec::new(), Vec::new());
+        let mut by_reason: BTreeMap<OfferEnd, Vec<f64>> = BTreeMap::new();
+        for one in offers {
+            let (Some(stood_s), Some(reason)) = (one.stood_s, one.reason) else { continue };
+            stood.push(stood_s);
+            by_reason.entry(reason).or_default().push(stood_s);
+            reactions.extend(one.reaction_s);
+            *match one.offer.used.map(|used| used.how) {
+                Some(OfferUse::Taken) => &mut summary.taken,
+                Some(OfferUse::OwnKey) => &mut summary.by_own_key,
+                None => &mut summary.not_taken,
+            } += 1;
+        }
+        summary.all = OfferDurations::from_times(stood);
+        let of_reason = |(reason, times)| (reason, OfferDurations::from_times(times));
+        summary.by_reason = by_reason.into_iter().map(of_reason).collect();
+        summary.reaction_s = median(reactions);
+        summary
+    }
+
+    /// The summary as text; empty without offers.
+    pub fn describe(&self) -> String {
+        if self.all.n == 0 {
+            return String::new();
+        }
+        let reaction = self.reaction_s.map_or(String::new(), |s| format!(", after {s:.1} s in the median"));
+        let (durations, taken, by_own_key) = (self.all.describe(), self.taken, self.by_own_key);
+        format!("{durations}        {taken} taken, {by_own_key} sent by their own key{reaction}\n")
+    }
+}

@@ -1,0 +1,38 @@
+//! `tomcom replay RECORDING... --offers`: replays recordings for [`crate::analysis::offer_steadiness`].
+
+use std::path::{Path, PathBuf};
+
+use super::parallel;
+use super::replay::each_once;
+use crate::analysis::offer_steadiness::{SteadinessSummary, SteadinessSums, SteadinessTally};
+use crate::edge::file_error::FileResult;
+use crate::edge::log::{LogReader, at_line};
+use crate::session::{Session, apply};
+
+/// Measures how steady the offers of recordings are. `done` is called after each recording.
+///
+/// # Errors
+/// A recording that cannot be read or applied.
+pub fn measure(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<SteadinessSummary> {
+    each_once(recordings)?;
+    let mut sums = SteadinessSums::default();
+    for one in parallel::each(recordings, |recording| tally(recording), done) {
+        let (tally, session) = one?;
+        sums.add(tally, &session);
+    }
+    Ok(sums.summary())
+}
+
+/// Follows one recording. Offers need the session's state only, so no estimate is computed.
+fn tally(recording: &Path) -> FileResult<(SteadinessTally, Session)> {
+    let mut log = LogReader::open(recording)?;
+    let mut session = log.session();
+    let mut tally = SteadinessTally::new(&session);
+    while let Some(line) = log.next_line()? {
+        tally.before(&session, line.stamped.time);
+        apply(&mut session, &line.stamped)
+            .map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
+        tally.after(&session);
+    }
+    Ok((tally, session))
+}

@@ -1,0 +1,78 @@
+//! Table of offers that a wizard could see.
+
+use crate::analysis::offer_summary::TimedOffer;
+use crate::communication::Signal;
+use crate::communication::offer::{OfferEnd, OfferUse, OfferedAct};
+use crate::mind::recorded_estimate::rounded;
+use crate::study::column::{Column, Table, TableRow};
+
+/// An offer of a recording.
+#[derive(Clone, Copy, Debug)]
+pub struct OfferRow<'a> {
+    /// Folder of the recording.
+    pub recording: &'a str,
+    /// The offer.
+    pub timed: &'a TimedOffer,
+}
+
+impl OfferRow<'_> {
+    fn act(&self) -> &OfferedAct {
+        &self.timed.offer.advice.what
+    }
+
+    fn target(&self) -> String {
+        match self.act() {
+            OfferedAct::Signal(signal) => signal.target().to_string(),
+            OfferedAct::Presses(presses) => presses.join(" "),
+        }
+    }
+}
+
+fn kind_name(what: &OfferedAct) -> &'static str {
+    match what {
+        OfferedAct::Signal(Signal::ShowRecipe(_)) => "recipe",
+        OfferedAct::Signal(Signal::Highlight(_)) => "highlight",
+        OfferedAct::Presses(_) => "proposal",
+    }
+}
+
+fn key_name(how: OfferUse) -> &'static str {
+    match how {
+        OfferUse::Taken => "enter",
+        OfferUse::OwnKey => "own",
+    }
+}
+
+impl TableRow for OfferRow<'_> {
+    const TABLE: Table = Table::Offers;
+
+    fn columns() -> Vec<Column<Self>> {
+        let worth = "presses; for tom a probability";
+        let closed = "reason of the close: taken, own_key, impossible, fell (no longer worth it), replaced, trial_ended; \
+                      empty: the recording was cut";
+        let key = "key that sent the offered signal while it could be taken: enter or own (the signal's own key); empty: not sent";
+        vec![
+            Self::column("recording", "", "as in trials", |row| row.recording.into()),
+            Self::column("offer", "", "sequence number of offer_opened in the log", |row| row.timed.offer.seq.into()),
+            Self::column("time_s", "s", "time of its opening on the trial's clock", |row| {
+                rounded(row.timed.opened_s).into()
+            }),
+            Self::column("kind", "", "recipe, highlight or proposal", |row| kind_name(row.act()).into()),
+            Self::column("target", "", "location of the signal, or the proposed presses", |row| row.target().into()),
+            Self::column("benefit", worth, "expected saving at the opening; for tom the belief deviation", |row| {
+                row.timed.offer.advice.worth.map(|worth| worth.benefit).into()
+            }),
+            Self::column("net", worth, "benefit minus the cost of communication or the threshold", |row| {
+                row.timed.offer.advice.worth.map(|worth| worth.net).into()
+            }),
+            Self::column("stood_s", "s", "time for which it was open, without pauses", |row| {
+                row.timed.stood_s.map(rounded).into()
+            }),
+            Self::column("closed", "", closed, |row| row.timed.reason.map(OfferEnd::name).into()),
+            Self::column("key", "", key, |row| row.timed.offer.used.map(|used| key_name(used.how)).into()),
+            Self::column("reaction_s", "s", "time from the opening to that key, without pauses", |row| {
+                row.timed.reaction_s.map(rounded).into()
+            }),
+        ]
+    }
+}

@@ -1,0 +1,121 @@
+//! Recordings with offers: they verify, go on after a cut, and are measured; those of format 1 have none.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use tomcom::analysis::offer_summary::TimedOffer;
+use tomcom::base::time::SessionTime;
+use tomcom::communication::offer::OfferEnd;
+use tomcom::communication::settings::Shadow;
+use tomcom::edge::log::{LOG_NAME, LogWriter};
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::run::engine::Engine;
+use tomcom::run::replay::Replay;
+use tomcom::run::resume::resume;
+use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
+use tomcom::run::steadiness::measure;
+use tomcom::run::verify::verify;
+use tomcom::session::settings::{Condition, GazeSource, ParticipantKind};
+use tomcom::session::{Event, Header, offers};
+
+use super::{folder, session};
+
+/// Trials of an unassisted session with an assistant that advises unseen.
+fn shadowed(out: &str) -> Vec<PathBuf> {
+    let mut files = session("default.toml");
+    (files.spec.trial.condition, files.spec.assistant.shadow) = (Condition::None, Shadow::On);
+    files.spec.assistant.rollout.rollouts = 32;
+    (files.spec.seed, files.spec.trial.seconds) = (7, 120.0);
+    let request = SimulationRequest { files, trials: 2, shard: Shard::WHOLE, out: folder(out) };
+    let summary = simulate(&request, || ()).expect("the folder can be written");
+    assert!(summary.offers.n > 0, "seed 7: {:?}", summary.offers);
+    summary.recordings.iter().map(PathBuf::from).collect()
+}
+
+#[test]
+fn a_recording_with_offers_verifies_whole_and_cut_at_every_offer() {
+    let recordings = shadowed("offers");
+    for recording in &recordings {
+        let found = verify(recording).expect("a recording");
+        assert!(found.verified && !found.cut, "{found:?}");
+    }
+    let text = fs::read_to_string(recordings[0].join(LOG_NAME)).expect("a log");
+    let lines: Vec<&str> = text.lines().collect();
+    let opened = (0..lines.len()).filter(|&index| lines[index].contains("\"kind\":\"offer_"));
+    for index in opened {
+        let cut = folder("offers-cut").join(LOG_NAME);
+        fs::write(&cut, lines[..=index].join("\n") + "\n").expect("the folder can be written");
+        let found = verify(&cut).expect("a recording");
+        assert!(found.verified && found.cut, "cut after line {index}: {found:?}");
+    }
+}
+
+#[test]
+fn the_measured_hand_reads_offers_and_every_offer_is_counted() {
+    let recordings = shadowed("offers-measured");
+    let found = measure(&recordings, || ()).expect("recordings");
+    let (mut offers, mut visible) = (0, 0);
+    for recording in &recordings {
+        let mut replay = Replay::open(recording).expect("a recording");
+        replay.run().expect("a recording");
+        offers += TimedOffer::all(replay.session()).len() as u64;
+        visible += TimedOffer::visible(replay.session()).len();
+    }
+    assert_eq!((found.offers.all.n, visible), (offers, 0), "nobody could see them");
+    let hand = found.hand;
+    assert!(hand.readings > 0 && hand.readings == hand.as_read + hand.something_else + hand.nothing, "{hand:?}");
+    assert_eq!(measure(&recordings, || ()).expect("recordings"), found, "the hand is seeded");
+}
+
+#[test]
+fn a_session_that_was_cut_goes_on_with_its_open_offer() {
+    let mut files = session("default.toml");
+    files.spec.participant.kind = ParticipantKind::Keyboard;
+    files.spec.participant.gaze = GazeSource::None;
+    (files.spec.trial.condition, files.spec.assistant.shadow) = (Condition::Wizard, Shadow::On);
+    files.spec.assistant.rollout.rollouts = 32;
+    // Nobody has seen the orders, and signals cost nothing: something is worth saying.
+    files.spec.assistant.cost_of_communication = 0.0;
+    let kitchen = Arc::new(files.kitchen.kitchen);
+    let mut header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+    header.started = Some("2026-03-14T10:00:00Z".to_string());
+    let mut log = LogWriter::create_live(&folder("offers-live"), "2026-03-14", &header).expect("a folder");
+    let mut engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+    let mut advisor = engine.advisor();
+    let mut events = engine.input(SessionTime::ZERO, Event::TrialStarted).events;
+    while engine.session().offers.open().is_none() {
+        for question in engine.take_questions() {
+            events.extend(engine.input(question.time, Event::Advised(advisor.answer(&question))).events);
+        }
+        events.extend(engine.fire());
+    }
+    events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
+    let recording = log.folder().to_path_buf();
+    drop(log);
+    let offer = engine.session().offers.open().cloned();
+    let resumed = resume(&recording).expect("it can be continued");
+    assert_eq!(resumed.engine.session().offers.open().cloned(), offer);
+    assert!(resumed.header.has_offers() && resumed.first.iter().any(|one| one.event == Event::TrialPaused));
+}
+
+#[test]
+fn recordings_of_format_1_have_no_offers() {
+    for name in ["hand", "people", "simulated"] {
+        let log = format!("tests/golden/format-1-{name}.jsonl");
+        let mut replay = Replay::open(Path::new(&log)).expect("a golden recording");
+        assert!(!offers::are_made(replay.session()), "{name}");
+        replay.run().expect("a golden recording");
+        assert!(TimedOffer::all(replay.session()).is_empty(), "{name}");
+    }
+}
+
+#[test]
+fn a_recording_of_format_2_keeps_its_offers() {
+    let mut replay = Replay::open(Path::new("tests/golden/format-2-offers.jsonl")).expect("a golden recording");
+    replay.run().expect("a golden recording");
+    let offers = TimedOffer::all(replay.session());
+    let told: Vec<(Option<f64>, Option<OfferEnd>)> = offers.iter().map(|one| (one.stood_s, one.reason)).collect();
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(told.iter().all(|(stood_s, reason)| stood_s.is_some_and(|s| s >= 1.5) && reason.is_some()), "{told:?}");
+}

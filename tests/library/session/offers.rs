@@ -1,0 +1,260 @@
+//! The rules of offers: opening, holding, closing, and what `enter` means.
+
+use tomcom::communication::concept::ConceptName;
+use tomcom::communication::offer::OfferEnd;
+use tomcom::communication::recommendation::{Proposal, Recommendation, SignalOption};
+use tomcom::communication::settings::Shadow;
+use tomcom::communication::{Sender, Signal};
+use tomcom::kitchen::OrderContent;
+use tomcom::run::engine::Engine;
+use tomcom::session::settings::{Condition, SessionSpec, Visibility};
+use tomcom::session::wizard_screen::VisibleScreen;
+use tomcom::session::{Event, offers};
+
+use super::{at, check, engine};
+
+/// A running trial with an assistant whose advice the test gives.
+fn advised(change: impl Fn(&mut SessionSpec)) -> Engine {
+    let mut engine = engine(|spec| {
+        (spec.trial.condition, spec.assistant.shadow) = (Condition::Wizard, Shadow::On);
+        spec.console.visibility = Visibility::Recommendation;
+        change(spec);
+    });
+    check(&mut engine, &[(0.0, Event::TrialStarted)]);
+    engine
+}
+
+fn highlight(place: &str) -> Signal {
+    Signal::Highlight(place.to_string())
+}
+
+fn recipe(order: &str) -> Signal {
+    Signal::ShowRecipe(order.to_string())
+}
+
+/// Advice with these net benefits.
+fn nets(seconds: f64, nets: &[(Signal, f64)]) -> (f64, Event) {
+    let mut options: Vec<SignalOption> = nets
+        .iter()
+        .map(|(signal, net)| SignalOption {
+            signal: signal.clone(),
+            benefit: net + 1.5,
+            standard_error: 0.1,
+            net: *net,
+            rollouts: 64,
+        })
+        .collect();
+    options.sort_by(|a, b| b.net.total_cmp(&a.net));
+    let best = options.first().filter(|option| option.net > 0.0).map(|option| option.signal.clone());
+    (seconds, Event::Advised(Recommendation { options, best, ..Recommendation::silent(0, at(seconds)) }))
+}
+
+fn pot(seconds: f64, net: f64) -> (f64, Event) {
+    nets(seconds, &[(highlight("cooking_pot"), net)])
+}
+
+fn marker(seconds: f64) -> (f64, Event) {
+    (seconds, Event::Marker { note: String::new() })
+}
+
+fn sent(seconds: f64, signal: Signal) -> (f64, Event) {
+    (seconds, Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None })
+}
+
+/// Gives the inputs; the changes of offers with their seconds.
+fn changes(engine: &mut Engine, inputs: &[(f64, Event)]) -> Vec<(String, f64)> {
+    let mut changes = Vec::new();
+    for (seconds, event) in inputs {
+        let outcome = engine.input(at(*seconds), event.clone());
+        assert_eq!(outcome.refused, None, "{event:?} at {seconds}");
+        for stamped in outcome.events {
+            let what = match &stamped.event {
+                Event::OfferOpened(_) => engine.session().offers.find(stamped.seq).and_then(|offer| {
+                    let signal = offer.signal()?;
+                    Some(format!("opens {}", signal.target()))
+                }),
+                Event::OfferClosed { reason, .. } => Some(reason.name().to_string()),
+                _ => None,
+            };
+            changes.extend(what.map(|what| (what, stamped.time.as_secs_f64())));
+        }
+    }
+    changes
+}
+
+fn expected(changes: &[(&str, f64)]) -> Vec<(String, f64)> {
+    changes.iter().map(|(what, seconds)| (what.to_string(), *seconds)).collect()
+}
+
+#[test]
+fn an_offer_stands_for_one_and_a_half_seconds_and_then_one_second_passes_before_the_next() {
+    let mut engine = advised(|_| ());
+    let inputs = [pot(1.0, 1.0), pot(1.2, -2.0), nets(2.6, &[(highlight("counter"), 3.0)]), marker(9.0)];
+    let found = changes(&mut engine, &inputs);
+    assert_eq!(found, expected(&[("opens cooking_pot", 1.0), ("fell", 2.5), ("opens counter", 3.5)]));
+}
+
+#[test]
+fn an_offer_closes_only_well_below_zero_or_when_another_is_clearly_better() {
+    let other = |seconds, own: f64, other: f64| {
+        nets(seconds, &[(highlight("cooking_pot"), own), (highlight("counter"), other)])
+    };
+    let mut engine = advised(|_| ());
+    let held = [pot(1.0, 1.0), pot(3.0, -0.5), other(4.0, 1.0, 1.49), marker(5.0)];
+    assert_eq!(changes(&mut engine, &held), expected(&[("opens cooking_pot", 1.0)]));
+    let replaced = [other(6.0, 1.0, 1.5), marker(7.5)];
+    assert_eq!(changes(&mut engine, &replaced), expected(&[("replaced", 6.0), ("opens counter", 7.0)]));
+    assert_eq!(changes(&mut engine, &[other(9.0, -2.0, -0.51)]), expected(&[("fell", 9.0)]));
+    assert_eq!(changes(&mut engine, &[pot(11.0, 0.0), marker(12.0)]), [], "0 is not above 0");
+}
+
+#[test]
+fn the_thresholds_of_tom_are_probabilities() {
+    let mut engine = advised(|spec| spec.assistant.concept = ConceptName::Tom);
+    let inputs = [pot(1.0, 0.3), pot(3.0, -0.1), pot(4.0, -0.11)];
+    assert_eq!(changes(&mut engine, &inputs), expected(&[("opens cooking_pot", 1.0), ("fell", 4.0)]));
+}
+
+#[test]
+fn dev_offers_presses_that_cannot_be_sent() {
+    let proposes = |seconds, presses: &[&str]| {
+        let presses: Vec<String> = presses.iter().map(|press| press.to_string()).collect();
+        let proposal = (!presses.is_empty()).then_some(Proposal { error: 0, presses });
+        (seconds, Event::Advised(Recommendation { proposal, ..Recommendation::silent(0, at(seconds)) }))
+    };
+    let mut engine = advised(|spec| spec.assistant.concept = ConceptName::Dev);
+    changes(&mut engine, &[proposes(1.0, &["cook"]), proposes(1.1, &[])]);
+    assert!(offers::enter(engine.session(), at(2.0)).expect_err("no signal").contains("cannot be sent"));
+    assert_eq!(changes(&mut engine, &[marker(4.0)]), expected(&[("fell", 2.5)]));
+    changes(&mut engine, &[proposes(5.0, &["cook"])]);
+    assert_eq!(changes(&mut engine, &[proposes(7.0, &["cut"])]), expected(&[("replaced", 7.0)]));
+}
+
+#[test]
+fn nothing_opens_during_the_cool_down_between_signals() {
+    let mut engine = advised(|_| ());
+    let inputs = [sent(1.0, highlight("counter")), pot(1.1, 1.0), marker(2.0)];
+    assert_eq!(changes(&mut engine, &inputs), expected(&[("opens cooking_pot", 1.5)]));
+}
+
+#[test]
+fn a_pause_stops_the_clock_of_an_offer() {
+    let mut engine = advised(|_| ());
+    let inputs = [pot(1.0, 1.0), pot(1.2, -2.0), (2.0, Event::TrialPaused), (12.0, Event::TrialResumed), marker(20.0)];
+    assert_eq!(changes(&mut engine, &inputs), expected(&[("opens cooking_pot", 1.0), ("fell", 12.5)]));
+}
+
+#[test]
+fn an_offer_that_became_impossible_closes_at_once_and_so_does_one_at_the_end_of_the_trial() {
+    let mut engine = advised(|_| ());
+    let cleared = Event::OrderCleared { order: "order_1".to_string() };
+    let inputs = [nets(1.0, &[(recipe("order_1"), 2.0)]), (1.3, cleared)];
+    assert_eq!(changes(&mut engine, &inputs), expected(&[("opens order_1", 1.0), ("impossible", 1.3)]));
+    let ended = Event::TrialEnded { reason: tomcom::session::event::EndReason::Wizard };
+    let inputs = [pot(2.0, 1.0), marker(2.4), (2.6, ended)];
+    assert_eq!(changes(&mut engine, &inputs), expected(&[("opens cooking_pot", 2.3), ("trial_ended", 2.6)]));
+}
+
+#[test]
+fn of_two_orders_of_one_dish_the_older_one_is_offered() {
+    let order = |engine: &Engine, name: &str| {
+        let session = engine.session();
+        session.state.order(session.kitchen.location_named(name).expect("an order"))
+    };
+    let both =
+        |seconds, first: f64, second: f64| nets(seconds, &[(recipe("order_1"), first), (recipe("order_2"), second)]);
+    let started = |seed| advised(|spec| spec.seed = seed);
+    let is_same = |engine: &Engine| order(engine, "order_1") == order(engine, "order_2");
+    let mut engine = (1..200).map(started).find(is_same).expect("a seed with two orders of one dish");
+    assert!(matches!(order(&engine, "order_1"), OrderContent::Dish(_)));
+    let inputs = [both(1.0, 0.5, 2.0), both(4.0, 0.5, 2.0), both(5.0, 2.0, 0.5)];
+    assert_eq!(changes(&mut engine, &inputs), expected(&[("opens order_1", 1.0)]), "they do not swap");
+    // Where only the younger one is worth its cost, it is offered.
+    let inputs = [both(6.0, -0.1, 2.0), marker(7.5)];
+    assert_eq!(changes(&mut engine, &inputs), expected(&[("replaced", 6.0), ("opens order_2", 7.0)]));
+    let mut engine = (1..200).map(started).find(|engine| !is_same(engine)).expect("a seed with two dishes");
+    assert_eq!(changes(&mut engine, &[both(1.0, 0.5, 2.0)]), expected(&[("opens order_2", 1.0)]));
+}
+
+#[test]
+fn enter_means_what_was_read() {
+    let target = |engine: &Engine, seconds: f64| {
+        let meant = offers::enter(engine.session(), at(seconds)).map(|(offer, event)| {
+            assert!(matches!(&event, Event::SignalShown { offer: Some(seq), accepted: None, .. } if *seq == offer.seq));
+            offer.signal().expect("a signal").target().to_string()
+        });
+        meant.unwrap_or_else(|reason| reason)
+    };
+    let mut engine = advised(|_| ());
+    assert_eq!(target(&engine, 0.5), "nothing is on offer");
+    changes(&mut engine, &[pot(1.0, 1.0)]);
+    assert!(target(&engine, 1.2).contains("just appeared"), "nobody has read it");
+    assert_eq!(target(&engine, 1.3), "cooking_pot");
+    let other = nets(4.0, &[(highlight("counter"), 2.0), (highlight("cooking_pot"), 1.0)]);
+    changes(&mut engine, &[other]);
+    assert_eq!(target(&engine, 4.9), "cooking_pot", "it closed a moment ago");
+    changes(&mut engine, &[marker(5.1)]);
+    assert_eq!(engine.session().offers.open().and_then(|offer| offer.signal()), Some(&highlight("counter")));
+    assert_eq!(target(&engine, 5.25), "cooking_pot", "the new one cannot have been read");
+    assert_eq!(target(&engine, 5.3), "counter");
+    changes(&mut engine, &[pot(7.0, -3.0), nets(7.1, &[(highlight("counter"), -3.0)])]);
+    assert_eq!(target(&engine, 8.4), "counter");
+    assert_eq!(target(&engine, 8.5), "nothing is on offer", "too long ago");
+}
+
+#[test]
+fn a_taken_offer_is_named_by_its_signal_and_is_not_sent_twice() {
+    let mut engine = advised(|_| ());
+    changes(&mut engine, &[pot(1.0, 1.0)]);
+    let (seq, event) = offers::enter(engine.session(), at(1.8)).map(|(offer, event)| (offer.seq, event)).expect("one");
+    assert_eq!(changes(&mut engine, &[(1.8, event.clone())]), expected(&[("taken", 1.8)]));
+    assert_eq!(offers::enter(engine.session(), at(2.5)).map(|_| ()), Err("the offer was taken already".to_string()));
+    let last = engine.session().offers.last().expect("it closed");
+    assert_eq!((last.offer.seq, last.reason), (seq, OfferEnd::Taken));
+    let again = engine.input(at(8.0), event);
+    assert_eq!(again.refused, None, "it is the last offer still");
+    let mut unknown = advised(|_| ());
+    let (signal, by) = (highlight("counter"), Sender::Wizard);
+    let refused = unknown.input(at(1.0), Event::SignalShown { by, signal, accepted: None, offer: Some(3) }).refused;
+    assert_eq!(refused.as_deref(), Some("that was not the last offer"));
+}
+
+#[test]
+fn other_keys_mean_themselves_and_the_signals_own_key_closes_the_offer_as_such() {
+    let mut engine = advised(|_| ());
+    let inputs = [pot(1.0, 1.0), sent(1.5, highlight("counter")), sent(2.5, highlight("cooking_pot"))];
+    assert_eq!(changes(&mut engine, &inputs), expected(&[("opens cooking_pot", 1.0), ("own_key", 2.5)]));
+}
+
+#[test]
+fn during_the_cool_down_enter_says_why_it_sends_nothing() {
+    let mut engine = advised(|_| ());
+    changes(&mut engine, &[pot(1.0, 1.0), sent(1.5, highlight("counter"))]);
+    let reason = offers::enter(engine.session(), at(1.7)).expect_err("too soon");
+    assert!(reason.starts_with("too soon"), "{reason}");
+    assert!(offers::enter(engine.session(), at(2.1)).is_ok());
+}
+
+#[test]
+fn whether_a_wizard_could_see_an_offer_is_recorded() {
+    let visible = |visibility, has_console: bool| {
+        let mut engine = advised(|spec| spec.console.visibility = visibility);
+        if has_console {
+            let (room, panels, dialog) = ("medium".to_string(), Vec::new(), None);
+            check(&mut engine, &[(0.5, Event::Screen(VisibleScreen { visibility, room, panels, dialog }))]);
+        }
+        changes(&mut engine, &[pot(1.0, 1.0)]);
+        engine.session().offers.open().expect("it opens all the same").advice.visible
+    };
+    assert!(visible(Visibility::Recommendation, true));
+    assert!(!visible(Visibility::Recommendation, false), "nothing draws it");
+    assert!(!visible(Visibility::State, true), "it is not shown in this session");
+}
+
+#[test]
+fn an_assistant_that_acts_makes_no_offers_and_neither_does_an_old_recording() {
+    let mut acting = advised(|spec| spec.trial.condition = Condition::Assistant);
+    assert_eq!(changes(&mut acting, &[pot(1.0, 1.0), marker(9.0)]), []);
+    let mut old = advised(|_| ()).without_offers();
+    assert_eq!(changes(&mut old, &[pot(1.0, 1.0), marker(9.0)]), []);
+}

@@ -67,12 +67,9 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
         ("kitchen", session.kitchen.title.clone(), TextRole::Text),
         ("length", length, TextRole::Text),
     ];
-    let names = ["recording", "gaze"];
-    let mut told = head::healths(session, model, ScreenSize::Medium).into_iter();
-    // A warning of the whole console comes before the states of the devices.
-    let told: Vec<(String, TextRole)> = told.by_ref().filter(|(text, _)| text.trim() != "NO KEYBOARD").collect();
-    for (index, (text, role)) in told.into_iter().enumerate() {
-        facts.push((names.get(index).copied().unwrap_or(""), text.trim().to_string(), role));
+    for (index, (text, role)) in head::healths(session, model, ScreenSize::Medium).into_iter().enumerate() {
+        let name = if index == 0 { "devices" } else { "" };
+        facts.push((name, text.trim().to_string(), role));
     }
     let mut keys = Vec::new();
     keys.extend(key(model, &KeyAction::Advance).map(|key| (key, "start the trial".to_string())));
@@ -117,7 +114,7 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     let mut keys = Vec::new();
     let on = onward(session);
     keys.extend(on.and_then(|on| Some((key(model, &KeyAction::Advance)?, on))));
-    if on_needs_redo(session) {
+    if can_redo(session) {
         keys.extend(key(model, &KeyAction::Hand(ManualAction::Redo)).map(|key| (key, "do it again".to_string())));
     }
     keys.extend(key(model, &KeyAction::Quit).map(|key| (key, "close the session".to_string())));
@@ -125,7 +122,7 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
 }
 
 /// Whether the trial can be done again by the key for it.
-fn on_needs_redo(session: &Session) -> bool {
+fn can_redo(session: &Session) -> bool {
     session.aborted.is_some() || session.excluded.is_some()
 }
 

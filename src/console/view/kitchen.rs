@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::gaze;
-use super::offer;
+use super::offer_line;
 use super::paint::{Painter, fit, squeeze, width, wrap, wrap_to};
 use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
@@ -48,12 +48,12 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let plan = KitchenMap::new(&session.kitchen, regions.kitchen_inside(), with_keys);
     zones(brush, &plan);
     let believed = beliefs(session, model);
-    let offered = offer::shown(session).and_then(|offer| offer.place(session));
+    let offered = offer_line::shown(session).and_then(|offer| offer.place(session));
     for spot in &plan.spots {
         match spot.thing {
             MapElement::Location(location) => {
                 let place = Place::new(session, model, location);
-                let thinks = offer::thinks(session, &believed, location);
+                let thinks = offer_line::thinks(session, &believed, location);
                 Place { thinks, is_offered: offered == Some(location), ..place }.draw(brush, spot.cells);
             }
             MapElement::Storage(index) => storage(brush, session, model, index, spot.cells),

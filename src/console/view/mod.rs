@@ -12,7 +12,7 @@ pub mod hands;
 pub mod head;
 pub mod kitchen;
 pub mod lesson;
-pub mod offer;
+pub mod offer_line;
 pub mod paint;
 pub mod picker;
 mod popup;
@@ -43,7 +43,7 @@ pub fn view(session: &Session, model: &ConsoleModel, frame: &mut Frame) {
     }
     let regions = Regions::showing((area.width, area.height), session, model);
     head::draw(&mut brush, &regions, session, model);
-    offer::draw(&mut brush, &regions, session, model);
+    offer_line::draw(&mut brush, &regions, session, model);
     kitchen::draw(&mut brush, &regions, session, model);
     belief_panel::draw(&mut brush, &regions, session, model);
     recommendation_panel::draw(&mut brush, &regions, session, model);

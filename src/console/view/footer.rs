@@ -4,11 +4,11 @@ use std::borrow::Cow;
 
 use ratatui::style::Style;
 
+use super::offer_line;
 use super::paint::{Painter, width};
 use super::regions::Regions;
 use super::theme::TextRole;
 use crate::communication::Sender;
-use crate::communication::concept::ConceptName;
 use crate::console::console_model::{ConsoleModel, Dialog, Notice};
 use crate::console::form::sheet;
 use crate::console::key_action::ManualAction;
@@ -18,7 +18,7 @@ use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer};
 use crate::console::notice::NoticeLevel;
 use crate::console::playback::ReplayKey;
 use crate::session::admit::may_send;
-use crate::session::settings::{ParticipantKind, Visibility};
+use crate::session::settings::ParticipantKind;
 use crate::session::{Phase, Session};
 
 /// Display time of a notice, in seconds.
@@ -185,9 +185,7 @@ fn fixed_label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleMo
     }
 }
 
-/// Whether a recommendation can be accepted in this session.
+/// Whether there is an offer that can be sent now.
 fn can_accept(session: &Session) -> bool {
-    let recommends = matches!(session.spec.assistant.concept, ConceptName::TomCom | ConceptName::Tom);
-    let is_shown = session.spec.console.visibility == Visibility::Recommendation;
-    recommends && is_shown && session.spec.asks_assistant() && may_send(session, Sender::Wizard).is_ok()
+    offer_line::shown(session).is_some_and(|offer| offer.is_signal()) && may_send(session, Sender::Wizard).is_ok()
 }

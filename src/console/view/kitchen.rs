@@ -19,6 +19,8 @@ use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, Locatio
 use crate::session::Session;
 use crate::session::settings::{Condition, ParticipantKind};
 
+/// Stands in for what is falsely believed where there is no room for it.
+const FALSE_BELIEF: &str = "false belief";
 /// Time for which a change is marked, in seconds.
 const FRESH_S: f64 = 5.0;
 /// Time for which a change is underlined, and time for which it is bold, in seconds.
@@ -279,7 +281,9 @@ impl<'a> Place<'a> {
         let y = room.bottom() - 1;
         let written = (0..room.width).filter(|x| brush.is_written(room.x + x, y)).max().map_or(0, |x| x + 2);
         let left = room.width.saturating_sub(written);
-        brush.text(room.x + written, y, left, &squeeze(&words, left), style);
+        // Without room for what is thought, a word says that something is: the list of beliefs has the rest.
+        let words = [words.as_str(), FALSE_BELIEF].into_iter().find(|words| width(words) <= left).unwrap_or("");
+        brush.text(room.x + written, y, left, words, style);
         room.height
     }
 
@@ -306,7 +310,7 @@ impl<'a> Place<'a> {
             let free = (room.height.saturating_sub(1)).max(1) - u16::from(recipe.is_some());
             let lines = match room.height {
                 // On one line, what is thought stands only in the belief's line.
-                1 if width(thinks) > left => vec!["false belief".to_string()],
+                1 if width(thinks) > left => vec![FALSE_BELIEF.to_string()],
                 _ => wrap_to(thinks, left, free, brush.theme.signs().ellipsis),
             };
             for (row, line) in lines.iter().enumerate() {

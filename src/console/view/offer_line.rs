@@ -58,6 +58,11 @@ impl ShownOffer<'_> {
         }
     }
 
+    /// Whether a signal is offered, and not presses.
+    pub(super) fn is_signal(&self) -> bool {
+        matches!(self.act, OfferedAct::Signal(_))
+    }
+
     /// The label with the keys: " enter  SHOW RECIPE OF ORDER 1 [q] ".
     fn label(&self, session: &Session, model: &ConsoleModel) -> String {
         let words = match &self.act {

@@ -23,7 +23,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let (thin, strong) = (brush.style(TextRole::Frame), brush.style(TextRole::Strong));
     brush.text(x, area.y, columns, &line, thin);
     let here = (share.clamp(0.0, 1.0) * f64::from(columns.saturating_sub(1))) as u16;
-    brush.text(x, area.y, here, &line, strong);
+    brush.text(x, area.y, here, &brush.theme.signs().frame[4].repeat(usize::from(here)), strong);
     let sign = brush.theme.signs().recording;
     brush.text(x + here, area.y, 1, sign, strong);
 }

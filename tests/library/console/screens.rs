@@ -191,7 +191,7 @@ fn the_keys_of_a_replay_and_the_served_orders_fit_the_smallest_console() {
     stage.model.playback = Some(playback);
     for size in SIZES {
         let screen = stage.screen(size);
-        for words in ["q quit", "? help", "left/right step", "0 served", "play 1x"] {
+        for words in ["q quit", "? help", "left/right step", "0 served", "play 1x", " position "] {
             assert!(screen.contains(words), "{words} is missing:\n{screen}");
         }
     }
